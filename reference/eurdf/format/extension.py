@@ -1,0 +1,153 @@
+"""The description in the YAML file, of either version, before any name in it is looked up.
+
+Every entry keeps the pointer to where it stands, as a tuple of keys and indices; `YamlDocument.place` turns it into a
+line and a column.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal
+
+from eurdf.mechanism.mechanism import ClosureType, Root
+from eurdf.mechanism.pose import Vector3
+
+Pointer = tuple[str | int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class FrameReference:
+    """A frame by its name, or as a pose on a link or on a joint's frame.
+
+    Attributes:
+        pointer: Where it stands.
+        name: Name; None for a pose written in place.
+        link: Link that the pose is on, or None.
+        joint: Joint whose frame (on the child's side) the pose is on, or None.
+        xyz: m.
+        rpy: rad, about fixed axes.
+    """
+
+    pointer: Pointer
+    name: str | None = None
+    link: str | None = None
+    joint: str | None = None
+    xyz: Vector3 = (0.0, 0.0, 0.0)
+    rpy: Vector3 = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class ClosureEntry:
+    """A loop closure as written; ``type`` may also be the user's own, ``x-…``."""
+
+    pointer: Pointer
+    name: str
+    type: str
+    a: FrameReference
+    b: FrameReference
+
+
+@dataclass(frozen=True, slots=True)
+class JointEntry:
+    """What the description says of one joint.
+
+    Attributes:
+        pointer: Where it stands (its value).
+        name: Joint of the URDF; of merged joints, the one that results.
+        type: New type, or None to keep the URDF's own.
+        split: A universal joint of version 1: two revolutes ``name_A`` and ``name_B``, for letters such as ``XY``.
+        axes: Two axes of a universal joint in the joint's frame, as written; empty where none are.
+        pitch: m per revolution; None where none is written.
+        merges: Names of three joints of the URDF that become this one; empty where none do.
+        lower: Position limits, one number for all coordinates or one each; None where not written. Likewise the rest.
+        upper: See ``lower``.
+        velocity: rad/s or m/s.
+        effort: N·m or N.
+        damping: N·m·s/rad or N·s/m.
+        friction: N·m or N.
+        armature: kg·m² or kg.
+    """
+
+    pointer: Pointer
+    name: str
+    type: Literal["spherical", "universal", "cylindrical", "helical", "fixed"] | None = None
+    split: str = ""
+    axes: tuple[Vector3, ...] = ()
+    pitch: float | None = None
+    merges: tuple[str, ...] = ()
+    lower: float | tuple[float, ...] | None = None
+    upper: float | tuple[float, ...] | None = None
+    velocity: float | tuple[float, ...] | None = None
+    effort: float | tuple[float, ...] | None = None
+    damping: float | tuple[float, ...] | None = None
+    friction: float | tuple[float, ...] | None = None
+    armature: float | tuple[float, ...] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ActuatorEntry:
+    """An actuated joint; gear ratio and rotor inertia (kg·m²) are None where not written."""
+
+    pointer: Pointer
+    joint: str
+    gear_ratio: float | None = None
+    rotor_inertia: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class FrameEntry:
+    """A named frame on a link or on a joint's frame."""
+
+    pointer: Pointer
+    name: str
+    reference: FrameReference
+
+
+@dataclass(frozen=True, slots=True)
+class ConfigurationEntry:
+    """A named configuration: for each joint its coordinates as written, always as a tuple."""
+
+    pointer: Pointer
+    name: str
+    joints: Mapping[str, tuple[float, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class Extension:
+    """The YAML file, of either version.
+
+    Attributes:
+        version: ``1`` or ``2.0``.
+        urdf: Path of the URDF, relative to the YAML file.
+        root: Whether the root link is fixed or floating.
+        closures: In file order; likewise the other lists.
+        merges_revolutes: Whether three revolute joints whose axes meet become a spherical one by themselves (version 1).
+        metadata: What the file says of itself.
+        extensions: The user's own data at the top level.
+    """
+
+    version: Literal["1", "2.0"]
+    urdf: str = "robot.urdf"
+    root: Root = "fixed"
+    closures: tuple[ClosureEntry, ...] = ()
+    joints: tuple[JointEntry, ...] = ()
+    actuators: tuple[ActuatorEntry, ...] = ()
+    frames: tuple[FrameEntry, ...] = ()
+    configurations: tuple[ConfigurationEntry, ...] = ()
+    merges_revolutes: bool = False
+    metadata: Mapping[str, object] = field(default_factory=dict)
+    extensions: Mapping[str, object] = field(default_factory=dict)
+
+
+__all__ = [
+    "ActuatorEntry",
+    "ClosureEntry",
+    "ClosureType",
+    "ConfigurationEntry",
+    "Extension",
+    "FrameEntry",
+    "FrameReference",
+    "JointEntry",
+    "Pointer",
+]

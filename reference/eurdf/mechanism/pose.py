@@ -1,0 +1,78 @@
+"""Rigid placements as plain numbers: a translation and a unit quaternion."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+Vector3 = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """Pose of a frame in another.
+
+    Attributes:
+        xyz: Origin, in metres.
+        quaternion: Orientation as a unit quaternion x, y, z, w.
+    """
+
+    xyz: Vector3 = (0.0, 0.0, 0.0)
+    quaternion: Quaternion = (0.0, 0.0, 0.0, 1.0)
+
+    @classmethod
+    def from_xyz_rpy(cls, xyz: Vector3, rpy: Vector3) -> Pose:
+        """Pose of a URDF ``origin``: roll, pitch, yaw (rad) about the fixed axes x, y, z.
+
+        The operations and their order are those of urdfdom, so that results agree to the last bit.
+        """
+        if rpy == (0.0, 0.0, 0.0):
+            return cls(xyz)
+        phi, theta, psi = rpy[0] / 2.0, rpy[1] / 2.0, rpy[2] / 2.0
+        sr, cr = math.sin(phi), math.cos(phi)
+        sp, cp = math.sin(theta), math.cos(theta)
+        sy, cy = math.sin(psi), math.cos(psi)
+        x = sr * cp * cy - cr * sp * sy
+        y = cr * sp * cy + sr * cp * sy
+        z = cr * cp * sy - sr * sp * cy
+        w = cr * cp * cy + sr * sp * sy
+        norm = math.sqrt(x * x + y * y + z * z + w * w)
+        return cls(xyz, (x / norm, y / norm, z / norm, w / norm))
+
+    def act(self, point: Vector3) -> Vector3:
+        """Coordinates, in the outer frame, of a point of this frame."""
+        x, y, z = self.rotate(point)
+        return (x + self.xyz[0], y + self.xyz[1], z + self.xyz[2])
+
+    def rotate(self, vector: Vector3) -> Vector3:
+        """Coordinates, in the outer frame, of a direction of this frame: v + 2w(u×v) + 2u×(u×v)."""
+        x, y, z, w = self.quaternion
+        vx, vy, vz = vector
+        tx, ty, tz = 2.0 * (y * vz - z * vy), 2.0 * (z * vx - x * vz), 2.0 * (x * vy - y * vx)
+        return (
+            vx + w * tx + (y * tz - z * ty),
+            vy + w * ty + (z * tx - x * tz),
+            vz + w * tz + (x * ty - y * tx),
+        )
+
+    def __mul__(self, other: Pose) -> Pose:
+        """Composition: the pose, in the outer frame, of what ``other`` places in this frame."""
+        x1, y1, z1, w1 = self.quaternion
+        x2, y2, z2, w2 = other.quaternion
+        x = w1 * x2 + x1 * w2 + y1 * z2 - z1 * y2
+        y = w1 * y2 - x1 * z2 + y1 * w2 + z1 * x2
+        z = w1 * z2 + x1 * y2 - y1 * x2 + z1 * w2
+        w = w1 * w2 - x1 * x2 - y1 * y2 - z1 * z2
+        norm = math.sqrt(x * x + y * y + z * z + w * w)
+        return Pose(self.act(other.xyz), (x / norm, y / norm, z / norm, w / norm))
+
+    def inverse(self) -> Pose:
+        """Pose of the outer frame in this one."""
+        x, y, z, w = self.quaternion
+        turned = Pose((0.0, 0.0, 0.0), (-x, -y, -z, w))
+        tx, ty, tz = turned.rotate(self.xyz)
+        return Pose((-tx, -ty, -tz), turned.quaternion)
+
+
+IDENTITY = Pose()
