@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 from eurdf.diagnostics.registry import REFUSED_PHASES, REGISTRY, Phase, Severity
 
@@ -28,14 +29,25 @@ class Place:
     pointer: str = ""
 
 
-@dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One finding: a code of the registry, what is wrong, where, and what would be right."""
+    """One finding: a code of the registry, what is wrong, where, and what would be right.
 
-    code: str
-    message: str
-    place: Place
-    hint: str | None = None
+    Attributes:
+        code: Its code in the registry.
+        message: What is wrong, in one sentence.
+        hint: What would be right, or None.
+    """
+
+    def __init__(self, code: str, message: str, place: Place | Callable[[], Place], hint: str | None = None) -> None:
+        self.code = code
+        self.message = message
+        self.hint = hint
+        self._place = place
+
+    @cached_property
+    def place(self) -> Place:
+        """Where it is; computed when first asked, since a line in an XML file takes another pass over it."""
+        return self._place() if callable(self._place) else self._place
 
     @property
     def severity(self) -> Severity:
@@ -77,6 +89,18 @@ class Diagnostic:
         hint = f" ({self.hint})" if self.hint else ""
         return f"{where}: {self.severity}: {self.message}{hint} [{self.code}]"
 
+    def __repr__(self) -> str:
+        return f"<Diagnostic {self}>"
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Diagnostic):
+            return NotImplemented
+        mine = (self.code, self.message, self.hint, self.place)
+        return mine == (other.code, other.message, other.hint, other.place)
+
+    def __hash__(self) -> int:
+        return hash((self.code, self.message, self.hint))
+
 
 class Fault(Exception):  # noqa: N818 - it carries one finding; whether that is an error, the registry says
     """Ends the reading of a file at once, with the one diagnostic that says why."""
@@ -92,7 +116,9 @@ class Diagnostics:
     def __init__(self) -> None:
         self._found: list[Diagnostic] = []
 
-    def report(self, code: str, message: str, place: Place, hint: str | None = None) -> None:
+    def report(
+        self, code: str, message: str, place: Place | Callable[[], Place], hint: str | None = None
+    ) -> None:
         """Add a finding; ``code`` must be in the registry."""
         if code not in REGISTRY:
             raise KeyError(code)
@@ -122,11 +148,8 @@ class Diagnostics:
 def did_you_mean(wrong: str, known: Iterable[str]) -> str | None:
     """The hint for a misspelt name: the nearest of the known ones, or None if none is near."""
     candidates = list(known)
-    for cutoff in (0.6,):
-        near = difflib.get_close_matches(wrong, candidates, n=1, cutoff=cutoff)
-        if near:
-            return f"did you mean '{near[0]}'?"
     folded = {name.casefold(): name for name in candidates}
     if wrong.casefold() in folded:
         return f"did you mean '{folded[wrong.casefold()]}'?"
-    return None
+    near = difflib.get_close_matches(wrong, candidates, n=1)
+    return f"did you mean '{near[0]}'?" if near else None

@@ -116,6 +116,8 @@ urdf-no-range              EU-URD-025 warning A revolute or prismatic joint has 
 urdf-unknown-element       EU-URD-026 warning An element or attribute is nearly one that URDF has.
 urdf-closure-ignored       EU-URD-027 warning The URDF says a closure in a dialect that is not part of this format.
 urdf-mesh-missing          EU-URD-028 warning A mesh file is not found.
+urdf-unknown-material      EU-URD-029 warning A material is used but not defined.
+urdf-planar-axis           EU-URD-030 warning The axis of a planar joint is not its z, along which it is read.
 """,
     ),
     *_rules(
@@ -157,6 +159,7 @@ configuration-joint        EU-CFG-001 error   A configuration names a joint that
 configuration-length       EU-CFG-002 error   A configuration has too few or too many coordinates for a joint.
 configuration-quaternion   EU-CFG-003 error   A quaternion is not of unit length.
 configuration-limits       EU-CFG-004 error   A coordinate is outside the limits of its joint.
+closure-type-unknown       EU-CLO-007 warning A closure has a type of the user's own, and is left out of the model.
 """,
     ),
     *_rules(

@@ -125,6 +125,8 @@ class Extension:
         merges_revolutes: Whether three revolute joints whose axes meet become a spherical one by themselves (version 1).
         metadata: What the file says of itself.
         extensions: The user's own data at the top level.
+        own_keys: Where a key ``x-…`` stands among the names of joints. It is the user's own and no joint's name, so
+            that linking can refuse it where a joint has that name.
     """
 
     version: Literal["1", "2.0"]
@@ -138,6 +140,7 @@ class Extension:
     merges_revolutes: bool = False
     metadata: Mapping[str, object] = field(default_factory=dict)
     extensions: Mapping[str, object] = field(default_factory=dict)
+    own_keys: tuple[Pointer, ...] = ()
 
 
 __all__ = [

@@ -1,1 +1,1 @@
-
+"""Kinematics of the closed mechanism: residual of the closures, assembly, dimensions."""

@@ -96,8 +96,9 @@ class Joint:
         placement: Pose of the joint in the frame of the parent body.
         offset: Pose of the child body's frame in the moving frame of the joint. The identity but for merged joints
             whose axes meet away from the last one's origin. The frame that bears the joint's name is the child's.
-        axes: Unit vectors in the joint's frame: one for revolute, continuous, prismatic, helical, cylindrical; two,
-            first and second, for universal; none otherwise. Planar moves in the joint's xy plane.
+        axes: Directions in the joint's frame, as written, of any length but zero: one for revolute, continuous,
+            prismatic, helical, cylindrical; two, first and second, for universal; none otherwise. Planar moves in
+            the joint's xy plane.
         pitch: Advance of a helical joint along its axis, m per revolution, right-handed; 0 otherwise.
         lower: Lower position limits, one a coordinate as in `Coordinates`; -inf where there is none.
         upper: Upper position limits; inf where there is none.

@@ -1,0 +1,29 @@
+"""Run measurements by name: ``python -m benchmarks load growth check``."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable
+
+from benchmarks import check, growth, load
+
+MEASUREMENTS: dict[str, Callable[[], None]] = {"load": load.main, "growth": growth.main, "check": check.main}
+
+
+def main() -> int:
+    """Run the measurements named on the command line; all of them where none is named."""
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks",
+        description="Measure, as ratios to a named peer in the same run.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog="\n".join(f"{name:8} {(sys.modules[run.__module__].__doc__ or '').splitlines()[0]}" for name, run in MEASUREMENTS.items()),
+    )
+    parser.add_argument("names", nargs="*", choices=[*MEASUREMENTS, []], help="which to run; all by default")
+    for name in parser.parse_args().names or MEASUREMENTS:
+        MEASUREMENTS[name]()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

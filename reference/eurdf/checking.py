@@ -1,0 +1,108 @@
+"""`eurdf.check`: everything that can be found wrong with a robot."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from eurdf.description import Description, describe, missing_meshes
+from eurdf.diagnostics import Diagnostics
+from eurdf.diagnostics.report import Report
+
+if TYPE_CHECKING:
+    from eurdf.kinematics.residual import Opening
+    from eurdf.pinocchio.robot import Robot
+
+#: Where a configuration is called assembled, no closure is open by more than this, in m or rad (EU-CLO-005).
+ASSEMBLED_TOLERANCE = 1e-6
+
+
+def check(path: str | os.PathLike[str], urdf: str | os.PathLike[str] | None = None) -> Report:
+    """Check a robot.
+
+    Args:
+        path: A folder, a YAML file, a bare URDF, or the name of a robot of the collection.
+        urdf: A URDF in place of the one that the description names.
+
+    Returns:
+        The findings of all phases, in the order of the phases.
+
+    Raises:
+        RobotNotFound: Where there are no such files.
+    """
+    description = describe(path, urdf)
+    diagnostics = description.diagnostics
+    if description.urdf is not None:
+        for found in missing_meshes(description)[1]:
+            diagnostics.add(found)
+    if not diagnostics.refused:
+        for found in closure_diagnostics(description):
+            diagnostics.add(found)
+    return Report(description.path, tuple(diagnostics))
+
+
+def closure_diagnostics(description: Description, robot: Robot | None = None) -> Diagnostics:
+    """EU-CLO-005, EU-CLO-006: the loops close, at the assembled configuration where there is one.
+
+    Args:
+        description: The robot as read, with a mechanism.
+        robot: The robot built from it, where there already is one.
+    """
+    diagnostics = Diagnostics()
+    mechanism = description.mechanism
+    if mechanism is None or not mechanism.closures:
+        return diagnostics
+    # Only now: a description without closures is checked without a simulator.
+    from eurdf.kinematics.assembly import assemble
+    from eurdf.pinocchio.robot import build_robot
+
+    if robot is None:
+        robot = build_robot(mechanism, geometry=False)
+    if "assembled" in mechanism.configurations:
+        return assembled_diagnostics(description, robot)
+    assembly = assemble(robot)
+    if not assembly.converged:
+        worst = max(assembly.open, key=lambda opening: max(opening.position, opening.angle))
+        closure = next(closure for closure in mechanism.closures if closure.name == worst.name)
+        diagnostics.report(
+            "closure-cannot-close",
+            f"no configuration was found that closes the loops; at the best, {_openings(assembly.open)}",
+            description.place_of_closure(closure),
+            "check where its frames are, and that enough joints can move",
+        )
+    return diagnostics
+
+
+def assembled_diagnostics(description: Description, robot: Robot) -> Diagnostics:
+    """EU-CLO-005: at ``assembled`` every closure is closed."""
+    from eurdf.kinematics.residual import closure_openings
+
+    diagnostics = Diagnostics()
+    openings = [
+        opening
+        for opening in closure_openings(robot, robot.configurations["assembled"])
+        if not max(opening.position, opening.angle) <= ASSEMBLED_TOLERANCE
+    ]
+    if openings:
+        diagnostics.report(
+            "assembled-open",
+            f"the loops are open at the assembled configuration: {_openings(openings)}",
+            description.place_of_configuration("assembled"),
+            "`eurdf.assemble` finds a configuration that closes them",
+        )
+    return diagnostics
+
+
+def _openings(openings: Iterable[Opening]) -> str:
+    return "; ".join(_opening(opening.name, opening.position, opening.angle) for opening in openings)
+
+
+def _opening(name: str, position: float, angle: float) -> str:
+    parts = []
+    if position > ASSEMBLED_TOLERANCE or angle <= ASSEMBLED_TOLERANCE:
+        parts.append(f"{position * 1e3:.3g} mm")
+    if angle > ASSEMBLED_TOLERANCE:
+        parts.append(f"{math.degrees(angle):.3g} degrees")
+    return f"'{name}' by {' and '.join(parts)}"

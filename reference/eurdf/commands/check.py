@@ -1,0 +1,93 @@
+"""``eurdf check``: whether robots are sound, and where they are not."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, TextIO
+
+from eurdf.commands.cannot_run import CannotRun
+from eurdf.commands.output import columns, has_boxes, is_terminal, write_json, write_lines
+from eurdf.commands.selection import select
+
+if TYPE_CHECKING:
+    from eurdf.diagnostics.report import Report
+
+_DESCRIPTION = """\
+Check robots: the description, the URDF it extends, and whether the loops close.
+
+A PATH is a description (.yaml), a bare .urdf, the folder of a robot, a folder to search for robots, or the
+name of a robot of the collection. In a folder that is searched, each folder with a robot.yaml is a robot;
+elsewhere each YAML file is one that has extended_urdf or closed_loop at its top level.
+"""
+
+# From how many robots on a person is shown how far the check is.
+_MANY = 4
+
+
+def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the parser."""
+    parser = subparsers.add_parser(
+        "check",
+        help="tell which line of a robot's description is wrong, and why",
+        description=_DESCRIPTION,
+        epilog="Exit codes: 0 all robots pass, 1 errors found, 2 the check cannot run.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("paths", nargs="+", metavar="PATH", help="robots to check")
+    parser.add_argument("--urdf", metavar="FILE", help="the URDF, where it is not the one that the description names")
+    parser.add_argument("--format", choices=("text", "json", "sarif"), default="text", help="default: text")
+    parser.add_argument("--strict", action="store_true", help="let warnings count as errors")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Check, write what was found, and return the exit code."""
+    robots = select(args.paths)
+    if args.urdf is not None and not os.path.exists(args.urdf):
+        raise CannotRun(f"'{args.urdf}' does not exist")
+    reports = [_check(robot, args.urdf) for robot in _with_progress(robots)]
+    if args.format == "json":
+        from eurdf.diagnostics.report import reports_to_json
+
+        write_json(reports_to_json(reports, args.strict))
+    elif args.format == "sarif":
+        from eurdf import __version__
+        from eurdf.diagnostics.sarif import sarif_log
+
+        write_json(sarif_log(reports, __version__))
+    else:
+        write_reports(reports, args.strict)
+    return 0 if all(report.passes(args.strict) for report in reports) else 1
+
+
+def write_reports(reports: Sequence[Report], strict: bool = False, stream: TextIO | None = None) -> None:
+    """Write findings and verdicts for a person, to the standard output by default."""
+    from eurdf.diagnostics.text import SOURCE_WIDTH, report_lines, summary_line, total_line
+
+    stream = stream or sys.stdout
+    width = min(columns() - len("12345 | "), 2 * SOURCE_WIDTH) if is_terminal(stream) else SOURCE_WIDTH
+    bar = "│" if has_boxes(stream) else "|"
+    for report in reports:
+        write_lines([*report_lines(report, width, bar), summary_line(report, strict)], stream)
+        if report.diagnostics and len(reports) > 1:
+            write_lines([[]], stream)
+    if len(reports) > 1:
+        write_lines([total_line(reports, strict)], stream)
+
+
+def _check(robot: str, urdf: str | None) -> Report:
+    import eurdf
+
+    return eurdf.check(robot, urdf)
+
+
+def _with_progress(robots: Sequence[str]) -> Iterable[str]:
+    if len(robots) < _MANY or not (sys.stderr.isatty() and is_terminal(sys.stderr)):
+        return robots
+    from rich.console import Console
+    from rich.progress import track
+
+    return track(robots, description="checking", console=Console(stderr=True), transient=True)

@@ -1,0 +1,195 @@
+"""``eurdf info``: the dimensions of a robot, and how it can move."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from typing import TYPE_CHECKING
+
+from eurdf.commands.cannot_run import CannotRun
+from eurdf.commands.output import has_boxes, write_json, write_rendered
+from eurdf.commands.selection import select_one
+
+if TYPE_CHECKING:
+    from rich.table import Table
+    from rich.text import Text
+
+    from eurdf.commands.robot_info import RobotInfo
+
+
+def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the parser."""
+    parser = subparsers.add_parser(
+        "info",
+        help="show a robot's dimensions, its closures, and how it can move",
+        description="Show what a robot is made of, whether its loops close, and what motions that leaves.",
+        epilog="Exit codes: 0 shown, 1 the robot has errors that keep it from being built, 2 the command cannot run.",
+    )
+    parser.add_argument(
+        "path", metavar="PATH", help="a robot: its folder, its .yaml, a bare .urdf, or a collection name"
+    )
+    parser.add_argument("--json", action="store_true", help="write one JSON object")
+    parser.add_argument("--urdf", metavar="FILE", help="the URDF, where it is not the one that the description names")
+    parser.add_argument("--root", choices=("fixed", "floating"), help="default: as the description says")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Load, analyse, show, and return the exit code."""
+    path = select_one(args.path)
+    if args.urdf is not None and not os.path.exists(args.urdf):
+        raise CannotRun(f"'{args.urdf}' does not exist")
+
+    import eurdf
+
+    try:
+        robot = eurdf.load(path, urdf=args.urdf, root=args.root, geometry=False)
+    except eurdf.InvalidRobot as refusal:
+        from eurdf.commands.check import write_reports
+        from eurdf.diagnostics.report import Report, reports_to_json
+
+        report = Report(path, tuple(refusal.diagnostics))
+        if args.json:
+            write_json(reports_to_json([report]))
+        else:
+            write_reports([report])
+        return 1
+
+    from eurdf.commands.robot_info import robot_info
+
+    info = robot_info(robot, eurdf.analyze(robot))
+    if args.json:
+        write_json(info.model_dump(mode="json"))
+        return 0
+    _show(info)
+    if robot.diagnostics:
+        from eurdf.commands.check import write_reports
+        from eurdf.diagnostics.report import Report
+
+        write_reports([Report(path, robot.diagnostics)])
+    return 0
+
+
+def _show(info: RobotInfo) -> None:
+    shown: list[Text | Table] = [_heading(info), _dimensions(info)]
+    if info.closure_list:
+        shown.append(_closures(info))
+    if info.joint_list:
+        shown.append(_joints(info))
+    if info.frame_list:
+        shown.append(_frames(info))
+    if info.configuration_list:
+        shown.append(_configurations(info))
+    write_rendered(*shown)
+
+
+def _heading(info: RobotInfo) -> Text:
+    from rich.text import Text
+
+    from eurdf.diagnostics.text import visible
+
+    format_name = f"Extended URDF {info.version}" if info.version else "URDF"
+    mass = "" if info.mass is None else f", {info.mass:.6g} kg"
+    return Text.assemble((visible(info.name), "bold"), f"  {format_name}, {info.root} root{mass}")
+
+
+def _dimensions(info: RobotInfo) -> Table:
+    table = _table("", "", "")
+    table.show_header = False
+    table.columns[1].justify = "right"
+    if not info.closures:
+        verdict = ("loops", "none", "a tree")
+    elif info.closes:
+        verdict = ("loops", "close", f"residual {info.residual:.1e}")
+    else:
+        smallest = "" if info.residual is None else f"smallest residual found {info.residual:.1e}"
+        verdict = ("loops", "open", smallest)
+    types = [closure.type for closure in info.closure_list]
+    kinds = ", ".join(f"{types.count(kind)} of {kind}" for kind in ("3d", "6d") if kind in types)
+    rows: list[tuple[str, int | str | None, str]] = [
+        ("joints", info.joints, "moving joints of the spanning tree"),
+        ("nq", info.nq, "coordinates"),
+        ("nv", info.nv, "velocities of the spanning tree"),
+        ("closures", info.closures, kinds),
+        verdict,
+        ("nc", info.nc, "constraint rows"),
+        ("rank", info.rank, "of the constraint Jacobian"),
+        ("redundant", info.redundant, "constraint rows that say nothing new, nc - rank"),
+        ("mobility", info.mobility, "motions that the closures leave, nv - rank"),
+        ("actuated", info.actuated, "velocities"),
+        ("uncontrolled", info.uncontrolled, "motions left with every actuator held"),
+    ]
+    for name, value, meaning in rows:
+        style = "red" if value == "open" else "green" if value == "close" else "bold"
+        table.add_row(name, _text("-" if value is None else str(value), style), _text(meaning, "dim"))
+    return table
+
+
+def _closures(info: RobotInfo) -> Table:
+    table = _table("closure", "type", "frame A", "frame B", "residual")
+    table.columns[4].justify = "right"
+    for closure in info.closure_list:
+        frames = [
+            _text(frame) if frame is not None else _text(f"on {body}", "dim")
+            for frame, body in zip(closure.frames, closure.bodies, strict=True)
+        ]
+        table.add_row(_text(closure.name, "bold"), closure.type, *frames, _number(closure.residual))
+    return table
+
+
+def _joints(info: RobotInfo) -> Table:
+    table = _table("joint", "type", "parent", "child", "nv", "")
+    table.columns[4].justify = "right"
+    for joint in info.joint_list:
+        if joint.actuated:
+            note = _text("actuated", "cyan")
+        else:
+            note = _text(f"mimics {joint.mimics}" if joint.mimics else "", "dim")
+        table.add_row(
+            _text(joint.name, "bold"), joint.type, _text(joint.parent), _text(joint.child), str(joint.nv), note
+        )
+    return table
+
+
+def _frames(info: RobotInfo) -> Table:
+    table = _table("frame", "on")
+    for frame in info.frame_list:
+        table.add_row(_text(frame.name, "bold"), _text(frame.body))
+    return table
+
+
+def _configurations(info: RobotInfo) -> Table:
+    table = _table("configuration", "residual")
+    table.columns[1].justify = "right"
+    for configuration in info.configuration_list:
+        table.add_row(_text(configuration.name, "bold"), _number(configuration.residual))
+    return table
+
+
+def _table(*headings: str) -> Table:
+    from rich import box
+    from rich.table import Table
+
+    table = Table(
+        box=box.SIMPLE_HEAD if has_boxes(sys.stdout) else None,
+        border_style="dim",
+        header_style="dim",
+        show_edge=False,
+        pad_edge=False,
+    )
+    for heading in headings:
+        table.add_column(heading, overflow="fold")
+    return table
+
+
+def _text(text: str, style: str = "") -> Text:
+    from rich.text import Text
+
+    from eurdf.diagnostics.text import visible
+
+    return Text(visible(text), style=style)
+
+
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.1e}"

@@ -1,0 +1,81 @@
+"""The command line ``eurdf``.
+
+Every command is a module with ``register``, which adds it to the parser, and ``run``, which does it and returns the
+exit code. What is slow to import, they import when they run.
+"""
+
+from __future__ import annotations
+
+import argparse
+import io
+import os
+import sys
+import traceback
+from collections.abc import Sequence
+from typing import TextIO
+
+from eurdf import __version__
+from eurdf.commands import check, info, schema
+from eurdf.commands.cannot_run import CannotRun
+
+#: The commands, in the order in which the help shows them.
+COMMANDS = (check, info, schema)
+
+# What a shell reports of a program that a signal ended: 128 and the signal's number.
+_INTERRUPTED = 130
+_BROKEN_PIPE = 141
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line.
+
+    Args:
+        argv: The arguments; those of the process by default.
+
+    Returns:
+        The exit code: 0 all well, 1 errors found in a robot, 2 the command cannot run.
+    """
+    _write_any_character(sys.stdout)
+    _write_any_character(sys.stderr)
+    try:
+        args = _parser().parse_args(argv)
+        code: int = args.run(args)
+        sys.stdout.flush()
+    except KeyboardInterrupt:
+        return _INTERRUPTED
+    except BrokenPipeError:
+        # Nobody reads any more. The interpreter flushes once more at its end: let that go nowhere.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return _BROKEN_PIPE
+    except (CannotRun, OSError) as reason:  # also eurdf.RobotNotFound, which is an OSError
+        from eurdf.diagnostics.text import visible
+
+        sys.stderr.write(f"eurdf: {visible(str(reason))}\n")
+        return 2
+    except Exception:
+        # Left alone it would exit with 1, which says that the robot has errors.
+        traceback.print_exc()
+        sys.stderr.write("eurdf: this is a fault of eurdf itself, not of the robot\n")
+        return 2
+    return code
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="eurdf", description="Robots with closed kinematic chains, from a URDF and one YAML file."
+    )
+    parser.add_argument("--version", action="version", version=f"eurdf {__version__}", help="show the version and exit")
+    subparsers = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    for command in COMMANDS:
+        command.register(subparsers)
+    return parser
+
+
+def _write_any_character(stream: TextIO) -> None:
+    """Let a character that the locale cannot write be written as its escape rather than end the command."""
+    if isinstance(stream, io.TextIOWrapper):
+        stream.reconfigure(errors="backslashreplace")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

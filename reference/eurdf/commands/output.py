@@ -1,0 +1,81 @@
+"""Writing to the standard streams: styled on a terminal, bare text anywhere else."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import sys
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, TextIO
+
+if TYPE_CHECKING:
+    from rich.console import Console, RenderableType
+
+    from eurdf.diagnostics.text import Line
+
+# A table that goes into a file is as wide as it needs to be.
+_UNBOUNDED = 10_000
+
+
+def is_terminal(stream: TextIO) -> bool:
+    """Whether what is written is seen by a person; FORCE_COLOR says so of a pipe, TERM=dumb denies it of a terminal."""
+    if os.environ.get("FORCE_COLOR"):
+        return True
+    return stream.isatty() and os.environ.get("TERM") != "dumb"
+
+
+def has_boxes(stream: TextIO) -> bool:
+    """Whether the stream is a terminal that shows more than ASCII."""
+    return is_terminal(stream) and (stream.encoding or "").lower().replace("-", "") == "utf8"
+
+
+def columns() -> int:
+    """Width of the terminal."""
+    return max(40, shutil.get_terminal_size().columns)
+
+
+def write_json(value: dict[str, Any]) -> None:
+    """Write one JSON value to the standard output, in ASCII, so that no locale can spoil it."""
+    sys.stdout.write(json.dumps(value, indent=2, allow_nan=False) + "\n")
+
+
+def write_lines(lines: Iterable[Line], stream: TextIO) -> None:
+    """Write styled lines, each as one line however long."""
+    if not is_terminal(stream):
+        for line in lines:
+            stream.write("".join(piece for piece, _ in line).rstrip() + "\n")
+        return
+    from rich.text import Text
+
+    console = _console(stream)
+    with console.capture() as captured:
+        for line in lines:
+            console.print(Text.assemble(*line), soft_wrap=True)
+    stream.write(captured.get())
+
+
+def write_rendered(*renderables: RenderableType) -> None:
+    """Write what rich renders to the standard output: tables, styled text, with an empty line between any two."""
+    console = _console(sys.stdout)
+    with console.capture() as captured:
+        console.print(renderables[0])
+        for renderable in renderables[1:]:
+            console.print()
+            console.print(renderable)
+    sys.stdout.write("".join(line.rstrip() + "\n" for line in captured.get().splitlines()))
+
+
+def _console(stream: TextIO) -> Console:
+    # It only renders, into its capture: a broken pipe is then ours to meet, not rich's, which would exit with code 1.
+    from rich.console import Console
+
+    terminal = is_terminal(stream)
+    return Console(
+        force_terminal=terminal,
+        width=columns() if terminal else _UNBOUNDED,
+        highlight=False,
+        markup=False,
+        emoji=False,
+        safe_box=not has_boxes(stream),
+    )

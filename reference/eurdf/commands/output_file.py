@@ -1,0 +1,37 @@
+"""Writing a file whole or not at all."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from eurdf.commands.cannot_run import CannotRun
+
+
+def write_new(path: str | os.PathLike[str], text: str, force: bool = False) -> None:
+    """Write a text file in UTF-8, whole or not at all.
+
+    Args:
+        path: Where to; a symbolic link is followed.
+        text: What.
+        force: Whether a file that is there already is replaced.
+
+    Raises:
+        CannotRun: The file is there already and not to be replaced, or it cannot be written.
+    """
+    target = Path(os.path.realpath(path))
+    if not force and target.exists():
+        raise CannotRun(f"'{path}' exists already; --force replaces it")
+    scratch = target.with_name(f".{target.name}.{os.getpid()}.tmp")
+    try:
+        if target.is_dir():
+            raise IsADirectoryError(0, "it is a folder")
+        with scratch.open("x", encoding="utf-8", newline="") as stream:
+            stream.write(text)
+        if target.exists():
+            scratch.chmod(target.stat().st_mode & 0o7777)
+        scratch.replace(target)
+    except OSError as error:
+        raise CannotRun(f"cannot write '{path}': {error.strerror or error}") from error
+    finally:
+        scratch.unlink(missing_ok=True)

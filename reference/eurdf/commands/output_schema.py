@@ -1,0 +1,31 @@
+"""The schemas of what the commands write: ``python -m eurdf.commands.output_schema FOLDER`` writes the files."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+
+def output_schemas() -> dict[str, dict[str, Any]]:
+    """JSON Schema (2020-12) of each command's JSON, by file name."""
+    from eurdf.commands.robot_info import info_schema
+    from eurdf.diagnostics.report import report_schema
+
+    return {"diagnostics-report.schema.json": report_schema(), "info.schema.json": info_schema()}
+
+
+def schema_text(schema: dict[str, Any]) -> str:
+    """The schema as its file holds it."""
+    return json.dumps(schema, indent=2, ensure_ascii=False) + "\n"
+
+
+def main(folder: str) -> None:
+    """Write every schema into a folder."""
+    for name, schema in output_schemas().items():
+        Path(folder, name).write_text(schema_text(schema), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

@@ -1,0 +1,227 @@
+"""What ``eurdf info`` says of a robot: the object that ``--json`` writes, and its JSON Schema."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field
+
+if TYPE_CHECKING:
+    from eurdf.kinematics.analysis import Analysis
+    from eurdf.pinocchio.robot import Robot
+
+Count = Annotated[int, Field(ge=0)]
+JointTypeName = Literal[
+    "fixed",
+    "revolute",
+    "continuous",
+    "prismatic",
+    "planar",
+    "floating",
+    "spherical",
+    "universal",
+    "cylindrical",
+    "helical",
+]
+
+
+class _Entry(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+
+class JointInfo(_Entry):
+    """A moving joint of the spanning tree."""
+
+    name: str
+    """Name of the joint; root_joint for the one of a floating root."""
+    type: JointTypeName
+    """Type of the joint."""
+    parent: str
+    """Link it hangs from; world for the joint of a floating root."""
+    child: str
+    """Link it carries."""
+    nq: Count
+    """Number of its coordinates in Pinocchio's configuration vector."""
+    nv: Count
+    """Number of its velocities."""
+    actuated: bool
+    """Whether it is actuated."""
+    mimics: str | None
+    """Joint that it follows, or null."""
+
+
+class ClosureInfo(_Entry):
+    """A loop closure."""
+
+    name: str
+    """Name of the closure."""
+    type: Literal["3d", "6d"]
+    """Whether it holds the position alone or the orientation too."""
+    rows: Count
+    """Number of its constraint rows."""
+    frames: tuple[str | None, str | None]
+    """Names of frame A and frame B; null for a pose written in place."""
+    bodies: tuple[str, str]
+    """Links that frame A and frame B are fixed to."""
+    residual: float | None
+    """Norm of its rows at the configuration analysed, m and rad."""
+
+
+class ActuatorInfo(_Entry):
+    """An actuated joint."""
+
+    joint: str
+    """Name of the joint."""
+    type: JointTypeName
+    """Type of the joint."""
+    nv: Count
+    """Number of velocities actuated."""
+
+
+class FrameInfo(_Entry):
+    """A frame that the description adds to those of links and joints."""
+
+    name: str
+    """Name of the frame."""
+    body: str
+    """Link it is fixed to."""
+
+
+class ConfigurationInfo(_Entry):
+    """A named configuration."""
+
+    name: str
+    """Name of the configuration."""
+    residual: float | None
+    """Norm of the residual of all closures at it, m and rad."""
+
+
+class RobotInfo(_Entry):
+    """What 'eurdf info --json' writes of one robot; dimensions are of the root asked for."""
+
+    name: str
+    """Name of the robot in the URDF."""
+    version: Literal["1", "2.0", ""]
+    """Version of Extended URDF the description is written in; empty for a bare URDF."""
+    root: Literal["fixed", "floating"]
+    """Whether the root link is fixed to the world or floats in it."""
+    nq: Count
+    """Length of Pinocchio's configuration vector."""
+    nv: Count
+    """Number of velocities of the spanning tree."""
+    joints: Count
+    """Number of moving joints, that of a floating root included."""
+    closures: Count
+    """Number of loop closures."""
+    nc: Count
+    """Number of constraint rows of all closures."""
+    rank: Count | None
+    """Rank of the constraint Jacobian at a closed configuration; null where the loops do not close."""
+    mobility: Count | None
+    """Motions left by the closures, nv - rank; null where the loops do not close."""
+    redundant: Count | None
+    """Constraint rows that say nothing new, nc - rank; null where the loops do not close."""
+    uncontrolled: Count | None
+    """Motions left with every actuator held; null where the loops do not close."""
+    actuated: Count
+    """Number of actuated velocities."""
+    mass: float | None
+    """Mass of all links, the root included, kg."""
+    residual: float | None
+    """Norm of the residual of all closures at the configuration found, m and rad."""
+    closes: bool
+    """Whether a configuration was found at which every loop is closed."""
+    joint_list: tuple[JointInfo, ...]
+    """The moving joints, in the order of the model."""
+    closure_list: tuple[ClosureInfo, ...]
+    """The closures, in file order."""
+    actuator_list: tuple[ActuatorInfo, ...]
+    """The actuated joints, in file order."""
+    frame_list: tuple[FrameInfo, ...]
+    """The frames that the description adds."""
+    configuration_list: tuple[ConfigurationInfo, ...]
+    """The named configurations."""
+
+
+def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
+    """What there is to say of a robot.
+
+    Args:
+        robot: The robot.
+        analysis: What `eurdf.analyze` found on it.
+    """
+    from eurdf.kinematics.residual import residual
+
+    mechanism, model = robot.mechanism, robot.model
+    rows = residual(robot, analysis.q)
+    starts = np.cumsum([0, *(closure.rows for closure in mechanism.closures)])
+    joints = {joint.name: joint for joint in mechanism.joints}
+    return RobotInfo(
+        name=mechanism.name,
+        version=mechanism.version,  # type: ignore[arg-type]  # checked by the model
+        root=mechanism.root,
+        nq=model.nq,
+        nv=model.nv,
+        joints=model.njoints - 1,
+        closures=len(mechanism.closures),
+        nc=mechanism.nc,
+        rank=analysis.rank,
+        mobility=analysis.mobility,
+        redundant=analysis.redundant,
+        uncontrolled=analysis.uncontrolled,
+        actuated=len(robot.actuation.idx_v),
+        mass=_finite(math.fsum(body.inertia.mass for body in mechanism.bodies if body.inertia)),
+        residual=_finite(analysis.residual),
+        closes=analysis.closes,
+        joint_list=tuple(_joint_info(robot, index, joints) for index in range(1, model.njoints)),
+        closure_list=tuple(
+            ClosureInfo(
+                name=closure.name,
+                type=closure.type,
+                rows=closure.rows,
+                frames=(closure.a.frame or None, closure.b.frame or None),
+                bodies=(closure.a.body, closure.b.body),
+                residual=_finite(np.linalg.norm(rows[start : start + closure.rows])),
+            )
+            for closure, start in zip(mechanism.closures, starts, strict=False)
+        ),
+        actuator_list=tuple(
+            ActuatorInfo(joint=name, type=joints[name].type.value, nv=joints[name].coordinates.nv)
+            for name in mechanism.actuators
+        ),
+        frame_list=tuple(
+            FrameInfo(name=frame.name, body=frame.body) for frame in mechanism.frames if frame.kind == "frame"
+        ),
+        configuration_list=tuple(
+            ConfigurationInfo(name=name, residual=_finite(np.linalg.norm(residual(robot, q))))
+            for name, q in robot.configurations.items()
+        ),
+    )
+
+
+def _joint_info(robot: Robot, index: int, joints: dict[str, Any]) -> JointInfo:
+    model, mechanism = robot.model, robot.mechanism
+    name = model.names[index]
+    joint = joints.get(name)
+    return JointInfo(
+        name=name,
+        type=joint.type.value if joint else "floating",
+        parent=joint.parent if joint else "world",
+        child=joint.child if joint else mechanism.bodies[0].name,
+        nq=model.nqs[index],
+        nv=model.nvs[index],
+        actuated=name in robot.actuation.joints,
+        mimics=joint.mimic.joint if joint and joint.mimic else None,
+    )
+
+
+def _finite(number: float | np.floating[Any] | None) -> float | None:
+    return None if number is None or not math.isfinite(number) else float(number)
+
+
+def info_schema() -> dict[str, Any]:
+    """The JSON Schema (2020-12) of `RobotInfo`."""
+    schema = RobotInfo.model_json_schema(mode="serialization")
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}

@@ -1,0 +1,185 @@
+"""From the files of a robot to its mechanism, with everything found on the way; no simulator is loaded for it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from eurdf.collection import find_robot
+from eurdf.diagnostics import Diagnostics, Fault, Place
+from eurdf.format.extension import Extension
+from eurdf.format.read_extension import read_extension
+from eurdf.format.urdf import Urdf, read_urdf
+from eurdf.mechanism.inertia import check_inertias, check_leaves
+from eurdf.mechanism.link import link
+from eurdf.mechanism.mechanism import Closure, Mechanism, Root
+from eurdf.reading.resource import resolve
+from eurdf.reading.source import read_source
+from eurdf.reading.xml_reader import read_xml
+from eurdf.reading.yaml_reader import YamlDocument, read_yaml
+
+
+@dataclass(frozen=True, slots=True)
+class Description:
+    """A robot as read.
+
+    Attributes:
+        path: As the caller gave it.
+        diagnostics: Found by all phases but the last, that of closures.
+        mechanism: None where an error leaves none.
+        urdf: None where it could not be read.
+        extension: None for a bare URDF, or where it could not be read.
+        document: Where the extension was read from.
+    """
+
+    path: str
+    diagnostics: Diagnostics
+    mechanism: Mechanism | None = None
+    urdf: Urdf | None = None
+    extension: Extension | None = None
+    document: YamlDocument | None = None
+
+    @property
+    def folder(self) -> Path:
+        """Folder of the URDF, which its mesh paths are relative to."""
+        assert self.urdf is not None
+        return Path(self.urdf.document.source.file).parent
+
+    def place_of_closure(self, closure: Closure) -> Place:
+        """Where a closure is stated."""
+        assert self.extension is not None
+        assert self.document is not None
+        entry = next(entry for entry in self.extension.closures if entry.name == closure.name)
+        return self.document.place(entry.pointer)
+
+    def place_of_configuration(self, name: str) -> Place:
+        """Where a configuration is stated."""
+        assert self.document is not None
+        return self.document.place(("configurations", name), True)
+
+
+def describe(
+    path: str | os.PathLike[str], urdf: str | os.PathLike[str] | None = None, root: Root | None = None
+) -> Description:
+    """Read and link the files of a robot, and check its inertias.
+
+    Args:
+        path: A folder, a YAML file, a bare URDF, or the name of a robot of the collection.
+        urdf: A URDF in place of the one that the description names.
+        root: In place of the root that the description states.
+
+    Raises:
+        RobotNotFound: Where there are no such files.
+    """
+    shown = os.fspath(path)
+    files = find_robot(path, urdf)
+    diagnostics = Diagnostics()
+    if files.description is None:
+        assert files.urdf is not None
+        tree = _read_urdf(files.urdf, diagnostics)
+        mechanism = None if tree is None else link(tree, None, None, diagnostics, root)
+        return _finish(Description(shown, diagnostics, mechanism, tree))
+    document = _read_yaml(files.description, diagnostics)
+    extension = None if document is None else read_extension(document, diagnostics)
+    urdf_path = files.urdf or _named_urdf(files.description, extension, document)
+    if files.urdf is None and not urdf_path.is_file():
+        # Where the description could not be read, which URDF it means is a guess that deserves no second error.
+        if extension is not None and document is not None:
+            _urdf_not_found(urdf_path, extension, document, diagnostics)
+        return Description(shown, diagnostics, None, None, extension, document)
+    tree = _read_urdf(urdf_path, diagnostics)
+    mechanism = None
+    if tree is not None and extension is not None:
+        mechanism = link(tree, extension, document, diagnostics, root)
+    return _finish(Description(shown, diagnostics, mechanism, tree, extension, document))
+
+
+def _finish(description: Description) -> Description:
+    if description.urdf is not None:
+        check_inertias(description.urdf, description.diagnostics)
+        if description.mechanism is not None:
+            check_leaves(description.mechanism, description.urdf, description.diagnostics)
+    return description
+
+
+def _read_yaml(path: Path, diagnostics: Diagnostics) -> YamlDocument | None:
+    try:
+        return read_yaml(read_source(path))
+    except Fault as fault:
+        diagnostics.add(fault.diagnostic)
+        return None
+
+
+def _read_urdf(path: Path, diagnostics: Diagnostics) -> Urdf | None:
+    try:
+        document = read_xml(read_source(path))
+    except Fault as fault:
+        diagnostics.add(fault.diagnostic)
+        return None
+    return read_urdf(document, diagnostics)
+
+
+def _named_urdf(description: Path, extension: Extension | None, document: YamlDocument | None) -> Path:
+    name = "robot.urdf"
+    if extension is not None:
+        name = extension.urdf
+    elif document is not None and isinstance(document.data, dict) and isinstance(document.data.get("urdf"), str):
+        name = document.data["urdf"]
+    try:
+        return description.parent / name
+    except ValueError:
+        return description.parent / "robot.urdf"
+
+
+def _urdf_not_found(path: Path, extension: Extension, document: YamlDocument, diagnostics: Diagnostics) -> None:
+    """EU-FIL-004: the URDF that the description names exists."""
+    near = sorted(other.name for other in path.parent.glob("*.urdf")) if path.parent.is_dir() else []
+    hint = "name it by the key 'urdf', or by the option --urdf"
+    if near:
+        hint = f"there is '{near[0]}': " + hint
+    diagnostics.report(
+        "urdf-not-found",
+        f"the URDF '{extension.urdf}' does not exist" if not path.exists() else f"'{extension.urdf}' is not a file",
+        document.place(("urdf",)),
+        hint,
+    )
+
+
+def missing_meshes(
+    description: Description, package_dirs: Sequence[str | os.PathLike[str]] = ()
+) -> tuple[dict[str, str], Diagnostics]:
+    """EU-URD-028: look every mesh up.
+
+    Returns:
+        The path of each mesh found, by URI; and one diagnostic for all that were not.
+    """
+    diagnostics = Diagnostics()
+    found: dict[str, str] = {}
+    missing: list[str] = []
+    urdf = description.urdf
+    assert urdf is not None
+    for link_ in urdf.links.values():
+        for shape in (*link_.visuals, *link_.collisions):
+            uri = shape.filename
+            if shape.kind != "mesh" or uri in found or uri in missing:
+                continue
+            path = resolve(uri, description.folder, package_dirs)
+            if path is None:
+                missing.append(uri)
+            else:
+                found[uri] = path
+    if missing:
+        element = next(
+            mesh for mesh in urdf.document.root.iter("mesh") if mesh.get("filename") in missing
+        )
+        names = ", ".join(f"'{uri}'" for uri in missing[:3]) + (", ..." if len(missing) > 3 else "")
+        count = "1 mesh file is" if len(missing) == 1 else f"{len(missing)} mesh files are"
+        diagnostics.report(
+            "urdf-mesh-missing",
+            f"{count} not found: {names}",
+            urdf.document.place(element, "filename"),
+            "put them beside the URDF, or set ROS_PACKAGE_PATH to the folder that holds their package",
+        )
+    return found, diagnostics

@@ -1,0 +1,95 @@
+"""Findings as a SARIF 2.1.0 log, the form in which code hosts and editors take them."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from eurdf.diagnostics.diagnostic import Diagnostic, Place
+from eurdf.diagnostics.registry import REGISTRY
+from eurdf.diagnostics.report import Report, encodable
+
+_SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
+
+# What a viewer would take for a link, "[text](target)", or for a placeholder, "{0}".
+_LINK = re.compile(r"\[(?=[^\[\]]*\]\()")
+_BRACE = re.compile(r"[{}]")
+
+
+def sarif_log(reports: Iterable[Report], version: str, folder: str | None = None) -> dict[str, Any]:
+    """One log with one run that holds the findings on all robots.
+
+    Args:
+        reports: One a robot. A finding that several of them share (on a URDF that they have in common) stands once.
+        version: Version of eurdf.
+        folder: Folder that paths are made relative to; the working directory by default. A file outside of it keeps
+            its absolute path.
+    """
+    found = list(dict.fromkeys(found for report in reports for found in report.diagnostics))
+    used = {one.code for one in found}
+    codes = [code for code in REGISTRY if code in used]
+    index = {code: number for number, code in enumerate(codes)}
+    folder = os.getcwd() if folder is None else folder
+    driver = {"name": "eurdf", "version": version, "rules": [_rule(code) for code in codes]}
+    run = {
+        "tool": {"driver": driver},
+        "columnKind": "unicodeCodePoints",
+        "results": [_result(one, index[one.code], folder) for one in found],
+    }
+    return {"$schema": _SCHEMA, "version": "2.1.0", "runs": [run]}
+
+
+def _rule(code: str) -> dict[str, Any]:
+    rule = REGISTRY[code]
+    return {
+        "id": code,
+        "shortDescription": {"text": rule.title},
+        "defaultConfiguration": {"level": rule.severity.value},
+        "properties": {"clause": rule.clause, "phase": rule.phase.value},
+    }
+
+
+def _result(found: Diagnostic, index: int, folder: str) -> dict[str, Any]:
+    text = f"{found.message}."
+    if found.hint:
+        hint = found.hint[0].upper() + found.hint[1:]
+        text = f"{text} {hint}" if hint.endswith(("?", ".")) else f"{text} {hint}."
+    return {
+        "ruleId": found.code,
+        "ruleIndex": index,
+        "level": found.severity.value,
+        "message": {"text": _message_text(text)},
+        "locations": [_location(found.place, folder)],
+    }
+
+
+def _message_text(text: str) -> str:
+    doubled = _BRACE.sub(lambda brace: 2 * brace.group(), encodable(text))
+    return _LINK.sub(r"\\[", doubled)
+
+
+def _location(place: Place, folder: str) -> dict[str, Any]:
+    physical: dict[str, Any] = {"artifactLocation": {"uri": _uri(place.file, folder)}}
+    if place.line is not None:
+        region = {"startLine": place.line}
+        if place.column is not None:
+            region["startColumn"] = place.column
+            if place.end_column is not None and place.end_column >= place.column:
+                region["endColumn"] = place.end_column
+        physical["region"] = region
+    location: dict[str, Any] = {"physicalLocation": physical}
+    if place.pointer:
+        location["logicalLocations"] = [{"fullyQualifiedName": encodable(place.pointer)}]
+    return location
+
+
+def _uri(file: str, folder: str) -> str:
+    path = Path(os.path.abspath(os.path.join(folder, file)))
+    base = os.path.abspath(folder)
+    if path.is_relative_to(base):
+        return quote(os.fsencode(path.relative_to(base)))
+    return path.as_uri()

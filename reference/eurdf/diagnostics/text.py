@@ -1,0 +1,185 @@
+"""Findings as a person reads them: where, what, the line itself with the place marked, and what would be right.
+
+Everything is made as lines of styled pieces; whoever writes them decides whether the styles are kept.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+import unicodedata
+from collections.abc import Iterator, Sequence
+
+from eurdf.diagnostics.diagnostic import Diagnostic
+from eurdf.diagnostics.registry import Severity
+from eurdf.diagnostics.report import Report
+
+#: The pieces of one line, each with a rich style (empty for none).
+Line = list[tuple[str, str]]
+
+#: Columns given to the text of a source line where no terminal says how many there are.
+SOURCE_WIDTH = 96
+
+_LONGEST_MESSAGE = 1000
+# Files are read once more to show their lines. No reader takes a larger one than this.
+_LARGEST_FILE = 64 * 2**20
+_ELLIPSIS = "..."
+_TAB = "    "
+
+_COLOR = {Severity.ERROR: "red", Severity.WARNING: "yellow"}
+
+
+def report_lines(report: Report, width: int = SOURCE_WIDTH, bar: str = "|") -> Iterator[Line]:
+    """The findings on one robot, by file and position.
+
+    Args:
+        report: What was found.
+        width: Columns given to the text of a source line.
+        bar: What stands between line numbers and lines.
+    """
+    texts: dict[str, list[str]] = {}
+    for found in _by_position(report.diagnostics):
+        yield _headline(found, report.path)
+        yield from _excerpt_lines(found, texts, width, bar)
+
+
+def summary_line(report: Report, strict: bool = False) -> Line:
+    """The verdict on one robot."""
+    counts = _counts(report)
+    style = "bold red" if not report.passes(strict) else "yellow" if counts else "green"
+    return [(f"{visible(report.path)}: ", "bold"), (counts or "sound", style)]
+
+
+def total_line(reports: Sequence[Report], strict: bool = False) -> Line:
+    """The verdict on several robots together."""
+    passed = sum(report.passes(strict) for report in reports)
+    failed = len(reports) - passed
+    counts = _counts(*reports)
+    return [
+        (f"{_plural(len(reports), 'robot')}: ", "bold"),
+        (f"{passed} passed", "green" if passed else ""),
+        (", ", ""),
+        (f"{failed} failed", "bold red" if failed else ""),
+        (f" ({counts})" if counts else "", ""),
+    ]
+
+
+def visible(text: str) -> str:
+    r"""The text with every character that is not seen, or that steers a terminal, as its escape (``\x1b``)."""
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
+
+
+def cells(text: str) -> int:
+    """Number of terminal columns that a text without control characters takes."""
+    if text.isascii():
+        return len(text)
+    return sum(_cells_of(c) for c in text)
+
+
+def _cells_of(character: str) -> int:
+    if unicodedata.category(character) in ("Mn", "Me"):
+        return 0
+    return 2 if unicodedata.east_asian_width(character) in ("W", "F") else 1
+
+
+def _by_position(diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:
+    files = {file: rank for rank, file in enumerate(dict.fromkeys(found.file for found in diagnostics))}
+    return sorted(diagnostics, key=lambda found: (files[found.file], found.line or 0, found.column or 0))
+
+
+def _headline(found: Diagnostic, path: str) -> Line:
+    where = ":".join(str(part) for part in (found.file or path, found.line, found.column) if part is not None)
+    message = visible(found.message)
+    if len(message) > _LONGEST_MESSAGE:
+        message = message[:_LONGEST_MESSAGE] + _ELLIPSIS
+    return [
+        (f"{visible(where)}: ", "bold"),
+        (found.severity.value, f"bold {_COLOR[found.severity]}"),
+        (f": {message} ", ""),
+        (f"[{found.code} {found.clause}]", "dim"),
+    ]
+
+
+def _excerpt_lines(found: Diagnostic, texts: dict[str, list[str]], width: int, bar: str) -> Iterator[Line]:
+    place = found.place
+    number = ""
+    if place.line is not None:
+        if place.file not in texts:
+            texts[place.file] = _read_lines(place.file)
+        lines = texts[place.file]
+        if place.line <= len(lines):
+            number = str(place.line)
+            start = None if place.column is None else place.column - 1
+            end = None if place.end_column is None else place.end_column - 1
+            shown, offset, length = _clip(lines[place.line - 1], start, end, width)
+            yield [(f"{number:>5} {bar} ", "blue"), (shown, "")]
+            if start is not None:
+                yield [
+                    (f"{'':>5} {bar} ", "blue"),
+                    (" " * offset, ""),
+                    ("^" * length, f"bold {_COLOR[found.severity]}"),
+                ]
+    if found.hint:
+        hint = visible(found.hint)[:_LONGEST_MESSAGE]
+        yield [(f"{'':>5} = ", "blue"), ("hint", "bold cyan"), (f": {hint}", "")]
+
+
+def _clip(text: str, start: int | None, end: int | None, width: int) -> tuple[str, int, int]:
+    """The part of a line that is shown.
+
+    Args:
+        text: The line.
+        start: Index of the first character meant; None for the line as a whole.
+        end: Index after the last one; None where only the first is known.
+        width: Columns there are.
+
+    Returns:
+        The text shown, the column in it at which the place starts (from 0), the columns that the place takes.
+    """
+    start = min(max(start or 0, 0), len(text))
+    end = min(max(end or 0, start + 1), len(text))
+    # No character shown takes less than a column, but for combining marks: the rest of a huge line is never looked at.
+    low, high = max(0, start - width), min(len(text), start + width)
+    pieces = [_TAB if c == "\t" else visible(c) for c in text[low:high]]
+    sizes = [cells(piece) for piece in pieces]
+    place = start - low
+    first, last = 0, len(pieces)
+    if low or high < len(text) or sum(sizes) > width:
+        width -= 2 * len(_ELLIPSIS)
+        if low or sum(sizes[:place]) > width * 2 // 3:
+            first, room = place, width // 3
+            while first > 0 and sizes[first - 1] <= room:
+                first -= 1
+                room -= sizes[first]
+        last, room = first, width
+        while last < len(pieces) and sizes[last] <= room:
+            room -= sizes[last]
+            last += 1
+    before = _ELLIPSIS if low + first else ""
+    after = _ELLIPSIS if low + last < len(text) else ""
+    shown = before + "".join(pieces[first:last]) + after
+    offset = len(before) + sum(sizes[first:place])
+    return shown.rstrip(), offset, max(1, sum(sizes[place : min(end - low, last)]))
+
+
+def _read_lines(file: str) -> list[str]:
+    try:
+        status = os.stat(file)
+        if not stat.S_ISREG(status.st_mode) or status.st_size > _LARGEST_FILE:
+            return []
+        with open(file, encoding="utf-8-sig", errors="replace") as stream:
+            return stream.read(_LARGEST_FILE).split("\n")
+    except (OSError, ValueError):
+        return []
+
+
+def _counts(*reports: Report) -> str:
+    errors = sum(len(report.errors) for report in reports)
+    warnings = sum(len(report.warnings) for report in reports)
+    return ", ".join(_plural(number, word) for number, word in ((errors, "error"), (warnings, "warning")) if number)
+
+
+def _plural(number: int, word: str) -> str:
+    return f"{number} {word}" if number == 1 else f"{number} {word}s"

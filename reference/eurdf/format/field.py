@@ -1,0 +1,150 @@
+"""What the models of both versions are made of: a strict mapping, and the types of its fields."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Any, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
+from typing_extensions import TypeAliasType
+
+#: What the user's own keys begin with, at any level of a version 2 file.
+OWN_KEY = "^x-"
+
+#: Strict: no string stands for a number, a bool is no number, an int is one. Built at first use, since one run mostly
+#: reads one version.
+STRICT = ConfigDict(strict=True, allow_inf_nan=False, frozen=True, defer_build=True)
+
+_OWN_DATA = {"title": "Own data", "description": "The user's own data: kept, never read."}
+
+
+def is_own_key(key: str) -> bool:
+    """Whether a key of a version 2 file is the user's own."""
+    return key.startswith("x-")
+
+
+class StrictMapping(BaseModel):
+    """A mapping that has its known keys, and the user's own ``x-…``, and no other."""
+
+    model_config = ConfigDict(**STRICT, extra="allow")
+    __pydantic_extra__: dict[Annotated[str, Field(pattern=OWN_KEY)], Any]
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler, /) -> JsonSchemaValue:
+        """As generated, with ``x-…`` as the only further keys, and null nowhere."""
+        written = handler(schema)
+        mapping = handler.resolve_ref_schema(written)
+        for name, field in cls.model_fields.items():
+            entry = mapping["properties"][name]
+            entry["title"] = field.title
+            if field.default is None:
+                del entry["default"]
+        mapping["patternProperties"] = {OWN_KEY: _OWN_DATA}
+        mapping["additionalProperties"] = False
+        return written
+
+
+class _NotNull:
+    """Takes ``| None`` away from what may be written: in Python None says that the key is left out."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        schema = handler(source)
+        if schema["type"] != "nullable":
+            raise TypeError("a value that may be left out is annotated '… | None'")
+        inner: CoreSchema = schema["schema"]
+        return inner
+
+
+class _OwnKeysApart:
+    """Of a mapping whose keys are names: keys that begin with ``x-`` are no names, and their values anything."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_before_validator_function(_without_own_keys, handler(source))
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        mapping = handler(schema)
+        mapping["patternProperties"] = {OWN_KEY: _OWN_DATA}
+        return mapping
+
+
+def _without_own_keys(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: item for key, item in value.items() if not is_own_key(key)}
+    return value
+
+
+def either(form: Callable[[Any], str | None], expected: str) -> Discriminator:
+    """A union told apart before it is read, so that a fault is told of the one form that is meant.
+
+    Args:
+        form: From a value the tag of the form it is meant to be, or None. No tag is a key of the format.
+        expected: What the value must be, as it is said where it is none of them.
+    """
+    return Discriminator(form, custom_error_type="wrong-type", custom_error_message=f"must be {expected}")
+
+
+def refuse_repeated(names: list[str]) -> list[str]:
+    """Pass the names on, which must all differ."""
+    for index, name in enumerate(names):
+        if name in names[:index]:
+            raise PydanticCustomError(
+                "wrong-value", "must be different names, but '{name}' stands twice", {"name": name}
+            )
+    return names
+
+
+def refuse_zero(number: float) -> float:
+    """Pass the number on, which must not be 0."""
+    if number == 0.0:
+        raise PydanticCustomError("out-of-range", "must not be 0")
+    return number
+
+
+_T = TypeVar("_T")
+
+#: A value that may be left out, but not be null.
+MayLack = Annotated[_T | None, _NotNull()]
+
+#: A mapping from names to values, beside which the user's own keys may stand.
+ByName = Annotated[dict[Annotated[str, Field(min_length=1)], _T], _OwnKeysApart()]
+
+
+# Named types have definitions of their own in the schema, which is where the names of one robot are put.
+LinkName = TypeAliasType(
+    "LinkName", Annotated[str, Field(min_length=1, title="Link", description="Name of a link of the URDF.")]
+)
+UrdfJointName = TypeAliasType(
+    "UrdfJointName",
+    Annotated[str, Field(min_length=1, title="Joint of the URDF", description="Name of a joint of the URDF.")],
+)
+JointName = TypeAliasType(
+    "JointName",
+    Annotated[
+        str,
+        Field(min_length=1, title="Joint", description="Name of a joint, of the URDF or made by this file."),
+    ],
+)
+MovingJointName = TypeAliasType(
+    "MovingJointName",
+    Annotated[
+        str,
+        Field(
+            min_length=1,
+            title="Moving joint",
+            description="Name of a joint that can move, of the URDF or made by this file.",
+        ),
+    ],
+)
+FrameName = TypeAliasType(
+    "FrameName",
+    Annotated[
+        str,
+        Field(
+            min_length=1,
+            title="Frame",
+            description="Name of a link, of a joint (its frame on the child's side), or of a frame of this file.",
+        ),
+    ],
+)

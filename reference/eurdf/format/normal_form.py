@@ -1,0 +1,163 @@
+"""Both versions in one form: what a model has accepted, as an `Extension`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from eurdf.format import version2
+from eurdf.format.extension import (
+    ActuatorEntry,
+    ClosureEntry,
+    ConfigurationEntry,
+    Extension,
+    FrameEntry,
+    FrameReference,
+    JointEntry,
+    Pointer,
+)
+from eurdf.format.field import is_own_key
+from eurdf.format.version1 import Version1
+from eurdf.format.version2 import Version2
+from eurdf.mechanism.pose import Vector3
+
+_UNIT = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+
+
+def from_version1(model: Version1) -> Extension:
+    """The description in a file of version 1, whose parallel lists are of equal length.
+
+    Closures are named ``closure_1``, ``closure_2``, … in file order.
+    """
+    types = model.type if "type" in model.model_fields_set else ["6d"] * len(model.closed_loop)
+    closures = tuple(
+        ClosureEntry(
+            pointer=("closed_loop", index),
+            name=f"closure_{index + 1}",
+            type=closure_type.lower(),
+            a=FrameReference(("closed_loop", index, 0), name=a),
+            b=FrameReference(("closed_loop", index, 1), name=b),
+        )
+        for index, ((a, b), closure_type) in enumerate(zip(model.closed_loop, types, strict=True))
+    )
+    joints = tuple(
+        _version1_joint(("joint_name", index), name, joint_type)
+        for index, (name, joint_type) in enumerate(zip(model.joint_name, model.joint_type, strict=True))
+    )
+    return Extension(
+        version="1",
+        closures=closures,
+        joints=joints,
+        actuators=tuple(ActuatorEntry(("name_mot", index), name) for index, name in enumerate(model.name_mot)),
+        merges_revolutes=True,
+        extensions=model.model_extra or {},
+    )
+
+
+def _version1_joint(pointer: Pointer, name: str, joint_type: str) -> JointEntry:
+    if joint_type == "SPHERICAL":
+        return JointEntry(pointer, name, type="spherical")
+    if joint_type == "FIXED":
+        return JointEntry(pointer, name, type="fixed")
+    return JointEntry(pointer, name, type="universal", split=joint_type.removeprefix("UJOINT_"))
+
+
+def from_version2(model: Version2, data: Mapping[str, Any]) -> Extension:
+    """The description in a file of version 2.0.
+
+    Args:
+        model: The file, accepted.
+        data: The same as it was written, in which the user's own keys are sought.
+    """
+    return Extension(
+        version="2.0",
+        urdf=model.urdf,
+        root=model.root,
+        closures=tuple(_closure(("closures", index), closure) for index, closure in enumerate(model.closures)),
+        joints=tuple(_joint(name, joint) for name, joint in model.joints.items()),
+        actuators=tuple(_actuator(("actuators", index), actuator) for index, actuator in enumerate(model.actuators)),
+        frames=tuple(
+            FrameEntry(("frames", index), frame.name, _reference(("frames", index), frame))
+            for index, frame in enumerate(model.frames)
+        ),
+        configurations=tuple(
+            ConfigurationEntry(
+                ("configurations", name),
+                name,
+                {joint: tuple(q) if isinstance(q, list) else (q,) for joint, q in joints.items()},
+            )
+            for name, joints in model.configurations.items()
+        ),
+        metadata=model.metadata,
+        extensions=model.model_extra or {},
+        own_keys=tuple(_own_keys(data)),
+    )
+
+
+def _reference(pointer: Pointer, frame: str | version2.PoseOnLink | version2.PoseOnJoint) -> FrameReference:
+    if isinstance(frame, str):
+        return FrameReference(pointer, name=frame)
+    xyz, rpy = _vector(frame.xyz), _vector(frame.rpy)
+    if isinstance(frame, version2.PoseOnLink):
+        return FrameReference(pointer, link=frame.link, xyz=xyz, rpy=rpy)
+    return FrameReference(pointer, joint=frame.joint, xyz=xyz, rpy=rpy)
+
+
+def _closure(pointer: Pointer, closure: version2.Closure) -> ClosureEntry:
+    a, b = closure.frames
+    return ClosureEntry(
+        pointer,
+        closure.name,
+        closure.type,
+        _reference((*pointer, "frames", 0), a),
+        _reference((*pointer, "frames", 1), b),
+    )
+
+
+def _joint(name: str, joint: version2.Joint) -> JointEntry:
+    pointer = ("joints", name)
+    if isinstance(joint, str):
+        return JointEntry(pointer, name, type=joint)
+    limits = joint.limits or version2.Limits.model_construct()
+    axes: tuple[Vector3, ...] = ()
+    if isinstance(joint, version2.Universal):
+        written = joint.axes
+        axes = tuple(_UNIT[axis] if isinstance(axis, str) else _vector(axis) for axis in written)
+    return JointEntry(
+        pointer,
+        name,
+        type=None if isinstance(joint, version2.Overridden) else joint.type,
+        axes=axes,
+        pitch=joint.pitch if isinstance(joint, version2.Helical) else None,
+        merges=tuple(joint.merges or ()) if isinstance(joint, version2.Spherical) else (),
+        lower=_numbers(limits.lower),
+        upper=_numbers(limits.upper),
+        velocity=_numbers(limits.velocity),
+        effort=_numbers(limits.effort),
+        damping=_numbers(joint.damping),
+        friction=_numbers(joint.friction),
+        armature=_numbers(joint.armature),
+    )
+
+
+def _actuator(pointer: Pointer, actuator: str | version2.Geared) -> ActuatorEntry:
+    if isinstance(actuator, str):
+        return ActuatorEntry(pointer, actuator)
+    return ActuatorEntry(pointer, actuator.joint, actuator.gear_ratio, actuator.rotor_inertia)
+
+
+def _vector(numbers: Sequence[float]) -> Vector3:
+    x, y, z = numbers
+    return (x, y, z)
+
+
+def _numbers(value: float | list[float] | None) -> float | tuple[float, ...] | None:
+    return tuple(value) if isinstance(value, list) else value
+
+
+def _own_keys(data: Mapping[str, Any]) -> Iterator[Pointer]:
+    """Where an ``x-…`` key stands among names of joints."""
+    yield from (("joints", key) for key in data.get("joints", ()) if is_own_key(key))
+    for name, joints in data.get("configurations", {}).items():
+        if not is_own_key(name):
+            yield from (("configurations", name, key) for key in joints if is_own_key(key))

@@ -1,0 +1,140 @@
+"""Reading the YAML file: which version it is of, what is wrong with it, what it says."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal
+
+from pydantic import ValidationError
+
+from eurdf.diagnostics import Diagnostics
+from eurdf.format.extension import Extension
+from eurdf.format.field import is_own_key
+from eurdf.format.normal_form import from_version1, from_version2
+from eurdf.format.version1 import Version1
+from eurdf.format.version2 import VERSION, Version2
+from eurdf.format.violation import described, nearest_key, violations
+
+if TYPE_CHECKING:
+    from eurdf.reading.yaml_reader import YamlDocument
+
+#: How alike two keys are that are taken for one misspelt, as difflib's ratio.
+NEAR = 0.8
+
+VERSION_KEY = "extended_urdf"
+
+_VERSION1_KEYS = tuple(Version1.model_fields)
+
+#: Keys that make a file one of version 2.0; ``metadata`` might be the user's own in any file.
+_VERSION2_KEYS = tuple(key for key in Version2.model_fields if key not in (VERSION_KEY, "metadata"))
+
+
+def read_extension(document: YamlDocument, diagnostics: Diagnostics) -> Extension | None:
+    """The description in a YAML file, of whichever version it is, before any name in it is looked up.
+
+    Args:
+        document: The file.
+        diagnostics: Where findings are added.
+
+    Returns:
+        The description, or None if an error was found.
+    """
+    data = document.data
+    version = _version(document, diagnostics)
+    if version is None:
+        return None
+    known = True
+    try:
+        if version == "1":
+            _warn_of_near_misses(document, diagnostics)
+            one = Version1.model_validate(data)
+            return from_version1(one) if _lengths_agree(one, document, diagnostics) else None
+        if data[VERSION_KEY] != VERSION:  # told already: what else is wrong is told as well
+            known, data = False, {**data, VERSION_KEY: VERSION}
+        two = Version2.model_validate(data)
+    except ValidationError as error:
+        for diagnostic in violations(error, document):
+            diagnostics.add(diagnostic)
+        return None
+    return from_version2(two, data) if known else None
+
+
+def _version(document: YamlDocument, diagnostics: Diagnostics) -> Literal["1", "2.0"] | None:
+    """The version whose rules a file is to be read by (EU-VER-001); None where it cannot be told."""
+    data = document.data
+    if VERSION_KEY in data:
+        return _written_version(document, diagnostics)
+    if any(key in data for key in _VERSION1_KEYS):
+        return "1"
+    misspelt = next((key for key in data if nearest_key(key, [VERSION_KEY], NEAR)), None)
+    if misspelt is not None:
+        diagnostics.report(
+            "missing-key",
+            f"the file lacks '{VERSION_KEY}', the key that says its version, but has '{misspelt}'",
+            document.place((misspelt,), key=True),
+            f"did you mean '{VERSION_KEY}'?",
+        )
+        return None
+    version2_key = next((key for key in _VERSION2_KEYS if key in data), None)
+    if version2_key is not None:
+        diagnostics.report(
+            "missing-key",
+            f"the file has '{version2_key}', a key of version {VERSION}, but lacks '{VERSION_KEY}'",
+            document.place((version2_key,), key=True),
+            f'begin the file with {VERSION_KEY}: "{VERSION}"',
+        )
+        return None
+    return "1"
+
+
+def _written_version(document: YamlDocument, diagnostics: Diagnostics) -> Literal["2.0"] | None:
+    value = document.data[VERSION_KEY]
+    place = document.place((VERSION_KEY,))
+    quoted = f'write {VERSION_KEY}: "{VERSION}", in quotes'
+    if value == VERSION:
+        return VERSION
+    if value in ("1", "1.0") or (value == 1 and value is not True):
+        message = f"'{VERSION_KEY}' cannot be {described(value)}: a file of version 1 does not state its version"
+        diagnostics.report("unsupported-version", message, place, f"leave '{VERSION_KEY}' out")
+        return None
+    if isinstance(value, str) or (isinstance(value, int | float) and not isinstance(value, bool) and value != 2):
+        hint = f"the version known is {VERSION}: {quoted}"
+        diagnostics.report(
+            "unsupported-version", f"version {described(value)} of Extended URDF is not known", place, hint
+        )
+        return None
+    shown = f"the number {value}" if isinstance(value, float) or value == 2 else described(value)
+    message = f"'{VERSION_KEY}' must be text, not {shown}"
+    diagnostics.report("wrong-type", message, place, quoted)
+    return VERSION
+
+
+def _warn_of_near_misses(document: YamlDocument, diagnostics: Diagnostics) -> None:
+    """Warn of keys that are read as the user's own, but look as if they were meant for the reader (EU-ONE-002)."""
+    for key in document.data:
+        if key in _VERSION1_KEYS or is_own_key(key):
+            continue
+        if key in _VERSION2_KEYS:
+            message = f"'{key}' is a key of version {VERSION}; in this file of version 1 it is data of your own"
+            hint = f'a file of version {VERSION} begins with {VERSION_KEY}: "{VERSION}" and has no key of version 1'
+        elif near := nearest_key(key, (*_VERSION1_KEYS, VERSION_KEY), NEAR):
+            message = f"'{key}' is nearly '{near}', but is read as data of your own"
+            hint = f"did you mean '{near}'?"
+        else:
+            continue
+        diagnostics.report("near-miss-key", message, document.place((key,), key=True), hint)
+
+
+def _lengths_agree(model: Version1, document: YamlDocument, diagnostics: Diagnostics) -> bool:
+    """Whether the lists of version 1 that go together are of one length (EU-ONE-003)."""
+    agree = True
+    for first, second in (("closed_loop", "type"), ("joint_name", "joint_type")):
+        if second not in model.model_fields_set:
+            continue
+        lengths = {key: len(getattr(model, key)) for key in (first, second)}
+        if lengths[first] != lengths[second]:
+            agree = False
+            shorter = min((key for key in lengths if key in model.model_fields_set), key=lambda key: lengths[key])
+            counts = f"'{first}' has {lengths[first]} and '{second}' {lengths[second]} items"
+            message = f"{counts}, but they go together one by one"
+            diagnostics.report("length-mismatch", message, document.place((shorter,)))
+    return agree

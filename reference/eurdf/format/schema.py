@@ -1,0 +1,117 @@
+"""JSON Schemas (2020-12) of the YAML file, for editors: ``python -m eurdf.format.schema FOLDER`` writes them."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from eurdf.format.field import OWN_KEY, is_own_key
+from eurdf.format.version1 import Version1
+from eurdf.format.version2 import Version2
+
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+
+#: File of each version's schema, and what it is identified by.
+FILES: dict[Literal["1", "2"], str] = {"1": "extended-urdf-1.schema.json", "2": "extended-urdf-2.0.schema.json"}
+_IDS = {"1": "urn:extended-urdf:schema:1", "2": "urn:extended-urdf:schema:2.0"}
+
+Schema = dict[str, Any]
+
+#: Beside an enumeration of names: what is no name at all is judged elsewhere.
+_OTHER_THAN_TEXT = {"not": {"type": "string"}}
+
+
+@dataclass(frozen=True, slots=True)
+class Names:
+    """The names of one robot, as its URDF has them.
+
+    Attributes:
+        links: Names of its links.
+        joints: Names of its joints, the fixed ones too.
+        movable_joints: Names of its joints that can move.
+    """
+
+    links: Sequence[str]
+    joints: Sequence[str]
+    movable_joints: Sequence[str]
+
+
+def json_schema(version: Literal["1", "2"], names: Names | None = None) -> Schema:
+    """The schema of a version, as the models say it.
+
+    With the names of one robot, an editor completes them. A file may itself make names that the URDF does not have:
+    by the key ``frames``, and by giving joints another type. Where names may be made so, an unknown one is accepted,
+    and the URDF's are offered; in a file that has neither key, and for names that no file can make (links, joints to
+    merge), an unknown one is refused.
+
+    Args:
+        version: Version of the format.
+        names: Names of one robot, or None for the schema of any.
+    """
+    model = Version1 if version == "1" else Version2
+    schema = {"$schema": DIALECT, "$id": _IDS[version], **model.model_json_schema()}
+    if names is not None:
+        del schema["$id"]  # that of the schema of any robot
+        _put_names(schema, version, names)
+    return schema
+
+
+def _put_names(schema: Schema, version: Literal["1", "2"], names: Names) -> None:
+    """Put the names of one robot where names stand."""
+    definitions = schema["$defs"]
+    movable: Schema = {"enum": list(names.movable_joints)}
+    frames: Schema = {"enum": list(dict.fromkeys((*names.links, *names.joints)))}
+    joints: Schema = {"enum": list(names.joints)}
+    for name, known in {"LinkName": {"enum": list(names.links)}, "UrdfJointName": joints}.items():
+        if name in definitions:
+            definitions[name] |= known
+    for name, known in {"JointName": joints, "MovingJointName": movable, "FrameName": frames}.items():
+        if name in definitions:
+            definition = definitions[name]
+            definition["anyOf"] = [known, {key: definition.pop(key) for key in ("type", "minLength")}]
+    if version == "1":
+        makes_names: Schema = {"required": ["joint_name"]}
+        of_the_urdf: Schema = {"closed_loop": {"items": {"items": frames}}, "name_mot": {"items": movable}}
+    else:
+        _put_joint_keys(schema, names)
+        makes_names = {"anyOf": [{"required": ["frames"]}, {"required": ["joints"]}]}
+        own = {OWN_KEY: True}
+        of_the_urdf = {
+            "closures": {"items": {"properties": {"frames": {"items": {"anyOf": [frames, _OTHER_THAN_TEXT]}}}}},
+            "actuators": {"items": {"anyOf": [movable, _OTHER_THAN_TEXT | {"properties": {"joint": movable}}]}},
+            "configurations": {
+                "patternProperties": own,
+                "additionalProperties": {"propertyNames": {"anyOf": [movable, {"pattern": OWN_KEY}]}},
+            },
+        }
+    schema |= {"if": makes_names, "else": {"properties": of_the_urdf}}
+
+
+def _put_joint_keys(schema: Schema, names: Names) -> None:
+    """Put the names of joints where they are the keys of a mapping."""
+    joint = {"$ref": "#/$defs/Joint"}
+    joints = schema["properties"]["joints"]
+    joints["properties"] = {name: joint for name in names.joints if not is_own_key(name)}
+    joints["additionalProperties"] = {"allOf": [joint, {"type": "object", "required": ["merges"]}]}
+    configuration = schema["properties"]["configurations"]["additionalProperties"]
+    coordinates = configuration["additionalProperties"]
+    configuration["properties"] = {name: coordinates for name in names.movable_joints if not is_own_key(name)}
+
+
+def schema_text(schema: Schema) -> str:
+    """A schema as its file holds it."""
+    return json.dumps(schema, indent=2, ensure_ascii=False) + "\n"
+
+
+def main(folder: str) -> None:
+    """Write the schema of each version into a folder."""
+    for version, name in FILES.items():
+        Path(folder, name).write_text(schema_text(json_schema(version)), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

@@ -1,0 +1,770 @@
+"""The URDF as typed data, checked by itself: numbers, names, and one tree of links.
+
+What urdfdom and Pinocchio swallow in silence (a link with two parents, a second root, a missing mass) is refused here,
+before any C++ sees the file.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache, partial
+from typing import Literal
+
+from lxml import etree
+
+from eurdf.diagnostics import Diagnostics, did_you_mean
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mechanism import Inertia, Mimic, Shape
+from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
+from eurdf.reading.xml_reader import XmlDocument
+
+Element = etree._Element
+
+#: The types a URDF may give a joint.
+URDF_JOINT_TYPES = {
+    kind.value: kind
+    for kind in (
+        JointType.REVOLUTE,
+        JointType.CONTINUOUS,
+        JointType.PRISMATIC,
+        JointType.PLANAR,
+        JointType.FLOATING,
+        JointType.FIXED,
+    )
+}
+
+#: Elements by which other dialects state a closure or a coupling; a reader of this format would drop them.
+_CLOSURE_DIALECTS = frozenset({"loop", "loop_joint", "constraint", "coupling"})
+
+_KNOWN_CHILDREN: dict[str, frozenset[str]] = {
+    "robot": frozenset({"link", "joint", "material", "gazebo", "transmission"}),
+    "link": frozenset({"inertial", "visual", "collision"}),
+    "inertial": frozenset({"origin", "mass", "inertia"}),
+    "visual": frozenset({"origin", "geometry", "material"}),
+    "collision": frozenset({"origin", "geometry"}),
+    "joint": frozenset(
+        {"origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "calibration", "safety_controller"}
+    ),
+}
+
+# A vector of decimal numbers in ASCII: what `float` takes beyond it (nan, inf, 1_0, other digits) is no URDF number.
+_NUMERIC = re.compile(r"[0-9+\-.eE \t\r\n]*\Z").match
+
+_ZERO: Vector3 = (0.0, 0.0, 0.0)
+_UNLIMITED = math.inf
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """A joint's ``limit``: positions in rad or m, velocity in rad/s or m/s, effort in N·m or N."""
+
+    lower: float
+    upper: float
+    velocity: float
+    effort: float
+
+
+@dataclass(frozen=True, slots=True)
+class UrdfLink:
+    """A ``link`` element as read; ``inertial`` is its element, to point at."""
+
+    name: str
+    element: Element
+    inertia: Inertia | None
+    inertial: Element | None
+    visuals: tuple[Shape, ...]
+    collisions: tuple[Shape, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class UrdfJoint:
+    """A ``joint`` element as read.
+
+    Attributes:
+        name: Its name.
+        type: One of URDF's six types.
+        element: To point at.
+        parent: Name of the parent link.
+        child: Name of the child link.
+        placement: Pose of the joint, which is that of the child link at zero, in the parent link.
+        axis: As written, in the joint's frame; (1, 0, 0) where the URDF gives none.
+        limit: None where the URDF gives none.
+        damping: N·m·s/rad or N·s/m.
+        friction: N·m or N.
+        mimic: The joint it follows, or None.
+    """
+
+    name: str
+    type: JointType
+    element: Element
+    parent: str
+    child: str
+    placement: Pose
+    axis: Vector3
+    limit: Limit | None
+    damping: float
+    friction: float
+    mimic: Mimic | None
+
+
+@dataclass(frozen=True, slots=True)
+class Urdf:
+    """A sound URDF: unique names, known links, one tree.
+
+    Attributes:
+        document: Where it was read from.
+        name: Name of the robot.
+        links: By name, in file order.
+        joints: By name, in file order.
+        root: Name of the root link.
+        children: For each link, the joints that hang from it, in the byte order of their names.
+    """
+
+    document: XmlDocument
+    name: str
+    links: Mapping[str, UrdfLink]
+    joints: Mapping[str, UrdfJoint]
+    root: str
+    children: Mapping[str, tuple[UrdfJoint, ...]]
+
+    def walk(self) -> Iterator[UrdfJoint]:
+        """The joints depth first from the root; the joints of one link in the byte order of their names."""
+        stack = list(reversed(self.children.get(self.root, ())))
+        while stack:
+            joint = stack.pop()
+            yield joint
+            stack.extend(reversed(self.children.get(joint.child, ())))
+
+
+def read_urdf(document: XmlDocument, diagnostics: Diagnostics) -> Urdf | None:
+    """Read a URDF and check it by itself.
+
+    Args:
+        document: The XML file.
+        diagnostics: Gets what is found.
+
+    Returns:
+        The URDF, or None where an error was found.
+    """
+    before = len(diagnostics.errors)
+    reader = _Reader(document, diagnostics)
+    urdf = reader.robot()
+    return None if len(diagnostics.errors) > before else urdf
+
+
+@cache
+def _near_miss(tag: str, known: frozenset[str]) -> str | None:
+    """The hint for an element that URDF lacks; the same few stand in every joint of a file."""
+    return did_you_mean(tag, known)
+
+
+class _Reader:
+    """Walks the elements once; every method reads one kind of element and reports what is wrong with it."""
+
+    def __init__(self, document: XmlDocument, diagnostics: Diagnostics) -> None:
+        self.document = document
+        self.diagnostics = diagnostics
+        self.poses: dict[tuple[str | None, str | None], Pose] = {}
+        self.materials: dict[str, tuple[tuple[float, float, float, float] | None, str]] = {}
+
+    # -- reporting ------------------------------------------------------------------------------------------------
+
+    def report(
+        self, code: str, message: str, element: Element, attribute: str | None = None, hint: str | None = None
+    ) -> None:
+        self.diagnostics.report(code, message, partial(self.document.place, element, attribute), hint)
+
+    # -- attributes -----------------------------------------------------------------------------------------------
+
+    def numbers(self, element: Element, attribute: str, text: str, count: int) -> tuple[float, ...] | None:
+        """EU-URD-007: an attribute of numbers holds as many finite decimal numbers as it must."""
+        try:
+            if not _NUMERIC(text):
+                raise ValueError
+            values = tuple(map(float, text.split()))
+        except ValueError:
+            self._bad_number(element, attribute, text, count)
+            return None
+        if len(values) != count:
+            wanted = "one number" if count == 1 else f"{count} numbers separated by spaces"
+            self.report(
+                "urdf-bad-number",
+                f"'{attribute}' of <{element.tag}> has {len(values)} numbers; it must have {wanted}",
+                element,
+                attribute,
+            )
+            return None
+        if not all(map(math.isfinite, values)):
+            self._bad_number(element, attribute, text, count)
+            return None
+        return values
+
+    def _bad_number(self, element: Element, attribute: str, text: str, count: int) -> None:
+        wanted = "a finite decimal number" if count == 1 else f"{count} finite decimal numbers separated by spaces"
+        hint = None
+        if "," in text:
+            hint = "write a point, not a comma, and separate numbers by spaces"
+        elif "${" in text or "$(" in text:
+            hint = "this looks like xacro: expand the file first"
+        shown = text if len(text) <= 40 else text[:37] + "..."
+        self.report(
+            "urdf-bad-number",
+            f"'{attribute}' of <{element.tag}> is '{shown}'; it must be {wanted}",
+            element,
+            attribute,
+            hint,
+        )
+
+    def number(self, element: Element, attribute: str, default: float | None = None) -> float | None:
+        """One number; ``default`` where the attribute is absent, which is an error where there is no default."""
+        text = element.get(attribute)
+        if text is None:
+            if default is None:
+                self._missing_attribute(element, attribute)
+            return default
+        values = self.numbers(element, attribute, text, 1)
+        return None if values is None else values[0]
+
+    def vector(self, element: Element, attribute: str, default: Vector3 = _ZERO) -> Vector3 | None:
+        text = element.get(attribute)
+        if text is None:
+            return default
+        return self.numbers(element, attribute, text, 3)  # type: ignore[return-value]
+
+    def _missing_attribute(self, element: Element, attribute: str) -> None:
+        near = did_you_mean(attribute, [str(key) for key in element.keys()])  # noqa: SIM118 - an lxml element
+        hint = near.replace("did you mean", "rename").replace("?", "") if near else None
+        self.report("urdf-missing-attribute", f"<{element.tag}> has no attribute '{attribute}'", element, None, hint)
+
+    def name(self, element: Element, attribute: str = "name") -> str | None:
+        """EU-URD-005, EU-URD-008: what must have a name has one, and it is not empty."""
+        name = element.get(attribute)
+        if name is None:
+            self._missing_attribute(element, attribute)
+            return None
+        if not name.strip():
+            self.report("urdf-empty-name", f"'{attribute}' of <{element.tag}> is empty", element, attribute)
+            return None
+        return str(name)
+
+    # -- elements -------------------------------------------------------------------------------------------------
+
+    def children(self, parent: Element, known: frozenset[str]) -> dict[str, Element]:
+        """EU-URD-006: the child elements that may stand once, by tag. Unknown ones are looked at for near misses."""
+        found: dict[str, Element] = {}
+        for child in parent:
+            tag = child.tag
+            if tag in found:
+                self.report("urdf-repeated-element", f"<{parent.tag}> has a second <{tag}>", child)
+            elif tag in known:
+                found[tag] = child
+            else:
+                self.unknown(parent, child, known)
+        return found
+
+    def unknown(self, parent: Element, child: Element, known: frozenset[str]) -> None:
+        """EU-URD-026, EU-URD-027: an element that this format lacks is left alone unless it looks like a mistake."""
+        tag = child.tag
+        if not isinstance(tag, str):
+            return
+        local = tag.rpartition("}")[2]
+        if local in _CLOSURE_DIALECTS or local.endswith(("_constraint", "loop_joint")):
+            self.report(
+                "urdf-closure-ignored",
+                f"<{local}> states a constraint that is not part of this format and has no effect",
+                child,
+                hint="state it under 'closures' in the YAML file",
+            )
+        elif "}" not in tag:
+            near = _near_miss(tag, known)
+            if near:
+                self.report("urdf-unknown-element", f"<{parent.tag}> has an unknown element <{tag}>", child, hint=near)
+
+    def need(self, parent: Element, found: Mapping[str, Element], tag: str) -> Element | None:
+        """EU-URD-004: an element has the child elements that it must have."""
+        element = found.get(tag)
+        if element is None:
+            name = parent.get("name")
+            of = f" '{name}'" if name else ""
+            self.report("urdf-missing-element", f"<{parent.tag}>{of} has no <{tag}>", parent)
+        return element
+
+    def origin(self, element: Element | None) -> Pose:
+        if element is None:
+            return IDENTITY
+        get = element.get
+        text = (get("xyz"), get("rpy"))
+        pose = self.poses.get(text)
+        if pose is None:
+            xyz, rpy = self.vector(element, "xyz"), self.vector(element, "rpy")
+            if xyz is None or rpy is None:
+                return IDENTITY
+            # What is seen and what collides mostly stand in the same place.
+            pose = self.poses[text] = Pose.from_xyz_rpy(xyz, rpy)
+        return pose
+
+    # -- robot ----------------------------------------------------------------------------------------------------
+
+    def robot(self) -> Urdf | None:
+        root = self.document.root
+        if root.tag != "robot":
+            hint = None
+            if root.tag in ("sdf", "mujoco"):
+                hint = "this is another format; give the URDF of the robot"
+            self.report("urdf-root-element", f"the root element is <{root.tag}>; it must be <robot>", root, hint=hint)
+            return None
+        name = self.name(root)
+        links: list[UrdfLink] = []
+        joints: list[UrdfJoint] = []
+        elements: list[Element] = []
+        for element in root:
+            tag = element.tag
+            if tag in ("link", "joint"):
+                elements.append(element)
+            elif tag == "material":
+                self.robot_material(element)
+            elif tag not in _KNOWN_CHILDREN["robot"]:
+                self.unknown(root, element, _KNOWN_CHILDREN["robot"])
+        complete = True
+        for element in elements:
+            if element.tag == "link":
+                link = self.link(element)
+                complete = complete and link is not None
+                if link:
+                    links.append(link)
+            else:
+                joint = self.joint(element)
+                complete = complete and joint is not None
+                if joint:
+                    joints.append(joint)
+        self.no_range(joints)
+        if not complete or name is None:
+            return None
+        return self.tree(name, links, joints)
+
+    # -- links ----------------------------------------------------------------------------------------------------
+
+    def link(self, element: Element) -> UrdfLink | None:
+        name = self.name(element)
+        inertia: Inertia | None = None
+        inertial: Element | None = None
+        visuals: list[Shape] = []
+        collisions: list[Shape] = []
+        for child in element:
+            tag = child.tag
+            if tag == "inertial":
+                if inertial is not None:
+                    self.report("urdf-repeated-element", f"link '{name}' has a second <inertial>", child)
+                    continue
+                inertial = child
+                inertia = self.inertial(child)
+            elif tag == "visual":
+                shape = self.shape(child, visual=True)
+                if shape:
+                    visuals.append(shape)
+            elif tag == "collision":
+                shape = self.shape(child, visual=False)
+                if shape:
+                    collisions.append(shape)
+            else:
+                self.unknown(element, child, _KNOWN_CHILDREN["link"])
+        if name is None:
+            return None
+        if name == "universe":
+            self.report("urdf-reserved-name", "'universe' is the name of the world and cannot be a link's", element, "name")
+        return UrdfLink(name, element, inertia, inertial, tuple(visuals), tuple(collisions))
+
+    def inertial(self, element: Element) -> Inertia | None:
+        found = self.children(element, _KNOWN_CHILDREN["inertial"])
+        pose = self.origin(found.get("origin"))
+        mass_element = self.need(element, found, "mass")
+        inertia_element = self.need(element, found, "inertia")
+        if mass_element is None or inertia_element is None:
+            return None
+        mass = self.number(mass_element, "value")
+        get = inertia_element.get
+        texts = (get("ixx"), get("ixy"), get("ixz"), get("iyy"), get("iyz"), get("izz"))
+        if None not in texts:
+            joined = " ".join(texts)  # type: ignore[arg-type]
+            if _NUMERIC(joined):
+                try:
+                    moments = tuple(map(float, joined.split(" ")))
+                except ValueError:
+                    moments = ()
+                if len(moments) == 6 and math.isfinite(sum(moments)) and mass is not None:
+                    return Inertia(mass, pose, moments)
+        slow = [self.number(inertia_element, key) for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")]
+        if mass is None or None in slow:
+            return None
+        return Inertia(mass, pose, tuple(slow))  # type: ignore[arg-type]
+
+    # -- shapes ---------------------------------------------------------------------------------------------------
+
+    def shape(self, element: Element, *, visual: bool) -> Shape | None:
+        tag = "visual" if visual else "collision"
+        color: tuple[float, float, float, float] | None = None
+        texture = ""
+        found = self.children(element, _KNOWN_CHILDREN[tag])
+        pose = self.origin(found.get("origin"))
+        if visual and "material" in found:
+            color, texture = self.material(found["material"])
+        geometry = self.need(element, found, "geometry")
+        if geometry is None:
+            return None
+        return self.geometry(geometry, pose, color, texture)
+
+    def geometry(
+        self, element: Element, pose: Pose, color: tuple[float, float, float, float] | None, texture: str
+    ) -> Shape | None:
+        """EU-URD-024: a geometry is one box, cylinder, sphere, capsule or mesh of positive size."""
+        shapes = list(element)
+        if len(shapes) != 1:
+            self.report(
+                "urdf-geometry", f"<geometry> holds {len(shapes)} elements; it must hold exactly one shape", element
+            )
+            return None
+        shape = shapes[0]
+        kind = shape.tag
+        size: tuple[float, ...] | None
+        filename = ""
+        if kind == "mesh":
+            name = self.name(shape, "filename")
+            scale = shape.get("scale")
+            size = (1.0, 1.0, 1.0) if scale is None else self.numbers(shape, "scale", scale, 3)
+            if name is None or size is None:
+                return None
+            if 0.0 in size:
+                self.report("urdf-geometry", "'scale' of <mesh> has a zero", shape, "scale")
+                return None
+            return Shape("mesh", size, pose, name, color, texture)
+        if kind == "box":
+            text = shape.get("size")
+            if text is None:
+                self._missing_attribute(shape, "size")
+                return None
+            size = self.numbers(shape, "size", text, 3)
+        elif kind == "sphere":
+            radius = self.number(shape, "radius")
+            size = None if radius is None else (radius,)
+        elif kind in ("cylinder", "capsule"):
+            radius, length = self.number(shape, "radius"), self.number(shape, "length")
+            size = None if radius is None or length is None else (radius, length)
+        else:
+            shown = kind if isinstance(kind, str) else "?"
+            self.report(
+                "urdf-geometry",
+                f"<{shown}> is no shape; it must be box, cylinder, sphere, capsule or mesh",
+                shape,
+                hint=did_you_mean(shown, ("box", "cylinder", "sphere", "capsule", "mesh")),
+            )
+            return None
+        if size is None:
+            return None
+        if min(size) <= 0.0:
+            self.report("urdf-geometry", f"a size of <{kind}> is not positive", shape)
+            return None
+        exact: Literal["box", "cylinder", "sphere", "capsule"] = kind
+        return Shape(exact, size, pose, filename, color, texture)
+
+    def color(self, element: Element) -> tuple[tuple[float, float, float, float] | None, str]:
+        found = self.children(element, frozenset({"color", "texture"}))
+        rgba: tuple[float, ...] | None = None
+        if "color" in found:
+            text = found["color"].get("rgba")
+            if text is None:
+                self._missing_attribute(found["color"], "rgba")
+            else:
+                rgba = self.numbers(found["color"], "rgba", text, 4)
+        texture = found["texture"].get("filename", "") if "texture" in found else ""
+        return rgba, texture  # type: ignore[return-value]
+
+    def robot_material(self, element: Element) -> None:
+        name = self.name(element)
+        if name is not None:
+            self.materials.setdefault(name, self.color(element))
+
+    def material(self, element: Element) -> tuple[tuple[float, float, float, float] | None, str]:
+        """EU-URD-029: a material is defined where it is used, in the robot, or at an earlier use."""
+        name = element.get("name", "")
+        if len(element) == 0:
+            if name not in self.materials:
+                self.report(
+                    "urdf-unknown-material",
+                    f"material '{name}' is not defined",
+                    element,
+                    "name",
+                    did_you_mean(name, self.materials),
+                )
+                return None, ""
+            return self.materials[name]
+        own = self.color(element)
+        return self.materials.setdefault(name, own) if name else own
+
+    # -- joints ---------------------------------------------------------------------------------------------------
+
+    def joint(self, element: Element) -> UrdfJoint | None:
+        name = self.name(element)
+        found = self.children(element, _KNOWN_CHILDREN["joint"])
+        kind = self.joint_type(element)
+        parent_element, child_element = self.need(element, found, "parent"), self.need(element, found, "child")
+        parent = self.name(parent_element, "link") if parent_element is not None else None
+        child = self.name(child_element, "link") if child_element is not None else None
+        placement = self.origin(found.get("origin"))
+        if kind is None:
+            return None
+        axis = self.axis(name, kind, found.get("axis"))
+        limit = self.limit(name, kind, element, found.get("limit"))
+        damping = friction = 0.0
+        if "dynamics" in found:
+            damping, friction = self.dynamics(found["dynamics"])
+        mimic = self.mimic(found["mimic"]) if "mimic" in found else None
+        if name is None or parent is None or child is None or axis is None:
+            return None
+        if name == "universe":
+            self.report(
+                "urdf-reserved-name", "'universe' is the name of the world and cannot be a joint's", element, "name"
+            )
+        return UrdfJoint(name, kind, element, parent, child, placement, axis, limit, damping, friction, mimic)
+
+    def joint_type(self, element: Element) -> JointType | None:
+        """EU-URD-012: the type of a joint is one of URDF's six."""
+        text = element.get("type")
+        if text is None:
+            self._missing_attribute(element, "type")
+            return None
+        kind = URDF_JOINT_TYPES.get(text)
+        if kind is None:
+            hint = did_you_mean(text, URDF_JOINT_TYPES)
+            if text in ("spherical", "ball", "universal", "cylindrical", "helical", "screw"):
+                hint = "write 'revolute' or 'continuous' here, and the type under 'joints' in the YAML file"
+            self.report("urdf-joint-type", f"'{text}' is no joint type of URDF", element, "type", hint)
+        return kind
+
+    def axis(self, name: str | None, kind: JointType, element: Element | None) -> Vector3 | None:
+        """EU-URD-013: the axis of a joint that turns about or slides along it has a direction."""
+        if element is None or kind in (JointType.FIXED, JointType.FLOATING):
+            return (1.0, 0.0, 0.0)
+        text = element.get("xyz")
+        if text is None:
+            self._missing_attribute(element, "xyz")
+            return None
+        axis = self.numbers(element, "xyz", text, 3)
+        if axis is None:
+            return None
+        x, y, z = axis
+        if kind is JointType.PLANAR:
+            if x != 0.0 or y != 0.0:
+                self.report(
+                    "urdf-planar-axis",
+                    f"planar joint '{name}' moves in its own xy plane, whatever its axis says",
+                    element,
+                    "xyz",
+                    "turn the joint's origin so that its z is the normal of the plane, and write the axis 0 0 1",
+                )
+        elif x * x + y * y + z * z < 1e-18:
+            self.report("urdf-zero-axis", f"the axis of joint '{name}' has no direction", element, "xyz")
+            return None
+        return (x, y, z)
+
+    def limit(self, name: str | None, kind: JointType, joint: Element, element: Element | None) -> Limit | None:
+        """EU-URD-004, EU-URD-019, EU-URD-020: what moves in a range says a range, lower before upper."""
+        ranged = kind in (JointType.REVOLUTE, JointType.PRISMATIC)
+        if element is None:
+            if ranged:
+                self.report(
+                    "urdf-missing-element",
+                    f"{kind} joint '{name}' has no <limit>",
+                    joint,
+                    hint="use type 'continuous' for a joint that turns without limits" if kind == "revolute" else None,
+                )
+            return None
+        effort, velocity = self.number(element, "effort"), self.number(element, "velocity")
+        lower, upper = self.number(element, "lower", 0.0), self.number(element, "upper", 0.0)
+        if effort is None or velocity is None or lower is None or upper is None:
+            return None
+        for attribute, value in (("effort", effort), ("velocity", velocity)):
+            if value < 0.0:
+                self.report(
+                    "urdf-negative-limit", f"'{attribute}' of joint '{name}' is negative", element, attribute
+                )
+        if ranged and lower > upper:
+            self.report(
+                "urdf-reversed-limits",
+                f"joint '{name}' has its lower limit {lower:g} above its upper limit {upper:g}",
+                element,
+                "lower",
+                "swap them",
+            )
+        return Limit(lower, upper, velocity, effort)
+
+    def dynamics(self, element: Element) -> tuple[float, float]:
+        values = []
+        for attribute in ("damping", "friction"):
+            value = self.number(element, attribute, 0.0) or 0.0
+            if value < 0.0:
+                self.report("urdf-negative-limit", f"'{attribute}' of <dynamics> is negative", element, attribute)
+            values.append(value)
+        return values[0], values[1]
+
+    def mimic(self, element: Element) -> Mimic | None:
+        joint = self.name(element, "joint")
+        multiplier, offset = self.number(element, "multiplier", 1.0), self.number(element, "offset", 0.0)
+        if joint is None or multiplier is None or offset is None:
+            return None
+        return Mimic(joint, multiplier, offset)
+
+    def no_range(self, joints: list[UrdfJoint]) -> None:
+        """EU-URD-025: a joint that is to move has a range; URDF reads left-out limits as zero."""
+        stuck = [
+            joint
+            for joint in joints
+            if joint.type in (JointType.REVOLUTE, JointType.PRISMATIC)
+            and joint.limit is not None
+            and joint.limit.lower == joint.limit.upper == 0.0
+        ]
+        if stuck:
+            names = ", ".join(f"'{joint.name}'" for joint in stuck[:3]) + (", ..." if len(stuck) > 3 else "")
+            count = "1 joint has" if len(stuck) == 1 else f"{len(stuck)} joints have"
+            self.report(
+                "urdf-no-range",
+                f"{count} the range 0 to 0: {names}",
+                stuck[0].element.find("limit"),  # type: ignore[arg-type]
+                hint="write 'lower' and 'upper', or make it 'continuous'",
+            )
+
+    # -- the tree -------------------------------------------------------------------------------------------------
+
+    def tree(self, name: str, links: list[UrdfLink], joints: list[UrdfJoint]) -> Urdf | None:
+        """EU-URD-009, -010, -014 to -018: unique names, known links, and exactly one tree."""
+        before = len(self.diagnostics.errors)
+        link_by_name: dict[str, UrdfLink] = {}
+        for link in links:
+            if link.name in link_by_name:
+                self.report("urdf-duplicate-link", f"there is a second link '{link.name}'", link.element, "name")
+            link_by_name[link.name] = link
+        joint_by_name: dict[str, UrdfJoint] = {}
+        for joint in joints:
+            if joint.name in joint_by_name:
+                self.report("urdf-duplicate-joint", f"there is a second joint '{joint.name}'", joint.element, "name")
+            joint_by_name[joint.name] = joint
+        if not links:
+            self.report("urdf-no-link", f"robot '{name}' has no link", self.document.root)
+        for joint in joints:
+            for tag, link_name in (("parent", joint.parent), ("child", joint.child)):
+                if link_name not in link_by_name:
+                    self.report(
+                        "urdf-unknown-link",
+                        f"joint '{joint.name}' names the {tag} link '{link_name}', which does not exist",
+                        joint.element.find(tag),  # type: ignore[arg-type]
+                        "link",
+                        did_you_mean(link_name, link_by_name),
+                    )
+        if len(self.diagnostics.errors) > before:
+            return None
+        self.mimics(joint_by_name)
+        parent_joint: dict[str, UrdfJoint] = {}
+        children: dict[str, list[UrdfJoint]] = {}
+        for joint in joints:
+            if joint.child in parent_joint:
+                self.report(
+                    "urdf-two-parents",
+                    f"link '{joint.child}' is the child of two joints, '{parent_joint[joint.child].name}' and '{joint.name}'",
+                    joint.element.find("child"),  # type: ignore[arg-type]
+                    "link",
+                    "keep one of the joints, and state the other under 'closures' in the YAML file",
+                )
+            parent_joint[joint.child] = joint
+            children.setdefault(joint.parent, []).append(joint)
+        if len(self.diagnostics.errors) > before:
+            return None
+        roots = [link for link in links if link.name not in parent_joint]
+        ordered = {link: tuple(sorted(of, key=lambda joint: joint.name)) for link, of in children.items()}
+        urdf = Urdf(self.document, name, link_by_name, joint_by_name, roots[0].name if roots else "", ordered)
+        if not self.acyclic(links, roots, urdf, parent_joint):
+            return None
+        if len(roots) > 1:
+            names = ", ".join(f"'{link.name}'" for link in roots[:5]) + (", ..." if len(roots) > 5 else "")
+            self.report(
+                "urdf-two-roots",
+                f"{len(roots)} links have no parent: {names}; a robot has one root",
+                roots[1].element,
+                "name",
+                "join them by a joint",
+            )
+            return None
+        return urdf
+
+    def acyclic(
+        self, links: list[UrdfLink], roots: list[UrdfLink], urdf: Urdf, parent_joint: Mapping[str, UrdfJoint]
+    ) -> bool:
+        """EU-URD-017: no joints form a cycle; every link hangs from a root."""
+        reached = {link.name for link in roots}
+        stack = list(reached)
+        while stack:
+            for joint in urdf.children.get(stack.pop(), ()):
+                reached.add(joint.child)
+                stack.append(joint.child)
+        for link in links:
+            if link.name in reached:
+                continue
+            # Walking up from a link that no root reaches must enter a cycle.
+            seen: dict[str, int] = {}
+            path: list[str] = []
+            name = link.name
+            while name not in seen:
+                seen[name] = len(path)
+                path.append(name)
+                name = parent_joint[name].parent
+            cycle = list(reversed(path[seen[name] :]))
+            shown = cycle if len(cycle) <= 6 else [*cycle[:5], "..."]
+            self.report(
+                "urdf-cycle",
+                "links form a cycle: " + " -> ".join(f"'{part}'" for part in [*shown, cycle[0]]),
+                parent_joint[cycle[0]].element,
+                hint="take one joint out of the cycle, and state it under 'closures' in the YAML file",
+            )
+            return False
+        return True
+
+    def mimics(self, joints: Mapping[str, UrdfJoint]) -> None:
+        """EU-URD-021 to -023: a mimic follows another joint of one coordinate, and not itself round a cycle."""
+        single = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
+        following = [joint for joint in joints.values() if joint.mimic]
+        done: set[str] = set()
+        for joint in following:
+            assert joint.mimic is not None
+            element: Element = joint.element.find("mimic")  # type: ignore[assignment]
+            target = joints.get(joint.mimic.joint)
+            if target is None:
+                self.report(
+                    "urdf-mimic-unknown",
+                    f"joint '{joint.name}' mimics '{joint.mimic.joint}', which is no joint",
+                    element,
+                    "joint",
+                    did_you_mean(joint.mimic.joint, joints),
+                )
+                continue
+            for role, other in (("mimics another", joint), ("is mimicked", target)):
+                if other.type not in single:
+                    self.report(
+                        "urdf-mimic-kind",
+                        f"joint '{other.name}' {role}, but is {other.type}: only joints of one coordinate can",
+                        element,
+                        "joint",
+                    )
+            trail = [joint.name]
+            at = target
+            while at is not None and at.name not in trail and at.name not in done:
+                trail.append(at.name)
+                at = joints.get(at.mimic.joint) if at.mimic else None  # type: ignore[assignment]
+            if at is not None and at.name in trail:
+                self.report(
+                    "urdf-mimic-cycle",
+                    "joints mimic one another in a cycle: " + " -> ".join(f"'{name}'" for name in [*trail, at.name]),
+                    element,
+                    "joint",
+                )
+            done.update(trail)

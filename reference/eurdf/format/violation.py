@@ -1,0 +1,266 @@
+"""What a model finds wrong in a file, said in codes, places and plain sentences."""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from eurdf.diagnostics import Diagnostic, did_you_mean
+from eurdf.format.extension import Pointer
+from eurdf.format.version2 import EXCLUDED, FROM_VERSION1, JOINT_TYPES, KEYS, TAGS
+
+if TYPE_CHECKING:
+    from pydantic import ValidationError
+    from pydantic_core import ErrorDetails
+
+    from eurdf.reading.yaml_reader import YamlDocument
+
+#: So many faults of one file are told; a file with more is no description at all.
+MOST = 100
+
+_EXPECTED = {
+    "string_type": "text",
+    "float_type": "a number",
+    "list_type": "a list",
+    "dict_type": "a mapping",
+    "model_type": "a mapping",
+}
+
+#: Lengths of pairs and vectors, which must be met exactly; other lists may have from 1 to 6 or 7 items.
+_EXACT_LENGTHS = (2, 3)
+
+#: Only the user's own keys have a pattern; the values that have one are told apart by it beforehand.
+_UNKNOWN_KEY = "string_pattern_mismatch"
+
+#: What to write in place of a joint type that is none of the file's.
+_JOINT_TYPE_HINTS = {
+    "universal": "a universal joint needs its axes: {type: universal, axes: xy}",
+    "helical": "a helical joint needs its pitch: {type: helical, pitch: 0.005}",
+    **dict.fromkeys(
+        ("revolute", "continuous", "prismatic", "planar", "floating"),
+        "a joint that is not given a type keeps the one of the URDF",
+    ),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class _Violation:
+    """One error of pydantic's.
+
+    Attributes:
+        type: Pydantic's name of the error, or the code of ours that a model raised.
+        message: What pydantic or a model says.
+        context: Numbers and names that the message is made of.
+        value: What stands there.
+        pointer: Where that is.
+        mapping: Last field or tag on the way to the mapping or list that holds it: the key of `KEYS`.
+    """
+
+    type: str
+    message: str
+    context: Mapping[str, Any]
+    value: Any
+    pointer: Pointer
+    mapping: str
+
+
+def violations(error: ValidationError, document: YamlDocument) -> list[Diagnostic]:
+    """The faults that a model found in a file, in file order, each told once.
+
+    Args:
+        error: What pydantic raised.
+        document: The file that was read.
+    """
+    details = error.errors(include_url=False)
+    found = [_located(detail, document.data) for detail in details[:MOST]]
+    lacking: dict[Pointer, list[str]] = {}
+    for violation in found:
+        if violation.type == "missing":
+            lacking.setdefault(violation.pointer[:-1], []).extend(_alternatives(violation.pointer[-1]))
+    meant: dict[Pointer, str] = {}  # for an unknown key, the required key that it misspells
+    for violation in found:
+        if violation.type == _UNKNOWN_KEY:
+            near = nearest_key(str(violation.pointer[-1]), lacking.get(violation.pointer[:-1], ()))
+            if near is not None:
+                meant[violation.pointer] = near
+    misspelt = {(*pointer[:-1], key) for pointer, key in meant.items()}
+    diagnostics = [
+        _diagnostic(violation, meant.get(violation.pointer), document)
+        for violation in found
+        if violation.type != "missing"
+        or misspelt.isdisjoint((*violation.pointer[:-1], key) for key in _alternatives(violation.pointer[-1]))
+    ]
+    diagnostics.sort(key=lambda diagnostic: (diagnostic.line or 0, diagnostic.column or 0))
+    if len(details) > MOST:
+        last = diagnostics.pop()
+        more = f"{len(details) - MOST:,} more faults of the file are not listed"
+        diagnostics.append(
+            Diagnostic(last.code, last.message, last.place, f"{last.hint}; {more}" if last.hint else more)
+        )
+    return diagnostics
+
+
+def subject(pointer: Pointer) -> str:
+    """How a sentence names the value at a pointer."""
+    if not pointer:
+        return "the file"
+    if isinstance(pointer[-1], int):
+        return f"item {pointer[-1] + 1} of {subject(pointer[:-1])}"
+    noun = {("joints",): "joint ", ("configurations",): "configuration "}.get(pointer[:-1], "")  # type: ignore[arg-type]
+    return f"{noun}'{pointer[-1]}'"
+
+
+def described(value: Any) -> str:
+    """What a value is, as a sentence says it."""
+    if value is None:
+        return "null"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return f"'{value}'" if len(value) <= 60 and value.isprintable() else "another text"
+    if isinstance(value, int | float):
+        return repr(value) if abs(value) < 1e15 else f"{value:g}"
+    if isinstance(value, list):
+        return "a list of names" if value and all(isinstance(item, str) for item in value) else "a list"
+    return "a mapping"
+
+
+def _located(detail: ErrorDetails, data: Any) -> _Violation:
+    """The error with its place, for which the tags are taken out of pydantic's location."""
+    pointer: list[str | int] = []
+    mapping = last = ""
+    for step in detail["loc"]:
+        reachable = isinstance(step, int) if isinstance(data, list) else isinstance(data, dict) and step in data
+        if reachable:
+            data = data[step]
+        elif step in TAGS:
+            last = str(step)
+            continue
+        elif step == "[key]":
+            continue
+        else:
+            data = None
+        pointer.append(step)
+        mapping = last
+        if isinstance(step, str):
+            last = step
+    return _Violation(detail["type"], detail["msg"], detail.get("ctx", {}), detail["input"], tuple(pointer), mapping)
+
+
+def nearest_key(key: str, keys: Iterable[str], likeness: float = 0.6) -> str | None:
+    """The key that another is most like, but for case and the kind of dash, or None if it is like none.
+
+    Args:
+        key: A key that is not known.
+        keys: The known ones, in lower case and with underscores.
+        likeness: How alike they must be, as difflib's ratio: 1 for equal.
+    """
+    folded = key.casefold().replace("-", "_").replace(" ", "_")
+    return next(iter(difflib.get_close_matches(folded, list(keys), n=1, cutoff=likeness)), None)
+
+
+def _alternatives(key: str | int) -> tuple[str, ...]:
+    """The keys of which one is required, where a required key is missing."""
+    return ("link", "joint") if key == "link" else (str(key),)
+
+
+def _diagnostic(violation: _Violation, meant: str | None, document: YamlDocument) -> Diagnostic:
+    """The diagnostic of one violation.
+
+    Args:
+        violation: What is wrong.
+        meant: The required key that an unknown one misspells, or None.
+        document: The file that was read.
+    """
+    pointer, value, context = violation.pointer, violation.value, violation.context
+    name, place = subject(pointer), document.place(pointer)
+    match violation.type:
+        case "missing":
+            keys = " or ".join(f"'{key}'" for key in _alternatives(pointer[-1]))
+            return Diagnostic("missing-key", f"{subject(pointer[:-1])} lacks {keys}", document.place(pointer[:-1]))
+        case violation_type if violation_type == _UNKNOWN_KEY:
+            return _unknown_key(violation, meant, document)
+        case "string_too_short" if pointer[-1] == "":
+            message = f"a name in {subject(pointer[:-1])} is empty"
+            return Diagnostic("wrong-value", message, document.place(pointer, key=True))
+        case "string_too_short":
+            return Diagnostic("wrong-value", f"{name} is empty", place)
+        case "too_short" | "too_long":
+            least, most = context.get("min_length"), context.get("max_length")
+            bound = f"at least {least}" if most is None else f"at most {most}"
+            if (least or most) in _EXACT_LENGTHS:
+                bound = str(least or most)
+            items = "item" if bound.endswith(" 1") else "items"
+            message = f"{name} must have {bound} {items}, not {context['actual_length']}"
+            return Diagnostic("wrong-length", message, place)
+        case "greater_than_equal":
+            message = f"{name} must be at least {context['ge']:g}, not {described(value)}"
+            return Diagnostic("out-of-range", message, place)
+        case "finite_number":
+            return Diagnostic("out-of-range", f"{name} must be a finite number", place)
+        case "literal_error":
+            return _wrong_choice(pointer, value, re.findall(r"'([^']*)'", context["expected"]), document)
+        case "wrong-type" if isinstance(value, dict) and pointer[:-1] == ("joints",):
+            return _wrong_choice((*pointer, "type"), value["type"], JOINT_TYPES, document)
+        case "missing-key" if "present" in context:
+            present = document.place((*pointer, context["present"]), key=True)
+            return Diagnostic("missing-key", f"{name} {violation.message}", present)
+        case "missing-key" | "wrong-value" | "out-of-range" as code:
+            return Diagnostic(code, f"{name} {violation.message}", place)
+        case "wrong-type":
+            must = violation.message
+        case _:
+            must = f"must be {_EXPECTED[violation.type]}"
+    return Diagnostic("wrong-type", f"{name} {must}, not {described(value)}", place, _type_hint(must, pointer, value))
+
+
+def _wrong_choice(pointer: Pointer, value: Any, allowed: Sequence[str], document: YamlDocument) -> Diagnostic:
+    """The diagnostic of a value that is none of those allowed."""
+    *others, last = (f"'{choice}'" for choice in allowed)
+    choices = f"{', '.join(others)} or {last}" if others else last
+    message = f"{subject(pointer)} must be {choices}, not {described(value)}"
+    if not isinstance(value, str):
+        return Diagnostic("wrong-type", message, document.place(pointer))
+    hint = _JOINT_TYPE_HINTS.get(value) if pointer[0] == "joints" else None
+    return Diagnostic("wrong-value", message, document.place(pointer), hint or did_you_mean(value, allowed))
+
+
+def _unknown_key(violation: _Violation, meant: str | None, document: YamlDocument) -> Diagnostic:
+    """The diagnostic of a key that the mapping does not have, or that does not go with its others."""
+    mapping, key = violation.pointer[:-1], str(violation.pointer[-1])
+    place = document.place(violation.pointer, key=True)
+    excluded = EXCLUDED.get(violation.mapping, {})
+    if key in excluded:
+        return Diagnostic("conflicting-keys", f"{subject(mapping)}: {excluded[key]}", place)
+    keys = KEYS[violation.mapping]
+    near = meant or nearest_key(key, (*keys, *excluded))
+    if not mapping and key in FROM_VERSION1:
+        hint = f"it is a key of version 1; version 2.0 says it under '{FROM_VERSION1[key]}'"
+    elif near is not None:
+        hint = f"did you mean '{near}'?"
+    else:
+        known = ", ".join(f"'{known}'" for known in keys)
+        hint = f"the keys here are {known}; a key of your own begins with 'x-'"
+    return Diagnostic("unknown-key", f"{subject(mapping)} has an unknown key '{key}'", place, hint)
+
+
+def _type_hint(must: str, pointer: Pointer, value: Any) -> str | None:
+    """How to write what is meant, where that can be guessed."""
+    if value is None:
+        return None if isinstance(pointer[-1], int) else "leave the key out where there is nothing to say"
+    if ("text" in must or "name" in must) and isinstance(value, bool | int | float):
+        return "a name that looks like a number, true or false is put in quotes"
+    if must == "must be a list" and isinstance(value, str | int | float):
+        return f"write it as a list: [{value}]"
+    if "number" in must and isinstance(value, str):
+        try:
+            number = float(value.replace("_", "").replace(",", "."))
+        except ValueError:
+            return None
+        if math.isfinite(number):
+            return f"write the number as {number!r}, without quotes"
+    return None

@@ -1,0 +1,131 @@
+"""Plain values as YAML text that reads well, and reads back as the same values by the rules of YAML 1.2 and of 1.1."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from eurdf.reading.core_schema import resolve
+
+Value = str | int | float | bool | Sequence["Value"] | Mapping[str, "Value"] | None
+
+#: Columns that a list or mapping may take to stand on one line.
+WIDTH = 100
+
+#: Characters that a key may have to stand before its colon without a question mark; YAML sets 1024.
+_LONGEST_KEY = 1000
+
+# Nothing in it means anything to YAML, neither in a block nor between brackets.
+_SAFE = re.compile(r"[\w./](?:[\w./+ -]*[\w./+-])?")
+
+# Plain text by the core schema, that older readers take for a truth value or a number.
+_YAML_1_1_BOOL = frozenset({"y", "n", "yes", "no", "on", "off"})
+_YAML_1_1_NUMBER = re.compile(r"[-+.\d][\d_.eE+-]*|0[xob][\da-fA-F_]*|[-+]?\.(?:inf|nan)", re.IGNORECASE)
+
+_ESCAPES = {'"': '\\"', "\\": "\\\\", "\n": "\\n", "\r": "\\r", "\t": "\\t"}
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """An entry of a mapping or a list, with the comments that go with it.
+
+    Attributes:
+        lines: Its text, without what indents it.
+        above: Comments that stand on lines of their own before it, each from its ``#`` on.
+        beside: Comment at the end of its first line, or empty.
+    """
+
+    lines: tuple[str, ...]
+    above: tuple[str, ...] = ()
+    beside: str = ""
+
+    def text(self, indent: str = "") -> Iterator[str]:
+        """Its lines."""
+        first, *rest = self.lines
+        yield from (indent + comment for comment in self.above)
+        yield indent + first + (f"  {self.beside}" if self.beside else "")
+        yield from (indent + line for line in rest)
+
+
+def scalar(value: str | float | bool | None) -> str:
+    """A text, number, truth value or null, quoted where it must be."""
+    if isinstance(value, str):
+        return value if _is_plain(value) else _quoted(value)
+    if value is None:
+        return "null"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return repr(value)
+
+
+def flow(value: Value) -> str:
+    """Any value on one line."""
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{_flow_key(key)}: {flow(inner)}" for key, inner in value.items()) + "}"
+    if isinstance(value, str | int | float) or value is None:
+        return scalar(value)
+    return "[" + ", ".join(map(flow, value)) + "]"
+
+
+def lines_of(key: str, value: Value) -> tuple[str, ...]:
+    """The lines of an entry of a mapping: one where the value fits on it, else a block."""
+    name = scalar(key)
+    head = f"{name}:" if len(name) <= _LONGEST_KEY else f"? {name}\n:"
+    return _lines(head, value)
+
+
+def lines_of_item(value: Value) -> tuple[str, ...]:
+    """The lines of an item of a list."""
+    return _lines("-", value)
+
+
+def text_of(entries: Iterable[Entry]) -> str:
+    """The text of a file."""
+    return "".join(f"{line}\n" for entry in entries for line in entry.text())
+
+
+def _lines(head: str, value: Value) -> tuple[str, ...]:
+    one = f"{head} {flow(value)}"
+    block: tuple[str, ...] | None = None
+    if len(one) > WIDTH and value and not isinstance(value, str | int | float):
+        if isinstance(value, Mapping):
+            block = tuple(line for key, inner in value.items() for line in lines_of(key, inner))
+        else:
+            block = tuple(line for inner in value for line in lines_of_item(inner))
+    if block is None:
+        return tuple(one.split("\n"))
+    if head == "-":
+        first, *rest = block
+        return (f"- {first}", *(f"  {line}" for line in rest))
+    return (*head.split("\n"), *(f"  {line}" for line in block))
+
+
+def _flow_key(key: str) -> str:
+    name = scalar(key)
+    return name if len(name) <= _LONGEST_KEY else f"? {name} "
+
+
+def _is_plain(text: str) -> bool:
+    return (
+        _SAFE.fullmatch(text) is not None
+        and isinstance(resolve(text), str)
+        and text.lower() not in _YAML_1_1_BOOL
+        and _YAML_1_1_NUMBER.fullmatch(text) is None
+    )
+
+
+def _quoted(text: str) -> str:
+    return '"' + "".join(map(_escaped, text)) + '"'
+
+
+def _escaped(character: str) -> str:
+    if character in _ESCAPES:
+        return _ESCAPES[character]
+    # A byte order mark is printable to YAML, but not to a person.
+    if character.isprintable():
+        return character
+    code = ord(character)
+    return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
+
+

@@ -1,0 +1,166 @@
+"""The residual of the closures, r(q), and its derivative, the constraint Jacobian K(q).
+
+A 6d closure has the six rows log6(ᴬM_B), (linear, angular), and a 3d closure has the three of the origin of B in A.
+K is the exact derivative, K v = d/dt r(q ⊕ t v) at t = 0, at every configuration, closed or not.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pinocchio as pin
+
+from eurdf.kinematics.array import Matrix, Vector
+from eurdf.kinematics.loop import Loop, find_loops
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+
+def residual(robot: Robot, q: Vector, data: Any = None) -> Vector:
+    """Residual of all closures, stacked in their order.
+
+    Args:
+        robot: The robot.
+        q: Configuration (nq,).
+        data: A `pin.Data` of the model to compute in. Without one, forward kinematics runs along the loops alone, in
+            time and memory linear in their length: slower for small robots, but a `pin.Data` holds some 8 nv³ numbers.
+
+    Returns:
+        r (nc,): m and rad.
+    """
+    loops = find_loops(robot)
+    placements = _placements(robot.model, q, loops, data)
+    r = np.empty(loops[-1].rows.stop if loops else 0)
+    for loop, constraint in zip(loops, robot.constraint_models, strict=True):
+        aMb = _frame_a(placements, loop, constraint).actInv(_frame_b(placements, loop, constraint))
+        r[loop.rows] = pin.log6(aMb).vector if loop.spatial else aMb.translation
+    return r
+
+
+def residual_and_jacobian(robot: Robot, q: Vector, data: Any = None) -> tuple[Vector, Matrix]:
+    """Residual of all closures and its derivative.
+
+    With J_A and J_B the world Jacobians of the bodies of A and B, the 6d rows of K are
+    Jlog6(ᴬM_B) · Ad(ᴮM_0) · (J_B - J_A), and the 3d rows are [1, -skew(ᴬp_B)] · Ad(ᴬM_0) · (J_B - J_A).
+
+    Args:
+        robot: The robot.
+        q: Configuration (nq,).
+        data: A `pin.Data` of the model to compute in, or None: see `residual`.
+
+    Returns:
+        r (nc,), and K (nc, nv), in m and rad over the units of v.
+    """
+    loops = find_loops(robot)
+    if data is None:
+        placements, J = _jacobian_along(robot.model, q, loops)
+    else:
+        J = pin.computeJointJacobians(robot.model, data, q)
+        placements = data.oMi
+    nc = loops[-1].rows.stop if loops else 0
+    r, K = np.empty(nc), np.zeros((nc, robot.model.nv))
+    for loop, constraint in zip(loops, robot.constraint_models, strict=True):
+        oMa, oMb = _frame_a(placements, loop, constraint), _frame_b(placements, loop, constraint)
+        aMb = oMa.actInv(oMb)
+        if loop.spatial:
+            r[loop.rows] = pin.log6(aMb).vector
+            projection = pin.Jlog6(aMb) @ oMb.toActionMatrixInverse()
+        else:
+            r[loop.rows] = aMb.translation
+            to_a = oMa.toActionMatrixInverse()
+            projection = to_a[:3] - pin.skew(aMb.translation) @ to_a[3:]
+        block = projection @ (J[:, loop.columns] * loop.signs)
+        if loop.mimics:
+            np.add.at(K[loop.rows].T, loop.velocities, block.T)
+        else:
+            K[loop.rows, loop.velocities] = block
+    return r, K
+
+
+@dataclass(frozen=True, slots=True)
+class Opening:
+    """How far a closure is open.
+
+    Attributes:
+        name: Name of the closure.
+        position: Distance between the origins of A and B, m.
+        angle: Angle between A and B, rad; 0 for a 3d closure, which leaves it free.
+    """
+
+    name: str
+    position: float
+    angle: float
+
+
+def closure_openings(robot: Robot, q: Vector, data: Any = None) -> tuple[Opening, ...]:
+    """How far each closure is open, in their order.
+
+    Args:
+        robot: The robot.
+        q: Configuration (nq,).
+        data: A `pin.Data` of the model to compute in, or None: see `residual`.
+    """
+    loops = find_loops(robot)
+    placements = _placements(robot.model, q, loops, data)
+    openings = []
+    for loop, constraint in zip(loops, robot.constraint_models, strict=True):
+        aMb = _frame_a(placements, loop, constraint).actInv(_frame_b(placements, loop, constraint))
+        angle = math.hypot(*pin.log3(aMb.rotation)) if loop.spatial else 0.0
+        openings.append(Opening(constraint.name, math.hypot(*aMb.translation), angle))
+    return tuple(openings)
+
+
+def _frame_a(placements: Any, loop: Loop, constraint: Any) -> Any:
+    return placements[loop.joint_a] * constraint.joint1_placement
+
+
+def _frame_b(placements: Any, loop: Loop, constraint: Any) -> Any:
+    return placements[loop.joint_b] * constraint.joint2_placement
+
+
+def _placements(model: Any, q: Vector, loops: tuple[Loop, ...], data: Any) -> Any:
+    """World placements, by joint, of the joints that carry the frames."""
+    if data is None:
+        return {joint: placement for joint, placement, _ in _kinematics_along(model, q, loops)}
+    pin.forwardKinematics(model, data, q)
+    return data.oMi
+
+
+def _jacobian_along(model: Any, q: Vector, loops: tuple[Loop, ...]) -> tuple[dict[int, Any], Matrix]:
+    """World placements by joint, and the world Jacobian (6, nvExtended), zero but in the columns of the loops."""
+    placements, J = {}, np.zeros((6, model.nvExtended))
+    first_column, width = model.idx_vExtendeds, model.nvExtendeds
+    for joint, placement, joint_data in _kinematics_along(model, q, loops):
+        placements[joint] = placement
+        if joint_data is not None:
+            columns = slice(first_column[joint], first_column[joint] + width[joint])
+            J[:, columns] = placement.toActionMatrix() @ joint_data.S.reshape(6, -1)
+    return placements, J
+
+
+def _kinematics_along(model: Any, q: Vector, loops: tuple[Loop, ...]) -> Iterator[tuple[int, Any, Any]]:
+    """Index, world placement and `pin.JointData` of the joints of the loops and of all their ancestors.
+
+    The first is the universe, without joint data.
+    """
+    parents = list(model.parents)
+    needed = {0}
+    for loop in loops:
+        for joint in (loop.joint_a, loop.joint_b):
+            while joint not in needed:
+                needed.add(joint)
+                joint = parents[joint]
+    placements = {0: pin.SE3.Identity()}
+    yield 0, placements[0], None
+    joints, joint_placements = model.joints, model.jointPlacements
+    for joint in sorted(needed - {0}):  # a parent has a lower index than its child
+        joint_model = joints[joint]
+        joint_data = joint_model.createData()
+        joint_model.calc(joint_data, q)
+        placements[joint] = placements[parents[joint]] * joint_placements[joint] * joint_data.M
+        yield joint, placements[joint], joint_data

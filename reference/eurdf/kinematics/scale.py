@@ -1,0 +1,50 @@
+"""What brings lengths and angles to one scale."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pinocchio as pin
+
+from eurdf.kinematics.array import Vector
+from eurdf.kinematics.loop import find_loops
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+
+def characteristic_length(robot: Robot) -> float:
+    """Reach of the robot's longest loop: half of what its bodies measure from joint to joint around it, m.
+
+    1 m for loops without extent, such as a spherical linkage whose joints all stand in one point.
+    """
+    longest = 0.0
+    for loop, constraint in zip(find_loops(robot), robot.constraint_models, strict=True):
+        placements = [constraint.joint1_placement, constraint.joint2_placement]
+        placements += [robot.model.jointPlacements[joint] for joint in loop.joints]
+        longest = max(longest, sum(math.hypot(*placement.translation) for placement in placements))
+    return longest / 2.0 if longest > 1e-9 else 1.0
+
+
+def row_scale(robot: Robot, length: float) -> Vector:
+    """Factors (nc,) that make the rows of the residual free of unit: 1/length for those in m, 1 for those in rad."""
+    scales = [(1.0 / length,) * 3 + (1.0,) * (3 if loop.spatial else 0) for loop in find_loops(robot)]
+    return np.array([factor for row in scales for factor in row])
+
+
+def velocity_scale(robot: Robot, length: float) -> Vector:
+    """Unit (nv,) of each velocity of the loops: length for one that only translates (m/s), 1 for the others (rad/s)."""
+    model = robot.model
+    scale, neutral = np.ones(model.nv), pin.neutral(model)
+    moving = {velocity for loop in find_loops(robot) for velocity in loop.velocities.tolist()}
+    for joint, (first, width) in enumerate(zip(model.idx_vs, model.nvs, strict=True)):
+        if width == 0 or first not in moving:
+            continue
+        joint_model = model.joints[joint]
+        joint_data = joint_model.createData()
+        joint_model.calc(joint_data, neutral)
+        translates = ~joint_data.S.reshape(6, -1)[3:].any(axis=0)
+        scale[first : first + width][translates] = length
+    return scale

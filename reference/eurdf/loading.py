@@ -1,0 +1,71 @@
+"""`eurdf.load`: a robot ready for Pinocchio, or the reasons why it cannot be built without guessing."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+
+from eurdf.checking import assembled_diagnostics, closure_diagnostics
+from eurdf.description import describe, missing_meshes
+from eurdf.exceptions import InvalidRobot
+from eurdf.mechanism.mechanism import Root
+from eurdf.pinocchio.robot import Robot, build_robot
+
+
+def load(
+    path: str | os.PathLike[str],
+    urdf: str | os.PathLike[str] | None = None,
+    root: Root | None = None,
+    geometry: bool = True,
+    *,
+    mimic: bool = True,
+    strict: bool = False,
+    package_dirs: Sequence[str | os.PathLike[str]] = (),
+) -> Robot:
+    """Load a robot.
+
+    Errors that leave something to guess are refused. Unphysical inertias and loops that cannot close are not: real
+    files have them, and their kinematics are still of use; they are in ``robot.diagnostics``.
+
+    Args:
+        path: A folder, a YAML file, a bare URDF, or the name of a robot of the collection.
+        urdf: A URDF in place of the one that the description names (``robot.urdf`` beside it by default).
+        root: ``fixed`` or ``floating``, in place of what the description says (fixed by default).
+        geometry: Whether to load the visual and collision geometry, meshes too.
+        mimic: Whether joints that mimic follow, as Pinocchio's own with ``mimic=True``; else they are free.
+        strict: Whether to refuse errors of the inertia and closure phases too.
+        package_dirs: Folders to look for the packages of meshes in, before ``ROS_PACKAGE_PATH``.
+
+    Returns:
+        The robot: its Pinocchio model, its constraint models in file order, its actuation, its geometry.
+
+    Raises:
+        RobotNotFound: There are no such files.
+        InvalidRobot: The robot cannot be built without guessing, or `geometry` is asked for and a mesh is missing.
+    """
+    if root not in (None, "fixed", "floating"):
+        raise ValueError(f"root is {root!r}; it must be 'fixed' or 'floating'")
+    description = describe(path, urdf, root)
+    diagnostics = description.diagnostics
+    if diagnostics.refused or description.mechanism is None:
+        raise InvalidRobot(description.path, tuple(diagnostics))
+    meshes: dict[str, str] = {}
+    if geometry:
+        meshes, missing = missing_meshes(description, package_dirs)
+        if len(missing):
+            reason = f"the geometry of {description.path} cannot be built; load it with geometry=False to do without"
+            raise InvalidRobot(description.path, tuple(missing), reason)
+    robot = build_robot(description.mechanism, geometry=geometry, mimic=mimic, resolve=meshes.get)
+    if "assembled" in description.mechanism.configurations:
+        for found in assembled_diagnostics(description, robot):
+            diagnostics.add(found)
+        robot.diagnostics = tuple(diagnostics)
+    else:
+        # Whether loops can close at all takes a solver: it runs when somebody asks.
+        found_so_far = tuple(diagnostics)
+        robot.defer_diagnostics(lambda: (*found_so_far, *closure_diagnostics(description, robot)))
+    if strict:
+        errors = [found for found in robot.diagnostics if found.severity == "error"]
+        if errors:
+            raise InvalidRobot(description.path, robot.diagnostics)
+    return robot

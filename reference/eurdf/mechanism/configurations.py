@@ -1,0 +1,120 @@
+"""Named configurations: known joints, the right number of coordinates, unit quaternions, within limits."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable, Mapping
+
+from eurdf.diagnostics import Diagnostics, did_you_mean
+from eurdf.format.extension import ConfigurationEntry, Pointer
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mechanism import Joint
+from eurdf.reading.yaml_reader import YamlDocument
+
+#: A quaternion in a file may be off unit length by this much; it is normalised when read (EU-CFG-003).
+QUATERNION_TOLERANCE = 1e-6
+
+#: A coordinate may be beyond its limit by this much, in rad or m (EU-CFG-004).
+LIMIT_TOLERANCE = 1e-9
+
+
+def link_configurations(
+    entries: Iterable[ConfigurationEntry],
+    joints: Mapping[str, Joint],
+    skip: Collection[str],
+    document: YamlDocument,
+    diagnostics: Diagnostics,
+) -> dict[str, dict[str, tuple[float, ...]]]:
+    """Check every configuration against the joints of the mechanism; quaternions come back with unit length.
+
+    Args:
+        entries: As written.
+        joints: Joints of the mechanism.
+        skip: Joints that are not looked at, since their own entry is at fault.
+        document: To point into.
+        diagnostics: Gets what is found.
+    """
+    configurations = {}
+    for entry in entries:
+        configuration = {}
+        for name, values in entry.joints.items():
+            if name in skip:
+                continue
+            pointer = (*entry.pointer, name)
+            joint = _joint(name, joints, pointer, entry, document, diagnostics)
+            if joint is not None:
+                checked = _coordinates(joint, values, pointer, entry, document, diagnostics)
+                if checked is not None:
+                    configuration[name] = checked
+        configurations[entry.name] = configuration
+    return configurations
+
+
+def _joint(
+    name: str,
+    joints: Mapping[str, Joint],
+    pointer: Pointer,
+    entry: ConfigurationEntry,
+    document: YamlDocument,
+    diagnostics: Diagnostics,
+) -> Joint | None:
+    """EU-CFG-001: a configuration speaks of joints that have coordinates of their own."""
+    joint = joints.get(name)
+    if joint is not None and joint.type is not JointType.FIXED and joint.mimic is None:
+        return joint
+    hint = None
+    if joint is None:
+        why = "is no joint of the robot"
+        hint = did_you_mean(
+            name, [other.name for other in joints.values() if other.type is not JointType.FIXED and not other.mimic]
+        )
+    elif joint.mimic is not None:
+        why = f"mimics '{joint.mimic.joint}' and has no coordinate of its own"
+    else:
+        why = "is fixed and has no coordinate"
+    diagnostics.report(
+        "configuration-joint", f"'{name}' in configuration '{entry.name}' {why}", document.place(pointer, True), hint
+    )
+    return None
+
+
+def _coordinates(
+    joint: Joint,
+    values: tuple[float, ...],
+    pointer: Pointer,
+    entry: ConfigurationEntry,
+    document: YamlDocument,
+    diagnostics: Diagnostics,
+) -> tuple[float, ...] | None:
+    coordinates = joint.coordinates
+    if len(values) != len(coordinates.names):
+        diagnostics.report(
+            "configuration-length",
+            f"{joint.type} joint '{joint.name}' has {len(values)} coordinates in configuration '{entry.name}'; "
+            f"it must have {len(coordinates.names)}: {', '.join(coordinates.names)}",
+            document.place(pointer),
+        )
+        return None
+    start = coordinates.quaternion
+    if start is not None:
+        norm = math.sqrt(sum(value * value for value in values[start : start + 4]))
+        if abs(norm - 1.0) > QUATERNION_TOLERANCE:
+            unit = [round(value / norm, 6) for value in values[start : start + 4]] if norm > 1e-9 else [0, 0, 0, 1]
+            diagnostics.report(
+                "configuration-quaternion",
+                f"the quaternion of joint '{joint.name}' in configuration '{entry.name}' has length {norm:.6g}, not 1",
+                document.place(pointer),
+                f"x, y, z, w of unit length: {unit}",
+            )
+            return None
+        return (*values[:start], *(value / norm for value in values[start : start + 4]))
+    for value, lower, upper, name in zip(values, joint.lower, joint.upper, coordinates.names, strict=True):
+        if not lower - LIMIT_TOLERANCE <= value <= upper + LIMIT_TOLERANCE:
+            diagnostics.report(
+                "configuration-limits",
+                f"{name} {value:g} of joint '{joint.name}' in configuration '{entry.name}' is outside its limits "
+                f"{lower:g} to {upper:g}",
+                document.place(pointer),
+            )
+            return None
+    return values

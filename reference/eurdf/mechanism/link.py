@@ -1,0 +1,133 @@
+"""From the two files to one mechanism: every name looked up, every rule that needs both files."""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+
+from eurdf.diagnostics import Diagnostics
+from eurdf.format.extension import Extension, FrameReference
+from eurdf.format.urdf import Urdf
+from eurdf.mechanism.actuators import link_actuators, with_motor
+from eurdf.mechanism.closures import link_closures
+from eurdf.mechanism.configurations import link_configurations
+from eurdf.mechanism.frame_names import FrameNames
+from eurdf.mechanism.mechanism import Frame, Joint, Mechanism, Root
+from eurdf.mechanism.replacement import Joints, replace_joints
+from eurdf.mechanism.spanning_tree import bodies_of, depth_first, joint_of, rigid_roots
+from eurdf.reading.yaml_reader import YamlDocument
+
+#: The joint that a floating root hangs from, in every model.
+ROOT_JOINT = "root_joint"
+
+
+def link(
+    urdf: Urdf,
+    extension: Extension | None,
+    document: YamlDocument | None,
+    diagnostics: Diagnostics,
+    root: Root | None = None,
+) -> Mechanism | None:
+    """Link a URDF and its description.
+
+    Args:
+        urdf: The URDF, sound by itself.
+        extension: The description; None for a bare URDF.
+        document: Where the description was read from; None with it.
+        diagnostics: Gets what is found.
+        root: In place of the root that the description states.
+
+    Returns:
+        The mechanism, or None where an error was found.
+    """
+    before = len(diagnostics.errors)
+    if extension is None or document is None:
+        mechanism = _bare(urdf, root or "fixed")
+    else:
+        mechanism = _described(urdf, extension, document, diagnostics, root or extension.root)
+    if mechanism.root == "floating":
+        _reserve_root_joint(urdf, diagnostics)
+    return None if len(diagnostics.errors) > before else mechanism
+
+
+def _bare(urdf: Urdf, root: Root) -> Mechanism:
+    bodies = bodies_of(urdf)
+    ordered = tuple(joint_of(joint) for joint in urdf.walk())
+    return Mechanism(
+        urdf.name, "", root, (bodies[urdf.root], *(bodies[joint.child] for joint in ordered)), ordered
+    )
+
+
+def _described(
+    urdf: Urdf, extension: Extension, document: YamlDocument, diagnostics: Diagnostics, root: Root
+) -> Mechanism:
+    joints = Joints({joint.name: joint_of(joint) for joint in urdf.joints.values()})
+    faulty = replace_joints(
+        joints,
+        extension.joints,
+        urdf,
+        _closure_links(extension, urdf),
+        document,
+        diagnostics,
+        merges_revolutes=extension.merges_revolutes,
+    )
+    names = FrameNames(urdf, joints.by_name, document, diagnostics)
+    frames = names.add(extension.frames)
+    rigid = rigid_roots(urdf.root, depth_first(urdf.root, joints.by_name.values()))
+    closures = link_closures(extension.closures, names, rigid, document, diagnostics)
+    # What is said of a joint whose own entry is at fault would only repeat that fault.
+    entries = [entry for entry in extension.actuators if entry.joint not in faulty]
+    actuators = link_actuators(entries, urdf, joints.by_name, joints.merged, joints.split, document, diagnostics)
+    configurations = link_configurations(extension.configurations, joints.by_name, faulty, document, diagnostics)
+    for entry in entries:
+        if entry.joint in actuators:
+            joints.by_name[entry.joint] = with_motor(
+                joints.by_name[entry.joint], entry, armature_given=entry.joint in joints.armature_given
+            )
+    ordered = depth_first(urdf.root, joints.by_name.values())
+    bodies = bodies_of(urdf) | {body.name: body for body in joints.bodies}
+    return Mechanism(
+        urdf.name,
+        extension.version,
+        root,
+        (bodies[urdf.root], *(bodies[joint.child] for joint in ordered)),
+        tuple(ordered),
+        (*frames, *_vanished(urdf, joints.by_name)),
+        closures,
+        actuators,
+        MappingProxyType({name: MappingProxyType(of) for name, of in configurations.items()}),
+        MappingProxyType(dict(extension.metadata)),
+        MappingProxyType(dict(extension.extensions)),
+    )
+
+
+def _vanished(urdf: Urdf, joints: dict[str, Joint]) -> tuple[Frame, ...]:
+    """EU-FRM-004: a joint of the URDF that the description split or renamed is still found by name, as a frame."""
+    return tuple(Frame(joint.name, joint.child, kind="joint") for joint in urdf.walk() if joint.name not in joints)
+
+
+def _closure_links(extension: Extension, urdf: Urdf) -> set[str]:
+    """Names of the links that the closures' frames are fixed to; names that mean nothing are left to `FrameNames`."""
+    references = {entry.name: entry.reference for entry in extension.frames}
+
+    def link_of(reference: FrameReference) -> str | None:
+        if reference.name in references and reference.name not in urdf.links:
+            reference = references[reference.name]
+        name = reference.link or reference.joint or reference.name
+        if name in urdf.links and not reference.joint:
+            return name
+        return urdf.joints[name].child if name in urdf.joints else None
+
+    sides = (link_of(side) for closure in extension.closures for side in (closure.a, closure.b))
+    return {side for side in sides if side is not None}
+
+
+def _reserve_root_joint(urdf: Urdf, diagnostics: Diagnostics) -> None:
+    """EU-URD-011: the joint that a floating root hangs from has a name that no other joint or link has."""
+    for kind, item in (("joint", urdf.joints.get(ROOT_JOINT)), ("link", urdf.links.get(ROOT_JOINT))):
+        if item is not None:
+            diagnostics.report(
+                "urdf-reserved-name",
+                f"'{ROOT_JOINT}' is the joint that a floating root hangs from, and cannot be the name of a {kind}",
+                urdf.document.place(item.element, "name"),
+                "rename it, or make the root fixed",
+            )

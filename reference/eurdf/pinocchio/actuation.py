@@ -1,0 +1,43 @@
+"""Which coordinates and velocities of a model are actuated."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import pinocchio as pin
+
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.pinocchio.coordinates import slots
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Actuation:
+    """The actuated joints, in file order, and where they stand in a model.
+
+    Attributes:
+        joints: Their names.
+        idx_q: Indices of all their coordinates in q, joint by joint.
+        idx_v: Indices of all their velocities in v, joint by joint; there are nu.
+        selection: S, of shape (nv, nu): motor torques u act on the mechanism as S u. Column k is the unit vector of
+            ``idx_v[k]``.
+    """
+
+    joints: tuple[str, ...]
+    idx_q: npt.NDArray[np.intp]
+    idx_v: npt.NDArray[np.intp]
+    selection: npt.NDArray[np.float64]
+
+
+def build_actuation(mechanism: Mechanism, model: pin.Model) -> Actuation:
+    """The actuation of a mechanism, in the model that `build_model` made of it."""
+    if not mechanism.actuators:
+        return Actuation((), np.empty(0, np.intp), np.empty(0, np.intp), np.empty((model.nv, 0)))
+    at = slots(mechanism, model)
+    actuated = [at[name] for name in mechanism.actuators]
+    idx_q = np.array([slot.idx_q + k for slot in actuated for k in range(slot.nq)], np.intp)
+    idx_v = np.array([slot.idx_v + k for slot in actuated for k in range(slot.nv)], np.intp)
+    selection = np.zeros((model.nv, len(idx_v)))
+    selection[idx_v, np.arange(len(idx_v))] = 1.0
+    return Actuation(mechanism.actuators, idx_q, idx_v, selection)

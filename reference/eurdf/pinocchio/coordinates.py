@@ -1,0 +1,54 @@
+"""Where the coordinates and velocities of each joint stand in a model's vectors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import pinocchio as pin
+
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mechanism import Joint, Mechanism
+from eurdf.pinocchio.mimic import NONE, following
+
+# Their angle is (cos, sin) in Pinocchio.
+_ANGLE_IN_TWO = frozenset({JointType.CONTINUOUS, JointType.PLANAR})
+
+
+@dataclass(frozen=True, slots=True)
+class Slot:
+    """A joint that has coordinates of its own, and where they stand.
+
+    Attributes:
+        joint: The joint.
+        idx_q: Index of the first of its coordinates in q.
+        nq: Number of its coordinates as Pinocchio has them.
+        idx_v: Index of the first of its velocities in v.
+        nv: Number of its velocities.
+    """
+
+    joint: Joint
+    idx_q: int
+    nq: int
+    idx_v: int
+    nv: int
+
+
+def slots(mechanism: Mechanism, model: pin.Model) -> dict[str, Slot]:
+    """The slots of all joints but fixed ones and, in a model with followers, those that follow another.
+
+    Args:
+        mechanism: The mechanism.
+        model: What `build_model` made of it.
+    """
+    led = following(mechanism) if len(model.mimicking_joints) else NONE
+    idx_qs, idx_vs = model.idx_qs.tolist(), model.idx_vs.tolist()
+    joint_id = 1 + (mechanism.root == "floating") + len(led.late)
+    found = {}
+    for joint in mechanism.joints:
+        if joint.type is JointType.FIXED:
+            continue
+        if joint.name not in led.laws:
+            nq = len(joint.coordinates.names) + (joint.type in _ANGLE_IN_TWO and joint.name not in led.counted)
+            found[joint.name] = Slot(joint, idx_qs[joint_id], nq, idx_vs[joint_id], joint.coordinates.nv)
+        joint_id += 1
+    return found

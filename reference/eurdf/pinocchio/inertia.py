@@ -1,0 +1,57 @@
+"""Inertias of bodies, to the last bit as Pinocchio's URDF parser makes them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pinocchio as pin
+
+from eurdf.mechanism.mechanism import Inertia
+from eurdf.mechanism.pose import Quaternion
+
+_UPRIGHT = (0.0, 0.0, 0.0, 1.0)
+_Row = tuple[float, float, float]
+_Matrix3 = tuple[_Row, _Row, _Row]
+
+
+def inertia_of(inertia: Inertia) -> pin.Inertia:
+    """Mass, centre of mass and rotational inertia about it, the last two in the body's frame.
+
+    The rotational inertia is R I Rᵀ, with R the orientation of the inertial frame in the body. Pinocchio keeps the
+    lower triangle of what it is given.
+    """
+    ixx, ixy, ixz, iyy, iyz, izz = inertia.moments
+    moments: _Matrix3 = ((ixx, ixy, ixz), (ixy, iyy, iyz), (ixz, iyz, izz))
+    if inertia.pose.quaternion != _UPRIGHT:
+        R = _rotation(inertia.pose.quaternion)
+        # I is symmetric, so (R I)ᵢⱼ is row i of R by row j of I.
+        moments = _rows_by_rows(_rows_by_rows(R, moments), R)
+    return pin.Inertia(inertia.mass, np.array(inertia.pose.xyz), np.array(moments))
+
+
+def is_zero(inertia: Inertia) -> bool:
+    """Whether mass, centre of mass and moments are all exactly zero, so that Pinocchio counts no body."""
+    return inertia.mass == 0.0 and not any(inertia.pose.xyz) and not any(inertia.moments)
+
+
+def _rotation(quaternion: Quaternion) -> _Matrix3:
+    x, y, z, w = quaternion
+    tx, ty, tz = 2.0 * x, 2.0 * y, 2.0 * z
+    twx, twy, twz = tx * w, ty * w, tz * w
+    txx, txy, txz = tx * x, ty * x, tz * x
+    tyy, tyz, tzz = ty * y, tz * y, tz * z
+    return (
+        (1.0 - (tyy + tzz), txy - twz, txz + twy),
+        (txy + twz, 1.0 - (txx + tzz), tyz - twx),
+        (txz - twy, tyz + twx, 1.0 - (txx + tyy)),
+    )
+
+
+def _rows_by_rows(A: _Matrix3, B: _Matrix3) -> _Matrix3:
+    """A Bᵀ, each sum in the order of Eigen's 3x3 product: rows 0 and 1 go through a packet, row 2 through a halving."""
+    (a, b, c), (d, e, f), (g, h, i) = A
+    (p, q, r), (s, t, u), (x, y, z) = B
+    return (
+        (a * p + b * q + c * r, a * s + b * t + c * u, a * x + b * y + c * z),
+        (d * p + e * q + f * r, d * s + e * t + f * u, d * x + e * y + f * z),
+        (g * p + (h * q + i * r), g * s + (h * t + i * u), g * x + (h * y + i * z)),
+    )

@@ -1,0 +1,60 @@
+"""Which joint follows which, in the terms of Pinocchio's mimic joints."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mechanism import Joint, Mechanism, Mimic
+
+_FOLLOWERS = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC})
+
+
+@dataclass(frozen=True, slots=True)
+class Following:
+    """How joints follow others, where Pinocchio is particular.
+
+    Attributes:
+        laws: For each joint that mimics, the joint that leads it in the end and the law between the two: Pinocchio's
+            mimic joints cannot be chained.
+        late: The leaders that come after one of their followers, in order. In Pinocchio a leader comes first.
+        counted: Names of the continuous joints to hold as one angle. Pinocchio holds a continuous joint as (cos, sin),
+            which has lost the number of turns, and lets only continuous joints follow one, which follow no other.
+    """
+
+    laws: Mapping[str, Mimic] = field(default_factory=dict)
+    late: tuple[Joint, ...] = ()
+    counted: frozenset[str] = frozenset()
+
+
+NONE = Following()
+
+
+def following(mechanism: Mechanism) -> Following:
+    """Which joint follows which."""
+    mimics = {
+        joint.name: joint.mimic for joint in mechanism.joints if joint.mimic is not None and joint.type in _FOLLOWERS
+    }
+    if not mimics:
+        return NONE
+    laws = {name: _end_of_chain(mimic, mimics) for name, mimic in mimics.items()}
+    place = {joint.name: index for index, joint in enumerate(mechanism.joints)}
+    overtaken = {law.joint for name, law in laws.items() if place[name] < place[law.joint]}
+    late = tuple(joint for joint in mechanism.joints if joint.name in overtaken)
+    return Following(laws, late, _counted(mechanism, laws))
+
+
+def _end_of_chain(mimic: Mimic, mimics: Mapping[str, Mimic]) -> Mimic:
+    """The law that leads a joint in the end: m₂ (m₁ q + o₁) + o₂."""
+    while mimic.joint in mimics:
+        step = mimics[mimic.joint]
+        mimic = Mimic(step.joint, mimic.multiplier * step.multiplier, mimic.multiplier * step.offset + mimic.offset)
+    return mimic
+
+
+def _counted(mechanism: Mechanism, laws: Mapping[str, Mimic]) -> frozenset[str]:
+    continuous = {joint.name for joint in mechanism.joints if joint.type is JointType.CONTINUOUS}
+    # One joint with a plain coordinate makes all that lead it, or are led with it, have one.
+    plain = {law.joint for name, law in laws.items() if not continuous.issuperset((name, law.joint))}
+    return frozenset(continuous & (plain | {name for name, law in laws.items() if law.joint in plain}))

@@ -1,0 +1,135 @@
+"""The spanning tree of a mechanism as a Pinocchio model, equal to the one Pinocchio's URDF parser builds.
+
+For a mechanism that is a plain URDF the result equals ``pin.buildModelFromUrdf(path, mimic=True)`` to the last bit:
+the same operations in the same order, through the same functions where Python can reach them.
+"""
+
+from __future__ import annotations
+
+import pinocchio as pin
+
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mechanism import Joint, Mechanism, Mimic
+from eurdf.mechanism.pose import IDENTITY
+from eurdf.pinocchio.inertia import inertia_of, is_zero
+from eurdf.pinocchio.joint_model import joint_model
+from eurdf.pinocchio.limits import set_limits
+from eurdf.pinocchio.mimic import NONE, following
+from eurdf.pinocchio.placement import placement_of
+
+#: Name of the joint by which a floating root moves in the world.
+ROOT_JOINT = "root_joint"
+
+_UNIVERSE = 0
+_HERE = pin.SE3.Identity()
+_MASSLESS = pin.Inertia.Zero()
+_FREE_FLYER = pin.JointModel(pin.JointModelFreeFlyer())
+_BODY, _JOINT, _FIXED_JOINT, _OP_FRAME = (
+    pin.FrameType.BODY,
+    pin.FrameType.JOINT,
+    pin.FrameType.FIXED_JOINT,
+    pin.FrameType.OP_FRAME,
+)
+
+
+def build_model(mechanism: Mechanism, mimic: bool = True) -> pin.Model:
+    """Build the model of the spanning tree, with every link, joint and named frame of the mechanism.
+
+    Pinocchio's own URDF parser fails on a joint that mimics one that comes later or itself mimics, and on one that
+    mimics a continuous joint and is none, or the reverse. Here the coordinate of a leader that comes late belongs to a
+    joint of its own, named ``<leader>/coordinate``, which moves nothing and which the leader follows as its followers
+    do; chains are followed to their end; such a continuous joint is held as one angle with infinite limits.
+
+    Args:
+        mechanism: A sound mechanism.
+        mimic: Whether joints that mimic follow their leaders; if not, they move by themselves.
+
+    Returns:
+        The model. Frames that the description adds are OP_FRAME; the frame of a joint that was split in two is
+        FIXED_JOINT, under the joint's name.
+    """
+    model = pin.Model()
+    model.name = mechanism.name
+    led = following(mechanism) if mimic else NONE
+
+    add_joint, add_frame, append_body = model.addJoint, model.addFrame, model.appendBodyToJoint
+    add_joint_frame, add_body_frame = model.addJointFrame, model.addBodyFrame
+    root = mechanism.bodies[0]
+    inertia = _MASSLESS if root.inertia is None else inertia_of(root.inertia)
+    if mechanism.root == "floating":
+        joint_id = add_joint(_UNIVERSE, _FREE_FLYER, _HERE, ROOT_JOINT)
+        joint_frame = add_joint_frame(joint_id, 0)
+        if root.inertia is not None and not is_zero(root.inertia):
+            append_body(joint_id, inertia, _HERE)
+        body_frame = add_body_frame(root.name, joint_id, _HERE, joint_frame)
+    else:
+        joint_id = _UNIVERSE
+        body_frame = add_frame(pin.Frame(root.name, _UNIVERSE, 0, _HERE, _BODY, inertia))
+    root_nq, root_nv = model.nq, model.nv
+
+    free: list[tuple[Joint, int]] = []  # joints with coordinates of their own, in the model's order
+    source: dict[str, tuple[int, int, int, int]] = {}  # for each of them, if any follows: its indices in the model
+    for joint in led.late:
+        moving = joint_model(joint, counts_turns=joint.name in led.counted)
+        free.append((joint, moving.nq))
+        # Below a floating root, whose own coordinates stay the first.
+        source[joint.name] = _indices(model, add_joint(joint_id, moving, _HERE, _coordinate_name(joint, mechanism)))
+
+    # For each body: the joint that moves it, its frame, and its placement in that joint.
+    sites = {root.name: (joint_id, body_frame, _HERE)}
+    for joint, body in zip(mechanism.joints, mechanism.bodies[1:], strict=True):
+        parent_joint, parent_frame, parent_placement = sites[joint.parent]
+        placement = parent_placement * placement_of(joint.placement)
+        inertia = _MASSLESS if body.inertia is None else inertia_of(body.inertia)
+        if joint.type is JointType.FIXED:
+            if joint.offset is not IDENTITY:
+                placement = placement * placement_of(joint.offset)
+            joint_id = parent_joint
+            joint_frame = add_frame(
+                pin.Frame(joint.name, joint_id, parent_frame, placement, _FIXED_JOINT, inertia)
+            )
+        else:
+            moving = joint_model(joint, counts_turns=joint.name in led.counted)
+            law = led.laws.get(joint.name) or (Mimic(joint.name) if joint.name in source else None)
+            if law is None:
+                free.append((joint, moving.nq))
+                joint_id = add_joint(parent_joint, moving, placement, joint.name)
+                if led.laws:
+                    source[joint.name] = _indices(model, joint_id)
+            else:
+                moving = pin.JointModel(moving)
+                moving.setIndexes(*source[law.joint])
+                moving = pin.JointModelMimic(moving, law.multiplier, law.offset)
+                joint_id = add_joint(parent_joint, moving, placement, joint.name)
+            if joint.offset is IDENTITY:
+                placement = _HERE
+                joint_frame = add_joint_frame(joint_id, parent_frame)
+            else:
+                placement = placement_of(joint.offset)
+                joint_frame = add_frame(pin.Frame(joint.name, joint_id, parent_frame, placement, _JOINT))
+            if body.inertia is not None and not is_zero(body.inertia):
+                append_body(joint_id, inertia, placement)
+        if not body.virtual:
+            body_frame = add_body_frame(body.name, joint_id, placement, joint_frame)
+        sites[body.name] = (joint_id, joint_frame if body.virtual else body_frame, placement)
+
+    for frame in mechanism.frames:
+        joint_id, parent_frame, placement = sites[frame.body]
+        kind = _OP_FRAME if frame.kind == "frame" else _FIXED_JOINT
+        placement = placement * placement_of(frame.pose)
+        add_frame(pin.Frame(frame.name, joint_id, parent_frame, placement, kind), False)
+    set_limits(model, free, root_nq, root_nv)
+    return model
+
+
+def _indices(model: pin.Model, joint_id: int) -> tuple[int, int, int, int]:
+    joint = model.joints[joint_id]
+    return joint_id, joint.idx_q, joint.idx_v, joint.idx_vExtended
+
+
+def _coordinate_name(leader: Joint, mechanism: Mechanism) -> str:
+    names = {joint.name for joint in mechanism.joints}
+    name = f"{leader.name}/coordinate"
+    while name in names:
+        name += "'"
+    return name

@@ -1,0 +1,72 @@
+"""The YAML 1.2 core schema: which value a scalar stands for (YAML 1.2.2, section 10.3.2)."""
+
+from __future__ import annotations
+
+import re
+from math import inf, nan
+from sys import float_info
+
+Scalar = str | int | float | bool | None
+
+#: What the shorthand ``!!`` stands for.
+TAG_PREFIX = "tag:yaml.org,2002:"
+
+_NULL: dict[str, None] = dict.fromkeys(("", "~", "null", "Null", "NULL"))
+_BOOL = {"true": True, "True": True, "TRUE": True, "false": False, "False": False, "FALSE": False}
+_NOT_FINITE = {
+    **dict.fromkeys((sign + word for sign in ("", "+") for word in (".inf", ".Inf", ".INF")), inf),
+    **dict.fromkeys(("-.inf", "-.Inf", "-.INF"), -inf),
+    **dict.fromkeys((".nan", ".NaN", ".NAN"), nan),
+}
+_WORDS: dict[str, Scalar] = {**_NULL, **_BOOL, **_NOT_FINITE}
+_INT = re.compile(r"[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+")
+_FLOAT = re.compile(r"[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?")
+_NUMBER_BEGINS = frozenset("+-.0123456789")
+
+
+def resolve(text: str) -> Scalar:
+    """Value of a plain scalar without a tag; a number beyond the range of a double is an infinity."""
+    if text in _WORDS:
+        return _WORDS[text]
+    if text[0] in _NUMBER_BEGINS:
+        if _INT.fullmatch(text):
+            return _integer(text)
+        if _FLOAT.fullmatch(text):
+            return float(text)
+    return text
+
+
+def resolve_tagged(tag: str, text: str) -> Scalar:
+    """Value of a scalar, plain or quoted, with a tag of the core schema.
+
+    Raises:
+        ValueError: The core schema has no such tag for scalars, or the text does not fit it.
+    """
+    name = tag.removeprefix(TAG_PREFIX)
+    if name == "str":
+        return text
+    if name == "null" and text in _NULL:
+        return None
+    if name == "bool" and text in _BOOL:
+        return _BOOL[text]
+    if name == "int" and _INT.fullmatch(text):
+        return _integer(text)
+    if name == "float" and text in _NOT_FINITE:
+        return _NOT_FINITE[text]
+    if name == "float" and _FLOAT.fullmatch(text):
+        return float(text)
+    raise ValueError(text)
+
+
+def _integer(text: str) -> int | float:
+    if text[1:2] in ("o", "x"):
+        value = int(text, 0)
+    else:
+        # Python refuses to convert thousands of digits, zeros in front included.
+        digits = text.lstrip("+-").lstrip("0") or "0"
+        if len(digits) > float_info.max_10_exp + 1:
+            return -inf if text[0] == "-" else inf
+        value = -int(digits) if text[0] == "-" else int(digits)
+    if abs(value) > float_info.max:
+        return inf if value > 0 else -inf
+    return value

@@ -1,0 +1,47 @@
+"""Where the mesh that a URI names lies on this machine; nothing is ever downloaded."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+
+def resolve(uri: str, folder: Path, package_dirs: Sequence[str | os.PathLike[str]] = ()) -> str | None:
+    """The file that a mesh URI of a URDF means.
+
+    ``package://name/rest`` is looked for as ``name/rest`` below the given package directories, below those of
+    ``ROS_PACKAGE_PATH`` and ``AMENT_PREFIX_PATH``, and below the folder of the URDF and the folders that hold it, one of
+    which may be the package itself. A path is relative to the folder of the URDF.
+
+    Args:
+        uri: As the URDF writes it.
+        folder: Folder of the URDF.
+        package_dirs: Folders that hold packages.
+
+    Returns:
+        A path, or None where there is no such file.
+    """
+    parts = urlsplit(uri) if "://" in uri else None
+    if parts is None:
+        found = folder / uri
+        return str(found) if found.is_file() else None
+    if parts.scheme == "file":
+        found = folder / unquote(parts.netloc + parts.path)
+        return str(found) if found.is_file() else None
+    if parts.scheme not in ("package", "model"):
+        return None
+    package, rest = parts.netloc, parts.path.lstrip("/")
+    homes = [Path(home) for home in package_dirs]
+    homes += [Path(home) for home in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if home]
+    homes += [Path(home) / "share" for home in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if home]
+    absolute = folder.absolute()
+    for home in (*homes, absolute, *absolute.parents):
+        candidates = [home / package / rest]
+        if home.name == package:
+            candidates.append(home / rest)
+        for candidate in candidates:
+            if candidate.is_file():
+                return str(candidate)
+    return None

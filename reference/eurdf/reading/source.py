@@ -1,0 +1,125 @@
+"""The text of a file, and where in it a character stands."""
+
+from __future__ import annotations
+
+import os
+import re
+import stat
+from bisect import bisect_right
+from dataclasses import dataclass, field
+
+from eurdf.diagnostics import Fault, Place
+
+BOM = b"\xef\xbb\xbf"
+
+_BREAK = re.compile("\r\n?|\n")
+
+#: Bytes that the YAML file may have.
+YAML_LIMIT = 4 << 20
+
+#: Bytes that the URDF may have.
+URDF_LIMIT = 64 << 20
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    r"""A file that was read.
+
+    Attributes:
+        file: Path as the user gave it.
+        text: Decoded, without byte order mark, line breaks as they are.
+        data: The same as UTF-8 bytes.
+    """
+
+    file: str
+    text: str
+    data: bytes
+    _starts: list[int] = field(default_factory=list, init=False, repr=False, compare=False)
+
+    def position(self, index: int) -> tuple[int, int]:
+        r"""Line and column, both from 1, of a character.
+
+        A line ends at ``\n``, ``\r\n`` or ``\r``, as in YAML 1.2, XML and most editors; other Unicode breaks are text.
+
+        Args:
+            index: Index in ``text``; its length stands for the end of the file.
+        """
+        if not self._starts:
+            # str.splitlines would break at form feeds, U+2028 and more as well.
+            self._starts[:] = [0, *(found.end() for found in _BREAK.finditer(self.text))]
+        line = bisect_right(self._starts, index)
+        return line, index - self._starts[line - 1] + 1
+
+    def place(self, start: int, end: int | None = None, pointer: str = "") -> Place:
+        """Place of the characters from ``start`` to before ``end``; both are indices in ``text``."""
+        line, column = self.position(start)
+        end_column = None
+        if end is not None:
+            end_line, last = self.position(end)
+            end_column = last if end_line == line else None
+        return Place(self.file, line, column, end_column, pointer)
+
+
+def read_source(path: str | os.PathLike[str], limit: int = URDF_LIMIT) -> Source:
+    """Read a text file.
+
+    Never reads more than ``limit`` bytes, and nothing that is not a regular file: a pipe or a device could block.
+
+    Args:
+        path: Path of the file.
+        limit: Largest size accepted, in bytes.
+
+    Raises:
+        Fault: ``file-unreadable``, ``file-too-large`` or ``file-not-utf8``.
+    """
+    file = os.fsdecode(path)
+    data = _read_bytes(file, limit)
+    # The first bytes tell UTF-16 and UTF-32 apart from UTF-8, with or without a byte order mark (YAML 1.2.2, 5.2).
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\0" in data[:2]:
+        message = "the file begins as UTF-16, UTF-32 or binary data; it must be UTF-8 text"
+        raise Fault("file-not-utf8", message, Place(file, 1, 1), "save it with the encoding UTF-8")
+    data = data.removeprefix(BOM)
+    try:
+        text = data.decode()
+    except UnicodeDecodeError as error:
+        before = data[: error.start].decode()
+        place = Source(file, before, b"").place(len(before))
+        message = f"the byte 0x{data[error.start]:02x} stands where UTF-8 text cannot have it"
+        raise Fault("file-not-utf8", message, place, "save the file with the encoding UTF-8") from None
+    return Source(file, text, data)
+
+
+def _read_bytes(file: str, limit: int) -> bytes:
+    place = Place(file)
+    try:
+        # Not blocking, since opening a pipe would wait for someone to write into it.
+        descriptor = os.open(file, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+        try:
+            status = os.fstat(descriptor)
+            if stat.S_ISDIR(status.st_mode):
+                raise Fault("file-unreadable", f"'{file}' is a folder, not a file", place)
+            if not stat.S_ISREG(status.st_mode):
+                raise Fault("file-unreadable", f"'{file}' is a pipe or a device, not a file", place)
+            size = status.st_size
+            chunks = []
+            # The size is only what the file system says: of a file in /proc it says 0, and files grow.
+            room = limit + 1
+            while size <= limit and (chunk := os.read(descriptor, min(max(size, 1 << 16) + 1, room))):
+                chunks.append(chunk)
+                room -= len(chunk)
+                size = max(size, limit + 1 - room)
+        finally:
+            os.close(descriptor)
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise Fault("file-unreadable", f"'{file}' cannot be read: {reason}", place) from None
+    except ValueError:  # a NUL in the path
+        raise Fault("file-unreadable", f"{file!r} is no path of a file", place) from None
+    if size > limit:
+        raise too_large(file, f"{limit:,} bytes")
+    return b"".join(chunks)
+
+
+def too_large(file: str, most: str) -> Fault:
+    """The fault of a file that has more than it may have."""
+    return Fault("file-too-large", f"the file has more than {most}, the most it may have", Place(file))

@@ -1,0 +1,164 @@
+"""Reading XML, with the place of each element and attribute."""
+
+from __future__ import annotations
+
+import re
+
+from lxml import etree
+
+from eurdf.diagnostics import Fault, Place
+from eurdf.reading.source import URDF_LIMIT, Source, too_large
+from eurdf.reading.xml_syntax import NAMESPACE_ERRORS, syntax_fault, too_long
+
+#: Tags and attributes that a file may have: what takes memory is their number.
+TAG_LIMIT = 2_000_000
+
+_DECLARED_ENCODING = re.compile(r"""<\?xml\s[^>]*?\sencoding\s*=\s*(["'])(.*?)\1""")
+_BEFORE_DOCTYPE = re.compile(r"(?:[ \t\r\n]+|<\?.*?\?>|<!--.*?-->)*+", re.DOTALL)
+_START_TAG = re.compile(r"<[^\s/>]+")
+_ATTRIBUTE = re.compile(r"""\s*([^\s=/>]+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
+
+#: In a well-formed file without DOCTYPE: a lone ``<`` begins an element, the rest is skipped.
+_MARKUP = re.compile(r"<(?:!--.*?-->|!\[CDATA\[.*?\]\]>|\?.*?\?>|/)?", re.DOTALL)
+
+
+class XmlDocument:
+    """An XML file.
+
+    Attributes:
+        source: The text.
+        root: Its root element, without comments and processing instructions. Where the root is in a default namespace,
+            that namespace is taken away, since no reader of URDF heeds it.
+    """
+
+    __slots__ = ("_ordinals", "_starts", "_totals", "root", "source")
+
+    def __init__(self, source: Source, root: etree._Element) -> None:
+        self.source = source
+        self.root = root
+        self._starts: dict[etree._Element, int] = {}
+        self._ordinals: dict[etree._Element, int] = {}
+        self._totals: dict[tuple[etree._Element | None, str], int] = {}
+
+    def place(self, element: etree._Element, attribute: str | None = None) -> Place:
+        """Place of the start of an element, or of the value of one of its attributes.
+
+        Args:
+            element: An element of this file.
+            attribute: Name of an attribute as lxml gives it. If the element lacks it, the place is the element's.
+        """
+        if not self._starts:
+            self._find_elements()
+        pointer = self._path(element)
+        start = self._starts[element]
+        tag = _START_TAG.match(self.source.text, start)
+        assert tag is not None
+        if attribute is None:
+            return self.source.place(start, tag.end(), pointer)
+        name = _written_name(element, attribute)
+        pointer += "/@" + name
+        end = tag.end()
+        while found := _ATTRIBUTE.match(self.source.text, end):
+            if found[1] == name:
+                return self.source.place(*found.span(2 if found[2] is not None else 3), pointer)
+            end = found.end()
+        return self.source.place(start, tag.end(), pointer)
+
+    def _find_elements(self) -> None:
+        # Only once something is to be reported. libxml2 keeps no columns, and the line where a start tag ends.
+        starts = (found.start() for found in _MARKUP.finditer(self.source.text) if found.end() == found.start() + 1)
+        for start, element in zip(starts, self.root.iter("*"), strict=True):
+            self._starts[element] = start
+            siblings = (element.getparent(), element.tag)
+            self._totals[siblings] = self._ordinals[element] = self._totals.get(siblings, 0) + 1
+
+    def _path(self, element: etree._Element) -> str:
+        steps: list[str] = []
+        step: etree._Element | None = element
+        while step is not None:
+            parent = step.getparent()
+            index = f"[{self._ordinals[step]}]" if self._totals[parent, step.tag] > 1 else ""
+            steps.append(f"/{_written_name(step, step.tag)}{index}")
+            step = parent
+        return "".join(reversed(steps))
+
+
+def _written_name(element: etree._Element, name: str) -> str:
+    """Name of an element or of one of its attributes as the file has it, with its prefix."""
+    if not name.startswith("{"):
+        return name
+    uri, local = name[1:].split("}")
+    if name == element.tag:
+        return f"{element.prefix}:{local}" if element.prefix else local
+    prefixes = [prefix for prefix, bound in element.nsmap.items() if prefix and bound == uri]
+    return f"{(prefixes or ['xml'])[0]}:{local}"
+
+
+def read_xml(source: Source) -> XmlDocument:
+    """Read an XML file, in UTF-8 and without DOCTYPE.
+
+    Raises:
+        Fault: ``file-too-large``, ``file-not-utf8``, ``xml-doctype`` or ``xml-syntax``.
+    """
+    if len(source.data) > URDF_LIMIT:
+        raise too_large(source.file, f"{URDF_LIMIT:,} bytes")
+    if len(source.text) > TAG_LIMIT and source.text.count("<") + source.text.count("=") > TAG_LIMIT:
+        raise too_large(source.file, f"{TAG_LIMIT:,} tags and attributes")
+    _refuse_other_encoding(source)
+    _refuse_doctype(source)
+    try:
+        root = etree.fromstring(source.data, _parser())
+    except etree.XMLSyntaxError as error:
+        fault = syntax_fault(source, error)
+        if fault is not None:
+            raise fault from None
+        root = _read_with_namespace_errors(source)
+    if root.prefix is None and root.tag.startswith("{"):
+        default = root.tag.partition("}")[0] + "}"
+        for element in root.iter(default + "*"):
+            if element.prefix is None:
+                element.tag = element.tag.removeprefix(default)
+    return XmlDocument(source, root)
+
+
+def _parser(recover: bool = False) -> etree.XMLParser:
+    return etree.XMLParser(
+        encoding="utf-8",
+        resolve_entities=False,
+        no_network=True,
+        load_dtd=False,
+        huge_tree=False,
+        remove_comments=True,
+        remove_pis=True,
+        collect_ids=False,
+        recover=recover,
+    )
+
+
+def _read_with_namespace_errors(source: Source) -> etree._Element:
+    """Read a file that is well-formed but for its namespaces; an undeclared prefix becomes part of the name."""
+    parser = _parser(recover=True)
+    root = etree.fromstring(source.data, parser)
+    if any(entry.type not in NAMESPACE_ERRORS for entry in parser.error_log):
+        raise too_long(source)
+    return root
+
+
+def _refuse_other_encoding(source: Source) -> None:
+    declared = _DECLARED_ENCODING.match(source.text)
+    if declared is None:
+        return
+    encoding = declared[2].lower().replace("_", "-")
+    if encoding in ("utf-8", "utf8") or (encoding in ("us-ascii", "ascii") and source.text.isascii()):
+        return
+    message = f"the file declares the encoding '{declared[2]}'; it must be UTF-8"
+    hint = "save it as UTF-8, and declare that or no encoding"
+    raise Fault("file-not-utf8", message, source.place(*declared.span(2)), hint)
+
+
+def _refuse_doctype(source: Source) -> None:
+    """Look after what may stand before it, so that no parser ever sees an entity being declared."""
+    before = _BEFORE_DOCTYPE.match(source.text)
+    if before is not None and source.text.startswith("<!DOCTYPE", before.end()):
+        place = source.place(before.end(), before.end() + len("<!DOCTYPE"))
+        raise Fault("xml-doctype", "the file has a document type declaration", place, "remove it")

@@ -1,0 +1,142 @@
+"""Why a text is not XML, in plain words."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+from xml.parsers import expat
+from xml.parsers.expat import errors
+
+from eurdf.diagnostics import Fault, Place
+from eurdf.reading.source import Source
+
+#: Elements that may be nested in one another; what libxml2 allows by itself.
+DEPTH_LIMIT = 256
+
+#: libxml2's errors of a namespace that is no URI, or a relative one, and of a prefix that is not declared (xmlerror.h).
+#: No reader of URDF heeds namespaces, and many a URDF has such faults.
+NAMESPACE_ERRORS = (99, 100, 201)
+
+#: libxml2's errors of what is well-formed but too much for it; which one, depends on its version.
+_RESOURCE_ERRORS = (1, 110, 114)
+
+_NAME = re.compile(r"[^\s<>/=&;\"'()]*")
+
+
+class _TooDeep(Exception):  # noqa: N818 - never seen outside
+    """Ends the look for the fault."""
+
+
+def syntax_fault(source: Source, error: Any) -> Fault | None:
+    """The fault that says what is wrong with the text, or None if it has only `NAMESPACE_ERRORS`.
+
+    Args:
+        source: The text.
+        error: The `lxml.etree.XMLSyntaxError`. Its columns are in no fixed unit, so that expat is asked first.
+    """
+    parser = expat.ParserCreate("utf-8")
+    opened: list[tuple[str, int]] = []  # name and byte of each start tag that is not closed yet
+
+    def begin(name: str, _: Any) -> None:
+        opened.append((name, parser.CurrentByteIndex))
+        if len(opened) > DEPTH_LIMIT:
+            raise _TooDeep
+
+    def end(_: str) -> None:
+        opened.pop()
+
+    def index(byte: int) -> int:
+        return len(source.data[: max(byte, 0)].decode("utf-8", "ignore"))
+
+    parser.StartElementHandler = begin
+    parser.EndElementHandler = end
+    try:
+        parser.Parse(source.data, True)
+    except _TooDeep:
+        message = f"elements are nested more than {DEPTH_LIMIT} deep"
+        return Fault("file-too-large", message, source.place(index(opened[-1][1])))
+    except expat.ExpatError as found:
+        problem = expat.ErrorString(found.code)
+        at = index(parser.ErrorByteIndex)
+        if opened and problem in (errors.XML_ERROR_TAG_MISMATCH, errors.XML_ERROR_NO_ELEMENTS):
+            name, byte = opened[-1]
+            return _not_closed(source, problem, at, name, index(byte))
+        start, end_, message, hint = _explain(source.text, problem, at)
+        return Fault("xml-syntax", message, source.place(start, end_), hint)
+    if error.code in NAMESPACE_ERRORS:
+        return None
+    if error.code in _RESOURCE_ERRORS:
+        return too_long(source)
+    # What only the namespaces of XML forbid, such as two ':' in a name.
+    message = re.sub(r",? line \d+, column \d+.*", "", str(error.msg), flags=re.DOTALL)
+    return Fault("xml-syntax", message[:1].lower() + message[1:], Place(source.file, error.position[0]))
+
+
+def too_long(source: Source) -> Fault:
+    """The fault of a file that is well-formed, but that libxml2 does not take."""
+    message = "a name, a text or the value of an attribute is too long for the XML parser"
+    return Fault("file-too-large", message, Place(source.file))
+
+
+def _not_closed(source: Source, problem: str, at: int, name: str, opened: int) -> Fault:
+    """An element that the file, or another element, ends before it does."""
+    if problem == errors.XML_ERROR_NO_ELEMENTS:
+        place = source.place(opened, opened + 1 + len(name))
+        return Fault("xml-syntax", f"<{name}> is never closed", place, f"close it with </{name}>")
+    closing = _NAME.match(source.text, at)
+    assert closing is not None
+    line, _ = source.position(opened)
+    message = f"</{closing[0]}> stands where </{name}> must, which closes the <{name}> of line {line}"
+    return Fault("xml-syntax", message, source.place(at - 2, closing.end()))
+
+
+def _explain(text: str, problem: str, at: int) -> tuple[int, int, str, str | None]:
+    """First character of what is wrong and the one after its last, message and hint, for what expat says of it."""
+    end = min(at + 1, len(text))
+    if problem == errors.XML_ERROR_INVALID_TOKEN:
+        return _stray_character(text, at)
+    if problem == errors.XML_ERROR_NO_ELEMENTS:
+        return at, at, "the file has no element" if text.strip() else "the file is empty", None
+    if problem == errors.XML_ERROR_SYNTAX:
+        return at, end, "the file does not begin with an element", 'a URDF begins with <robot name="...">'
+    if problem == errors.XML_ERROR_UNCLOSED_CDATA_SECTION:
+        at = text.rfind("<![CDATA[")
+        return at, at + len("<![CDATA["), "'<![CDATA[' is never closed", "close it with ']]>'"
+    if problem == errors.XML_ERROR_UNCLOSED_TOKEN:
+        what = "'<!--'" if text.startswith("<!--", at) else "'<?'" if text.startswith("<?", at) else "this '<'"
+        return at, end, f"{what} is never closed", None
+    if problem == errors.XML_ERROR_DUPLICATE_ATTRIBUTE:
+        end = _end_of_name(text, at)
+        return at, end, f"the attribute '{text[at:end]}' stands twice in one element", None
+    if problem == errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT:
+        return at, end, "this stands after the end of the root element", "an XML file has one root element"
+    if problem == errors.XML_ERROR_UNDEFINED_ENTITY:
+        end = _end_of_name(text, at + 1)
+        hint = "XML knows &lt; &gt; &amp; &quot; and &apos;; a lone '&' is written &amp;"
+        return at, end, f"the entity '{text[at:end]};' is unknown", hint
+    if problem == errors.XML_ERROR_MISPLACED_XML_PI:
+        return at, end, "the XML declaration does not stand at the very beginning of the file", None
+    return at, end, problem, None
+
+
+def _stray_character(text: str, at: int) -> tuple[int, int, str, str | None]:
+    end = min(at + 1, len(text))
+    character = text[at:end]
+    if text[at - 1 : at] == "&":
+        return at - 1, at, "a '&' stands alone", "write &amp; for it"
+    if text.rfind("<!--", 0, at) > text.rfind("-->", 0, at):
+        return at, end, "'--' cannot stand in a comment", None
+    if text[:at].rstrip().endswith("="):
+        return at, end, "the value of an attribute must stand in quotes", None
+    if character == "<":
+        return at, end, "a '<' stands inside a tag", "close the tag before it with '>', or write &lt; in a value"
+    if character in (" ", "\t", "\n", "\r"):
+        return at, end, "white space cannot stand here", None
+    shown = f"'{character}'" if character.isprintable() else f"the character U+{ord(character):04X}"
+    return at, end, f"{shown} cannot stand here", None
+
+
+def _end_of_name(text: str, at: int) -> int:
+    name = _NAME.match(text, at)
+    assert name is not None
+    return name.end()

@@ -1,0 +1,284 @@
+"""Reading YAML 1.2 into plain values, with the place of each.
+
+libyaml finds the nodes; what they stand for is decided here, by the core schema, since the constructors that come with
+libyaml's Python binding follow YAML 1.1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import isfinite
+from typing import Any
+
+import yaml
+from yaml.error import MarkedYAMLError, YAMLError
+from yaml.events import (
+    AliasEvent,
+    Event,
+    MappingStartEvent,
+    ScalarEvent,
+    SequenceStartEvent,
+    StreamEndEvent,
+)
+
+from eurdf.diagnostics import Fault, Place, did_you_mean
+from eurdf.reading.core_schema import TAG_PREFIX, resolve, resolve_tagged
+from eurdf.reading.source import YAML_LIMIT, Source, too_large
+from eurdf.reading.yaml_node import Alias, Collection, Node, json_pointer, span
+from eurdf.reading.yaml_syntax import syntax_fault
+
+#: Mappings and lists that may be nested in one another, aliases expanded.
+DEPTH_LIMIT = 64
+
+#: Nodes (mappings, lists, keys and values) that a file may have, aliases expanded.
+NODE_LIMIT = 100_000
+
+#: %TAG directives that a file may have; the time libyaml takes grows with the square of their number.
+DIRECTIVE_LIMIT = 64
+
+_CORE_TAGS = ("!!str", "!!int", "!!float", "!!bool", "!!null", "!!map", "!!seq")
+_KINDS = {dict: "a mapping", list: "a list", str: "a string", bool: "a boolean", type(None): "empty"}
+
+
+class YamlDocument:
+    """A YAML file as plain values.
+
+    Attributes:
+        source: The text.
+        data: ``dict`` with string keys, ``list``, ``str``, ``int``, ``float``, ``bool`` and ``None``. What has several
+            aliases is one object in several places.
+    """
+
+    __slots__ = ("_root", "data", "source")
+
+    def __init__(self, source: Source, root: Collection) -> None:
+        self.source = source
+        self.data: dict[str, Any] = root.data
+        self._root = root
+
+    def place(self, pointer: Sequence[str | int] = (), key: bool = False) -> Place:
+        """Place of a value, or of its key.
+
+        A value that is an alias has the place of the alias; what is in it, that of where it is written.
+
+        Args:
+            pointer: Keys and indices that lead to the value. Where they lead nowhere, the place is that of the
+                innermost value on the way that exists.
+            key: Whether the key is meant rather than the value. An item of a list has no key.
+        """
+        node: Node = self._root
+        key_event: Event | None = None
+        for step in pointer:
+            collection = node.target if isinstance(node, Alias) else node
+            if not isinstance(collection, Collection) or step not in collection.nodes:
+                break
+            node, key_event = collection.nodes[step], collection.keys.get(step)
+        if key and key_event is not None:
+            node = key_event
+        return self.source.place(*span(node), json_pointer(pointer))
+
+
+def read_yaml(source: Source) -> YamlDocument:
+    """Read a file that holds one YAML 1.2 mapping.
+
+    Raises:
+        Fault: ``file-too-large`` or one of the ``yaml-`` codes, at the first thing that is wrong.
+    """
+    if len(source.data) > YAML_LIMIT:
+        raise too_large(source.file, f"{YAML_LIMIT:,} bytes")
+    data, original = _without_other_breaks(source)
+    if data.count(b"\n%TAG") + data.count(b"\r%TAG") > DIRECTIVE_LIMIT:
+        raise too_large(source.file, f"{DIRECTIVE_LIMIT} %TAG directives")
+    try:
+        # libyaml itself: PyYAML's own parser is slow and recursive, and there is no falling back to it.
+        return YamlDocument(source, _Reader(source, yaml.CSafeLoader(data).get_event, original).read())
+    except (YAMLError, UnicodeDecodeError) as error:
+        raise syntax_fault(source, error) from None
+
+
+def _without_other_breaks(source: Source) -> tuple[bytes, dict[int, str]]:
+    """The file with U+0085, U+2028 and U+2029 replaced, and what turns them back in the values.
+
+    They are ordinary characters in YAML 1.2, but libyaml breaks lines at them, as YAML 1.1 does. What replaces them is
+    characters that the file does not have; it cannot have all of this range, which takes more bytes than it may have.
+    """
+    breaks = [] if source.text.isascii() else [mark for mark in "\x85\u2028\u2029" if mark in source.text]
+    if not breaks:
+        return source.data, {}
+    used = set(source.text)
+    free = (chr(code) for code in range(0x10000, 0x110000) if chr(code) not in used)
+    replaced = source.text
+    original = {}
+    for mark, replacement in zip(breaks, free, strict=False):
+        replaced = replaced.replace(mark, replacement)
+        original[ord(replacement)] = mark
+    return replaced.encode(), original
+
+
+class _Reader:
+    """Builds the nodes of one document from libyaml's events, without recursion."""
+
+    def __init__(self, source: Source, next_event: Any, original: dict[int, str]) -> None:
+        self._source = source
+        self._next_event = next_event
+        self._original = original
+        self._anchors: dict[str, tuple[Any, Node]] = {}
+        self._count = 0  # of nodes
+        self._file = Collection([], next_event(), 0)  # whose one item is the top level
+        self._open = [self._file]  # from the outermost to the innermost
+
+    def read(self) -> Collection:
+        """The top level, a mapping."""
+        document = self._next_event()
+        if type(document) is StreamEndEvent:
+            raise Fault("yaml-empty", "the file is empty; it must hold a mapping", Place(self._source.file))
+        if document.version is not None and document.version != (1, 2):
+            version = ".".join(map(str, document.version))
+            message = f"the %YAML directive asks for version {version}; it must be 1.2"
+            raise self._fault("yaml-version", message, document, "leave the directive out")
+        while not self._file.data:
+            event = self._next_event()
+            kind = type(event)
+            if kind is ScalarEvent:
+                self._scalar(event)
+            elif kind is MappingStartEvent:
+                self._begin(event, {}, "map")
+            elif kind is SequenceStartEvent:
+                self._begin(event, [], "seq")
+            elif kind is AliasEvent:
+                self._alias(event)
+            else:
+                self._end(event)
+        self._expect_end()
+        top = self._file.nodes[0]
+        if isinstance(top, Collection) and top.is_mapping:
+            return top
+        value = self._file.data[0]
+        message = "the document is empty" if value is None else f"the top level is {_kind(value)}"
+        raise self._fault("yaml-empty", f"{message}; it must be a mapping", top)
+
+    def _scalar(self, event: ScalarEvent) -> None:
+        self._count += 1
+        if self._count > NODE_LIMIT:
+            raise too_large(self._source.file, f"{NODE_LIMIT:,} keys and values")
+        text = event.value.translate(self._original) if self._original else event.value
+        value: Any = text
+        if event.tag is None:
+            if event.implicit[0]:  # plain
+                value = resolve(text)
+        elif event.tag != "!":
+            try:
+                value = resolve_tagged(event.tag, text)
+            except ValueError:
+                raise self._tag_fault(event, _quote(text)) from None
+        if event.anchor is not None:
+            self._anchors[event.anchor] = value, event
+        around = self._open[-1]
+        if around.is_mapping and around.key is None:
+            self._key(value, event)
+            return
+        if type(value) is float and not isfinite(value):
+            what = "is no finite number" if "n" in text.lower() else "is beyond the range of numbers"
+            raise self._fault("yaml-not-finite", f"{_quote(text)} {what}", event)
+        around.add(value, event)
+
+    def _begin(self, event: Any, data: dict[str, Any] | list[Any], tag: str) -> None:
+        around = self._open[-1]
+        if around.is_mapping and around.key is None:
+            self._key(data, event)
+        if len(self._open) > DEPTH_LIMIT:
+            message = f"mappings and lists are nested more than {DEPTH_LIMIT} deep"
+            raise self._fault("yaml-too-deep", message, event)
+        if event.tag not in (None, "!", TAG_PREFIX + tag):
+            raise self._tag_fault(event, _kind(data))
+        collection = Collection(data, event, self._count)
+        self._count += 1
+        if self._count > NODE_LIMIT:
+            raise too_large(self._source.file, f"{NODE_LIMIT:,} keys and values")
+        if event.anchor is not None:
+            self._anchors[event.anchor] = data, collection
+        self._open.append(collection)
+
+    def _end(self, event: Event) -> None:
+        collection = self._open.pop()
+        collection.end = event
+        collection.size = self._count - collection.size
+        around = self._open[-1]
+        around.height = max(around.height, collection.height + 1)
+        around.add(collection.data, collection)
+
+    def _alias(self, event: AliasEvent) -> None:
+        name = str(event.anchor)
+        if name not in self._anchors:
+            message = f"the alias '*{name}' has no anchor '&{name}' before it"
+            raise self._fault("yaml-alias", message, event, did_you_mean(name, self._anchors))
+        value, target = self._anchors[name]
+        collection = target if isinstance(target, Collection) else None
+        if collection is not None and collection.end is None:
+            raise self._fault("yaml-alias", f"the alias '*{name}' stands inside what it stands for", event)
+        self._count += 1 if collection is None else collection.size
+        if self._count > NODE_LIMIT:
+            message = f"with its aliases expanded, the file has more than {NODE_LIMIT:,} keys and values"
+            raise self._fault("yaml-alias", message, event)
+        around = self._open[-1]
+        if around.is_mapping and around.key is None:
+            self._key(value, event)
+        elif collection is None:
+            around.add(value, event)
+        else:
+            if len(self._open) - 1 + collection.height > DEPTH_LIMIT:
+                message = f"with the alias '*{name}', mappings and lists are nested more than {DEPTH_LIMIT} deep"
+                raise self._fault("yaml-too-deep", message, event)
+            around.height = max(around.height, collection.height + 1)
+            around.add(value, Alias(event, collection))
+
+    def _key(self, value: Any, event: Event) -> None:
+        """Take a value as the next key of the innermost mapping."""
+        mapping = self._open[-1]
+        if type(value) is not str:
+            what = "a key is empty" if value is None else f"a key is {_kind(value)}"
+            hint = f'quote it: "{event.value}"' if isinstance(event, ScalarEvent) and event.value else None
+            raise self._fault("yaml-key-not-string", f"{what}; it must be a string", event, hint)
+        if value in mapping.keys:
+            line, _ = self._source.position(span(mapping.keys[value])[0])
+            mapping.key = value  # for the pointer
+            message = f"the key {_quote(value)} stands twice in one mapping"
+            raise self._fault("yaml-duplicate-key", message, event, f"it stands first on line {line}")
+        mapping.key = value
+        mapping.keys[value] = event
+
+    def _expect_end(self) -> None:
+        end = self._next_event()
+        message = "a second document begins here; the file must hold one"
+        try:
+            after = self._next_event()
+        except MarkedYAMLError as error:
+            # libyaml wants '---' before a second document; YAML 1.2 takes one that merely follows '...'.
+            if end.explicit and error.problem == "did not find expected <document start>" and error.problem_mark:
+                raise Fault("yaml-several-documents", message, self._source.place(error.problem_mark.index)) from None
+            raise
+        if type(after) is not StreamEndEvent:
+            raise self._fault("yaml-several-documents", message, after)
+
+    def _tag_fault(self, event: Any, what: str) -> Fault:
+        shown = event.tag.replace(TAG_PREFIX, "!!", 1)
+        if shown in _CORE_TAGS:
+            return self._fault("yaml-unknown-tag", f"{what} does not fit the tag '{shown}'", event)
+        return self._fault("yaml-unknown-tag", f"the tag {_quote(shown)} is unknown", event, "remove it")
+
+    def _fault(self, code: str, message: str, node: Node, hint: str | None = None) -> Fault:
+        steps: list[str | int] = []
+        for collection in self._open[1:]:
+            if not collection.is_mapping:
+                steps.append(len(collection.data))
+            elif collection.key is not None:
+                steps.append(collection.key)
+        return Fault(code, message, self._source.place(*span(node), json_pointer(steps)), hint)
+
+
+def _kind(value: Any) -> str:
+    return _KINDS.get(type(value), "a number")
+
+
+def _quote(text: str) -> str:
+    return repr(text if len(text) <= 60 else text[:57] + "...")

@@ -1,0 +1,112 @@
+"""Why a text is not YAML, in plain words."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from yaml.error import MarkedYAMLError, YAMLError
+
+from eurdf.diagnostics import Fault
+from eurdf.reading.source import Source
+
+#: What may not stand in a YAML file even in quotes (YAML 1.2.2, section 5.1).
+_NOT_PRINTABLE = re.compile("[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+class _Meaning(NamedTuple):
+    """What a problem of libyaml means for who wrote the file; ``{line}`` is where the node around it begins."""
+
+    message: str
+    hint: str | None = None
+    code: str = "yaml-syntax"
+    late: bool = False  # whether libyaml notices it only long after the place where the node around it begins
+
+
+_AFTER_VALUE = _Meaning("this stands after the end of a value", "quote the value as a whole")
+_TAB = _Meaning("a tab is used as indentation", "indent with spaces")
+_MEANINGS = {
+    "mapping values are not allowed in this context": _Meaning(
+        "a ':' stands where no key can be",
+        "quote a value that has ': ' in it, and indent the keys of one mapping alike",
+    ),
+    "mapping keys are not allowed in this context": _Meaning("a '?' stands where no key can be"),
+    "block sequence entries are not allowed in this context": _Meaning(
+        "a list item cannot begin here", "begin the list on a line of its own"
+    ),
+    "did not find expected key": _Meaning(
+        "this does not continue the mapping that begins on line {line}", "indent the keys of one mapping alike"
+    ),
+    "did not find expected '-' indicator": _Meaning(
+        "this does not continue the list that begins on line {line}", "begin each item with '- ', all indented alike"
+    ),
+    "did not find expected ',' or ']'": _Meaning("a ',' or ']' is missing in the list that begins on line {line}"),
+    "did not find expected ',' or '}'": _Meaning("a ',' or '}' is missing in the mapping that begins on line {line}"),
+    "did not find expected node content": _Meaning("a value is missing here"),
+    "did not find expected <document start>": _Meaning(
+        "this belongs to nothing before it", "after a directive, a line '---' must follow"
+    ),
+    "could not find expected ':'": _Meaning(
+        "a key has no ':' after it", "write 'key: value', with a space after the ':'", late=True
+    ),
+    "found unexpected end of stream": _Meaning("a quoted text is never closed", late=True),
+    "found unexpected document indicator": _Meaning("a quoted text is not closed before its document ends", late=True),
+    "found a tab character that violates indentation": _TAB,
+    "found a tab character where an indentation space is expected": _TAB,
+    "found unknown escape character": _Meaning(
+        "an escape that double quotes do not have", r"write '\\' for a backslash, or use single quotes"
+    ),
+    "did not find expected hexdecimal number": _Meaning("an escape lacks its hexadecimal digits"),
+    "found invalid Unicode character escape code": _Meaning("an escape stands for no Unicode character"),
+    "found unknown directive name": _Meaning("YAML has no such directive"),
+    "found incompatible YAML document": _Meaning(
+        "the %YAML directive asks for another version than 1.2", "leave the directive out", "yaml-version"
+    ),
+    "found undefined tag handle": _Meaning("the tag has an unknown prefix", None, "yaml-unknown-tag"),
+}
+_NOT_CONTINUED = ("did not find expected key", "did not find expected '-' indicator")
+
+
+def syntax_fault(source: Source, error: YAMLError | UnicodeDecodeError) -> Fault:
+    """The fault that says what libyaml stumbled over.
+
+    Args:
+        source: The text; libyaml may have read one with other characters, but the same number of them.
+        error: What libyaml raised.
+    """
+    text = source.text
+    if not isinstance(error, MarkedYAMLError) or error.problem is None:
+        # Also what libyaml's reader says, whose position is in bytes.
+        found = _NOT_PRINTABLE.search(text)
+        if found is None:
+            return Fault("yaml-syntax", "the file holds an escape that is not UTF-8", source.place(0))
+        message = f"the character U+{ord(found[0]):04X} cannot stand in YAML"
+        hint = f'in double quotes, write "\\u{ord(found[0]):04x}"'
+        return Fault("yaml-syntax", message, source.place(found.start(), found.end()), hint)
+    problem = min(error.problem_mark.index, len(text)) if error.problem_mark else 0
+    context = min(error.context_mark.index, problem) if error.context_mark else problem
+    if error.problem == "found character that cannot start any token":
+        meaning = _cannot_begin(text, problem)
+    elif error.problem in _NOT_CONTINUED and _line_before(source, problem).strip(" -"):
+        meaning = _AFTER_VALUE
+    elif error.problem in _MEANINGS:
+        meaning = _MEANINGS[error.problem]
+    else:
+        meaning = _Meaning(" ".join(filter(None, (error.problem, error.context))))
+    if text[context : context + 1] in ("[", "{") and not text[problem:].strip():
+        meaning = _Meaning(f"'{text[context]}' is never closed", late=True)
+    message = meaning.message.replace("{line}", str(source.position(context)[0]))
+    start = context if meaning.late else problem
+    return Fault(meaning.code, message, source.place(start, min(start + 1, len(text))), meaning.hint)
+
+
+def _line_before(source: Source, index: int) -> str:
+    """What stands on the line of a character, before it."""
+    return source.text[index + 1 - source.position(index)[1] : index]
+
+
+def _cannot_begin(text: str, index: int) -> _Meaning:
+    character = text[index : index + 1]
+    if character == "\t":
+        return _TAB
+    return _Meaning(f"no value can begin with '{character}'", "quote the value")

@@ -1,0 +1,24 @@
+"""Robots drawn in one assembled pose, in world coordinates, and written as Extended URDF.
+
+Every body's frame has its origin at the joint that carries the body, and its axes parallel to the world's in the drawn
+pose. So the drawn pose is the one at which every joint stands at zero, the origin of a joint is the difference of two
+points, and every loop is closed at zero because both its sides are the same point of the drawing.
+"""
+
+from robots.builder.drawing import Drawing
+from robots.builder.joint import Motor, ball, revolute
+from robots.builder.shape import Box, Cylinder, Sphere, Vector3, midpoint
+from robots.builder.write import write
+
+__all__ = [
+    "Box",
+    "Cylinder",
+    "Drawing",
+    "Motor",
+    "Sphere",
+    "Vector3",
+    "ball",
+    "midpoint",
+    "revolute",
+    "write",
+]

@@ -1,0 +1,91 @@
+"""A drawing as the text of the YAML file, in either version of the format."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator, Mapping, Sequence
+
+from robots.builder.drawing import Drawing
+from robots.builder.number_text import number_text
+
+Value = str | float | Sequence["Value"] | Mapping[str, "Value"]
+
+_WIDTH = 100
+_PLAIN = re.compile(r"[A-Za-z_][\w.,()/ -]*|[36]d")
+_NOT_PLAIN = frozenset({"true", "false", "null", "yes", "no", "on", "off", "y", "n"})
+_SCHEMA = "# yaml-language-server: $schema=../../schema/extended-urdf-{}.schema.json\n"
+_HEAD = "# Written by build.py beside this file: change it there.\n"
+
+
+def yaml_text(drawing: Drawing) -> str:
+    """The description in version 2.0."""
+    assembled: dict[str, Value] = {
+        joint.name: (0.0, 0.0, 0.0, 1.0) if joint.type == "spherical" else 0.0 for joint in drawing.joints
+    }
+    content: dict[str, Value] = {
+        "extended_urdf": "2.0",
+        "urdf": "robot.urdf",
+        "closures": [
+            {"name": closure.name, "type": closure.type, "frames": closure.frames} for closure in drawing.closures
+        ],
+        "joints": {joint.name: joint.type for joint in drawing.joints if joint.type != "revolute"},
+        "actuators": [joint.name for joint in drawing.joints if joint.motor],
+        "configurations": {"assembled": assembled},
+        "metadata": drawing.metadata,
+    }
+    return _SCHEMA.format("2.0") + _HEAD + _text(content)
+
+
+def version_1_text(drawing: Drawing) -> str:
+    """The description in version 1, which can say the same mechanism, but neither configurations nor metadata."""
+    replaced = [joint for joint in drawing.joints if joint.type != "revolute"]
+    content: dict[str, Value] = {
+        "closed_loop": [closure.frames for closure in drawing.closures],
+        "type": [closure.type for closure in drawing.closures],
+        "name_mot": [joint.name for joint in drawing.joints if joint.motor],
+        "joint_name": [joint.name for joint in replaced],
+        "joint_type": [joint.type.upper() for joint in replaced],
+    }
+    return _SCHEMA.format("1") + _HEAD + _text(content)
+
+
+def _text(content: Mapping[str, Value]) -> str:
+    """The mapping in block style, without the keys that have nothing to say."""
+    return "".join(f"{line}\n" for line in _block({key: value for key, value in content.items() if value}))
+
+
+def _block(value: Mapping[str, Value] | Sequence[Value]) -> Iterator[str]:
+    if isinstance(value, Mapping):
+        for key, inner in value.items():
+            yield from _entry(f"{_scalar(key)}:", inner)
+    else:
+        for inner in value:
+            if isinstance(inner, Mapping):
+                first, *rest = _block(inner)
+                yield f"- {first}"
+                yield from (f"  {line}" for line in rest)
+            else:
+                yield from _entry("-", inner)
+
+
+def _entry(head: str, value: Value) -> Iterator[str]:
+    """One entry of a mapping or a list; a list of plain values stands on the same line if it fits there."""
+    if isinstance(value, str | float):
+        yield f"{head} {_scalar(value)}"
+        return
+    if not isinstance(value, Mapping):
+        scalars = [_scalar(inner) for inner in value if isinstance(inner, str | float)]
+        line = f"{head} [{', '.join(scalars)}]"
+        if len(scalars) == len(value) and len(line) <= _WIDTH:
+            yield line
+            return
+    yield head
+    yield from (f"  {line}" for line in _block(value))
+
+
+def _scalar(value: str | float) -> str:
+    if not isinstance(value, str):
+        return number_text(value)
+    plain = _PLAIN.fullmatch(value) and value.lower() not in _NOT_PLAIN and value == value.strip()
+    return value if plain else json.dumps(value, ensure_ascii=False)
