@@ -283,6 +283,28 @@ def test_info_counts_the_mass_of_the_root_link_too(folder: Path, run: Run) -> No
     assert json.loads(run("info", ".", "--json")[1])["mass"] == 5.0
 
 
+def test_info_tells_a_joint_that_mimics_from_the_one_that_leads_it(folder: Path, run: Run) -> None:
+    follower = """\
+  <link name="finger">
+    <inertial><mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>
+  </link>
+  <joint name="a_follower" type="continuous">
+    <parent link="base"/><child link="finger"/><axis xyz="0 0 1"/><mimic joint="shoulder" multiplier="2"/>
+  </joint>
+</robot>"""
+    robot(folder, urdf=URDF.replace("</robot>", follower))
+    for root, extra in (("fixed", []), ("floating", [("root_joint", 6, False, None)])):
+        info = json.loads(run("info", ".", "--json", "--root", root)[1])
+        assert [(j["name"], j["nv"], j["actuated"], j["mimics"]) for j in info["joint_list"]] == [
+            *extra,
+            ("a_follower", 0, False, "shoulder"),
+            ("shoulder", 1, True, None),
+        ]
+        assert info["joints"] == len(info["joint_list"])
+        assert info["nv"] == sum(joint["nv"] for joint in info["joint_list"])
+        assert info["nq"] == sum(joint["nq"] for joint in info["joint_list"])
+
+
 def test_info_of_a_robot_without_closures_needs_none(folder: Path, run: Run) -> None:
     (folder / "arm.urdf").write_text(URDF, encoding="utf-8")
     info = json.loads(run("info", "arm.urdf", "--json")[1])
@@ -393,6 +415,21 @@ def test_a_locale_without_unicode_shows_escapes_rather_than_failing(folder: Path
     assert result.returncode == 1
     assert result.stdout.isascii()
     assert result.stderr == ""
+
+
+def test_what_is_to_become_a_file_is_utf8_in_every_locale() -> None:
+    code = "from eurdf.commands.output import write_text; write_text('name: é名\\n')"
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii", "PYTHONUTF8": "0"}
+    written = subprocess.run([sys.executable, "-c", code], capture_output=True, timeout=60, env=environment).stdout
+    assert written.decode("utf-8") == "name: é名\n"
+
+
+@pytest.mark.parametrize(("variables", "coloured"), [({}, False), ({"FORCE_COLOR": "1"}, True)])
+def test_a_pipe_is_coloured_only_where_it_is_asked_for(folder: Path, variables: dict[str, str], coloured: bool) -> None:
+    robot(folder)
+    environment = {name: value for name, value in os.environ.items() if name not in ("FORCE_COLOR", "NO_COLOR")}
+    result = in_a_process("check", ".", env={**environment, "TERM": "xterm-256color", **variables})
+    assert ("\x1b[32msound" in result.stdout) == coloured
 
 
 def test_a_reader_that_stops_reading_ends_the_command_quietly(folder: Path) -> None:

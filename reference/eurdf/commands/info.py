@@ -8,7 +8,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from eurdf.commands.cannot_run import CannotRun
-from eurdf.commands.output import has_boxes, write_json, write_rendered
+from eurdf.commands.output import has_boxes, write_json, write_lines, write_rendered
 from eurdf.commands.selection import select_one
 
 if TYPE_CHECKING:
@@ -67,6 +67,7 @@ def run(args: argparse.Namespace) -> int:
         from eurdf.commands.check import write_reports
         from eurdf.diagnostics.report import Report
 
+        write_lines([[]], sys.stdout)
         write_reports([Report(path, robot.diagnostics)])
     return 0
 
@@ -147,7 +148,7 @@ def _joints(info: RobotInfo) -> Table:
         else:
             note = _text(f"mimics {joint.mimics}" if joint.mimics else "", "dim")
         table.add_row(
-            _text(joint.name, "bold"), joint.type, _text(joint.parent), _text(joint.child), str(joint.nv), note
+            _text(joint.name, "bold"), joint.type.value, _text(joint.parent), _text(joint.child), str(joint.nv), note
         )
     return table
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import shutil
@@ -35,9 +36,16 @@ def columns() -> int:
     return max(40, shutil.get_terminal_size().columns)
 
 
+def write_text(text: str) -> None:
+    """Write what is to become a file to the standard output, in UTF-8 whatever the locale."""
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(encoding="utf-8")
+    sys.stdout.write(text)
+
+
 def write_json(value: dict[str, Any]) -> None:
-    """Write one JSON value to the standard output, in ASCII, so that no locale can spoil it."""
-    sys.stdout.write(json.dumps(value, indent=2, allow_nan=False) + "\n")
+    """Write one JSON value to the standard output."""
+    write_text(json.dumps(value, indent=2, allow_nan=False) + "\n")
 
 
 def write_lines(lines: Iterable[Line], stream: TextIO) -> None:

@@ -3,28 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
+
+from eurdf.mechanism.joint_type import JointType
 
 if TYPE_CHECKING:
     from eurdf.kinematics.analysis import Analysis
     from eurdf.pinocchio.robot import Robot
 
 Count = Annotated[int, Field(ge=0)]
-JointTypeName = Literal[
-    "fixed",
-    "revolute",
-    "continuous",
-    "prismatic",
-    "planar",
-    "floating",
-    "spherical",
-    "universal",
-    "cylindrical",
-    "helical",
-]
 
 
 class _Entry(BaseModel):
@@ -36,16 +27,16 @@ class JointInfo(_Entry):
 
     name: str
     """Name of the joint; root_joint for the one of a floating root."""
-    type: JointTypeName
+    type: JointType
     """Type of the joint."""
     parent: str
     """Link it hangs from; world for the joint of a floating root."""
     child: str
     """Link it carries."""
     nq: Count
-    """Number of its coordinates in Pinocchio's configuration vector."""
+    """Number of its own coordinates in Pinocchio's configuration vector; 0 for one that mimics."""
     nv: Count
-    """Number of its velocities."""
+    """Number of its own velocities; 0 for one that mimics."""
     actuated: bool
     """Whether it is actuated."""
     mimics: str | None
@@ -74,7 +65,7 @@ class ActuatorInfo(_Entry):
 
     joint: str
     """Name of the joint."""
-    type: JointTypeName
+    type: JointType
     """Type of the joint."""
     nv: Count
     """Number of velocities actuated."""
@@ -134,7 +125,7 @@ class RobotInfo(_Entry):
     closes: bool
     """Whether a configuration was found at which every loop is closed."""
     joint_list: tuple[JointInfo, ...]
-    """The moving joints, in the order of the model."""
+    """The moving joints, depth first."""
     closure_list: tuple[ClosureInfo, ...]
     """The closures, in file order."""
     actuator_list: tuple[ActuatorInfo, ...]
@@ -155,6 +146,7 @@ def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
     from eurdf.kinematics.residual import residual
 
     mechanism, model = robot.mechanism, robot.model
+    moving = tuple(_joint_infos(robot))
     rows = residual(robot, analysis.q)
     starts = np.cumsum([0, *(closure.rows for closure in mechanism.closures)])
     joints = {joint.name: joint for joint in mechanism.joints}
@@ -164,7 +156,7 @@ def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
         root=mechanism.root,
         nq=model.nq,
         nv=model.nv,
-        joints=model.njoints - 1,
+        joints=len(moving),
         closures=len(mechanism.closures),
         nc=mechanism.nc,
         rank=analysis.rank,
@@ -175,7 +167,7 @@ def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
         mass=_finite(math.fsum(body.inertia.mass for body in mechanism.bodies if body.inertia)),
         residual=_finite(analysis.residual),
         closes=analysis.closes,
-        joint_list=tuple(_joint_info(robot, index, joints) for index in range(1, model.njoints)),
+        joint_list=moving,
         closure_list=tuple(
             ClosureInfo(
                 name=closure.name,
@@ -188,7 +180,7 @@ def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
             for closure, start in zip(mechanism.closures, starts, strict=False)
         ),
         actuator_list=tuple(
-            ActuatorInfo(joint=name, type=joints[name].type.value, nv=joints[name].coordinates.nv)
+            ActuatorInfo(joint=name, type=joints[name].type, nv=joints[name].coordinates.nv)
             for name in mechanism.actuators
         ),
         frame_list=tuple(
@@ -201,20 +193,36 @@ def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
     )
 
 
-def _joint_info(robot: Robot, index: int, joints: dict[str, Any]) -> JointInfo:
-    model, mechanism = robot.model, robot.mechanism
-    name = model.names[index]
-    joint = joints.get(name)
-    return JointInfo(
-        name=name,
-        type=joint.type.value if joint else "floating",
-        parent=joint.parent if joint else "world",
-        child=joint.child if joint else mechanism.bodies[0].name,
-        nq=model.nqs[index],
-        nv=model.nvs[index],
-        actuated=name in robot.actuation.joints,
-        mimics=joint.mimic.joint if joint and joint.mimic else None,
-    )
+def _joint_infos(robot: Robot) -> Iterator[JointInfo]:
+    from eurdf.pinocchio.coordinates import slots
+
+    mechanism = robot.mechanism
+    if mechanism.root == "floating":
+        yield JointInfo(
+            name="root_joint",
+            type=JointType.FLOATING,
+            parent="world",
+            child=mechanism.bodies[0].name,
+            nq=7,
+            nv=6,
+            actuated=False,
+            mimics=None,
+        )
+    at = slots(mechanism, robot.model)
+    for joint in mechanism.joints:
+        if joint.type is JointType.FIXED:
+            continue
+        slot = at.get(joint.name)
+        yield JointInfo(
+            name=joint.name,
+            type=joint.type,
+            parent=joint.parent,
+            child=joint.child,
+            nq=slot.nq if slot else 0,
+            nv=slot.nv if slot else 0,
+            actuated=joint.name in robot.actuation.joints,
+            mimics=joint.mimic.joint if joint.mimic else None,
+        )
 
 
 def _finite(number: float | np.floating[Any] | None) -> float | None:

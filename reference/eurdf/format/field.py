@@ -10,7 +10,7 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 from typing_extensions import TypeAliasType
 
-#: What the user's own keys begin with, at any level of a version 2 file.
+#: What the user's own keys begin with, at any level of a version 2 file (EU-EXT-002).
 OWN_KEY = "^x-"
 
 #: Strict: no string stands for a number, a bool is no number, an int is one. Built at first use, since one run mostly

@@ -59,7 +59,7 @@ def read_extension(document: YamlDocument, diagnostics: Diagnostics) -> Extensio
 
 
 def _version(document: YamlDocument, diagnostics: Diagnostics) -> Literal["1", "2.0"] | None:
-    """The version whose rules a file is to be read by (EU-VER-001); None where it cannot be told."""
+    """The version whose rules a file is to be read by (EU-VER-002); None where it cannot be told."""
     data = document.data
     if VERSION_KEY in data:
         return _written_version(document, diagnostics)
@@ -87,6 +87,7 @@ def _version(document: YamlDocument, diagnostics: Diagnostics) -> Literal["1", "
 
 
 def _written_version(document: YamlDocument, diagnostics: Diagnostics) -> Literal["2.0"] | None:
+    """Version 2.0, or None if the file says another (EU-VER-001)."""
     value = document.data[VERSION_KEY]
     place = document.place((VERSION_KEY,))
     quoted = f'write {VERSION_KEY}: "{VERSION}", in quotes'

@@ -7,7 +7,6 @@ before any C++ sees the file.
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache, partial
@@ -50,11 +49,16 @@ _KNOWN_CHILDREN: dict[str, frozenset[str]] = {
     ),
 }
 
-# A vector of decimal numbers in ASCII: what `float` takes beyond it (nan, inf, 1_0, other digits) is no URDF number.
-_NUMERIC = re.compile(r"[0-9+\-.eE \t\r\n]*\Z").match
+# Attributes of one number each, and what they are where they are left out.
+_MASS = {"value": None}
+_INERTIA = dict.fromkeys(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
+_SPHERE = {"radius": None}
+_CYLINDER = {"radius": None, "length": None}
+_LIMIT = {"effort": None, "velocity": None, "lower": "0", "upper": "0"}
+_DYNAMICS = {"damping": "0", "friction": "0"}
+_MIMIC = {"multiplier": "1", "offset": "0"}
 
 _ZERO: Vector3 = (0.0, 0.0, 0.0)
-_UNLIMITED = math.inf
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,12 +165,25 @@ def _near_miss(tag: str, known: frozenset[str]) -> str | None:
     return did_you_mean(tag, known)
 
 
+def _floats(text: str, separator: str | None = None) -> tuple[float, ...] | None:
+    """Finite decimal numbers in ASCII; of what `float` takes beyond them (nan, inf, 1_0, other digits) none is URDF."""
+    if "_" in text or not text.isascii():
+        return None
+    try:
+        values = tuple(map(float, text.split(separator)))
+    except ValueError:
+        return None
+    # The sum is finite where all are, but for sums that overflow.
+    return values if math.isfinite(sum(values)) or all(map(math.isfinite, values)) else None
+
+
 class _Reader:
     """Walks the elements once; every method reads one kind of element and reports what is wrong with it."""
 
     def __init__(self, document: XmlDocument, diagnostics: Diagnostics) -> None:
         self.document = document
         self.diagnostics = diagnostics
+        self.floats: dict[str, tuple[float, ...] | None] = {}
         self.poses: dict[tuple[str | None, str | None], Pose] = {}
         self.materials: dict[str, tuple[tuple[float, float, float, float] | None, str]] = {}
 
@@ -181,26 +198,23 @@ class _Reader:
 
     def numbers(self, element: Element, attribute: str, text: str, count: int) -> tuple[float, ...] | None:
         """EU-URD-007: an attribute of numbers holds as many finite decimal numbers as it must."""
-        try:
-            if not _NUMERIC(text):
-                raise ValueError
-            values = tuple(map(float, text.split()))
-        except ValueError:
+        values = self.floats.get(text)
+        if values is None:
+            # Zeros, units and limits come again and again in a file.
+            values = self.floats[text] = _floats(text)
+        if values is not None and len(values) == count:
+            return values
+        if values is None:
             self._bad_number(element, attribute, text, count)
             return None
-        if len(values) != count:
-            wanted = "one number" if count == 1 else f"{count} numbers separated by spaces"
-            self.report(
-                "urdf-bad-number",
-                f"'{attribute}' of <{element.tag}> has {len(values)} numbers; it must have {wanted}",
-                element,
-                attribute,
-            )
-            return None
-        if not all(map(math.isfinite, values)):
-            self._bad_number(element, attribute, text, count)
-            return None
-        return values
+        wanted = "one number" if count == 1 else f"{count} numbers separated by spaces"
+        self.report(
+            "urdf-bad-number",
+            f"'{attribute}' of <{element.tag}> has {len(values)} numbers; it must have {wanted}",
+            element,
+            attribute,
+        )
+        return None
 
     def _bad_number(self, element: Element, attribute: str, text: str, count: int) -> None:
         wanted = "a finite decimal number" if count == 1 else f"{count} finite decimal numbers separated by spaces"
@@ -218,21 +232,29 @@ class _Reader:
             hint,
         )
 
-    def number(self, element: Element, attribute: str, default: float | None = None) -> float | None:
-        """One number; ``default`` where the attribute is absent, which is an error where there is no default."""
-        text = element.get(attribute)
-        if text is None:
-            if default is None:
-                self._missing_attribute(element, attribute)
-            return default
-        values = self.numbers(element, attribute, text, 1)
-        return None if values is None else values[0]
+    def several(self, element: Element, attributes: Mapping[str, str | None]) -> tuple[float, ...] | None:
+        """Attributes of one number each.
 
-    def vector(self, element: Element, attribute: str, default: Vector3 = _ZERO) -> Vector3 | None:
-        text = element.get(attribute)
-        if text is None:
-            return default
-        return self.numbers(element, attribute, text, 3)  # type: ignore[return-value]
+        Args:
+            element: The element.
+            attributes: What each is where it is left out; None where it must not be.
+        """
+        get = element.get
+        texts = [get(attribute, default) for attribute, default in attributes.items()]
+        if None not in texts:
+            # A comma in an attribute makes one number too many, and a blank is no number: so none slips through.
+            joined = ",".join(texts)  # type: ignore[arg-type]
+            values = self.floats.get(joined)
+            if values is None:
+                values = self.floats[joined] = _floats(joined, ",")
+            if values is not None and len(values) == len(texts):
+                return values
+        for attribute, text in zip(attributes, texts, strict=True):
+            if text is None:
+                self._missing_attribute(element, attribute)
+            else:
+                self.numbers(element, attribute, text, 1)
+        return None
 
     def _missing_attribute(self, element: Element, attribute: str) -> None:
         near = did_you_mean(attribute, [str(key) for key in element.keys()])  # noqa: SIM118 - an lxml element
@@ -245,10 +267,10 @@ class _Reader:
         if name is None:
             self._missing_attribute(element, attribute)
             return None
-        if not name.strip():
+        if not name or name.isspace():
             self.report("urdf-empty-name", f"'{attribute}' of <{element.tag}> is empty", element, attribute)
             return None
-        return str(name)
+        return name
 
     # -- elements -------------------------------------------------------------------------------------------------
 
@@ -295,15 +317,15 @@ class _Reader:
     def origin(self, element: Element | None) -> Pose:
         if element is None:
             return IDENTITY
-        get = element.get
-        text = (get("xyz"), get("rpy"))
+        text = (element.get("xyz"), element.get("rpy"))
         pose = self.poses.get(text)
         if pose is None:
-            xyz, rpy = self.vector(element, "xyz"), self.vector(element, "rpy")
+            xyz = _ZERO if text[0] is None else self.numbers(element, "xyz", text[0], 3)
+            rpy = _ZERO if text[1] is None else self.numbers(element, "rpy", text[1], 3)
             if xyz is None or rpy is None:
                 return IDENTITY
             # What is seen and what collides mostly stand in the same place.
-            pose = self.poses[text] = Pose.from_xyz_rpy(xyz, rpy)
+            pose = self.poses[text] = Pose.from_xyz_rpy(xyz, rpy)  # type: ignore[arg-type]
         return pose
 
     # -- robot ----------------------------------------------------------------------------------------------------
@@ -384,22 +406,10 @@ class _Reader:
         inertia_element = self.need(element, found, "inertia")
         if mass_element is None or inertia_element is None:
             return None
-        mass = self.number(mass_element, "value")
-        get = inertia_element.get
-        texts = (get("ixx"), get("ixy"), get("ixz"), get("iyy"), get("iyz"), get("izz"))
-        if None not in texts:
-            joined = " ".join(texts)  # type: ignore[arg-type]
-            if _NUMERIC(joined):
-                try:
-                    moments = tuple(map(float, joined.split(" ")))
-                except ValueError:
-                    moments = ()
-                if len(moments) == 6 and math.isfinite(sum(moments)) and mass is not None:
-                    return Inertia(mass, pose, moments)
-        slow = [self.number(inertia_element, key) for key in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")]
-        if mass is None or None in slow:
+        mass, moments = self.several(mass_element, _MASS), self.several(inertia_element, _INERTIA)
+        if mass is None or moments is None:
             return None
-        return Inertia(mass, pose, tuple(slow))  # type: ignore[arg-type]
+        return Inertia(mass[0], pose, moments)  # type: ignore[arg-type]
 
     # -- shapes ---------------------------------------------------------------------------------------------------
 
@@ -447,11 +457,9 @@ class _Reader:
                 return None
             size = self.numbers(shape, "size", text, 3)
         elif kind == "sphere":
-            radius = self.number(shape, "radius")
-            size = None if radius is None else (radius,)
+            size = self.several(shape, _SPHERE)
         elif kind in ("cylinder", "capsule"):
-            radius, length = self.number(shape, "radius"), self.number(shape, "length")
-            size = None if radius is None or length is None else (radius, length)
+            size = self.several(shape, _CYLINDER)
         else:
             shown = kind if isinstance(kind, str) else "?"
             self.report(
@@ -581,15 +589,11 @@ class _Reader:
                     hint="use type 'continuous' for a joint that turns without limits" if kind == "revolute" else None,
                 )
             return None
-        effort, velocity = self.number(element, "effort"), self.number(element, "velocity")
-        lower, upper = self.number(element, "lower", 0.0), self.number(element, "upper", 0.0)
-        if effort is None or velocity is None or lower is None or upper is None:
+        values = self.several(element, _LIMIT)
+        if values is None:
             return None
-        for attribute, value in (("effort", effort), ("velocity", velocity)):
-            if value < 0.0:
-                self.report(
-                    "urdf-negative-limit", f"'{attribute}' of joint '{name}' is negative", element, attribute
-                )
+        effort, velocity, lower, upper = values
+        self.not_negative(element, effort=effort, velocity=velocity)
         if ranged and lower > upper:
             self.report(
                 "urdf-reversed-limits",
@@ -600,21 +604,21 @@ class _Reader:
             )
         return Limit(lower, upper, velocity, effort)
 
-    def dynamics(self, element: Element) -> tuple[float, float]:
-        values = []
-        for attribute in ("damping", "friction"):
-            value = self.number(element, attribute, 0.0) or 0.0
+    def dynamics(self, element: Element) -> tuple[float, ...]:
+        values = self.several(element, _DYNAMICS) or (0.0, 0.0)
+        self.not_negative(element, damping=values[0], friction=values[1])
+        return values
+
+    def not_negative(self, element: Element, **values: float) -> None:
+        """EU-URD-020: what is a magnitude is not negative."""
+        for attribute, value in values.items():
             if value < 0.0:
-                self.report("urdf-negative-limit", f"'{attribute}' of <dynamics> is negative", element, attribute)
-            values.append(value)
-        return values[0], values[1]
+                self.report("urdf-negative-limit", f"'{attribute}' of <{element.tag}> is negative", element, attribute)
 
     def mimic(self, element: Element) -> Mimic | None:
         joint = self.name(element, "joint")
-        multiplier, offset = self.number(element, "multiplier", 1.0), self.number(element, "offset", 0.0)
-        if joint is None or multiplier is None or offset is None:
-            return None
-        return Mimic(joint, multiplier, offset)
+        values = self.several(element, _MIMIC)
+        return None if joint is None or values is None else Mimic(joint, *values)
 
     def no_range(self, joints: list[UrdfJoint]) -> None:
         """EU-URD-025: a joint that is to move has a range; URDF reads left-out limits as zero."""

@@ -1,4 +1,4 @@
-"""Version 1, the published dialect: five keys, no version key, everything else the user's own."""
+"""Version 1, the published dialect: five keys, no version key, everything else the user's own (EU-ONE-001)."""
 
 from __future__ import annotations
 

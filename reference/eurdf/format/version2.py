@@ -27,8 +27,10 @@ from eurdf.format.field import (
 VERSION: Literal["2.0"] = "2.0"
 
 Name = Annotated[str, Field(min_length=1)]
-Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
 NonNegative = Annotated[float, Field(ge=0)]
+
+# Named, so that the schema holds each of them once.
+Vector = TypeAliasType("Vector", Annotated[list[float], Field(min_length=3, max_length=3)])
 
 
 def _number_form(value: Any) -> str | None:
@@ -39,16 +41,22 @@ def _number_form(value: Any) -> str | None:
 
 _NUMBERS = either(_number_form, "a number or a list of numbers")
 
-PerCoordinate = Annotated[
-    Annotated[float, Tag("one number")]
-    | Annotated[list[float], Field(min_length=1, max_length=6), Tag("list of numbers")],
-    _NUMBERS,
-]
-NonNegativePerVelocity = Annotated[
-    Annotated[NonNegative, Tag("one number")]
-    | Annotated[list[NonNegative], Field(min_length=1, max_length=6), Tag("list of numbers")],
-    _NUMBERS,
-]
+PerCoordinate = TypeAliasType(
+    "PerCoordinate",
+    Annotated[
+        Annotated[float, Tag("one number")]
+        | Annotated[list[float], Field(min_length=1, max_length=6), Tag("list of numbers")],
+        _NUMBERS,
+    ],
+)
+NonNegativePerVelocity = TypeAliasType(
+    "NonNegativePerVelocity",
+    Annotated[
+        Annotated[NonNegative, Tag("one number")]
+        | Annotated[list[NonNegative], Field(min_length=1, max_length=6), Tag("list of numbers")],
+        _NUMBERS,
+    ],
+)
 Coordinates = TypeAliasType(
     "Coordinates",
     Annotated[

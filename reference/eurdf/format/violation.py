@@ -1,4 +1,8 @@
-"""What a model finds wrong in a file, said in codes, places and plain sentences."""
+"""What a model finds wrong in a file, said in codes, places and plain sentences.
+
+The models and the JSON Schemas drawn from them say what is right (EU-SCH-001 to EU-SCH-006, EU-EXT-001); here one fault
+gives one diagnostic.
+"""
 
 from __future__ import annotations
 

@@ -80,6 +80,18 @@ def lines_of_item(value: Value) -> tuple[str, ...]:
     return _lines("-", value)
 
 
+def item_of_mapping(mapping: Mapping[str, Value]) -> tuple[str, ...]:
+    """The lines of an item of a list, each of its keys on a line of its own."""
+    first, *rest = (line for key, value in mapping.items() for line in lines_of(key, value))
+    return (f"- {first}", *(f"  {line}" for line in rest))
+
+
+def section(key: str, items: Iterable[Entry], above: Iterable[str] = (), beside: str = "") -> Entry:
+    """A key and, indented below it, the entries of its mapping or list."""
+    lines = (line for item in items for line in item.text("  "))
+    return Entry((f"{scalar(key)}:", *lines), tuple(above), beside)
+
+
 def text_of(entries: Iterable[Entry]) -> str:
     """The text of a file."""
     return "".join(f"{line}\n" for entry in entries for line in entry.text())
@@ -127,5 +139,3 @@ def _escaped(character: str) -> str:
         return character
     code = ord(character)
     return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}" if code < 0x10000 else f"\\U{code:08x}"
-
-

@@ -68,16 +68,18 @@ def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
     assembler = Assembler(robot)
     assembly = assembler.assemble(start(robot, q))
     r, K = assembler.evaluate(assembly.q)
-    ranks = _generic_ranks(assembler, assembly, K, actuated) if assembly.closes else None
     nv, nc = robot.model.nv, len(r)
+    rank = held = None
+    if assembly.closes:
+        rank, held = _generic_ranks(assembler, assembly, K, actuated)
     return Analysis(
         nq=robot.model.nq,
         nv=nv,
         nc=nc,
-        rank=ranks and ranks[0],
-        mobility=ranks and nv - ranks[0],
-        redundant=ranks and nc - ranks[0],
-        uncontrolled=ranks and nv - ranks[1],
+        rank=rank,
+        mobility=None if rank is None else nv - rank,
+        redundant=None if rank is None else nc - rank,
+        uncontrolled=None if held is None else nv - held,
         actuated=int(actuated.sum()),
         residual=assembly.residual,
         closes=assembly.closes,

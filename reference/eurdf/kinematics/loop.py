@@ -44,28 +44,28 @@ class Loop:
     mimics: bool
 
 
-# The paths depend only on the tree and on the joints that carry the frames, so that they are kept with the robot.
-_LOOPS: weakref.WeakKeyDictionary[Any, tuple[list[tuple[int, int]], tuple[Loop, ...]]] = weakref.WeakKeyDictionary()
+# The loops depend only on the tree and on the joints that carry the frames: they are kept until one of these changes.
+_LOOPS: weakref.WeakKeyDictionary[Any, tuple[Any, list[tuple[int, int, int]], tuple[Loop, ...]]]
+_LOOPS = weakref.WeakKeyDictionary()
 
 
 def find_loops(robot: Robot) -> tuple[Loop, ...]:
     """Loops of the robot's closures, in their order."""
-    ends = [(model.joint1_id, model.joint2_id) for model in robot.constraint_models]
+    model = robot.model
+    ends = [(found.joint1_id, found.joint2_id, found.residualSize()) for found in robot.constraint_models]
     known = _LOOPS.get(robot)
-    if known is not None and known[0] == ends:
-        return known[1]
-    loops = _trace(robot, ends)
-    _LOOPS[robot] = ends, loops
+    if known is not None and known[0] is model and known[1] == ends:
+        return known[2]
+    loops = _trace(model, ends)
+    _LOOPS[robot] = model, ends, loops
     return loops
 
 
-def _trace(robot: Robot, ends: list[tuple[int, int]]) -> tuple[Loop, ...]:
-    model = robot.model
+def _trace(model: Any, ends: Sequence[tuple[int, int, int]]) -> tuple[Loop, ...]:
     parents = list(model.parents)
     first_column, widths, first_velocity = list(model.idx_vExtendeds), list(model.nvExtendeds), list(model.idx_vs)
     loops, row = [], 0
-    for (joint_a, joint_b), constraint in zip(ends, robot.constraint_models, strict=True):
-        size = constraint.residualSize()
+    for joint_a, joint_b, size in ends:
         signs = {}
         a, b = joint_a, joint_b
         while a != b:  # a parent has a lower index than its child: the higher of the two cannot be the common ancestor

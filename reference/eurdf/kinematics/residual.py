@@ -60,7 +60,7 @@ def residual_and_jacobian(robot: Robot, q: Vector, data: Any = None) -> tuple[Ve
     if data is None:
         placements, J = _jacobian_along(robot.model, q, loops)
     else:
-        J = pin.computeJointJacobians(robot.model, data, q)
+        J = pin.computeJointJacobians(robot.model, data, q).reshape(6, -1)  # (6,) where nv is 1
         placements = data.oMi
     nc = loops[-1].rows.stop if loops else 0
     r, K = np.empty(nc), np.zeros((nc, robot.model.nv))

@@ -20,8 +20,6 @@ MOMENT_TOLERANCE = 1e-6
 #: A leaf whose smallest inertia about its joint is below this part of its largest has none about that axis.
 SINGULAR = 1e-12
 
-_UNITS: tuple[Vector3, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-
 Moments = tuple[float, float, float, float, float, float]
 
 
@@ -113,9 +111,8 @@ def _immaterial(joint: Joint, members: Iterable[tuple[Pose, Inertia]]) -> str | 
         smallest = sum(_about_axis(axis, pose, inertia) for pose, inertia in members) / squared
         largest = sum(_trace_about_origin(pose, inertia) for pose, inertia in members)
         return None if smallest > SINGULAR * largest else "has no inertia about the joint's axis"
-    if joint.type is JointType.SPHERICAL:
-        smallest, _, largest = np.linalg.eigvalsh(sum(_about_origin(pose, inertia) for pose, inertia in members))
-        return None if smallest > SINGULAR * largest else "has no inertia about one of the axes through the joint"
+    if joint.type is JointType.SPHERICAL and not _positive(members):
+        return "has no inertia about one of the axes through the joint"
     return None  # those joints also slide, or their axes move: any mass resists them somewhere
 
 
@@ -136,13 +133,37 @@ def _trace_about_origin(pose: Pose, inertia: Inertia) -> float:
     return inertia.moments[0] + inertia.moments[3] + inertia.moments[5] + 2.0 * inertia.mass * (x * x + y * y + z * z)
 
 
-def _about_origin(pose: Pose, inertia: Inertia) -> np.ndarray:
-    """Rotational inertia about the joint's origin, in the joint's frame: R I Rᵀ + m (cᵀc 1 - c cᵀ)."""
-    at = pose * inertia.pose
-    rotation = np.array([at.rotate(axis) for axis in _UNITS]).T
-    c = np.array(at.xyz)
-    matrix: np.ndarray = rotation @ _matrix(inertia.moments) @ rotation.T
-    return matrix + inertia.mass * (c @ c * np.eye(3) - np.outer(c, c))
+def _positive(members: Iterable[tuple[Pose, Inertia]]) -> bool:
+    """Whether the rotational inertia about the joint's origin, Σ R I Rᵀ + m (cᵀc 1 - c cᵀ), is positive definite.
+
+    Sylvester's criterion on the matrix less `SINGULAR` of its trace.
+    """
+    xx = xy = xz = yy = yz = zz = 0.0
+    for pose, inertia in members:
+        at = pose * inertia.pose
+        ixx, ixy, ixz, iyy, iyz, izz = inertia.moments
+        u, v, w = at.rotate((1.0, 0.0, 0.0)), at.rotate((0.0, 1.0, 0.0)), at.rotate((0.0, 0.0, 1.0))
+        turned = [
+            [
+                u[i] * (ixx * u[j] + ixy * v[j] + ixz * w[j])
+                + v[i] * (ixy * u[j] + iyy * v[j] + iyz * w[j])
+                + w[i] * (ixz * u[j] + iyz * v[j] + izz * w[j])
+                for j in range(3)
+            ]
+            for i in range(3)
+        ]
+        (x, y, z), mass = at.xyz, inertia.mass
+        xx += turned[0][0] + mass * (y * y + z * z)
+        yy += turned[1][1] + mass * (x * x + z * z)
+        zz += turned[2][2] + mass * (x * x + y * y)
+        xy += turned[0][1] - mass * x * y
+        xz += turned[0][2] - mass * x * z
+        yz += turned[1][2] - mass * y * z
+    bound = SINGULAR * (xx + yy + zz)
+    xx, yy, zz = xx - bound, yy - bound, zz - bound
+    second = xx * yy - xy * xy
+    third = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)
+    return xx > 0.0 and second > 0.0 and third > 0.0
 
 
 def _matrix(moments: Moments) -> np.ndarray:
@@ -151,15 +172,20 @@ def _matrix(moments: Moments) -> np.ndarray:
 
 
 def _plainly_sound(moments: Moments) -> bool:
-    """Whether J = tr(I)/2 · 1 - I is plainly positive definite by its diagonal alone (Gershgorin), or I is zero.
+    """Whether the triangle inequality surely holds, and with it positive semidefiniteness.
 
-    J is positive semidefinite exactly where the principal moments obey the triangle inequality, which makes I positive
-    semidefinite too; so most links need no eigenvalues.
+    They hold where J = tr(I)/2 · 1 - I is positive semidefinite. That is seen by Sylvester's criterion on J with the
+    tolerance added to its diagonal; what fails it is looked at again, by its principal moments.
     """
     xx, xy, xz, yy, yz, zz = moments
-    half = (xx + yy + zz) / 2.0
-    xy, xz, yz = abs(xy), abs(xz), abs(yz)
-    return half - xx >= xy + xz and half - yy >= xy + yz and half - zz >= xz + yz
+    half = (xx + yy + zz) * (0.5 + 0.25 * MOMENT_TOLERANCE)
+    a, b, c = half - xx, half - yy, half - zz
+    second = a * b - xy * xy
+    return (
+        a > 0.0
+        and second > 0.0
+        and a * (b * c - yz * yz) - xy * (xy * c + yz * xz) - xz * (xy * yz + b * xz) > 0.0
+    ) or not any(moments)
 
 
 def _report(

@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
 
-from eurdf.format.urdf import Urdf, UrdfLink
+from eurdf.format.urdf import Urdf
 from eurdf.mechanism.joint_type import COORDINATES, JointType
 from eurdf.mechanism.mechanism import Joint
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
@@ -20,6 +20,8 @@ MEETING = 1e-4
 
 #: Directions whose sine is below this are parallel (EU-JNT-007).
 PARALLEL = 1e-6
+
+_ORDERS = tuple(itertools.permutations(range(3)))
 
 _ROTARY = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS})
 
@@ -35,10 +37,19 @@ class NotMergeable(Exception):  # noqa: N818 - a finding, which one of the two c
 
 @dataclass(frozen=True, slots=True)
 class Chain:
-    """Three joints to merge, from the root outwards, and the two links in between."""
+    """Three joints that can be merged, from the root outwards.
+
+    Attributes:
+        joints: The joints.
+        zero: Pose of the last joint at zero, in the frame of the body before.
+        directions: Unit vectors of the axes at zero, in that frame.
+        point: Where they meet, in that frame.
+    """
 
     joints: tuple[Joint, Joint, Joint]
-    between: tuple[UrdfLink, UrdfLink]
+    zero: Pose
+    directions: tuple[Vector3, ...]
+    point: Vector3
 
 
 def check_chain(
@@ -73,8 +84,8 @@ def check_chain(
             )
         if link.name in closure_links:
             raise NotMergeable("merge-closure-frame", f"link '{link.name}' between them carries a frame of a closure")
-    _meeting_point(chain)
-    return Chain(chain, (between[0], between[1]))
+    zero, lines = _lines(chain)
+    return Chain(chain, zero, tuple(direction for _, direction in lines), _meeting_point(lines))
 
 
 def merge(chain: Chain, name: str) -> tuple[Joint, Joint, Joint]:
@@ -86,14 +97,13 @@ def merge(chain: Chain, name: str) -> tuple[Joint, Joint, Joint]:
     the frame takes those of the merged joint whose axis, at zero, is nearest to it.
     """
     first, second, third = chain.joints
-    zero = first.placement * second.placement * third.placement
+    zero = chain.zero
     offset = IDENTITY
-    point = _meeting_point(chain.joints)
-    if math.dist(point, zero.xyz) > MEETING:
-        offset = Pose((zero.inverse()).act(point))
-        offset = Pose(tuple(-value for value in offset.xyz))  # type: ignore[arg-type]
-        zero = Pose(point, zero.quaternion)
-    nearest = _nearest_axes(chain.joints)
+    if math.dist(chain.point, zero.xyz) > MEETING:
+        centre = Pose(chain.point, zero.quaternion)
+        offset = Pose(centre.inverse().act(zero.xyz))
+        zero = centre
+    nearest = _nearest_axes(chain)
 
     def by_axis(read: Callable[[Joint], float]) -> tuple[float, ...]:
         return tuple(read(joint) for joint in nearest)
@@ -170,7 +180,7 @@ def _lines(chain: tuple[Joint, Joint, Joint]) -> tuple[Pose, list[tuple[Vector3,
     return pose, lines
 
 
-def _meeting_point(chain: tuple[Joint, Joint, Joint]) -> Vector3:
+def _meeting_point(lines: list[tuple[Vector3, Vector3]]) -> Vector3:
     """The point nearest to the three axes, in the frame of the body before.
 
     It solves Σ (I - u uᵀ) p = Σ (I - u uᵀ) o for the lines o + s u.
@@ -178,10 +188,11 @@ def _meeting_point(chain: tuple[Joint, Joint, Joint]) -> Vector3:
     Raises:
         NotMergeable: Where two axes are parallel, or one passes the point by more than `MEETING`.
     """
-    _, lines = _lines(chain)
     for (_, u), (_, v) in itertools.combinations(lines, 2):
         if _norm(_cross(u, v)) < PARALLEL:
             raise NotMergeable("joint-axes-parallel", "two of their axes are parallel")
+    if lines[0][0] == lines[1][0] == lines[2][0]:
+        return lines[0][0]  # the usual way to write a ball: three joints at one origin
     matrix = [[0.0] * 3 for _ in range(3)]
     vector = [0.0] * 3
     for origin, direction in lines:
@@ -209,15 +220,13 @@ def _meeting_point(chain: tuple[Joint, Joint, Joint]) -> Vector3:
     return point
 
 
-def _nearest_axes(chain: tuple[Joint, Joint, Joint]) -> tuple[Joint, ...]:
+def _nearest_axes(chain: Chain) -> tuple[Joint, ...]:
     """For x, y, z of the last joint's frame at zero, the joint whose axis is nearest; each joint once."""
-    pose, lines = _lines(chain)
-    back = replace(pose, xyz=(0.0, 0.0, 0.0)).inverse()
-    axes = [back.rotate(direction) for _, direction in lines]
-    best = max(
-        itertools.permutations(range(3)), key=lambda order: sum(abs(axes[order[axis]][axis]) for axis in range(3))
-    )
-    return tuple(chain[index] for index in best)
+    back = replace(chain.zero, xyz=(0.0, 0.0, 0.0)).inverse()
+    first, second, third = (tuple(map(abs, back.rotate(direction))) for direction in chain.directions)
+    near = (first, second, third)
+    x, y, z = max(_ORDERS, key=lambda order: near[order[0]][0] + near[order[1]][1] + near[order[2]][2])
+    return chain.joints[x], chain.joints[y], chain.joints[z]
 
 
 def _cross(a: tuple[float, ...], b: tuple[float, ...]) -> Vector3:

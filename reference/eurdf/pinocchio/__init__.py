@@ -1,1 +1,1 @@
-
+"""The mechanism as a Pinocchio robot: model, constraint models, actuation, geometry."""

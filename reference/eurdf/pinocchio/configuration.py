@@ -11,8 +11,8 @@ import pinocchio as pin
 
 from eurdf.mechanism.joint_type import COORDINATES, Coordinates, JointType
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.pinocchio.coordinates import slots
-from eurdf.pinocchio.mimic import NONE, following
+from eurdf.pinocchio.coordinates import Slot, slots
+from eurdf.pinocchio.mimic import following
 from eurdf.pinocchio.model import ROOT_JOINT
 
 Vector = npt.NDArray[np.float64]
@@ -68,22 +68,25 @@ def joint_coordinates(mechanism: Mechanism, model: pin.Model, q: Vector) -> dict
         In the order of the mechanism's joints, ``root_joint`` first where the root floats. An angle that Pinocchio has
         as (cos, sin) is from -pi to pi. A joint that follows another has the coordinate that follows.
     """
-    found: dict[str, tuple[float, ...]] = {}
     values = np.asarray(q, dtype=float).tolist()
+    found: dict[str, tuple[float, ...]] = {}
     if mechanism.root == "floating":
         found[ROOT_JOINT] = tuple(values[:7])
     at = slots(mechanism, model)
-    for name, slot in at.items():
-        own = values[slot.idx_q : slot.idx_q + slot.nq]
+
+    def own(slot: Slot) -> tuple[float, ...]:
+        numbers = values[slot.idx_q : slot.idx_q + slot.nq]
         if slot.nq > len(slot.joint.coordinates.names):
-            own[-2:] = [math.atan2(own[-1], own[-2])]
-        found[name] = tuple(own)
-    laws = following(mechanism).laws if len(model.mimicking_joints) else NONE.laws
-    for name, law in laws.items():
-        found[name] = (law.multiplier * found[law.joint][0] + law.offset,)
-    if laws:
-        order = {joint.name: index for index, joint in enumerate(mechanism.joints)}
-        found = dict(sorted(found.items(), key=lambda item: order.get(item[0], -1)))
+            numbers[-2:] = [math.atan2(numbers[-1], numbers[-2])]
+        return tuple(numbers)
+
+    laws = following(mechanism).laws
+    for joint in mechanism.joints:
+        if joint.name in at:
+            found[joint.name] = own(at[joint.name])
+        elif joint.name in laws:
+            law = laws[joint.name]
+            found[joint.name] = (law.multiplier * own(at[law.joint])[0] + law.offset,)
     return found
 
 

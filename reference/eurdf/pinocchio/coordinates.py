@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import pinocchio as pin
 
@@ -10,12 +10,8 @@ from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Joint, Mechanism
 from eurdf.pinocchio.mimic import NONE, following
 
-# Their angle is (cos, sin) in Pinocchio.
-_ANGLE_IN_TWO = frozenset({JointType.CONTINUOUS, JointType.PLANAR})
 
-
-@dataclass(frozen=True, slots=True)
-class Slot:
+class Slot(NamedTuple):
     """A joint that has coordinates of its own, and where they stand.
 
     Attributes:
@@ -48,7 +44,10 @@ def slots(mechanism: Mechanism, model: pin.Model) -> dict[str, Slot]:
         if joint.type is JointType.FIXED:
             continue
         if joint.name not in led.laws:
-            nq = len(joint.coordinates.names) + (joint.type in _ANGLE_IN_TWO and joint.name not in led.counted)
-            found[joint.name] = Slot(joint, idx_qs[joint_id], nq, idx_vs[joint_id], joint.coordinates.nv)
+            coordinates = joint.coordinates
+            nq = len(coordinates.names)
+            if joint.type is JointType.PLANAR or (joint.type is JointType.CONTINUOUS and joint.name not in led.counted):
+                nq += 1  # Pinocchio has their angle as (cos, sin)
+            found[joint.name] = Slot(joint, idx_qs[joint_id], nq, idx_vs[joint_id], coordinates.nv)
         joint_id += 1
     return found

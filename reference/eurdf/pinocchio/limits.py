@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from itertools import chain
 
 import numpy as np
 import pinocchio as pin
@@ -29,40 +28,42 @@ def set_limits(model: pin.Model, joints: Sequence[tuple[Joint, int]], root_nq: i
         root_nq: Number of coordinates of the root joint; 0 without one.
         root_nv: Number of its velocities.
     """
-
-    def vector(values: list[tuple[float, ...]], default: float, root: np.ndarray) -> np.ndarray:
-        filled = (value or (default,) * nv for value, nv in zip(values, widths, strict=True))
-        return np.array([*root[:root_nv], *chain.from_iterable(filled)])
-
-    widths = [joint.coordinates.nv for joint, _ in joints]
-    bounds = [_position_bounds(joint, nq) for joint, nq in joints]
-    model.lowerPositionLimit = np.array(
-        [*model.lowerPositionLimit[:root_nq], *chain.from_iterable(lower for lower, _ in bounds)]
-    )
-    model.upperPositionLimit = np.array(
-        [*model.upperPositionLimit[:root_nq], *chain.from_iterable(upper for _, upper in bounds)]
-    )
-    velocity = vector([joint.velocity for joint, _ in joints], _INF, model.upperVelocityLimit)
+    lower, upper = model.lowerPositionLimit[:root_nq].tolist(), model.upperPositionLimit[:root_nq].tolist()
+    velocity, effort = model.upperVelocityLimit[:root_nv].tolist(), model.upperEffortLimit[:root_nv].tolist()
+    friction, damping = model.upperDryFrictionLimit[:root_nv].tolist(), model.damping[:root_nv].tolist()
+    armature, rotor_inertia = model.armature[:root_nv].tolist(), model.rotorInertia[:root_nv].tolist()
+    gear_ratio = model.rotorGearRatio[:root_nv].tolist()
+    for joint, nq in joints:
+        lowest, highest = _position_bounds(joint, nq)
+        lower += lowest
+        upper += highest
+        nv = joint.coordinates.nv
+        velocity += joint.velocity or (_INF,) * nv
+        effort += joint.effort or (_INF,) * nv
+        friction += joint.friction or (0.0,) * nv
+        damping += joint.damping or (0.0,) * nv
+        armature += joint.armature or (0.0,) * nv
+        rotor_inertia += joint.rotor_inertia or (0.0,) * nv
+        gear_ratio += joint.gear_ratio or (1.0,) * nv
+    model.lowerPositionLimit = np.array(lower)
+    model.upperPositionLimit = np.array(upper)
     # Pinocchio 4.1 gives the lower velocity limit the sign of the upper one. Whichever it gave its defaults is kept.
     model.lowerVelocityLimit = np.copysign(velocity, model.lowerVelocityLimit)
-    model.upperVelocityLimit = velocity
-    effort = vector([joint.effort for joint, _ in joints], _INF, model.upperEffortLimit)
-    model.lowerEffortLimit = -effort
-    model.upperEffortLimit = effort
-    friction = vector([joint.friction for joint, _ in joints], 0.0, model.upperDryFrictionLimit)
-    model.lowerDryFrictionLimit = -friction
-    model.upperDryFrictionLimit = friction
-    model.damping = vector([joint.damping for joint, _ in joints], 0.0, model.damping)
-    model.armature = vector([joint.armature for joint, _ in joints], 0.0, model.armature)
-    model.rotorInertia = vector([joint.rotor_inertia for joint, _ in joints], 0.0, model.rotorInertia)
-    model.rotorGearRatio = vector([joint.gear_ratio for joint, _ in joints], 1.0, model.rotorGearRatio)
+    model.upperVelocityLimit = np.array(velocity)
+    model.upperEffortLimit = np.array(effort)
+    model.lowerEffortLimit = -model.upperEffortLimit
+    model.upperDryFrictionLimit = np.array(friction)
+    model.lowerDryFrictionLimit = -model.upperDryFrictionLimit
+    model.damping = np.array(damping)
+    model.armature = np.array(armature)
+    model.rotorInertia = np.array(rotor_inertia)
+    model.rotorGearRatio = np.array(gear_ratio)
 
 
 def _position_bounds(joint: Joint, nq: int) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Lower and upper position limits as Pinocchio's coordinates have them, ``nq`` numbers each."""
-    names = len(joint.coordinates.names)
-    lower = joint.lower or (-_INF,) * names
-    upper = joint.upper or (_INF,) * names
+    lower = joint.lower or (-_INF,) * len(joint.coordinates.names)
+    upper = joint.upper or (_INF,) * len(joint.coordinates.names)
     kind = joint.type
     if kind is JointType.SPHERICAL or (kind is JointType.CONTINUOUS and nq == 2):
         plain = 0

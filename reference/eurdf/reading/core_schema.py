@@ -59,8 +59,11 @@ def resolve_tagged(tag: str, text: str) -> Scalar:
 
 
 def _integer(text: str) -> int | float:
-    if text[1:2] in ("o", "x"):
-        value = int(text, 0)
+    base = 0 if text[1:2] in ("o", "x") else 10
+    if len(text) < 256:  # whatever the base, a double holds it
+        return int(text, base)
+    if base == 0:
+        value = int(text, base)
     else:
         # Python refuses to convert thousands of digits, zeros in front included.
         digits = text.lstrip("+-").lstrip("0") or "0"

@@ -123,3 +123,8 @@ def _read_bytes(file: str, limit: int) -> bytes:
 def too_large(file: str, most: str) -> Fault:
     """The fault of a file that has more than it may have."""
     return Fault("file-too-large", f"the file has more than {most}, the most it may have", Place(file))
+
+
+def short(text: str) -> str:
+    """What a message quotes of a text of any length."""
+    return text if len(text) <= 60 else text[:57] + "..."

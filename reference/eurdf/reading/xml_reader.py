@@ -7,11 +7,11 @@ import re
 from lxml import etree
 
 from eurdf.diagnostics import Fault, Place
-from eurdf.reading.source import URDF_LIMIT, Source, too_large
+from eurdf.reading.source import URDF_LIMIT, Source, short, too_large
 from eurdf.reading.xml_syntax import NAMESPACE_ERRORS, syntax_fault, too_long
 
 #: Tags and attributes that a file may have: what takes memory is their number.
-TAG_LIMIT = 2_000_000
+TAG_LIMIT = 1_000_000
 
 _DECLARED_ENCODING = re.compile(r"""<\?xml\s[^>]*?\sencoding\s*=\s*(["'])(.*?)\1""")
 _BEFORE_DOCTYPE = re.compile(r"(?:[ \t\r\n]+|<\?.*?\?>|<!--.*?-->)*+", re.DOTALL)
@@ -87,7 +87,7 @@ def _written_name(element: etree._Element, name: str) -> str:
     """Name of an element or of one of its attributes as the file has it, with its prefix."""
     if not name.startswith("{"):
         return name
-    uri, local = name[1:].split("}")
+    uri, _, local = name[1:].rpartition("}")
     if name == element.tag:
         return f"{element.prefix}:{local}" if element.prefix else local
     prefixes = [prefix for prefix, bound in element.nsmap.items() if prefix and bound == uri]
@@ -114,10 +114,10 @@ def read_xml(source: Source) -> XmlDocument:
             raise fault from None
         root = _read_with_namespace_errors(source)
     if root.prefix is None and root.tag.startswith("{"):
-        default = root.tag.partition("}")[0] + "}"
-        for element in root.iter(default + "*"):
-            if element.prefix is None:
-                element.tag = element.tag.removeprefix(default)
+        namespace, _, _ = root.tag.rpartition("}")
+        for element in root.iter():
+            if element.prefix is None and element.tag.rpartition("}")[0] == namespace:
+                element.tag = element.tag.rpartition("}")[2]
     return XmlDocument(source, root)
 
 
@@ -145,13 +145,13 @@ def _read_with_namespace_errors(source: Source) -> etree._Element:
 
 
 def _refuse_other_encoding(source: Source) -> None:
-    declared = _DECLARED_ENCODING.match(source.text)
+    declared = _DECLARED_ENCODING.match(source.text, 0, 1024)
     if declared is None:
         return
     encoding = declared[2].lower().replace("_", "-")
     if encoding in ("utf-8", "utf8") or (encoding in ("us-ascii", "ascii") and source.text.isascii()):
         return
-    message = f"the file declares the encoding '{declared[2]}'; it must be UTF-8"
+    message = f"the file declares the encoding '{short(declared[2])}'; it must be UTF-8"
     hint = "save it as UTF-8, and declare that or no encoding"
     raise Fault("file-not-utf8", message, source.place(*declared.span(2)), hint)
 

@@ -8,7 +8,7 @@ from xml.parsers import expat
 from xml.parsers.expat import errors
 
 from eurdf.diagnostics import Fault, Place
-from eurdf.reading.source import Source
+from eurdf.reading.source import Source, short
 
 #: Elements that may be nested in one another; what libxml2 allows by itself.
 DEPTH_LIMIT = 256
@@ -69,7 +69,7 @@ def syntax_fault(source: Source, error: Any) -> Fault | None:
         return too_long(source)
     # What only the namespaces of XML forbid, such as two ':' in a name.
     message = re.sub(r",? line \d+, column \d+.*", "", str(error.msg), flags=re.DOTALL)
-    return Fault("xml-syntax", message[:1].lower() + message[1:], Place(source.file, error.position[0]))
+    return Fault("xml-syntax", short(message[:1].lower() + message[1:]), Place(source.file, error.position[0]))
 
 
 def too_long(source: Source) -> Fault:
@@ -82,11 +82,12 @@ def _not_closed(source: Source, problem: str, at: int, name: str, opened: int) -
     """An element that the file, or another element, ends before it does."""
     if problem == errors.XML_ERROR_NO_ELEMENTS:
         place = source.place(opened, opened + 1 + len(name))
-        return Fault("xml-syntax", f"<{name}> is never closed", place, f"close it with </{name}>")
+        return Fault("xml-syntax", f"<{short(name)}> is never closed", place, f"close it with </{short(name)}>")
     closing = _NAME.match(source.text, at)
     assert closing is not None
     line, _ = source.position(opened)
-    message = f"</{closing[0]}> stands where </{name}> must, which closes the <{name}> of line {line}"
+    name = short(name)
+    message = f"</{short(closing[0])}> stands where </{name}> must, which closes the <{name}> of line {line}"
     return Fault("xml-syntax", message, source.place(at - 2, closing.end()))
 
 
@@ -107,13 +108,13 @@ def _explain(text: str, problem: str, at: int) -> tuple[int, int, str, str | Non
         return at, end, f"{what} is never closed", None
     if problem == errors.XML_ERROR_DUPLICATE_ATTRIBUTE:
         end = _end_of_name(text, at)
-        return at, end, f"the attribute '{text[at:end]}' stands twice in one element", None
+        return at, end, f"the attribute '{short(text[at:end])}' stands twice in one element", None
     if problem == errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT:
         return at, end, "this stands after the end of the root element", "an XML file has one root element"
     if problem == errors.XML_ERROR_UNDEFINED_ENTITY:
         end = _end_of_name(text, at + 1)
         hint = "XML knows &lt; &gt; &amp; &quot; and &apos;; a lone '&' is written &amp;"
-        return at, end, f"the entity '{text[at:end]};' is unknown", hint
+        return at, end, f"the entity '{short(text[at:end])};' is unknown", hint
     if problem == errors.XML_ERROR_MISPLACED_XML_PI:
         return at, end, "the XML declaration does not stand at the very beginning of the file", None
     return at, end, problem, None
@@ -124,14 +125,16 @@ def _stray_character(text: str, at: int) -> tuple[int, int, str, str | None]:
     character = text[at:end]
     if text[at - 1 : at] == "&":
         return at - 1, at, "a '&' stands alone", "write &amp; for it"
-    if text.rfind("<!--", 0, at) > text.rfind("-->", 0, at):
-        return at, end, "'--' cannot stand in a comment", None
+    if text[at - 2 : at] == "--" and text.rfind("<!--", 0, at) > text.rfind("-->", 0, at):
+        return at - 2, at, "'--' cannot stand in a comment", None
     if text[:at].rstrip().endswith("="):
         return at, end, "the value of an attribute must stand in quotes", None
     if character == "<":
         return at, end, "a '<' stands inside a tag", "close the tag before it with '>', or write &lt; in a value"
     if character in (" ", "\t", "\n", "\r"):
         return at, end, "white space cannot stand here", None
+    if not character:
+        return at, at, "the file ends too early", None
     shown = f"'{character}'" if character.isprintable() else f"the character U+{ord(character):04X}"
     return at, end, f"{shown} cannot stand here", None
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from yaml.events import Event
+#: Index, in characters, of the first character of a node and of the one after its last. The end is None for a mapping
+#: or list in block style: libyaml puts it where the next node begins.
+Span = tuple[int, int | None]
 
 
 class Collection:
@@ -13,35 +15,37 @@ class Collection:
 
     Attributes:
         data: The plain ``dict`` or ``list``.
-        start: Event that begins it.
-        end: Event that ends it; None while it is being read.
-        key: In a mapping, the key whose value comes next.
-        keys: In a mapping, the event of each key.
+        span: Where it stands.
+        is_open: Whether it is still being read.
+        is_mapping: Whether it is a mapping.
+        awaits_key: Whether it is a mapping in which a key comes next.
+        key: In a mapping, the last key that came.
+        keys: In a mapping, where each key stands.
         nodes: The node of each value, by key or index.
         size: Number of nodes in it, keys and itself included, aliases expanded; while it is being read, number of nodes
             in the file before it.
         height: Number of mappings and lists nested at the deepest, itself included, aliases expanded.
     """
 
-    __slots__ = ("data", "end", "height", "is_mapping", "key", "keys", "nodes", "size", "start")
+    __slots__ = ("awaits_key", "data", "height", "is_mapping", "is_open", "key", "keys", "nodes", "size", "span")
 
-    def __init__(self, data: dict[str, Any] | list[Any], start: Event, size: int) -> None:
+    def __init__(self, data: dict[str, Any] | list[Any], span: Span, size: int) -> None:
         self.data: Any = data
-        self.start = start
-        self.end: Event | None = None
-        self.is_mapping = type(data) is dict
-        self.key: str | None = None
-        self.keys: dict[str | int, Event] = {}
+        self.span = span
+        self.is_open = True
+        self.is_mapping = self.awaits_key = type(data) is dict
+        self.key = ""
+        self.keys: dict[str | int, Span] = {}
         self.nodes: dict[str | int, Node] = {}
         self.size = size
         self.height = 1
 
     def add(self, value: Any, node: Node) -> None:
         """Put in the next value; in a mapping, its key must have come."""
-        if self.key is not None:
+        if self.is_mapping:
             self.data[self.key] = value
             self.nodes[self.key] = node
-            self.key = None
+            self.awaits_key = True
         else:
             self.nodes[len(self.data)] = node
             self.data.append(value)
@@ -50,30 +54,15 @@ class Collection:
 class Alias:
     """An alias of a mapping or a list."""
 
-    __slots__ = ("event", "target")
+    __slots__ = ("span", "target")
 
-    def __init__(self, event: Event, target: Collection) -> None:
-        self.event = event
+    def __init__(self, span: Span, target: Collection) -> None:
+        self.span = span
         self.target = target
 
 
-#: A scalar, or an alias of one, is nothing but its event.
-Node = Event | Collection | Alias
-
-
-def span(node: Node) -> tuple[int, int | None]:
-    """Indices, in characters, of the first character of a node and of the one after its last.
-
-    The end is None for a mapping or list in block style: libyaml puts it where the next node begins.
-    """
-    if isinstance(node, Alias):
-        node = node.event
-    start: Any = node
-    end: Any = node
-    if isinstance(node, Collection):
-        start = node.start
-        end = node.end if start.flow_style else None
-    return start.start_mark.index, end.end_mark.index if end is not None else None
+#: Of a scalar, or an alias of one, where it stands is all that is kept.
+Node = Span | Collection | Alias
 
 
 def json_pointer(steps: Sequence[str | int]) -> str:

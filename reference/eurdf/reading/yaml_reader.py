@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from math import isfinite
 from typing import Any
 
-import yaml
+from yaml import CSafeLoader
 from yaml.error import MarkedYAMLError, YAMLError
 from yaml.events import (
     AliasEvent,
@@ -21,10 +21,10 @@ from yaml.events import (
     StreamEndEvent,
 )
 
-from eurdf.diagnostics import Fault, Place, did_you_mean
+from eurdf.diagnostics import Fault, Place
 from eurdf.reading.core_schema import TAG_PREFIX, resolve, resolve_tagged
-from eurdf.reading.source import YAML_LIMIT, Source, too_large
-from eurdf.reading.yaml_node import Alias, Collection, Node, json_pointer, span
+from eurdf.reading.source import YAML_LIMIT, Source, short, too_large
+from eurdf.reading.yaml_node import Alias, Collection, Node, Span, json_pointer
 from eurdf.reading.yaml_syntax import syntax_fault
 
 #: Mappings and lists that may be nested in one another, aliases expanded.
@@ -67,15 +67,16 @@ class YamlDocument:
             key: Whether the key is meant rather than the value. An item of a list has no key.
         """
         node: Node = self._root
-        key_event: Event | None = None
+        key_span: Span | None = None
         for step in pointer:
             collection = node.target if isinstance(node, Alias) else node
             if not isinstance(collection, Collection) or step not in collection.nodes:
                 break
-            node, key_event = collection.nodes[step], collection.keys.get(step)
-        if key and key_event is not None:
-            node = key_event
-        return self.source.place(*span(node), json_pointer(pointer))
+            node, key_span = collection.nodes[step], collection.keys.get(step)
+        if key and key_span is not None:
+            node = key_span
+        start, end = node if isinstance(node, tuple) else node.span
+        return self.source.place(start, end, json_pointer(pointer))
 
 
 def read_yaml(source: Source) -> YamlDocument:
@@ -90,8 +91,7 @@ def read_yaml(source: Source) -> YamlDocument:
     if data.count(b"\n%TAG") + data.count(b"\r%TAG") > DIRECTIVE_LIMIT:
         raise too_large(source.file, f"{DIRECTIVE_LIMIT} %TAG directives")
     try:
-        # libyaml itself: PyYAML's own parser is slow and recursive, and there is no falling back to it.
-        return YamlDocument(source, _Reader(source, yaml.CSafeLoader(data).get_event, original).read())
+        return YamlDocument(source, _Reader(source, CSafeLoader(data).get_event, original).read())
     except (YAMLError, UnicodeDecodeError) as error:
         raise syntax_fault(source, error) from None
 
@@ -122,9 +122,9 @@ class _Reader:
         self._source = source
         self._next_event = next_event
         self._original = original
-        self._anchors: dict[str, tuple[Any, Node]] = {}
+        self._anchors: dict[str, tuple[Any, Span | Collection]] = {}
         self._count = 0  # of nodes
-        self._file = Collection([], next_event(), 0)  # whose one item is the top level
+        self._file = Collection([], _span(next_event()), 0)  # whose one item is the top level
         self._open = [self._file]  # from the outermost to the innermost
 
     def read(self) -> Collection:
@@ -155,7 +155,8 @@ class _Reader:
             return top
         value = self._file.data[0]
         message = "the document is empty" if value is None else f"the top level is {_kind(value)}"
-        raise self._fault("yaml-empty", f"{message}; it must be a mapping", top)
+        span = top if isinstance(top, tuple) else top.span
+        raise Fault("yaml-empty", f"{message}; it must be a mapping", self._source.place(*span))
 
     def _scalar(self, event: ScalarEvent) -> None:
         self._count += 1
@@ -171,27 +172,28 @@ class _Reader:
                 value = resolve_tagged(event.tag, text)
             except ValueError:
                 raise self._tag_fault(event, _quote(text)) from None
+        span = _span(event)
         if event.anchor is not None:
-            self._anchors[event.anchor] = value, event
+            self._anchors[event.anchor] = value, span
         around = self._open[-1]
-        if around.is_mapping and around.key is None:
+        if around.awaits_key:
             self._key(value, event)
             return
         if type(value) is float and not isfinite(value):
             what = "is no finite number" if "n" in text.lower() else "is beyond the range of numbers"
             raise self._fault("yaml-not-finite", f"{_quote(text)} {what}", event)
-        around.add(value, event)
+        around.add(value, span)
 
     def _begin(self, event: Any, data: dict[str, Any] | list[Any], tag: str) -> None:
-        around = self._open[-1]
-        if around.is_mapping and around.key is None:
+        if self._open[-1].awaits_key:
             self._key(data, event)
         if len(self._open) > DEPTH_LIMIT:
             message = f"mappings and lists are nested more than {DEPTH_LIMIT} deep"
             raise self._fault("yaml-too-deep", message, event)
         if event.tag not in (None, "!", TAG_PREFIX + tag):
             raise self._tag_fault(event, _kind(data))
-        collection = Collection(data, event, self._count)
+        start, end = _span(event)
+        collection = Collection(data, (start, end if event.flow_style else None), self._count)
         self._count += 1
         if self._count > NODE_LIMIT:
             raise too_large(self._source.file, f"{NODE_LIMIT:,} keys and values")
@@ -201,7 +203,10 @@ class _Reader:
 
     def _end(self, event: Event) -> None:
         collection = self._open.pop()
-        collection.end = event
+        collection.is_open = False
+        start, end = collection.span
+        if end is not None:
+            collection.span = start, _span(event)[1]
         collection.size = self._count - collection.size
         around = self._open[-1]
         around.height = max(around.height, collection.height + 1)
@@ -209,43 +214,44 @@ class _Reader:
 
     def _alias(self, event: AliasEvent) -> None:
         name = str(event.anchor)
+        shown = short(name)
         if name not in self._anchors:
-            message = f"the alias '*{name}' has no anchor '&{name}' before it"
-            raise self._fault("yaml-alias", message, event, did_you_mean(name, self._anchors))
+            raise self._fault("yaml-alias", f"the alias '*{shown}' has no anchor '&{shown}' before it", event)
         value, target = self._anchors[name]
         collection = target if isinstance(target, Collection) else None
-        if collection is not None and collection.end is None:
-            raise self._fault("yaml-alias", f"the alias '*{name}' stands inside what it stands for", event)
+        if collection is not None and collection.is_open:
+            raise self._fault("yaml-alias", f"the alias '*{shown}' stands inside what it stands for", event)
         self._count += 1 if collection is None else collection.size
         if self._count > NODE_LIMIT:
             message = f"with its aliases expanded, the file has more than {NODE_LIMIT:,} keys and values"
             raise self._fault("yaml-alias", message, event)
         around = self._open[-1]
-        if around.is_mapping and around.key is None:
+        if around.awaits_key:
             self._key(value, event)
         elif collection is None:
-            around.add(value, event)
+            around.add(value, _span(event))
         else:
             if len(self._open) - 1 + collection.height > DEPTH_LIMIT:
-                message = f"with the alias '*{name}', mappings and lists are nested more than {DEPTH_LIMIT} deep"
+                message = f"with the alias '*{shown}', mappings and lists are nested more than {DEPTH_LIMIT} deep"
                 raise self._fault("yaml-too-deep", message, event)
             around.height = max(around.height, collection.height + 1)
-            around.add(value, Alias(event, collection))
+            around.add(value, Alias(_span(event), collection))
 
     def _key(self, value: Any, event: Event) -> None:
         """Take a value as the next key of the innermost mapping."""
         mapping = self._open[-1]
         if type(value) is not str:
             what = "a key is empty" if value is None else f"a key is {_kind(value)}"
-            hint = f'quote it: "{event.value}"' if isinstance(event, ScalarEvent) and event.value else None
+            text = event.value if isinstance(event, ScalarEvent) else ""
+            hint = f'quote it: "{text}"' if text == short(text) != "" else None
             raise self._fault("yaml-key-not-string", f"{what}; it must be a string", event, hint)
         if value in mapping.keys:
-            line, _ = self._source.position(span(mapping.keys[value])[0])
-            mapping.key = value  # for the pointer
+            line, _ = self._source.position(mapping.keys[value][0])
+            mapping.key, mapping.awaits_key = value, False  # for the pointer
             message = f"the key {_quote(value)} stands twice in one mapping"
             raise self._fault("yaml-duplicate-key", message, event, f"it stands first on line {line}")
-        mapping.key = value
-        mapping.keys[value] = event
+        mapping.key, mapping.awaits_key = value, False
+        mapping.keys[value] = _span(event)
 
     def _expect_end(self) -> None:
         end = self._next_event()
@@ -266,14 +272,18 @@ class _Reader:
             return self._fault("yaml-unknown-tag", f"{what} does not fit the tag '{shown}'", event)
         return self._fault("yaml-unknown-tag", f"the tag {_quote(shown)} is unknown", event, "remove it")
 
-    def _fault(self, code: str, message: str, node: Node, hint: str | None = None) -> Fault:
+    def _fault(self, code: str, message: str, event: Event, hint: str | None = None) -> Fault:
         steps: list[str | int] = []
         for collection in self._open[1:]:
             if not collection.is_mapping:
                 steps.append(len(collection.data))
-            elif collection.key is not None:
+            elif not collection.awaits_key:
                 steps.append(collection.key)
-        return Fault(code, message, self._source.place(*span(node), json_pointer(steps)), hint)
+        return Fault(code, message, self._source.place(*_span(event), json_pointer(steps)), hint)
+
+
+def _span(event: Any) -> tuple[int, int]:
+    return event.start_mark.index, event.end_mark.index
 
 
 def _kind(value: Any) -> str:
@@ -281,4 +291,4 @@ def _kind(value: Any) -> str:
 
 
 def _quote(text: str) -> str:
-    return repr(text if len(text) <= 60 else text[:57] + "...")
+    return repr(short(text))

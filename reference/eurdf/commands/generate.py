@@ -1,0 +1,140 @@
+"""``eurdf generate``: a description from the names in a URDF."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Collection
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from eurdf.commands.cannot_run import CannotRun
+from eurdf.commands.migrate import show_refusal, tell, urdf_from
+from eurdf.commands.output import write_json, write_text
+from eurdf.commands.output_file import write_new
+
+if TYPE_CHECKING:
+    from eurdf.generation import Generation
+
+_DESCRIPTION = """\
+Write a description from the names in a URDF.
+
+  closures    closedloop1_A with closedloop1_B, or closing_knee_1 with closing_knee_2: names of links or joints.
+              3d or 6d behind closedloop is the type (closedloop3D_1A); 6d where there is neither.
+  motors      joints whose name begins with the word mot or motor: motor_knee, mot1.
+  sphericals  joints that have spherical in their name.
+
+Three revolute joints whose axes meet, with nothing between them, are one spherical joint.
+
+PATTERNs are regular expressions in place of these. That of a closure matches a whole name, and has the group
+side, which tells its two frames apart; a group loop is what they have in common, a group type is 3d or 6d:
+
+  eurdf generate arm.urdf --closure '(?P<loop>rod\\d+)_(?P<side>top|bottom)' --motor 'drive$'
+"""
+
+
+def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the parser."""
+    parser = subparsers.add_parser(
+        "generate",
+        help="write a description from the names in a URDF",
+        description=_DESCRIPTION,
+        epilog="Exit codes: 0 written, 1 the URDF has errors, or its names say what cannot be; 2 cannot run.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("urdf", metavar="URDF", help="the URDF")
+    parser.add_argument("-o", "--output", metavar="OUT", help="the file to write; default: the standard output")
+    parser.add_argument("--force", action="store_true", help="replace OUT if it is there already")
+    for option, what in (
+        ("--closure", "the frames of closures"),
+        ("--motor", "actuated joints"),
+        ("--spherical", "spherical joints"),
+    ):
+        parser.add_argument(
+            option, metavar="PATTERN", action="append", default=[], help=f"names of {what}; may be repeated"
+        )
+    parser.add_argument("--root", choices=("fixed", "floating"), default="fixed", help="default: fixed")
+    parser.add_argument("--version", choices=("1", "2"), default="2", help="version of the format; default: 2")
+    parser.add_argument("--json", action="store_true", help="write one JSON object: the text, and what was found")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Generate, write, tell what was found, and return the exit code."""
+    from eurdf.diagnostics import Diagnostics, Fault
+    from eurdf.format.generate import BadPattern, conventions
+    from eurdf.format.urdf import read_urdf
+    from eurdf.generation import generate
+    from eurdf.reading.source import read_source
+    from eurdf.reading.xml_reader import read_xml
+
+    if args.version == "1" and args.root != "fixed":
+        raise CannotRun("version 1 cannot say that the root floats")
+    if not os.path.exists(args.urdf):
+        raise CannotRun(f"'{args.urdf}' does not exist")
+    try:
+        convention = conventions(args.closure, args.motor, args.spherical)
+    except BadPattern as reason:
+        raise CannotRun(str(reason)) from None
+    diagnostics = Diagnostics()
+    try:
+        urdf = read_urdf(read_xml(read_source(args.urdf)), diagnostics)
+    except Fault as fault:
+        diagnostics.add(fault.diagnostic)
+        urdf = None
+    if urdf is None:
+        show_refusal(args.urdf, tuple(diagnostics), args.json)
+        return 1
+    urdf_path = urdf_from(args.output, args.urdf) if args.output is not None else Path(args.urdf).name
+    generation = generate(urdf, convention, args.version, args.root, urdf_path)
+    if generation.mechanism is None:
+        show_refusal(args.urdf, tuple(generation.diagnostics), args.json)
+        tell(["nothing was written: what the names say cannot be"])
+        return 1
+    if args.output is not None:
+        write_new(args.output, generation.text, args.force)
+    warnings = [*generation.found.warnings]
+    if args.version == "1" and urdf_path != "robot.urdf":
+        warnings.append(f"version 1 cannot name its URDF: it is robot.urdf beside the description, not '{urdf_path}'")
+    if args.json:
+        write_json(_result(generation, args.output, warnings))
+        return 0
+    if args.output is None:
+        write_text(generation.text)
+    tell([*_summary(generation), *(f"warning: {warning}" for warning in warnings)])
+    if args.output is not None:
+        tell([f"wrote '{args.output}'"])
+    return 0
+
+
+def _summary(generation: Generation) -> list[str]:
+    found = generation.found
+    closures = [f"{closure.name} ({', '.join(closure.frames)}, {closure.type})" for closure in found.closures]
+    lines = [_count("closure", closures), _count("motor", found.motors)]
+    if found.sphericals:
+        lines.append(_count("spherical joint", found.sphericals))
+    if generation.merges:
+        lines.append(_count("spherical joint", generation.merges, ", each merged from three revolutes whose axes meet"))
+    return lines
+
+
+def _count(what: str, names: Collection[str], more: str = "") -> str:
+    many = f"{len(names)} {what}{'' if len(names) == 1 else 's'}{more}"
+    return many + (f": {', '.join(names)}" if names else "")
+
+
+def _result(generation: Generation, output: str | None, warnings: list[str]) -> dict[str, Any]:
+    from eurdf.diagnostics.report import encodable
+
+    found = generation.found
+    return {
+        "output": None if output is None else encodable(output),
+        "closures": [
+            {"name": closure.name, "type": closure.type, "frames": list(closure.frames)} for closure in found.closures
+        ],
+        "motors": list(found.motors),
+        "sphericals": list(found.sphericals),
+        "merges": {name: list(three) for name, three in generation.merges.items()},
+        "warnings": [encodable(warning) for warning in warnings],
+        "text": generation.text,
+    }

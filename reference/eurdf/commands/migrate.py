@@ -1,0 +1,134 @@
+"""``eurdf migrate``: a description of version 1 in version 2."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import os
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from eurdf.commands.cannot_run import CannotRun
+from eurdf.commands.output import write_json, write_text
+from eurdf.commands.output_file import write_new
+from eurdf.commands.selection import select_one
+
+if TYPE_CHECKING:
+    from eurdf.description import Description
+
+_DESCRIPTION = """\
+Write a description of version 1 in version 2, with the same model.
+
+What version 1 does by itself is said in version 2: three revolutes that it merges, closures that it counts.
+Comments and data of your own are kept; a key of your own gets the prefix x-. The result is read once more
+before it is written: it makes the same model, or nothing is written.
+"""
+
+
+def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the parser."""
+    parser = subparsers.add_parser(
+        "migrate",
+        help="write a description of version 1 in version 2",
+        description=_DESCRIPTION,
+        epilog="Exit codes: 0 written or nothing to do, 1 the robot has errors, 2 the command cannot run.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("path", metavar="PATH", help="a robot: its folder, its .yaml, or a collection name")
+    parser.add_argument("-o", "--output", metavar="OUT", help="the file to write; default: the standard output")
+    parser.add_argument("--force", action="store_true", help="replace OUT if it is there already")
+    parser.add_argument("--urdf", metavar="FILE", help="the URDF, where it is not robot.urdf beside the description")
+    parser.add_argument("--json", action="store_true", help="write one JSON object: the text, and what was done")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Migrate, write, tell what was done, and return the exit code."""
+    from eurdf.description import describe
+    from eurdf.format.migrate import NotMigratable
+    from eurdf.migration import migrate
+
+    path = select_one(args.path)
+    if args.urdf is not None and not os.path.exists(args.urdf):
+        raise CannotRun(f"'{args.urdf}' does not exist")
+    description = describe(path, args.urdf)
+    if description.diagnostics.refused or description.mechanism is None:
+        show_refusal(path, tuple(description.diagnostics), args.json)
+        return 1
+    if description.document is None or description.extension is None:
+        raise CannotRun(f"'{path}' is a bare URDF, which has nothing to migrate; `eurdf generate` writes a description")
+    source = description.document.source
+    if description.extension.version != "1":
+        text, output = source.text, None
+        notes: tuple[str, ...] = (f"'{source.file}' is of version 2.0 already: nothing to do",)
+    else:
+        output = args.output
+        try:
+            migration = migrate(description, urdf_from(output or source.file, _urdf_of(description)))
+        except NotMigratable as reason:
+            line = description.document.place(reason.pointer).line if reason.pointer else None
+            where = f"{source.file}:{line}" if line else source.file
+            raise CannotRun(f"cannot migrate: {where}: {reason}") from None
+        text, notes = migration.text, migration.notes
+        if output is not None:
+            write_new(output, text, args.force)
+    if args.json:
+        write_json(_result(path, description.extension.version, output, notes, text))
+        return 0
+    if args.output is None:
+        write_text(text)
+    tell(notes)
+    if output is not None:
+        tell([f"wrote '{output}'"])
+    return 0
+
+
+def urdf_from(description: str | os.PathLike[str], urdf: str | os.PathLike[str]) -> str:
+    """Path of a URDF from the folder of a description, as the description names it."""
+    home = os.path.realpath(Path(description).parent)
+    # The folder is resolved, since '..' leads out of where a link leads to; the file may stay a link.
+    place = Path(os.path.realpath(Path(urdf).parent)) / Path(urdf).name
+    try:
+        return Path(os.path.relpath(place, home)).as_posix()
+    except ValueError:  # on another drive
+        return place.as_posix()
+
+
+def show_refusal(path: str, diagnostics: tuple[Any, ...], as_json: bool) -> None:
+    """Tell why there is nothing to write: as text where it cannot be taken for a description."""
+    from eurdf.commands.check import write_reports
+    from eurdf.diagnostics.report import Report, reports_to_json
+
+    report = Report(path, diagnostics)
+    if as_json:
+        write_json(reports_to_json([report]))
+        return
+    with contextlib.redirect_stdout(sys.stderr):
+        write_reports([report])
+
+
+def tell(sentences: tuple[str, ...] | list[str]) -> None:
+    """Write to the standard error, a line each."""
+    from eurdf.diagnostics.text import visible
+
+    for sentence in sentences:
+        sys.stderr.write(f"{visible(sentence)}\n")
+
+
+def _urdf_of(description: Description) -> str:
+    assert description.urdf is not None
+    return description.urdf.document.source.file
+
+
+def _result(path: str, version: str, output: str | None, notes: tuple[str, ...], text: str) -> dict[str, Any]:
+    from eurdf.diagnostics.report import encodable
+
+    return {
+        "path": encodable(path),
+        "from": version,
+        "to": "2.0",
+        "output": None if output is None else encodable(output),
+        "notes": [encodable(note) for note in notes],
+        "text": text,
+    }

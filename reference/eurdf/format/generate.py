@@ -1,0 +1,287 @@
+"""What the names in a URDF say of its closures, motors and spherical joints, and that as the text of a description."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import cast
+
+from eurdf.format.field import is_own_key
+from eurdf.format.schema import FILES
+from eurdf.format.urdf import Urdf
+from eurdf.format.version2 import VERSION
+from eurdf.format.yaml_text import Entry, Value, item_of_mapping, lines_of, section, text_of
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mechanism import ClosureType, Root
+
+_ROTARY = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS})
+
+# Atomic groups, (?>…), keep a name of any length from being tried in more than a few ways.
+
+#: ``closedloop1_A`` and ``closedloop1_B``, ``closedloop3D_1A``, ``closed_loop_knee_a``; and with ``_frame`` behind it,
+#: the joint that some exporters fix such a link by.
+PUBLISHED_CLOSURE = (
+    r"(?i)(?P<loop>(?>.*(?:closed_?loop|fermeture))(?:_?(?P<type>[36]d))?.*)"
+    r"(?:[_.-]|(?<=\d))(?P<side>[ab])(?:_frame)?"
+)
+
+#: ``closing_knee_1`` and ``closing_knee_2``, as onshape-to-robot names the frames of a mate ``closing_knee``.
+MATE_CLOSURE = r"(?P<loop>(?>.*closing_).+)_(?P<side>[12])(?:_frame)?"
+
+#: Names that begin with the word ``mot`` or ``motor``: ``motor_knee`` and ``mot1_rod2``, but not ``moteur_rod``.
+MOTOR = r"(?i)^mot(or)?(?![^\W\d_])"
+
+#: Names that have the word in them.
+SPHERICAL = r"(?i)spherical|to_rotule"
+
+
+class BadPattern(ValueError):  # noqa: N818 - said to the user as it stands
+    """A pattern that is no regular expression, or lacks a group; its text says which."""
+
+
+@dataclass(frozen=True, slots=True)
+class Conventions:
+    """Regular expressions (as of Python) that tell what a name means.
+
+    Attributes:
+        closures: Match the whole name of a link or a joint, which then is one frame of a closure. The group ``side``
+            tells the two frames of a closure apart; the group ``loop``, or the name without its side, is what they have
+            in common, and names the closure. The group ``type``, where it matches ``3d`` or ``6d`` in any case, is its
+            type; 6d where it does not.
+        motors: Found in the name of an actuated joint.
+        sphericals: Found in the name of a joint that is spherical, not revolute.
+    """
+
+    closures: tuple[re.Pattern[str], ...]
+    motors: tuple[re.Pattern[str], ...]
+    sphericals: tuple[re.Pattern[str], ...]
+
+
+def conventions(
+    closures: Sequence[str] = (), motors: Sequence[str] = (), sphericals: Sequence[str] = ()
+) -> Conventions:
+    """The user's conventions; of a kind that has none, the published ones.
+
+    Raises:
+        BadPattern: Not a regular expression, or one of a closure without the group ``side``.
+    """
+    closing = tuple(map(_compiled, closures or (PUBLISHED_CLOSURE, MATE_CLOSURE)))
+    for pattern in closing:
+        if "side" not in pattern.groupindex:
+            raise BadPattern(
+                f"the closure pattern '{pattern.pattern}' has no group 'side', which tells its two frames apart: "
+                r"for instance '(?P<loop>loop\d+)_(?P<side>A|B)'"
+            )
+    return Conventions(
+        closing, tuple(map(_compiled, motors or (MOTOR,))), tuple(map(_compiled, sphericals or (SPHERICAL,)))
+    )
+
+
+def _compiled(pattern: str) -> re.Pattern[str]:
+    try:
+        return re.compile(pattern)
+    except (re.error, OverflowError, RecursionError) as error:
+        raise BadPattern(f"'{pattern}' is no regular expression: {error}") from None
+
+
+@dataclass(frozen=True, slots=True)
+class NamedClosure:
+    """A closure that two names say."""
+
+    name: str
+    type: ClosureType
+    frames: tuple[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """What the names in a URDF say.
+
+    Attributes:
+        closures: By the names of their loops, numbers in them counted as numbers.
+        motors: Actuated joints, in the order of the tree.
+        sphericals: Spherical joints, in the order of the tree.
+        warnings: What could not be taken as it is named, one sentence each.
+    """
+
+    closures: tuple[NamedClosure, ...]
+    motors: tuple[str, ...]
+    sphericals: tuple[str, ...]
+    warnings: tuple[str, ...]
+
+
+def find(urdf: Urdf, convention: Conventions) -> Found:
+    """Look for names that follow the conventions."""
+    warnings: list[str] = []
+    closures = tuple(_closures(urdf, convention.closures, warnings))
+    motors = tuple(_motors(urdf, convention.motors, warnings))
+    sphericals = tuple(_sphericals(urdf, convention.sphericals, warnings))
+    return Found(closures, motors, sphericals, tuple(warnings))
+
+
+# -- closures -----------------------------------------------------------------------------------------------------
+
+
+def _closures(urdf: Urdf, patterns: Iterable[re.Pattern[str]], warnings: list[str]) -> Iterable[NamedClosure]:
+    bodies = {name: name for name in urdf.links}
+    for joint in urdf.joints.values():
+        bodies.setdefault(joint.name, joint.child)
+    loops: dict[str, dict[str, list[str]]] = {}
+    types: dict[str, ClosureType] = {}
+    for pattern in patterns:
+        # Links come first: of a link and the joint that fixes it, the link is the frame that was meant.
+        for name in bodies:
+            match = pattern.fullmatch(name)
+            if match is None or match["side"] is None:
+                continue
+            loop = _loop(match)
+            names = loops.setdefault(loop, {}).setdefault(match["side"].upper(), [])
+            if name not in names:
+                names.append(name)
+            told = match["type"] if "type" in pattern.groupindex else None
+            if told is not None and told.lower() in ("3d", "6d"):
+                types[loop] = cast(ClosureType, told.lower())
+    rigid = _rigid(urdf)
+    joined: dict[frozenset[str], str] = {}
+    for loop in sorted(loops, key=_natural):
+        sides = loops[loop]
+        if len(sides) != 2:
+            warnings.append(_unpaired(loop, sides))
+            continue
+        frames = []
+        for side in sorted(sides, key=_natural):
+            names = sides[side]
+            if len({bodies[name] for name in names}) > 1:
+                others = ", ".join(f"'{name}'" for name in names[1:])
+                warnings.append(f"side {side} of loop '{loop}' is taken to be '{names[0]}'; it might be {others}")
+            frames.append(names[0])
+        a, b = bodies[frames[0]], bodies[frames[1]]
+        if rigid[a] == rigid[b]:
+            warnings.append(
+                f"'{frames[0]}' and '{frames[1]}' are fixed to each other and cannot be a closure: left out"
+            )
+        elif (pair := frozenset({a, b})) in joined:
+            warnings.append(f"'{frames[0]}' and '{frames[1]}' are the two frames of '{joined[pair]}' already: left out")
+        else:
+            joined[pair] = loop
+            yield NamedClosure(loop, types.get(loop, "6d"), (frames[0], frames[1]))
+
+
+def _loop(match: re.Match[str]) -> str:
+    if "loop" in match.re.groupindex and match["loop"]:
+        return match["loop"]
+    begin, end = match.span("side")
+    return (match.string[:begin] + match.string[end:]).strip("_.-") or match.string
+
+
+def _unpaired(loop: str, sides: Mapping[str, Sequence[str]]) -> str:
+    names = ", ".join(f"'{names[0]}'" for names in sides.values())
+    if len(sides) == 1:
+        return f"{names} has no other side: a closure has two frames; left out"
+    return f"loop '{loop}' has {len(sides)} sides, {names}: a closure has two frames; left out"
+
+
+def _rigid(urdf: Urdf) -> dict[str, str]:
+    """For each link, the one nearest to the root that it is rigidly fixed to."""
+    rigid = {urdf.root: urdf.root}
+    for joint in urdf.walk():
+        rigid[joint.child] = rigid[joint.parent] if joint.type is JointType.FIXED else joint.child
+    return rigid
+
+
+def _natural(name: str) -> list[tuple[int, str]]:
+    """Sorts loop2 before loop10, by the length of a number before its digits."""
+    parts = re.split(r"(\d+)", name)
+    return [(len(part.lstrip("0")), part.lstrip("0")) if index % 2 else (-1, part) for index, part in enumerate(parts)]
+
+
+# -- joints -------------------------------------------------------------------------------------------------------
+
+
+def _motors(urdf: Urdf, patterns: Sequence[re.Pattern[str]], warnings: list[str]) -> list[str]:
+    named = [joint for joint in urdf.walk() if any(pattern.search(joint.name) for pattern in patterns)]
+    motors = []
+    for joint in named:
+        if joint.type is JointType.FIXED:
+            warnings.append(f"joint '{joint.name}' is named as a motor, but is fixed: left out")
+        elif joint.mimic is not None:
+            warnings.append(f"joint '{joint.name}' is named as a motor, but mimics '{joint.mimic.joint}': left out")
+        else:
+            motors.append(joint.name)
+    if not named:
+        moving = (joint.name for joint in urdf.walk() if joint.type is not JointType.FIXED)
+        near = [name for name in moving if "mot" in name.lower()]
+        if near:
+            others = f" and {len(near) - 1} more have" if len(near) > 1 else " has"
+            warnings.append(f"no joint is named as a motor, but '{near[0]}'{others} 'mot' in the name")
+    return motors
+
+
+def _sphericals(urdf: Urdf, patterns: Sequence[re.Pattern[str]], warnings: list[str]) -> Iterable[str]:
+    coupled = {name for joint in urdf.joints.values() if joint.mimic for name in (joint.name, joint.mimic.joint)}
+    for joint in urdf.walk():
+        if not any(pattern.search(joint.name) for pattern in patterns):
+            continue
+        if joint.type not in _ROTARY:
+            why = f"is {joint.type}, and only a revolute joint becomes spherical"
+        elif joint.name in coupled:
+            why = "mimics or is mimicked"
+        elif is_own_key(joint.name):
+            why = "begins with 'x-', as only data of the user's own do"
+        else:
+            yield joint.name
+            continue
+        warnings.append(f"joint '{joint.name}' is named as spherical, but {why}: left out")
+
+
+# -- text ---------------------------------------------------------------------------------------------------------
+
+
+def version2_text(
+    found: Found, merges: Mapping[str, Sequence[str]], root: Root = "fixed", urdf_path: str = "robot.urdf"
+) -> str:
+    """The description in version 2.
+
+    Args:
+        found: What the names say.
+        merges: For each spherical joint made of three revolutes, their names.
+        root: Whether the root is fixed or floating.
+        urdf_path: Path of the URDF from the folder of the description.
+    """
+    head = f"# yaml-language-server: $schema={FILES['2']}"
+    entries = [
+        Entry(lines_of("extended_urdf", VERSION), (head,)),
+        Entry(lines_of("urdf", urdf_path)),
+    ]
+    if root != "fixed":
+        entries.append(Entry(lines_of("root", root)))
+    if found.closures:
+        items = [
+            Entry(item_of_mapping({"name": closure.name, "type": closure.type, "frames": closure.frames}))
+            for closure in found.closures
+        ]
+        entries.append(section("closures", items))
+    joints: dict[str, Value] = dict.fromkeys(found.sphericals, "spherical")
+    joints |= {name: {"type": "spherical", "merges": list(three)} for name, three in merges.items()}
+    if joints:
+        entries.append(section("joints", [Entry(lines_of(name, value)) for name, value in joints.items()]))
+    if found.motors:
+        entries.append(Entry(lines_of("actuators", found.motors)))
+    return text_of(entries)
+
+
+def version1_text(found: Found) -> str:
+    """The description in version 1, which merges revolutes by itself."""
+    head = f"# yaml-language-server: $schema={FILES['1']}"
+    values: dict[str, Value] = {
+        "closed_loop": [closure.frames for closure in found.closures],
+        "type": [closure.type for closure in found.closures],
+        "name_mot": found.motors,
+        "joint_name": found.sphericals,
+        "joint_type": ["SPHERICAL"] * len(found.sphericals),
+    }
+    # Without any key of the format, it would still be a description of version 1: of nothing.
+    entries = [Entry(lines_of(key, value)) for key, value in values.items() if value or key in ("closed_loop", "type")]
+    first, *rest = entries
+    return text_of([Entry(first.lines, (head,)), *rest])

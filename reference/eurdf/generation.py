@@ -1,0 +1,78 @@
+"""From the names in a URDF to a description of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from eurdf.diagnostics import Diagnostics
+from eurdf.format.field import is_own_key
+from eurdf.format.generate import Conventions, Found, find, version1_text, version2_text
+from eurdf.format.urdf import Urdf
+from eurdf.mechanism.mechanism import Mechanism, Root
+from eurdf.mechanism.merging import find_chains
+from eurdf.mechanism.spanning_tree import joint_of
+from eurdf.rereading import reread
+
+
+@dataclass(frozen=True, slots=True)
+class Generation:
+    """A description that was generated.
+
+    Attributes:
+        text: Of the YAML file.
+        found: What the names say.
+        merges: For each spherical joint made of three revolutes whose axes meet, their names.
+        mechanism: That the text describes; None where the names say what cannot be.
+        diagnostics: Found in the text.
+    """
+
+    text: str
+    found: Found
+    merges: Mapping[str, tuple[str, str, str]]
+    mechanism: Mechanism | None
+    diagnostics: Diagnostics
+
+
+def generate(
+    urdf: Urdf,
+    conventions: Conventions,
+    version: Literal["1", "2"] = "2",
+    root: Root = "fixed",
+    urdf_path: str = "robot.urdf",
+) -> Generation:
+    """Describe a robot by the names in its URDF.
+
+    Three revolutes whose axes meet, none of them a motor, are merged as version 1 does by itself. The text is read once
+    more, so that whoever writes it knows that it is sound.
+
+    Args:
+        urdf: The URDF.
+        conventions: What its names mean.
+        version: Version of the description.
+        root: Whether the root is fixed or floating; version 1 can only say fixed.
+        urdf_path: Path of the URDF from the folder of the description; version 1 cannot say it.
+    """
+    if version == "1" and root != "fixed":
+        raise ValueError("version 1 cannot say that the root floats")
+    found = find(urdf, conventions)
+    merges = _merges(urdf, found, version)
+    text = version1_text(found) if version == "1" else version2_text(found, merges, root, urdf_path)
+    mechanism, diagnostics = reread(text, urdf, "the description")
+    return Generation(text, found, merges, mechanism, diagnostics)
+
+
+def _merges(urdf: Urdf, found: Found, version: Literal["1", "2"]) -> dict[str, tuple[str, str, str]]:
+    """EU-ONE-007, but for motors, which version 1 would merge as well."""
+    joints = {joint.name: joint_of(joint) for joint in urdf.joints.values()}
+    coupled = {name for joint in urdf.joints.values() if joint.mimic for name in (joint.name, joint.mimic.joint)}
+    links = {
+        frame if frame in urdf.links else urdf.joints[frame].child
+        for closure in found.closures
+        for frame in closure.frames
+    }
+    excluded = {*found.sphericals, *coupled, *(found.motors if version == "2" else ())}
+    chains = [tuple(joint.name for joint in chain.joints) for chain in find_chains(urdf, joints, excluded, links)]
+    # A key that begins with x- would be data of the user's own.
+    return {third: (first, second, third) for first, second, third in chains if version == "1" or not is_own_key(third)}

@@ -1,0 +1,115 @@
+"""Whether two descriptions, of either version, make the same model of one URDF."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import TypeVar
+
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mechanism import Anchor, Body, Closure, Frame, Joint, Mechanism
+
+_Named = TypeVar("_Named", Body, Joint, Frame, Closure)
+
+
+def differences(one: Mechanism, other: Mechanism) -> list[str]:
+    """What is not the same in two mechanisms, one sentence each; nothing of it where they are the same model.
+
+    Two revolutes that version 1 made of a joint are the same as one universal joint; their coordinates are the same two
+    angles. The order of joints follows from their names. Versions, metadata and the user's own data are not compared.
+    """
+    a, b = with_universal_joints(one), with_universal_joints(other)
+    found = []
+    if a.name != b.name or a.root != b.root:
+        found.append("the root is another")
+    for what, before, after in (
+        ("body", _by_name(a.bodies), _by_name(b.bodies)),
+        ("joint", _by_name(a.joints), _by_name(b.joints)),
+        ("frame", _by_name(a.frames), _by_name(b.frames)),
+        ("closure", _by_name(a.closures), _by_name(b.closures)),
+        ("configuration", a.configurations, b.configurations),
+    ):
+        found += _differing(what, before, after)
+    if not found and a.closures != b.closures:
+        found.append("the closures come in another order")
+    if a.actuators != b.actuators:
+        found.append("the actuators are others, or in another order")
+    return found
+
+
+def with_universal_joints(mechanism: Mechanism) -> Mechanism:
+    """The mechanism with one universal joint in place of each two that version 1 split a joint into (EU-ONE-006)."""
+    virtual = {body.name for body in mechanism.bodies if body.virtual}
+    if not virtual:
+        return mechanism
+    carried = {joint.child: joint for joint in mechanism.joints}
+    halves: dict[str, str] = {}
+    joints = []
+    for joint in mechanism.joints:
+        if joint.child in virtual:
+            continue
+        if joint.parent in virtual:
+            first = carried[joint.parent]
+            universal = _joined(first, joint)
+            halves[first.name] = halves[joint.name] = universal.name
+            joints.append(universal)
+        else:
+            joints.append(joint)
+    names = set(halves.values())
+
+    def renamed(anchor: Anchor) -> Anchor:
+        return anchor if anchor.body in virtual else replace(anchor, frame=halves.get(anchor.frame, anchor.frame))
+
+    closures = tuple(replace(closure, a=renamed(closure.a), b=renamed(closure.b)) for closure in mechanism.closures)
+    actuators: list[str] = []
+    for name in mechanism.actuators:
+        # Both halves, the first before the second, are the universal joint; either one alone is nothing but itself.
+        if name in halves and actuators and actuators[-1] == _other(name, halves, mechanism):
+            actuators[-1] = halves[name]
+        else:
+            actuators.append(name)
+    return replace(
+        mechanism,
+        bodies=tuple(body for body in mechanism.bodies if not body.virtual),
+        joints=tuple(joints),
+        frames=tuple(frame for frame in mechanism.frames if frame.name not in names),
+        closures=closures,
+        actuators=tuple(actuators),
+    )
+
+
+def _other(name: str, halves: Mapping[str, str], mechanism: Mechanism) -> str | None:
+    """The first half of a universal joint, given the second."""
+    first, second = (joint.name for joint in mechanism.joints if halves.get(joint.name) == halves[name])
+    return first if name == second else None
+
+
+def _joined(first: Joint, second: Joint) -> Joint:
+    return replace(
+        second,
+        name=first.name[: -len("_X")],
+        type=JointType.UNIVERSAL,
+        parent=first.parent,
+        placement=first.placement,
+        axes=first.axes + second.axes,
+        lower=first.lower + second.lower,
+        upper=first.upper + second.upper,
+        velocity=first.velocity + second.velocity,
+        effort=first.effort + second.effort,
+        damping=first.damping + second.damping,
+        friction=first.friction + second.friction,
+        armature=first.armature + second.armature,
+        gear_ratio=first.gear_ratio + second.gear_ratio,
+        rotor_inertia=first.rotor_inertia + second.rotor_inertia,
+    )
+
+
+def _by_name(items: Iterable[_Named]) -> dict[str, _Named]:
+    return {item.name: item for item in items}
+
+
+def _differing(what: str, before: Mapping[str, object], after: Mapping[str, object]) -> list[str]:
+    found = [f"{what} '{name}' is gone" for name in before if name not in after]
+    found += [f"{what} '{name}' is new" for name in after if name not in before]
+    found += [f"{what} '{name}' is another" for name in before if name in after and before[name] != after[name]]
+    return found

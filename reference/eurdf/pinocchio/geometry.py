@@ -1,0 +1,126 @@
+"""The visual and collision shapes of a mechanism as Pinocchio geometry, as its URDF parser makes it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import coal
+import numpy as np
+import numpy.typing as npt
+import pinocchio as pin
+
+from eurdf.exceptions import EurdfError
+from eurdf.mechanism.mechanism import Mechanism, Shape
+from eurdf.pinocchio.frames import body_frame_ids
+from eurdf.pinocchio.placement import placement_of
+
+Resolve = Callable[[str], str | None]
+
+_GRAY = np.array((0.9, 0.9, 0.9, 1.0))
+_BLACK = np.array((0.0, 0.0, 0.0, 1.0))
+_FULL_SIZE = np.ones(3)
+
+
+class UnreadableMesh(EurdfError, ValueError):  # noqa: N818 - like InvalidRobot, it says what the thing is
+    """A mesh file that is no mesh.
+
+    Attributes:
+        uri: As the URDF writes it.
+        path: Where it was read from.
+        reason: What the reader of meshes said.
+    """
+
+    def __init__(self, uri: str, path: str, reason: str) -> None:
+        self.uri = uri
+        self.path = path
+        self.reason = reason
+        super().__init__(f"mesh '{uri}' cannot be read from {path}: {reason}")
+
+
+def build_geometry(
+    mechanism: Mechanism,
+    model: pin.Model,
+    kind: pin.GeometryType,
+    resolve: Resolve,
+    loader: coal.MeshLoader | None = None,
+) -> pin.GeometryModel:
+    """Build the visual or the collision geometry of a mechanism.
+
+    Object ``link_k`` is the k-th visual, or collision, of link ``link``, fixed to the joint that moves it. No collision
+    pair is active, as from Pinocchio's URDF parser.
+
+    Args:
+        mechanism: The mechanism.
+        model: What `build_model` made of it.
+        kind: ``pin.VISUAL`` or ``pin.COLLISION``.
+        resolve: Path of the file that a URI of the URDF means. It must find every mesh; a texture that it does not find
+            is left out.
+        loader: Reads the meshes; a ``coal.CachedMeshLoader`` reads each once for all geometries it is used for.
+
+    Raises:
+        UnreadableMesh: A mesh file is no mesh.
+        FileNotFoundError: `resolve` does not find a mesh.
+    """
+    geometry_model = pin.GeometryModel()
+    loader = coal.MeshLoader() if loader is None else loader
+    body_frames = body_frame_ids(mechanism)
+    for body in mechanism.bodies:
+        shapes = body.visuals if kind == pin.GeometryType.VISUAL else body.collisions
+        if not shapes:
+            continue
+        frame_id = body_frames[body.name]
+        frame = model.frames[frame_id]
+        for index, shape in enumerate(shapes):
+            geometry, path, scale = _geometry(shape, resolve, loader)
+            colored = shape.color is not None or shape.texture != ""
+            geometry_model.addGeometryObject(
+                pin.GeometryObject(
+                    f"{body.name}_{index}",
+                    frame.parentJoint,
+                    frame_id,
+                    frame.placement * placement_of(shape.pose),
+                    geometry,
+                    path,
+                    scale,
+                    colored,
+                    _color(shape) if colored else _GRAY,
+                    (resolve(shape.texture) or "") if shape.texture else "",
+                )
+            )
+    return geometry_model
+
+
+def _geometry(
+    shape: Shape, resolve: Resolve, loader: coal.MeshLoader
+) -> tuple[coal.CollisionGeometry, str, npt.NDArray[np.float64]]:
+    """The geometry; the path of its mesh, or in its place the name Pinocchio gives to the kind; the scale."""
+    size = shape.size
+    match shape.kind:
+        case "box":
+            return coal.Box(*size), "BOX", _FULL_SIZE
+        case "cylinder":
+            return coal.Cylinder(*size), "CYLINDER", _FULL_SIZE
+        case "sphere":
+            return coal.Sphere(*size), "SPHERE", _FULL_SIZE
+        case "capsule":
+            return coal.Capsule(*size), "CAPSULE", _FULL_SIZE
+        case "mesh":
+            path = resolve(shape.filename)
+            if path is None:
+                raise FileNotFoundError(f"there is no mesh '{shape.filename}'")
+            scale = np.array(size)
+            try:
+                return loader.load(path, scale), path, scale
+            except ValueError as error:
+                raise UnreadableMesh(shape.filename, path, _reason(error)) from None
+
+
+def _reason(error: ValueError) -> str:
+    """What coal's mesh reader says, without the places in its own source and its hint."""
+    lines = str(error).rpartition("message:")[2].strip().splitlines()
+    return lines[1].strip().rstrip(".") if len(lines) > 1 else "it is no mesh"
+
+
+def _color(shape: Shape) -> npt.NDArray[np.float64]:
+    """In single precision, as urdfdom keeps colors; black where a material has a texture only."""
+    return _BLACK if shape.color is None else np.array(shape.color, np.float32).astype(np.float64)

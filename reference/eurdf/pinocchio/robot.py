@@ -1,0 +1,132 @@
+"""A robot ready for Pinocchio."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import coal
+import pinocchio as pin
+
+from eurdf.diagnostics import Diagnostic
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.pinocchio.actuation import Actuation, build_actuation
+from eurdf.pinocchio.configuration import Vector, configuration_vector
+from eurdf.pinocchio.constraint import build_constraint_models
+from eurdf.pinocchio.geometry import Resolve, build_geometry
+from eurdf.pinocchio.model import build_model
+
+
+class Robot:
+    """A robot with closed kinematic chains, in Pinocchio's terms.
+
+    It unpacks as ``model, constraint_models, actuation, visual_model, collision_model = robot``.
+
+    Attributes:
+        mechanism: What it was built from, as plain data.
+        model: The spanning tree.
+        constraint_models: The closures, in file order.
+        actuation: The actuated joints, in file order.
+        visual_model: What is seen; None without geometry.
+        collision_model: What collides; None without geometry.
+        configurations: For each named configuration its q.
+    """
+
+    def __init__(
+        self,
+        mechanism: Mechanism,
+        model: pin.Model,
+        constraint_models: list[pin.RigidConstraintModel],
+        actuation: Actuation,
+        visual_model: pin.GeometryModel | None,
+        collision_model: pin.GeometryModel | None,
+        configurations: dict[str, Vector],
+        diagnostics: tuple[Diagnostic, ...] = (),
+    ) -> None:
+        self.mechanism = mechanism
+        self.model = model
+        self.constraint_models = constraint_models
+        self.actuation = actuation
+        self.visual_model = visual_model
+        self.collision_model = collision_model
+        self.configurations = configurations
+        self._diagnostics: tuple[Diagnostic, ...] | Callable[[], tuple[Diagnostic, ...]] = diagnostics
+        self._data: pin.Data | None = None
+
+    @property
+    def data(self) -> pin.Data:
+        """Pinocchio's working memory for the model; it takes O(nv²) memory and is made when first asked for."""
+        if self._data is None:
+            self._data = self.model.createData()
+        return self._data
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """What was found wrong with the robot, but did not keep it from being built."""
+        if callable(self._diagnostics):
+            self._diagnostics = self._diagnostics()
+        return self._diagnostics
+
+    @diagnostics.setter
+    def diagnostics(self, found: tuple[Diagnostic, ...]) -> None:
+        self._diagnostics = found
+
+    def defer_diagnostics(self, find: Callable[[], tuple[Diagnostic, ...]]) -> None:
+        """Let the diagnostics be found when first asked for."""
+        self._diagnostics = find
+
+    def __iter__(self) -> Iterator[Any]:
+        return iter((self.model, self.constraint_models, self.actuation, self.visual_model, self.collision_model))
+
+    def __repr__(self) -> str:
+        return (
+            f"<Robot '{self.mechanism.name}': nq {self.model.nq}, nv {self.model.nv}, "
+            f"{len(self.constraint_models)} closures, {len(self.actuation.joints)} actuators>"
+        )
+
+
+def build_robot(
+    mechanism: Mechanism,
+    *,
+    geometry: bool,
+    mimic: bool = True,
+    resolve: Resolve | None = None,
+    diagnostics: tuple[Diagnostic, ...] = (),
+) -> Robot:
+    """Build the robot of a mechanism.
+
+    Args:
+        mechanism: A sound mechanism.
+        geometry: Whether to build the visual and collision geometry.
+        mimic: Whether joints that mimic follow their leaders; if not, they move by themselves.
+        resolve: Path of the file that a URI of the URDF means; needed for geometry with meshes.
+        diagnostics: What was found wrong with it so far.
+
+    Raises:
+        UnreadableMesh: A mesh file is no mesh.
+        FileNotFoundError: `resolve` does not find a mesh.
+    """
+    model = build_model(mechanism, mimic)
+    visual_model = collision_model = None
+    if geometry:
+        find = _nothing if resolve is None else resolve
+        loader = coal.CachedMeshLoader()  # a mesh that is used twice is read once and shared
+        visual_model = build_geometry(mechanism, model, pin.GeometryType.VISUAL, find, loader)
+        collision_model = build_geometry(mechanism, model, pin.GeometryType.COLLISION, find, loader)
+    return Robot(
+        mechanism,
+        model,
+        build_constraint_models(mechanism, model),
+        build_actuation(mechanism, model),
+        visual_model,
+        collision_model,
+        {
+            name: configuration_vector(mechanism, model, coordinates)
+            for name, coordinates in mechanism.configurations.items()
+        },
+        diagnostics,
+    )
+
+
+def _nothing(uri: str) -> None:
+    """Finds no file."""

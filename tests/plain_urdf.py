@@ -1,0 +1,141 @@
+"""URDF texts, written by hand and at random, and the mechanisms they are."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import pinocchio as pin
+from hypothesis import strategies as st
+
+from eurdf.diagnostics import Diagnostics
+from eurdf.format.urdf import read_urdf
+from eurdf.mechanism.link import link
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.reading.source import Source
+from eurdf.reading.xml_reader import read_xml
+
+Root = Literal["fixed", "floating"]
+
+
+def mechanism_of(text: str, root: Root = "fixed") -> Mechanism:
+    diagnostics = Diagnostics()
+    urdf = read_urdf(read_xml(Source("robot.urdf", text, text.encode())), diagnostics)
+    mechanism = None if urdf is None else link(urdf, None, None, diagnostics, root)
+    assert mechanism is not None, [str(found) for found in diagnostics]
+    return mechanism
+
+
+def pinocchios_own(text: str, root: Root = "fixed", mimic: bool = True) -> Any:
+    if root == "fixed":
+        return pin.buildModelFromXML(text, mimic=mimic)
+    return pin.buildModelFromXML(text, pin.JointModelFreeFlyer(), mimic=mimic)
+
+
+def robot(*elements: str, name: str = "robot") -> str:
+    return f'<robot name="{name}">{"".join(elements)}</robot>'
+
+
+def link_element(name: str, content: str = "") -> str:
+    return f'<link name="{name}">{content}</link>'
+
+
+def inertial(mass: float = 1.0, origin: str = "", moments: tuple[float, ...] = (0.1, 0, 0, 0.2, 0, 0.25)) -> str:
+    names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+    inertia = " ".join(f'{name}="{value!r}"' for name, value in zip(names, moments, strict=True))
+    return f'<inertial>{origin}<mass value="{mass!r}"/><inertia {inertia}/></inertial>'
+
+
+def joint_element(
+    name: str, kind: str, parent: str, child: str, content: str = '<limit effort="1" velocity="1"/>', origin: str = ""
+) -> str:
+    return (
+        f'<joint name="{name}" type="{kind}">{origin}<parent link="{parent}"/><child link="{child}"/>{content}</joint>'
+    )
+
+
+def vector(values: Any) -> str:
+    return " ".join(repr(float(value)) for value in values)
+
+
+NUMBERS = st.one_of(
+    st.sampled_from([0.0, 1.0, -1.0, 0.5, -0.0]), st.floats(-3.0, 3.0, allow_subnormal=False).filter(lambda x: abs(x) > 1e-9)
+)
+VECTORS = st.tuples(NUMBERS, NUMBERS, NUMBERS)
+POSITIVE = st.floats(1e-3, 10.0)
+
+
+@st.composite
+def origins(draw: st.DrawFn) -> str:
+    xyz = f' xyz="{vector(draw(VECTORS))}"' if draw(st.booleans()) else ""
+    rpy = f' rpy="{vector(draw(VECTORS))}"' if draw(st.booleans()) else ""
+    return f"<origin{xyz}{rpy}/>" if xyz or rpy else ""
+
+
+@st.composite
+def inertials(draw: st.DrawFn) -> str:
+    if draw(st.integers(0, 3)) == 0:
+        return ""
+    xx, yy, zz = draw(st.tuples(POSITIVE, POSITIVE, POSITIVE))
+    xy, xz, yz = draw(st.tuples(*[st.floats(-1e-3, 1e-3)] * 3))
+    mass = draw(st.sampled_from([0.0, 1.0]) | POSITIVE)
+    return inertial(mass, draw(origins()), (xx, xy, xz, yy, yz, zz))
+
+
+@st.composite
+def axes(draw: st.DrawFn) -> str:
+    unit = ["1 0 0", "0 1 0", "0 0 1", "0 0 -1", "0 2 0", "1e-13 0 1", "1e-11 1 0"]
+    free = VECTORS.filter(any).map(vector)
+    return f'<axis xyz="{draw(st.sampled_from(unit) | free)}"/>' if draw(st.integers(0, 3)) else ""
+
+
+@st.composite
+def trees(draw: st.DrawFn) -> str:
+    """A robot that Pinocchio's parser takes with ``mimic=True``; names are shuffled, so that their order is not the file's."""
+    count = draw(st.integers(1, 8))
+    names = draw(st.permutations([f"j{index}" for index in range(1, count)]))
+    parents = [draw(st.integers(0, index)) for index in range(count - 1)]
+    kinds = [
+        draw(st.sampled_from(["revolute", "continuous", "prismatic", "planar", "floating", "fixed"])) for _ in names
+    ]
+    elements = [link_element(f"l{index}", draw(inertials())) for index in range(count)]
+    visited = _depth_first(names, parents)
+    followers: set[str] = set()
+    for index, (name, kind) in enumerate(zip(names, kinds, strict=True)):
+        content = draw(axes())
+        if kind in ("revolute", "prismatic") or draw(st.booleans()):
+            lower, upper = sorted(draw(st.tuples(NUMBERS, NUMBERS)))
+            velocity, effort = draw(st.tuples(POSITIVE, POSITIVE))
+            content += f'<limit lower="{lower!r}" upper="{upper!r}" velocity="{velocity!r}" effort="{effort!r}"/>'
+        if draw(st.booleans()):
+            damping, friction = draw(st.tuples(POSITIVE, POSITIVE))
+            content += f'<dynamics damping="{damping!r}" friction="{friction!r}"/>'
+        alike = ("continuous",) if kind == "continuous" else ("revolute", "prismatic")
+        leaders = [
+            other
+            for other, other_kind in zip(names, kinds, strict=True)
+            if kind in (*alike, "continuous")
+            and other_kind in alike
+            and other not in followers
+            and visited.index(other) < visited.index(name)
+        ]
+        # A later joint of the file may already follow this one; then this one must not follow another.
+        if leaders and not any(f'<mimic joint="{name}"' in element for element in elements) and draw(st.booleans()):
+            multiplier, offset = draw(st.tuples(NUMBERS, NUMBERS))
+            leader = draw(st.sampled_from(leaders))
+            content += f'<mimic joint="{leader}" multiplier="{multiplier!r}" offset="{offset!r}"/>'
+            followers.add(name)
+        elements.append(joint_element(name, kind, f"l{parents[index]}", f"l{index + 1}", content, draw(origins())))
+    return robot(*elements)
+
+
+def _depth_first(names: list[str], parents: list[int]) -> list[str]:
+    order: list[str] = []
+
+    def visit(parent: int) -> None:
+        children = [index for index in range(len(names)) if parents[index] == parent]
+        for index in sorted(children, key=lambda index: names[index]):
+            order.append(names[index])
+            visit(index + 1)
+
+    visit(0)
+    return order
