@@ -54,6 +54,10 @@ def flat_truss() -> Linkage:
     return loop([("R", (0, 0, 0), Z), ("R", (1, 0, 0), Z)], "3d", (3, 0, 0))
 
 
+def welded_to_the_ground() -> Any:
+    return closure(pin.Model(), 0, translation(1, 2, 3), 0, translation(1, 2, 3))
+
+
 # nv, nc, rank, uncontrolled with the first joint actuated
 KNOWN: dict[str, tuple[Callable[[], Linkage], tuple[int, int, int, int]]] = {
     "triangle in 6d": (lambda: n_bar(3), (3, 6, 3, 0)),
@@ -63,6 +67,11 @@ KNOWN: dict[str, tuple[Callable[[], Linkage], tuple[int, int, int, int]]] = {
     "five-bar in 6d": (lambda: n_bar(5), (5, 6, 3, 1)),
     "five-bar in 3d": (lambda: n_bar(5, "3d"), (4, 3, 2, 1)),
     "five-bar with two motors": (lambda: n_bar(5, actuated=["j0", "j4"]), (5, 6, 3, 0)),
+    "four-bar with a motor at every pin": (
+        lambda: n_bar(4, actuated=["j0", "j1", "j2", "j3"]),
+        (4, 6, 3, 0),
+    ),
+    "weld that holds nothing back": (lambda: Linkage(pin.Model(), [welded_to_the_ground()]), (0, 6, 0, 0)),
     "nine-bar in 6d": (lambda: n_bar(9), (9, 6, 3, 5)),
     "slider-crank": (slider_crank, (4, 6, 3, 0)),
     "spherical four-bar": (spherical_four_bar, (4, 6, 3, 0)),

@@ -79,6 +79,25 @@ def test_the_jacobian_of_a_joint_is_the_derivative_of_its_pose(kind: JointType, 
         np.testing.assert_allclose(column, twist, atol=1e-8)
 
 
+@pytest.mark.parametrize("kind", by_hand.MOVING)
+@given(seed=SEEDS)
+def test_the_acceleration_of_a_joint_at_constant_velocity_is_the_derivative_of_its_twist(
+    kind: JointType, seed: int
+) -> None:
+    random = np.random.default_rng(seed)
+    joint = by_hand.some_joint(kind, random)
+    mechanism = one_joint(joint)
+    model = build_model(mechanism)
+    q = configuration_vector(mechanism, model, {joint.name: by_hand.some_coordinates(kind, random)})
+    v, h = random.uniform(-1, 1, model.nv), 1e-5
+    data = model.createData()
+    pin.forwardKinematics(model, data, q, v, np.zeros(model.nv))
+    acceleration = pin.getFrameAcceleration(model, data, model.getFrameId("tip", pin.FrameType.BODY))
+    ahead = jacobian_of(model, pin.integrate(model, q, h * v), "tip") @ v
+    behind = jacobian_of(model, pin.integrate(model, q, -h * v), "tip") @ v
+    np.testing.assert_allclose(acceleration.vector, (ahead - behind) / (2 * h), atol=1e-8)
+
+
 @given(seed=SEEDS)
 def test_bodies_of_a_tree_of_all_joint_types_stand_where_they_should(seed: int) -> None:
     random = np.random.default_rng(seed)

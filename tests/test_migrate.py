@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from eurdf.commands.main import main
 from eurdf.description import Description, describe
-from eurdf.diagnostics import Diagnostics
+from eurdf.diagnostics import Diagnostics, Fault
 from eurdf.format.comments import comments_of
 from eurdf.format.migrate import NotMigratable, own_keys
 from eurdf.format.read_extension import read_extension
@@ -118,13 +118,11 @@ def assert_same_motion(before: Mechanism, after: Mechanism) -> None:
     assert pin.computeTotalMass(one.model) == pytest.approx(pin.computeTotalMass(other.model), rel=1e-12)
     moving = [joint.name for joint in after.joints if joint.coordinates.nv and joint.mimic is None]
     parts = [[name] if one.model.existJointName(name) else halves(one, name) for name in moving]
-    rows_one, rows_other = velocities(one, sum(parts, [])), velocities(other, moving)
+    rows_one, rows_other = velocities(one, [name for part in parts for name in part]), velocities(other, moving)
     for attribute in ("velocityLimit", "damping", "friction", "armature", "upperEffortLimit"):
         values = getattr(one.model, attribute)[rows_one], getattr(other.model, attribute)[rows_other]
         np.testing.assert_array_equal(*values)
-    np.testing.assert_array_equal(
-        one.actuation.selection[rows_one, :], other.actuation.selection[rows_other, :]
-    )
+    np.testing.assert_array_equal(one.actuation.selection[rows_one, :], other.actuation.selection[rows_other, :])
     for seed in range(3):
         q_one, q_other = randomly_posed(one, other, seed)
         np.testing.assert_allclose(residual(one, q_one), residual(other, q_other), atol=1e-12)
@@ -183,8 +181,7 @@ def test_a_robot_of_the_collection_migrates_to_its_own_version_2(name: str) -> N
 # -- any document -------------------------------------------------------------------------------------------------
 
 ROTARY = ["motor", "elbow", "pivot", "wrist_x", "wrist_y", "wrist_z"]
-MOVING = [*ROTARY, "stage", "grip", "elbow_X", "elbow_Y", "elbow_Z", "pivot_X", "pivot_Y", "pivot_Z"]
-FRAMES = [*URDF.links, *URDF.joints, "elbow_Z", "pivot_X", "pivot_Y"]
+FRAMES = [*URDF.links, *URDF.joints]
 TYPES = ["SPHERICAL", "FIXED", *(f"UJOINT_{a}{b}" for a in "XYZ" for b in "XYZ" if a != b)]
 
 #: JSON writes a character beyond the first plane in two escapes, which YAML does not read as one.
@@ -200,14 +197,17 @@ own = st.dictionaries(st.sampled_from(["note", "x-note", "x-x-note", "urdf", "ma
 @st.composite
 def documents(draw: st.DrawFn) -> dict[str, Any]:
     """Documents of version 1, most of them sound."""
-    pairs = draw(st.lists(st.tuples(*[st.sampled_from(FRAMES)] * 2).map(list), max_size=3))
-    replaced = draw(st.lists(st.sampled_from(ROTARY), unique=True, max_size=3))
+    replaced = draw(st.dictionaries(st.sampled_from(ROTARY), st.sampled_from(TYPES), max_size=3))
+    halves = [f"{name}_{letter}" for name, kind in replaced.items() if "_" in kind for letter in kind[-2:]]
+    frames = st.sampled_from([*FRAMES, *halves, *halves])
+    pairs = draw(st.lists(st.lists(frames, min_size=2, max_size=2), max_size=3))
+    motors = ["stage", "grip", "wrist_z", *halves, *(name for name in ROTARY[:3] if name not in replaced)]
     document: dict[str, Any] = {
         "closed_loop": pairs,
-        "type": [draw(st.sampled_from(["3d", "3D", "6d", "6D"])) for _ in pairs],
-        "name_mot": draw(st.lists(st.sampled_from(MOVING), unique=True, max_size=4)),
-        "joint_name": replaced,
-        "joint_type": [draw(st.sampled_from(TYPES)) for _ in replaced],
+        "type": draw(st.lists(st.sampled_from(["3d", "3D", "6d", "6D"]), min_size=len(pairs), max_size=len(pairs))),
+        "name_mot": draw(st.lists(st.sampled_from(motors), unique=True, max_size=4)),
+        "joint_name": list(replaced),
+        "joint_type": list(replaced.values()),
     }
     if draw(st.booleans()):
         del document["type"]
@@ -225,17 +225,18 @@ def written(draw: st.DrawFn, document: dict[str, Any]) -> str:
         text = json.dumps(document, indent=draw(st.sampled_from([1, 4])))
     else:
         text = yaml.safe_dump(document, sort_keys=False, default_flow_style=None if style == "flow" else False)
+    places = draw(st.binary(min_size=20, max_size=20))
     lines = []
     for number, line in enumerate(text.split("\n")):
-        # A comment line inside a text of several lines would be part of it; keep to files without such.
-        place = draw(st.sampled_from(["none", "none", "none", "before", "behind"]))
-        if place == "before":
+        place = places[number % len(places)] % 4
+        if place == 0:
             lines.append(f"# note {number}:")
-        lines.append(line + (f"  # note {number};" if place == "behind" and line.strip() else ""))
+        lines.append(line + (f"  # note {number};" if place == 1 and line.strip() else ""))
     with_comments = "\n".join(lines)
+    # In a text of several lines they would be part of it.
     try:
         same = read_yaml(Source("", with_comments, with_comments.encode())).data == document
-    except Exception:
+    except Fault:
         same = False
     return with_comments if same else text
 
@@ -247,7 +248,7 @@ def says_half_of_a_universal_joint(document: dict[str, Any]) -> bool:
     return any(name.endswith(ends) for name in names)
 
 
-@settings(max_examples=250, deadline=None, derandomize=True)
+@settings(max_examples=120, deadline=None, derandomize=True)
 @given(st.data())
 def test_any_document_is_the_same_model_in_version_2(data: st.DataObject) -> None:
     document = data.draw(documents())
@@ -269,7 +270,7 @@ def test_any_document_is_the_same_model_in_version_2(data: st.DataObject) -> Non
     assert repr(dict(after.extensions)) == repr(expected)
 
 
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=25, deadline=None, derandomize=True)
 @given(st.data())
 def test_any_document_moves_alike_in_version_2(data: st.DataObject) -> None:
     document = data.draw(documents())
@@ -280,7 +281,7 @@ def test_any_document_moves_alike_in_version_2(data: st.DataObject) -> None:
     assert_same_motion(before, migrate(description).mechanism)
 
 
-@settings(max_examples=150, deadline=None, derandomize=True)
+@settings(max_examples=100, deadline=None, derandomize=True)
 @given(st.data())
 def test_no_comment_is_lost_or_doubled(data: st.DataObject) -> None:
     text = data.draw(written(data.draw(documents())))

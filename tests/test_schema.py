@@ -73,7 +73,7 @@ JUNK = [None, True, 0, -1, 1.5, "", "xy", "3d", "x-own", "spherical", [], {}, [1
 JUNK += [{"link": "a"}]
 
 #: What a key is renamed to, or what a key is added.
-KEYS = ["", "x-own", "name", "type", "link", "joint", "axes", "limits", "merges", "pitch", "damping", "joint_type"]
+KEYS = ["", "x-own", "type", "joint", "axes", "limits", "joint_type"]
 
 
 def accepted(version: str, document: Any) -> bool:
@@ -83,8 +83,7 @@ def accepted(version: str, document: Any) -> bool:
         refusal = ""
     except ValidationError as error:
         refusal = str(error)
-    faults = [fault.message for fault in VALIDATORS[version].iter_errors(document)]
-    assert bool(faults) == bool(refusal), f"{document}\nmodel: {refusal}\nschema: {faults}"
+    assert VALIDATORS[version].is_valid(document) == (not refusal), f"{document}\nmodel: {refusal or 'accepts it'}"
     return not refusal
 
 
@@ -181,9 +180,14 @@ def with_edit(document: Any, path: tuple[Any, ...], edit: Any) -> Any:
     return edited[""]
 
 
-def edits(document: Any) -> Iterator[Any]:
-    """Every document that is one edit away: a value dropped, replaced, repeated, or a key renamed or added."""
+def edits(document: Any, under: str | None = None) -> Iterator[Any]:
+    """Every document that is one edit away: a value dropped, replaced, repeated, or a key renamed or added.
+
+    With ``under``, only those edits that are made at that key of the document or below it.
+    """
     for path in list(places(document)):
+        if under is not None and path[:1] != (under,):
+            continue
         if path:
             yield with_edit(document, path, lambda holder, step: holder.pop(step))
         for junk in JUNK:
@@ -195,24 +199,25 @@ def edits(document: Any) -> Iterator[Any]:
             yield with_edit(document, path, lambda holder, step, key=key: holder.setdefault(key, holder[step]))
 
 
-def pieces(version: str) -> Iterator[dict[str, Any]]:
-    """Sound documents that have one entry of the whole one each, so that all edits of all of them are soon judged."""
+def edited_pieces(version: str) -> Iterator[Any]:
+    """Every edit of sound documents that have one entry of the whole one each, so that they are soon judged."""
     if version == "1":
-        yield WHOLE["1"]
+        yield from edits(WHOLE["1"])
         return
     head = {"extended_urdf": "2.0"}
+    yield from edits(head)
     for key, value in WHOLE["2"].items():
         if isinstance(value, dict) and value:
-            yield from ({**head, key: {name: entry}} for name, entry in value.items())
-        elif isinstance(value, list) and value:
-            yield from ({**head, key: [entry]} for entry in value)
+            entries: list[Any] = [{name: entry} for name, entry in value.items()]
         else:
-            yield {**head, key: value}
+            entries = [[entry] for entry in value] if isinstance(value, list) and value else [value]
+        for entry in entries:
+            yield from edits({**head, key: entry}, under=key)
 
 
 @pytest.mark.parametrize("version", VERSIONS)
 def test_model_and_schema_agree_on_every_document_that_is_one_edit_from_a_sound_one(version: str) -> None:
-    verdicts = [accepted(version, document) for piece in pieces(version) for document in edits(piece)]
+    verdicts = [accepted(version, document) for document in edited_pieces(version)]
     assert verdicts.count(True) > 100
     assert verdicts.count(False) > 200
 
@@ -348,8 +353,7 @@ def test_model_and_schema_agree_on_documents_with_faults(version: str, data: st.
 
 def test_reading_refuses_what_the_schema_refuses_and_says_where() -> None:
     seen = 0
-    documents = [document for piece in pieces("2") for document in edits(piece)]
-    for document in documents[::4]:
+    for document in list(edited_pieces("2"))[::5]:
         if not isinstance(document, dict) or "extended_urdf" not in document:
             continue
         text = json.dumps(document, indent=1)

@@ -425,6 +425,7 @@ def test_any_text_gives_a_document_or_a_fault(pieces: list[str]) -> None:
         ("\n<?xml version='1.0'?><robot/>", (2, 1), "very beginning", None),
         ("< robot/>", (1, 2), "white space cannot stand here", None),
         ("<a:b:c/>", (1, None), "'a:b:c'", None),
+        ("<robot>\n<a:b/>\n<a:b:c/></robot>", (3, None), "'a:b:c'", None),
     ],
 )
 def test_a_syntax_error_is_told_in_plain_words_at_its_place(

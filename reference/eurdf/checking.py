@@ -63,7 +63,7 @@ def closure_diagnostics(description: Description, robot: Robot | None = None) ->
     if "assembled" in mechanism.configurations:
         return assembled_diagnostics(description, robot)
     assembly = assemble(robot)
-    if not assembly.converged:
+    if not assembly.closes:
         worst = max(assembly.open, key=lambda opening: max(opening.position, opening.angle))
         closure = next(closure for closure in mechanism.closures if closure.name == worst.name)
         diagnostics.report(
@@ -80,12 +80,8 @@ def assembled_diagnostics(description: Description, robot: Robot) -> Diagnostics
     from eurdf.kinematics.residual import closure_openings
 
     diagnostics = Diagnostics()
-    openings = [
-        opening
-        for opening in closure_openings(robot, robot.configurations["assembled"])
-        if not max(opening.position, opening.angle) <= ASSEMBLED_TOLERANCE
-    ]
-    if openings:
+    openings = closure_openings(robot, robot.configurations["assembled"])
+    if not all(max(opening.position, opening.angle) <= ASSEMBLED_TOLERANCE for opening in openings):
         diagnostics.report(
             "assembled-open",
             f"the loops are open at the assembled configuration: {_openings(openings)}",
@@ -96,7 +92,11 @@ def assembled_diagnostics(description: Description, robot: Robot) -> Diagnostics
 
 
 def _openings(openings: Iterable[Opening]) -> str:
-    return "; ".join(_opening(opening.name, opening.position, opening.angle) for opening in openings)
+    """The open ones, widest first, a few at most."""
+    wide = [opening for opening in openings if not max(opening.position, opening.angle) <= ASSEMBLED_TOLERANCE]
+    wide.sort(key=lambda opening: max(opening.position, opening.angle), reverse=True)
+    told = "; ".join(_opening(opening.name, opening.position, opening.angle) for opening in wide[:4])
+    return told + (f"; and {len(wide) - 4} more" if len(wide) > 4 else "")
 
 
 def _opening(name: str, position: float, angle: float) -> str:

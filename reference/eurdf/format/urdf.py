@@ -184,6 +184,7 @@ class _Reader:
         self.document = document
         self.diagnostics = diagnostics
         self.floats: dict[str, tuple[float, ...] | None] = {}
+        self.joined: dict[str, tuple[float, ...] | None] = {}
         self.poses: dict[tuple[str | None, str | None], Pose] = {}
         self.materials: dict[str, tuple[tuple[float, float, float, float] | None, str]] = {}
 
@@ -244,9 +245,9 @@ class _Reader:
         if None not in texts:
             # A comma in an attribute makes one number too many, and a blank is no number: so none slips through.
             joined = ",".join(texts)  # type: ignore[arg-type]
-            values = self.floats.get(joined)
+            values = self.joined.get(joined)
             if values is None:
-                values = self.floats[joined] = _floats(joined, ",")
+                values = self.joined[joined] = _floats(joined, ",")
             if values is not None and len(values) == len(texts):
                 return values
         for attribute, text in zip(attributes, texts, strict=True):

@@ -25,7 +25,14 @@ def inertia_of(inertia: Inertia) -> pin.Inertia:
         R = _rotation(inertia.pose.quaternion)
         # I is symmetric, so (R I)ᵢⱼ is row i of R by row j of I.
         moments = _rows_by_rows(_rows_by_rows(R, moments), R)
-    return pin.Inertia(inertia.mass, np.array(inertia.pose.xyz), np.array(moments))
+    try:
+        return pin.Inertia(inertia.mass, np.array(inertia.pose.xyz), np.array(moments))
+    except RuntimeError:
+        # This constructor refuses moments that no body has, which Pinocchio's own URDF parser takes. `eurdf.check`
+        # reports them; the kinematics are still of use.
+        body = pin.Inertia(inertia.mass, np.array(inertia.pose.xyz), np.zeros((3, 3)))
+        body.inertia = np.array(moments)
+        return body
 
 
 def is_zero(inertia: Inertia) -> bool:

@@ -58,13 +58,8 @@ def joint_model(joint: Joint, *, counts_turns: bool = False) -> pin.JointModel:
 
 def unit(axis: Vector3) -> Vector3:
     """The axis at unit length, rounded as Eigen rounds it."""
-    x, y, z = axis
-    square = x * x + y * y + z * z
-    if not 1e-290 < square < 1e290:  # the square is out of range, the axis is not
-        largest = max(abs(x), abs(y), abs(z))
-        x, y, z = x / largest, y / largest, z / largest
-        square = x * x + y * y + z * z
-    norm = math.sqrt(square)
+    x, y, z = _squarable(axis)
+    norm = math.sqrt(x * x + y * y + z * z)
     return x / norm, y / norm, z / norm
 
 
@@ -77,6 +72,15 @@ def aligned(axis: Vector3) -> int | None:
             square = first * first + second * second + along * along
             return index if off <= _ALIGNED * _ALIGNED * min(square, 1.0) else None
     return None
+
+
+def _squarable(axis: Vector3) -> Vector3:
+    """The axis as it is, or of another length where the square of its own is out of range."""
+    x, y, z = axis
+    if 1e-290 < x * x + y * y + z * z < 1e290:
+        return axis
+    largest = max(abs(x), abs(y), abs(z))
+    return x / largest, y / largest, z / largest
 
 
 def _revolute(axis: Vector3) -> pin.JointModel:
@@ -94,7 +98,7 @@ def _continuous(axis: Vector3) -> pin.JointModel:
     if index is not None:
         return _CONTINUOUS[index]
     # Python cannot give JointModelRevoluteUnboundedUnaligned its axis; Pinocchio's URDF parser can.
-    xyz = " ".join(map(repr, unit(axis) if max(map(abs, axis)) > 1e140 else axis))
+    xyz = " ".join(map(repr, _squarable(axis)))
     return pin.JointModel(pin.buildModelFromXML(_ONE_CONTINUOUS_JOINT.format(xyz)).joints[1])
 
 

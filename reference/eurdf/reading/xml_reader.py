@@ -8,7 +8,7 @@ from lxml import etree
 
 from eurdf.diagnostics import Fault, Place
 from eurdf.reading.source import URDF_LIMIT, Source, short, too_large
-from eurdf.reading.xml_syntax import NAMESPACE_ERRORS, syntax_fault, too_long
+from eurdf.reading.xml_syntax import NAMESPACE_ERRORS, refused, syntax_fault
 
 #: Tags and attributes that a file may have: what takes memory is their number.
 TAG_LIMIT = 1_000_000
@@ -139,8 +139,9 @@ def _read_with_namespace_errors(source: Source) -> etree._Element:
     """Read a file that is well-formed but for its namespaces; an undeclared prefix becomes part of the name."""
     parser = _parser(recover=True)
     root = etree.fromstring(source.data, parser)
-    if any(entry.type not in NAMESPACE_ERRORS for entry in parser.error_log):
-        raise too_long(source)
+    for entry in parser.error_log:
+        if entry.type not in NAMESPACE_ERRORS:
+            raise refused(source, entry.type, entry.message, entry.line)
     return root
 
 

@@ -63,19 +63,17 @@ def syntax_fault(source: Source, error: Any) -> Fault | None:
             return _not_closed(source, problem, at, name, index(byte))
         start, end_, message, hint = _explain(source.text, problem, at)
         return Fault("xml-syntax", message, source.place(start, end_), hint)
-    if error.code in NAMESPACE_ERRORS:
-        return None
-    if error.code in _RESOURCE_ERRORS:
-        return too_long(source)
+    return None if error.code in NAMESPACE_ERRORS else refused(source, error.code, error.msg, error.position[0])
+
+
+def refused(source: Source, code: int, message: str, line: int) -> Fault:
+    """The fault of a file that is well-formed, but that libxml2 does not take, for the error that it gives."""
+    if code in _RESOURCE_ERRORS:
+        message = "a name, a text or the value of an attribute is too long for the XML parser"
+        return Fault("file-too-large", message, Place(source.file, line))
     # What only the namespaces of XML forbid, such as two ':' in a name.
-    message = re.sub(r",? line \d+, column \d+.*", "", str(error.msg), flags=re.DOTALL)
-    return Fault("xml-syntax", short(message[:1].lower() + message[1:]), Place(source.file, error.position[0]))
-
-
-def too_long(source: Source) -> Fault:
-    """The fault of a file that is well-formed, but that libxml2 does not take."""
-    message = "a name, a text or the value of an attribute is too long for the XML parser"
-    return Fault("file-too-large", message, Place(source.file))
+    message = re.sub(r",? line \d+, column \d+.*", "", message.strip(), flags=re.DOTALL)
+    return Fault("xml-syntax", short(message[:1].lower() + message[1:]), Place(source.file, line))
 
 
 def _not_closed(source: Source, problem: str, at: int, name: str, opened: int) -> Fault:
