@@ -11,13 +11,17 @@ from benchmarks import check, growth, load
 MEASUREMENTS: dict[str, Callable[[], None]] = {"load": load.main, "growth": growth.main, "check": check.main}
 
 
+def _first_line(run: Callable[[], None]) -> str:
+    return (sys.modules[run.__module__].__doc__ or "").splitlines()[0]
+
+
 def main() -> int:
     """Run the measurements named on the command line; all of them where none is named."""
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks",
         description="Measure, as ratios to a named peer in the same run.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog="\n".join(f"{name:8} {(sys.modules[run.__module__].__doc__ or '').splitlines()[0]}" for name, run in MEASUREMENTS.items()),
+        epilog="\n".join(f"{name:8} {_first_line(run)}" for name, run in MEASUREMENTS.items()),
     )
     parser.add_argument("names", nargs="*", choices=[*MEASUREMENTS, []], help="which to run; all by default")
     for name in parser.parse_args().names or MEASUREMENTS:

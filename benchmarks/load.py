@@ -17,7 +17,8 @@ ROOT = Path(__file__).parents[1]
 
 def robots() -> list[Path]:
     """Folders of the collection, and of published robots where they are present beside the checkout."""
-    return [path.parent for root in (ROOT / "robots", ROOT.parent / "shared" / "wild") for path in sorted(root.glob("*/robot.yaml"))]
+    roots = (ROOT / "robots", ROOT.parent / "shared" / "wild")
+    return [path.parent for root in roots for path in sorted(root.glob("*/robot.yaml"))]
 
 
 def alternate(one: Callable[[], object], other: Callable[[], object], seconds: float = 1.5) -> tuple[float, float]:

@@ -94,7 +94,9 @@ def subspace(joint: Joint, c: Sequence[float]) -> Matrix:
     return np.array([np.concatenate(column) for column in columns]).T
 
 
-def poses(mechanism: Mechanism, coordinates: Mapping[str, Sequence[float]], root: Matrix | None = None) -> dict[str, Matrix]:
+def poses(
+    mechanism: Mechanism, coordinates: Mapping[str, Sequence[float]], root: Matrix | None = None
+) -> dict[str, Matrix]:
     """Pose of every body in the world."""
     found = {mechanism.bodies[0].name: np.eye(4) if root is None else root}
     for joint in mechanism.joints:

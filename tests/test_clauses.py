@@ -15,7 +15,8 @@ def _clauses() -> dict[str, str]:
     """Text of every clause in the specification, by its id."""
     clauses: dict[str, str] = {}
     for path in sorted((ROOT / "spec").glob("*.md")):
-        for match in re.finditer(r"^\((EU-[A-Z]{3}-\d{3})\)=\n\*\*(EU-[A-Z]{3}-\d{3})\*\* (.+)$", path.read_text(), re.M):
+        clause = re.compile(r"^\((EU-[A-Z]{3}-\d{3})\)=\n\*\*(EU-[A-Z]{3}-\d{3})\*\* (.+)$", re.M)
+        for match in clause.finditer(path.read_text(encoding="utf-8")):
             assert match[1] == match[2], path
             assert match[1] not in clauses, f"{match[1]} stands twice"
             clauses[match[1]] = match[3]

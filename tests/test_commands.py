@@ -12,9 +12,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import eurdf
 import jsonschema
 import pytest
+
+import eurdf
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.main import main
 from eurdf.commands.output_file import write_new

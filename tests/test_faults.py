@@ -21,6 +21,7 @@ ONE = "workbench.v1.yaml"
 URDF = "workbench.urdf"
 
 # code, file, text to replace, replacement, text at the place that the diagnostic points at, part of message or hint
+# fmt: off
 FAULTS = [
     # the description by itself
     ("yaml-syntax", YAML, "frames: [rod_tip, rocker_top]", "frames: [rod_tip, rocker_top", None, ""),
@@ -166,6 +167,7 @@ FAULTS = [
     ("assembled-open", YAML, "assembled: {motor: 0,", "assembled: {motor: 0.1,", "assembled", "'pin' by"),
     ("closure-cannot-close", ONE, "[rod_tip, slider]", "[rod_tip, rocker]", "[rod_tip, rocker]", "'closure_1' by"),
 ]
+# fmt: on
 
 
 def _workbench(folder: Path, file: str, old: str | None, new: str) -> Path:

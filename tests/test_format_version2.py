@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import timeit
 from collections.abc import Iterator
 from typing import Any
 
@@ -343,3 +344,16 @@ def test_a_joint_named_like_a_form_of_the_format_is_pointed_at_rightly() -> None
 def test_reading_a_description_loads_no_simulator() -> None:
     code = "import sys, eurdf.format.read_extension; sys.exit('pinocchio' in sys.modules or 'numpy' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_a_long_or_unprintable_name_is_quoted_short_and_escaped() -> None:
+    _, diagnostics = read('extended_urdf: "2.0"\n? "' + "a" * 5000 + '"\n: 1\n"tab\\there": 1\n')
+    long, tab = (found.message for found in diagnostics)
+    assert len(long) < 120
+    assert "'tab\\there'" in tab
+
+
+def test_reading_a_description_takes_well_under_a_millisecond() -> None:
+    document = read_yaml(Source("robot.yaml", FULL, FULL.encode()))
+    read_extension(document, Diagnostics())  # the validators are built once
+    assert min(timeit.repeat(lambda: read_extension(document, Diagnostics()), number=1, repeat=50)) < 1e-3

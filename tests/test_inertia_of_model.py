@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import by_hand
 import numpy as np
 import pinocchio as pin
 from hypothesis import given
 from hypothesis import strategies as st
 
+import by_hand
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.configuration import configuration_vector
 from eurdf.pinocchio.model import build_model

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-import by_hand
 import numpy as np
 import pinocchio as pin
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import by_hand
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Body, Joint, Mechanism
 from eurdf.mechanism.pose import Pose

@@ -5,15 +5,14 @@ from __future__ import annotations
 import warnings
 from pathlib import Path
 
-import by_hand
 import coal
 import numpy as np
 import pinocchio as pin
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from plain_urdf import POSITIVE, Root, joint_element, link_element, mechanism_of, origins, robot, vector
 
+import by_hand
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Body, Joint, Mechanism, Shape
 from eurdf.mechanism.pose import Pose
@@ -21,6 +20,7 @@ from eurdf.pinocchio.configuration import configuration_vector
 from eurdf.pinocchio.geometry import UnreadableMesh, build_geometry
 from eurdf.pinocchio.model import build_model
 from eurdf.pinocchio.robot import build_robot
+from plain_urdf import POSITIVE, Root, joint_element, link_element, mechanism_of, origins, robot, vector
 
 TETRAHEDRON = """solid tetrahedron
 {}endsolid tetrahedron
@@ -109,11 +109,11 @@ def assert_same_geometry(mine: pin.GeometryModel, expected: pin.GeometryModel) -
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("material", MATERIALS)
 @pytest.mark.parametrize("shape", SHAPES)
-def test_a_shape_is_what_pinocchios_own_parser_makes_of_it(
-    parts: Path, shape: str, material: str, kind: str
-) -> None:
+def test_a_shape_is_what_pinocchios_own_parser_makes_of_it(parts: Path, shape: str, material: str, kind: str) -> None:
     pose = '<origin xyz="1 2 3" rpy="0.1 -0.2 0.3"/>'
-    content = f"<{kind}>{pose}<geometry>{SHAPES[shape]}</geometry>{MATERIALS[material] if kind == 'visual' else ''}</{kind}>"
+    content = (
+        f"<{kind}>{pose}<geometry>{SHAPES[shape]}</geometry>{MATERIALS[material] if kind == 'visual' else ''}</{kind}>"
+    )
     text = robot(RED, link_element("base"), link_element("tip", content), joint_element("j", "revolute", "base", "tip"))
     mechanism = mechanism_of(text)
     model = build_model(mechanism)
@@ -169,7 +169,9 @@ def test_the_geometry_of_a_tree_is_pinocchios_own(parts: Path, data: st.DataObje
 
 def test_a_capsule_lies_along_z() -> None:
     mechanism = Mechanism("m", "", "fixed", (Body("base", collisions=(Shape("capsule", (0.1, 0.6)),)),), ())
-    [capsule] = build_geometry(mechanism, build_model(mechanism), pin.GeometryType.COLLISION, Finder(Path())).geometryObjects
+    [capsule] = build_geometry(
+        mechanism, build_model(mechanism), pin.GeometryType.COLLISION, Finder(Path())
+    ).geometryObjects
     assert (capsule.name, capsule.meshPath) == ("base_0", "CAPSULE")
     capsule.geometry.computeLocalAABB()
     box = capsule.geometry.aabb_local

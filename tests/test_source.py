@@ -8,10 +8,11 @@ import time
 from pathlib import Path
 
 import pytest
-from eurdf.diagnostics import Fault
-from eurdf.reading.source import URDF_LIMIT, YAML_LIMIT, Source, read_source
 from hypothesis import given
 from hypothesis import strategies as st
+
+from eurdf.diagnostics import Fault
+from eurdf.reading.source import URDF_LIMIT, YAML_LIMIT, Source, read_source
 
 
 def fault_of(path: str | os.PathLike[str], **options: int) -> Fault:

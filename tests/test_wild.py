@@ -1,4 +1,4 @@
-"""Published robots that nobody here wrote, where they are present: what is built from them, and what is wrong with them."""
+"""Published robots that nobody here wrote, where they are present: what is built of them, what is wrong with them."""
 
 from __future__ import annotations
 

@@ -8,12 +8,13 @@ import time
 from dataclasses import dataclass, field
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
 from eurdf.diagnostics import Diagnostic, Fault, Place
 from eurdf.reading.source import Source
 from eurdf.reading.xml_reader import TAG_LIMIT, XmlDocument, read_xml
 from eurdf.reading.xml_syntax import DEPTH_LIMIT
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 SAMPLE = """\
 <?xml version="1.0" encoding="utf-8"?>

@@ -10,12 +10,13 @@ import time
 from typing import Any
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
 from eurdf.diagnostics import Diagnostic, Fault, Place
 from eurdf.reading.core_schema import resolve
 from eurdf.reading.source import YAML_LIMIT, Source
 from eurdf.reading.yaml_reader import DEPTH_LIMIT, DIRECTIVE_LIMIT, NODE_LIMIT, YamlDocument, read_yaml
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 Pointer = tuple[str | int, ...]
 

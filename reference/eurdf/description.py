@@ -61,7 +61,11 @@ class Description:
 
 
 def describe(
-    path: str | os.PathLike[str], urdf: str | os.PathLike[str] | None = None, root: Root | None = None
+    path: str | os.PathLike[str],
+    urdf: str | os.PathLike[str] | None = None,
+    root: Root | None = None,
+    *,
+    geometry: bool = True,
 ) -> Description:
     """Read and link the files of a robot, and check its inertias.
 
@@ -69,6 +73,7 @@ def describe(
         path: A folder, a YAML file, a bare URDF, or the name of a robot of the collection.
         urdf: A URDF in place of the one that the description names.
         root: In place of the root that the description states.
+        geometry: Whether to read the geometry; else bodies have none, and it is not checked.
 
     Raises:
         RobotNotFound: Where there are no such files.
@@ -78,7 +83,7 @@ def describe(
     diagnostics = Diagnostics()
     if files.description is None:
         assert files.urdf is not None
-        tree = _read_urdf(files.urdf, diagnostics)
+        tree = _read_urdf(files.urdf, diagnostics, geometry)
         mechanism = None if tree is None else link(tree, None, None, diagnostics, root)
         return _finish(Description(shown, diagnostics, mechanism, tree))
     document = _read_yaml(files.description, diagnostics)
@@ -89,7 +94,7 @@ def describe(
         if extension is not None and document is not None:
             _urdf_not_found(urdf_path, extension, document, diagnostics)
         return Description(shown, diagnostics, None, None, extension, document)
-    tree = _read_urdf(urdf_path, diagnostics)
+    tree = _read_urdf(urdf_path, diagnostics, geometry)
     mechanism = None
     if tree is not None and extension is not None:
         mechanism = link(tree, extension, document, diagnostics, root)
@@ -112,13 +117,13 @@ def _read_yaml(path: Path, diagnostics: Diagnostics) -> YamlDocument | None:
         return None
 
 
-def _read_urdf(path: Path, diagnostics: Diagnostics) -> Urdf | None:
+def _read_urdf(path: Path, diagnostics: Diagnostics, geometry: bool) -> Urdf | None:
     try:
         document = read_xml(read_source(path))
     except Fault as fault:
         diagnostics.add(fault.diagnostic)
         return None
-    return read_urdf(document, diagnostics)
+    return read_urdf(document, diagnostics, geometry=geometry)
 
 
 def _named_urdf(description: Path, extension: Extension | None, document: YamlDocument | None) -> Path:
@@ -171,9 +176,7 @@ def missing_meshes(
             else:
                 found[uri] = path
     if missing:
-        element = next(
-            mesh for mesh in urdf.document.root.iter("mesh") if mesh.get("filename") in missing
-        )
+        element = next(mesh for mesh in urdf.document.root.iter("mesh") if mesh.get("filename") in missing)
         names = ", ".join(f"'{uri}'" for uri in missing[:3]) + (", ..." if len(missing) > 3 else "")
         count = "1 mesh file is" if len(missing) == 1 else f"{len(missing)} mesh files are"
         diagnostics.report(

@@ -31,7 +31,8 @@ def load(
         path: A folder, a YAML file, a bare URDF, or the name of a robot of the collection.
         urdf: A URDF in place of the one that the description names (``robot.urdf`` beside it by default).
         root: ``fixed`` or ``floating``, in place of what the description says (fixed by default).
-        geometry: Whether to load the visual and collision geometry, meshes too.
+        geometry: Whether to load the visual and collision geometry, meshes too. Without it, bodies have no shapes, and
+            nothing wrong with shapes is looked for.
         mimic: Whether joints that mimic follow, as Pinocchio's own with ``mimic=True``; else they are free.
         strict: Whether to refuse errors of the inertia and closure phases too.
         package_dirs: Folders to look for the packages of meshes in, before ``ROS_PACKAGE_PATH``.
@@ -45,7 +46,7 @@ def load(
     """
     if root not in (None, "fixed", "floating"):
         raise ValueError(f"root is {root!r}; it must be 'fixed' or 'floating'")
-    description = describe(path, urdf, root)
+    description = describe(path, urdf, root, geometry=geometry)
     diagnostics = description.diagnostics
     if diagnostics.refused or description.mechanism is None:
         raise InvalidRobot(description.path, tuple(diagnostics))

@@ -19,10 +19,7 @@ _HEAD = "# Written by build.py beside this file: change it there.\n"
 
 
 def yaml_text(drawing: Drawing) -> str:
-    """The description in version 2.0."""
-    assembled: dict[str, Value] = {
-        joint.name: (0.0, 0.0, 0.0, 1.0) if joint.type == "spherical" else 0.0 for joint in drawing.joints
-    }
+    """The description in version 2.0; a drawing is assembled where every joint stands at its neutral."""
     content: dict[str, Value] = {
         "extended_urdf": "2.0",
         "urdf": "robot.urdf",
@@ -31,7 +28,7 @@ def yaml_text(drawing: Drawing) -> str:
         ],
         "joints": {joint.name: joint.type for joint in drawing.joints if joint.type != "revolute"},
         "actuators": [joint.name for joint in drawing.joints if joint.motor],
-        "configurations": {"assembled": assembled},
+        "configurations": {"assembled": {}},
         "metadata": drawing.metadata,
     }
     return _SCHEMA.format("2.0") + _HEAD + _text(content)
@@ -80,6 +77,9 @@ def _entry(head: str, value: Value) -> Iterator[str]:
         if len(scalars) == len(value) and len(line) <= _WIDTH:
             yield line
             return
+    if not value:
+        yield f"{head} {{}}"
+        return
     yield head
     yield from (f"  {line}" for line in _block(value))
 

@@ -61,7 +61,8 @@ def find_robot(path: str | os.PathLike[str], urdf: str | os.PathLike[str] | None
     if folder is not None and "/" not in name and os.sep not in name and (folder / name / "robot.yaml").is_file():
         return RobotFiles(folder / name / "robot.yaml", given)
     known = ", ".join(collection_names())
-    raise RobotNotFound(name, f"there is no '{name}': it is no file, no folder, and no robot of the collection ({known})")
+    message = f"there is no '{name}': it is no file, no folder, and no robot of the collection ({known})"
+    raise RobotNotFound(name, message)
 
 
 def _in_folder(folder: Path, given: Path | None) -> RobotFiles:

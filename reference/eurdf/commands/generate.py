@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from eurdf.commands.cannot_run import CannotRun
-from eurdf.commands.migrate import show_refusal, tell, urdf_from
-from eurdf.commands.output import write_json, write_text
+from eurdf.commands.migrate import show_refusal, tell, urdf_from, write_yaml
+from eurdf.commands.output import write_json
 from eurdf.commands.output_file import write_new
 
 if TYPE_CHECKING:
@@ -100,7 +100,7 @@ def run(args: argparse.Namespace) -> int:
         write_json(_result(generation, args.output, warnings))
         return 0
     if args.output is None:
-        write_text(generation.text)
+        write_yaml(generation.text)
     tell([*_summary(generation), *(f"warning: {warning}" for warning in warnings)])
     if args.output is not None:
         tell([f"wrote '{args.output}'"])

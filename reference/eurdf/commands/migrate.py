@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import io
 import os
 import sys
 from pathlib import Path
@@ -77,11 +78,19 @@ def run(args: argparse.Namespace) -> int:
         write_json(_result(path, description.extension.version, output, notes, text))
         return 0
     if args.output is None:
-        write_text(text)
+        write_yaml(text)
     tell(notes)
+    tell([str(found) for found in description.diagnostics if found.code == "near-miss-key"])
     if output is not None:
         tell([f"wrote '{output}'"])
     return 0
+
+
+def write_yaml(text: str) -> None:
+    """Write to the standard output, in UTF-8 whatever the locale: it is a file."""
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(encoding="utf-8")
+    write_text(text)
 
 
 def urdf_from(description: str | os.PathLike[str], urdf: str | os.PathLike[str]) -> str:

@@ -116,9 +116,7 @@ class Diagnostics:
     def __init__(self) -> None:
         self._found: list[Diagnostic] = []
 
-    def report(
-        self, code: str, message: str, place: Place | Callable[[], Place], hint: str | None = None
-    ) -> None:
+    def report(self, code: str, message: str, place: Place | Callable[[], Place], hint: str | None = None) -> None:
         """Add a finding; ``code`` must be in the registry."""
         if code not in REGISTRY:
             raise KeyError(code)

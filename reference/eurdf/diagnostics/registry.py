@@ -111,7 +111,7 @@ urdf-negative-limit        EU-URD-020 error   A limit of velocity or effort, a d
 urdf-mimic-unknown         EU-URD-021 error   A joint mimics a joint that does not exist.
 urdf-mimic-cycle           EU-URD-022 error   Joints mimic one another in a cycle.
 urdf-mimic-kind            EU-URD-023 error   A joint mimics, or is mimicked, that has not exactly one coordinate.
-urdf-geometry              EU-URD-024 error   A geometry is not one box, cylinder, sphere, capsule or mesh of positive size.
+urdf-geometry              EU-URD-024 error   A geometry is not one shape of positive size.
 urdf-no-range              EU-URD-025 warning A revolute or prismatic joint has the range 0 to 0, so it cannot move.
 urdf-unknown-element       EU-URD-026 warning An element or attribute is nearly one that URDF has.
 urdf-closure-ignored       EU-URD-027 warning The URDF says a closure in a dialect that is not part of this format.
@@ -151,7 +151,7 @@ joint-axes-parallel        EU-JNT-007 error   Axes that must differ are parallel
 joint-pitch-zero           EU-JNT-008 error   A helical joint has no pitch.
 joint-property             EU-JNT-009 error   A property does not fit the type of the joint.
 joint-limits-reversed      EU-JNT-010 error   A lower limit is above the upper one.
-merge-not-chain            EU-JNT-011 error   Joints to merge are not three rotary joints, each the only child of the last.
+merge-not-chain            EU-JNT-011 error   Joints to merge are no chain of three rotary joints.
 merge-inertia              EU-JNT-012 error   A link between joints to merge has inertia.
 merge-closure-frame        EU-JNT-013 error   A link between joints to merge carries a closure frame.
 merge-axes                 EU-JNT-014 error   The axes of joints to merge do not meet in one point.

@@ -122,7 +122,7 @@ class Extension:
         urdf: Path of the URDF, relative to the YAML file.
         root: Whether the root link is fixed or floating.
         closures: In file order; likewise the other lists.
-        merges_revolutes: Whether three revolute joints whose axes meet become a spherical one by themselves (version 1).
+        merges_revolutes: Whether three revolute joints whose axes meet become one spherical joint (version 1).
         metadata: What the file says of itself.
         extensions: The user's own data at the top level.
         own_keys: Where a key ``x-…`` stands among the names of joints. It is the user's own and no joint's name, so

@@ -1,6 +1,6 @@
 """What the models of both versions are made of: a strict mapping, and the types of its fields."""
 
-from __future__ import annotations
+# Annotations are evaluated here, not put off: older pydantic looks an inherited one up in the module that inherits it.
 
 from collections.abc import Callable
 from typing import Annotated, Any, TypeVar

@@ -11,7 +11,7 @@ from eurdf.format.field import is_own_key
 from eurdf.format.schema import FILES
 from eurdf.format.urdf import Urdf
 from eurdf.format.version2 import VERSION
-from eurdf.format.yaml_text import Entry, Value, item_of_mapping, lines_of, section, text_of
+from eurdf.format.yaml_text import Entry, Value, item_of_mapping, lines_of, modeline, section, text_of
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ClosureType, Root
 
@@ -22,12 +22,12 @@ _ROTARY = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS})
 #: ``closedloop1_A`` and ``closedloop1_B``, ``closedloop3D_1A``, ``closed_loop_knee_a``; and with ``_frame`` behind it,
 #: the joint that some exporters fix such a link by.
 PUBLISHED_CLOSURE = (
-    r"(?i)(?P<loop>(?>.*(?:closed_?loop|fermeture))(?:_?(?P<type>[36]d))?.*)"
+    r"(?is)(?P<loop>(?>.*(?:closed_?loop|fermeture))(?:_?(?P<type>[36]d))?.*)"
     r"(?:[_.-]|(?<=\d))(?P<side>[ab])(?:_frame)?"
 )
 
 #: ``closing_knee_1`` and ``closing_knee_2``, as onshape-to-robot names the frames of a mate ``closing_knee``.
-MATE_CLOSURE = r"(?P<loop>(?>.*closing_).+)_(?P<side>[12])(?:_frame)?"
+MATE_CLOSURE = r"(?s)(?P<loop>(?>.*closing_).+)_(?P<side>[12])(?:_frame)?"
 
 #: Names that begin with the word ``mot`` or ``motor``: ``motor_knee`` and ``mot1_rod2``, but not ``moteur_rod``.
 MOTOR = r"(?i)^mot(or)?(?![^\W\d_])"
@@ -46,9 +46,9 @@ class Conventions:
 
     Attributes:
         closures: Match the whole name of a link or a joint, which then is one frame of a closure. The group ``side``
-            tells the two frames of a closure apart; the group ``loop``, or the name without its side, is what they have
-            in common, and names the closure. The group ``type``, where it matches ``3d`` or ``6d`` in any case, is its
-            type; 6d where it does not.
+            tells the two frames apart; frame A is that whose side sorts first. The group ``loop``, or the name without
+            its side, is what they have in common, and names the closure. The group ``type``, where it matches ``3d`` or
+            ``6d`` in any case, is its type; 6d where it does not.
         motors: Found in the name of an actuated joint.
         sphericals: Found in the name of a joint that is spherical, not revolute.
     """
@@ -249,9 +249,8 @@ def version2_text(
         root: Whether the root is fixed or floating.
         urdf_path: Path of the URDF from the folder of the description.
     """
-    head = f"# yaml-language-server: $schema={FILES['2']}"
     entries = [
-        Entry(lines_of("extended_urdf", VERSION), (head,)),
+        Entry(lines_of("extended_urdf", VERSION), (modeline(FILES["2"]),)),
         Entry(lines_of("urdf", urdf_path)),
     ]
     if root != "fixed":
@@ -273,7 +272,6 @@ def version2_text(
 
 def version1_text(found: Found) -> str:
     """The description in version 1, which merges revolutes by itself."""
-    head = f"# yaml-language-server: $schema={FILES['1']}"
     values: dict[str, Value] = {
         "closed_loop": [closure.frames for closure in found.closures],
         "type": [closure.type for closure in found.closures],
@@ -284,4 +282,4 @@ def version1_text(found: Found) -> str:
     # Without any key of the format, it would still be a description of version 1: of nothing.
     entries = [Entry(lines_of(key, value)) for key, value in values.items() if value or key in ("closed_loop", "type")]
     first, *rest = entries
-    return text_of([Entry(first.lines, (head,)), *rest])
+    return text_of([Entry(first.lines, (modeline(FILES["1"]),)), *rest])

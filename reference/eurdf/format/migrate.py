@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -21,6 +22,7 @@ from eurdf.format.yaml_text import (
     item_of_mapping,
     lines_of,
     lines_of_item,
+    modeline,
     scalar,
     section,
     text_of,
@@ -28,8 +30,8 @@ from eurdf.format.yaml_text import (
 from eurdf.reading.source import Source
 from eurdf.reading.yaml_reader import YamlDocument, read_yaml
 
-#: The comment by which an editor finds the schema.
-MODELINE = "# yaml-language-server: $schema="
+# The comment by which an editor finds the schema.
+_MODELINE = re.compile(r"#\s*yaml-language-server:\s*\$schema=(.*)")
 
 # The keys of version 1 that become one key of version 2.
 _SECTIONS = {"closures": ("closed_loop", "type"), "joints": ("joint_name", "joint_type"), "actuators": ("name_mot",)}
@@ -82,13 +84,17 @@ def migrated(
 def own_keys(data: Iterable[str]) -> dict[str, str]:
     """For each key of a version 1 file that is the user's own, what it is called in version 2: ``x-`` and the key."""
     own = [key for key in data if key not in Version1.model_fields]
-    names = {key: key for key in own if is_own_key(key)}
+    taken = {key for key in own if is_own_key(key)}
+    names = {}
     for key in own:
         name = key
-        while not is_own_key(name) or (name in names.values() and key not in names):
-            name = "x-" + name
+        if not is_own_key(key):
+            name = f"x-{key}"
+            while name in taken:
+                name = f"x-{name}"
+            taken.add(name)
         names[key] = name
-    return {key: names[key] for key in own}
+    return names
 
 
 def split_halves(extension: Extension) -> dict[str, tuple[str, int]]:
@@ -123,15 +129,15 @@ class _Migration:
         comments = comments_of(self.document.source)
         own, comments = self.own_entries(comments)
         attached = attach(comments, self.pointers(), self.document)
-        modelines = [text for text in attached[()].above if text.startswith(MODELINE)]
-        head = [text for text in attached[()].above if not text.startswith(MODELINE)]
+        top = attached[()].above
+        head = [text for text in top if not _MODELINE.match(text)]
         items = {
             "closures": list(self.closures(attached)),
             "joints": list(self.joints(attached)),
             "actuators": list(self.actuators(attached)),
         }
         entries = [
-            Entry(lines_of("extended_urdf", VERSION), (_modeline(modelines), *head)),
+            Entry(lines_of("extended_urdf", VERSION), (_modeline(top), *head)),
             Entry(lines_of("urdf", self.urdf_path)),
         ]
         foot = attached[()].beside
@@ -214,13 +220,12 @@ class _Migration:
         return {"type": "universal", "axes": entry.split.lower()}
 
     def actuators(self, attached: Mapping[Pointer, Attached]) -> Iterator[Entry]:
-        entries = list(self.extension.actuators)
-        while entries:
-            entry = entries.pop(0)
+        entries = iter(self.extension.actuators)
+        for entry in entries:
             name, pointers = entry.joint, [entry.pointer]
             if name in self.halves:
                 name, index = self.halves[name]
-                other = entries.pop(0) if entries else None
+                other = next(entries, None)
                 if index != 0 or other is None or self.halves.get(other.joint) != (name, 1):
                     first, second = (half for half, (joint, _) in self.halves.items() if joint == name)
                     raise NotMigratable(
@@ -246,7 +251,10 @@ class _Migration:
 
         places = {key: document.place((key,), key=True) for key in document.data}
         begins = sorted(index(place.line, place.column) for place in places.values())
+        begins.append(len(source.text))
+        indices = [comment.index for comment in comments]
         entries = {}
+        kept: set[int] = set()
         for key, name in own_keys(document.data).items():
             if name != key:
                 self.notes.append(f"'{key}', data of your own, is now '{name}'")
@@ -255,15 +263,15 @@ class _Migration:
             if place.end_column is None:
                 continue
             begin = index(place.line, place.end_column)
-            end = next((other for other in begins if other >= begin), len(source.text))
-            inside = [comment for comment in comments if begin <= comment.index < end]
+            end = begins[bisect_left(begins, begin)]
+            inside = comments[bisect_left(indices, begin) : bisect_left(indices, end)]
             while inside and not inside[-1].beside:
                 end = inside.pop().index
             verbatim = _BREAK.sub("\n", scalar(name) + source.text[begin:end].rstrip())
             if _says(verbatim, name, document.data[key]):
                 entries[key] = Entry(tuple(verbatim.split("\n")))
-                comments = [comment for comment in comments if not begin <= comment.index < end]
-        return entries, comments
+                kept.update(comment.index for comment in inside)
+        return entries, [comment for comment in comments if comment.index not in kept]
 
 
 def _says(text: str, key: str, value: object) -> bool:
@@ -294,14 +302,12 @@ def _joints(names: Iterable[str]) -> str:
 def _together(attached: Mapping[Pointer, Attached], pointers: Iterable[Pointer]) -> tuple[tuple[str, ...], str]:
     """The comments above and beside an entry that is made of several."""
     several = [attached[pointer] for pointer in pointers if pointer in attached]
-    above = tuple(comment for one in several for comment in one.above if not comment.startswith(MODELINE))
+    above = tuple(comment for one in several for comment in one.above if not _MODELINE.match(comment))
     return above, " ".join(dict.fromkeys(comment for one in several for comment in one.beside))
 
 
-def _modeline(old: list[str]) -> str:
-    """The comment by which an editor finds the schema; it is sought where that of version 1 was."""
-    for text in old:
-        where = text.removeprefix(MODELINE).strip()
-        if where.endswith(FILES["1"]):
-            return MODELINE + where.removesuffix(FILES["1"]) + FILES["2"]
-    return MODELINE + FILES["2"]
+def _modeline(comments: Iterable[str]) -> str:
+    """The comment by which an editor finds the schema, which is sought where that of version 1 is."""
+    old = (match[1] for match in map(_MODELINE.match, comments) if match)
+    where = next((path.removesuffix(FILES["1"]) for path in old if path.endswith(FILES["1"])), "")
+    return modeline(where + FILES["2"])

@@ -12,7 +12,7 @@ from eurdf.format.field import is_own_key
 from eurdf.format.normal_form import from_version1, from_version2
 from eurdf.format.version1 import Version1
 from eurdf.format.version2 import VERSION, Version2
-from eurdf.format.violation import described, nearest_key, violations
+from eurdf.format.violation import described, nearest_key, quoted, violations
 
 if TYPE_CHECKING:
     from eurdf.reading.yaml_reader import YamlDocument
@@ -69,7 +69,7 @@ def _version(document: YamlDocument, diagnostics: Diagnostics) -> Literal["1", "
     if misspelt is not None:
         diagnostics.report(
             "missing-key",
-            f"the file lacks '{VERSION_KEY}', the key that says its version, but has '{misspelt}'",
+            f"the file lacks '{VERSION_KEY}', the key that says its version, but has {quoted(misspelt)}",
             document.place((misspelt,), key=True),
             f"did you mean '{VERSION_KEY}'?",
         )
@@ -118,7 +118,7 @@ def _warn_of_near_misses(document: YamlDocument, diagnostics: Diagnostics) -> No
             message = f"'{key}' is a key of version {VERSION}; in this file of version 1 it is data of your own"
             hint = f'a file of version {VERSION} begins with {VERSION_KEY}: "{VERSION}" and has no key of version 1'
         elif near := nearest_key(key, (*_VERSION1_KEYS, VERSION_KEY), NEAR):
-            message = f"'{key}' is nearly '{near}', but is read as data of your own"
+            message = f"{quoted(key)} is nearly '{near}', but is read as data of your own"
             hint = f"did you mean '{near}'?"
         else:
             continue

@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache, partial
-from typing import Literal
+from typing import Literal, cast
 
 from lxml import etree
 
@@ -21,6 +21,7 @@ from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 from eurdf.reading.xml_reader import XmlDocument
 
 Element = etree._Element
+_Primitive = Literal["box", "cylinder", "sphere", "capsule"]
 
 #: The types a URDF may give a joint.
 URDF_JOINT_TYPES = {
@@ -143,18 +144,19 @@ class Urdf:
             stack.extend(reversed(self.children.get(joint.child, ())))
 
 
-def read_urdf(document: XmlDocument, diagnostics: Diagnostics) -> Urdf | None:
+def read_urdf(document: XmlDocument, diagnostics: Diagnostics, *, geometry: bool = True) -> Urdf | None:
     """Read a URDF and check it by itself.
 
     Args:
         document: The XML file.
         diagnostics: Gets what is found.
+        geometry: Whether to read what is seen and what collides; else links have neither, and it is not checked.
 
     Returns:
         The URDF, or None where an error was found.
     """
     before = len(diagnostics.errors)
-    reader = _Reader(document, diagnostics)
+    reader = _Reader(document, diagnostics, geometry)
     urdf = reader.robot()
     return None if len(diagnostics.errors) > before else urdf
 
@@ -180,9 +182,10 @@ def _floats(text: str, separator: str | None = None) -> tuple[float, ...] | None
 class _Reader:
     """Walks the elements once; every method reads one kind of element and reports what is wrong with it."""
 
-    def __init__(self, document: XmlDocument, diagnostics: Diagnostics) -> None:
+    def __init__(self, document: XmlDocument, diagnostics: Diagnostics, geometry: bool) -> None:
         self.document = document
         self.diagnostics = diagnostics
+        self.geometry_too = geometry
         self.floats: dict[str, tuple[float, ...] | None] = {}
         self.joined: dict[str, tuple[float, ...] | None] = {}
         self.poses: dict[tuple[str | None, str | None], Pose] = {}
@@ -348,7 +351,8 @@ class _Reader:
             if tag in ("link", "joint"):
                 elements.append(element)
             elif tag == "material":
-                self.robot_material(element)
+                if self.geometry_too:
+                    self.robot_material(element)
             elif tag not in _KNOWN_CHILDREN["robot"]:
                 self.unknown(root, element, _KNOWN_CHILDREN["robot"])
         complete = True
@@ -384,20 +388,18 @@ class _Reader:
                     continue
                 inertial = child
                 inertia = self.inertial(child)
-            elif tag == "visual":
-                shape = self.shape(child, visual=True)
-                if shape:
-                    visuals.append(shape)
-            elif tag == "collision":
-                shape = self.shape(child, visual=False)
-                if shape:
-                    collisions.append(shape)
+            elif tag in ("visual", "collision"):
+                shape = self.shape(child, visual=tag == "visual") if self.geometry_too else None
+                if shape is not None:
+                    (visuals if tag == "visual" else collisions).append(shape)
             else:
                 self.unknown(element, child, _KNOWN_CHILDREN["link"])
         if name is None:
             return None
         if name == "universe":
-            self.report("urdf-reserved-name", "'universe' is the name of the world and cannot be a link's", element, "name")
+            self.report(
+                "urdf-reserved-name", "'universe' is the name of the world and cannot be a link's", element, "name"
+            )
         return UrdfLink(name, element, inertia, inertial, tuple(visuals), tuple(collisions))
 
     def inertial(self, element: Element) -> Inertia | None:
@@ -440,7 +442,6 @@ class _Reader:
         shape = shapes[0]
         kind = shape.tag
         size: tuple[float, ...] | None
-        filename = ""
         if kind == "mesh":
             name = self.name(shape, "filename")
             scale = shape.get("scale")
@@ -475,8 +476,7 @@ class _Reader:
         if min(size) <= 0.0:
             self.report("urdf-geometry", f"a size of <{kind}> is not positive", shape)
             return None
-        exact: Literal["box", "cylinder", "sphere", "capsule"] = kind
-        return Shape(exact, size, pose, filename, color, texture)
+        return Shape(cast(_Primitive, kind), size, pose, color=color, texture=texture)
 
     def color(self, element: Element) -> tuple[tuple[float, float, float, float] | None, str]:
         found = self.children(element, frozenset({"color", "texture"}))
@@ -674,9 +674,10 @@ class _Reader:
         children: dict[str, list[UrdfJoint]] = {}
         for joint in joints:
             if joint.child in parent_joint:
+                other = parent_joint[joint.child].name
                 self.report(
                     "urdf-two-parents",
-                    f"link '{joint.child}' is the child of two joints, '{parent_joint[joint.child].name}' and '{joint.name}'",
+                    f"link '{joint.child}' is the child of two joints, '{other}' and '{joint.name}'",
                     joint.element.find("child"),  # type: ignore[arg-type]
                     "link",
                     "keep one of the joints, and state the other under 'closures' in the YAML file",

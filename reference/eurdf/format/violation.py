@@ -115,7 +115,13 @@ def subject(pointer: Pointer) -> str:
     if isinstance(pointer[-1], int):
         return f"item {pointer[-1] + 1} of {subject(pointer[:-1])}"
     noun = {("joints",): "joint ", ("configurations",): "configuration "}.get(pointer[:-1], "")  # type: ignore[arg-type]
-    return f"{noun}'{pointer[-1]}'"
+    return f"{noun}{quoted(pointer[-1])}"
+
+
+def quoted(text: str) -> str:
+    """A text as a sentence quotes it: cut where it is long, and its control characters escaped."""
+    shown = text if text.isprintable() else repr(text)[1:-1]
+    return f"'{shown}'" if len(shown) <= 60 else f"'{shown[:57]}…'"
 
 
 def described(value: Any) -> str:
@@ -125,7 +131,7 @@ def described(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        return f"'{value}'" if len(value) <= 60 and value.isprintable() else "another text"
+        return quoted(value)
     if isinstance(value, int | float):
         return repr(value) if abs(value) < 1e15 else f"{value:g}"
     if isinstance(value, list):
@@ -249,7 +255,7 @@ def _unknown_key(violation: _Violation, meant: str | None, document: YamlDocumen
     else:
         known = ", ".join(f"'{known}'" for known in keys)
         hint = f"the keys here are {known}; a key of your own begins with 'x-'"
-    return Diagnostic("unknown-key", f"{subject(mapping)} has an unknown key '{key}'", place, hint)
+    return Diagnostic("unknown-key", f"{subject(mapping)} has an unknown key {quoted(key)}", place, hint)
 
 
 def _type_hint(must: str, pointer: Pointer, value: Any) -> str | None:
@@ -258,7 +264,7 @@ def _type_hint(must: str, pointer: Pointer, value: Any) -> str | None:
         return None if isinstance(pointer[-1], int) else "leave the key out where there is nothing to say"
     if ("text" in must or "name" in must) and isinstance(value, bool | int | float):
         return "a name that looks like a number, true or false is put in quotes"
-    if must == "must be a list" and isinstance(value, str | int | float):
+    if must == "must be a list" and isinstance(value, str | int | float) and len(str(value)) <= 60:
         return f"write it as a list: [{value}]"
     if "number" in must and isinstance(value, str):
         try:

@@ -92,6 +92,11 @@ def section(key: str, items: Iterable[Entry], above: Iterable[str] = (), beside:
     return Entry((f"{scalar(key)}:", *lines), tuple(above), beside)
 
 
+def modeline(schema: str) -> str:
+    """The comment by which an editor finds the schema."""
+    return f"# yaml-language-server: $schema={schema}"
+
+
 def text_of(entries: Iterable[Entry]) -> str:
     """The text of a file."""
     return "".join(f"{line}\n" for entry in entries for line in entry.text())

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from functools import partial
+from typing import Any
 
-from eurdf.diagnostics import Diagnostics, did_you_mean
-from eurdf.format.extension import ActuatorEntry, Pointer
+from eurdf.diagnostics import Diagnostics, Place, did_you_mean
+from eurdf.format.extension import ActuatorEntry
 from eurdf.format.urdf import Urdf
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Joint
@@ -36,7 +38,7 @@ def link_actuators(
     listed: list[str] = []
     for entry in entries:
         name = entry.joint
-        place = document.place(_name_pointer(entry, document))
+        place = partial(_place_of_name, entry, document)
         joint = joints.get(name)
         if name in merged:
             diagnostics.report(
@@ -90,8 +92,8 @@ def with_motor(joint: Joint, entry: ActuatorEntry, *, armature_given: bool) -> J
     return replace(joint, gear_ratio=(ratio,) * nv, rotor_inertia=(rotor,) * nv, armature=armature)
 
 
-def _name_pointer(entry: ActuatorEntry, document: YamlDocument) -> Pointer:
-    value = document.data
+def _place_of_name(entry: ActuatorEntry, document: YamlDocument) -> Place:
+    value: Any = document.data
     for key in entry.pointer:
         value = value[key]
-    return (*entry.pointer, "joint") if isinstance(value, dict) else entry.pointer
+    return document.place((*entry.pointer, "joint") if isinstance(value, dict) else entry.pointer)

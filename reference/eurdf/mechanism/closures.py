@@ -85,11 +85,10 @@ def _movable(
         )
         return False
     if rigid[a.body] == rigid[b.body]:
+        which = f"'{a.body}'" if a.body == b.body else f"'{a.body}' and '{b.body}', which are fixed to each other"
         diagnostics.report(
             "closure-same-body",
-            f"closure '{entry.name}' joins two frames of one rigid body: '{a.body}' and '{b.body}' are fixed to each other"
-            if a.body != b.body
-            else f"closure '{entry.name}' joins two frames of one body, '{a.body}'",
+            f"closure '{entry.name}' joins two frames of one rigid body, {which}",
             document.place(entry.pointer),
             "a closure must join frames that a joint can move against each other",
         )

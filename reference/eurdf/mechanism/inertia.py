@@ -31,7 +31,8 @@ def check_inertias(urdf: Urdf, diagnostics: Diagnostics) -> None:
         inertia = link.inertia
         assert inertia is not None
         if inertia.mass < 0.0:
-            _report(urdf, diagnostics, link, "negative-mass", f"link '{link.name}' has a mass of {inertia.mass:g} kg", "mass")
+            message = f"link '{link.name}' has a mass of {inertia.mass:g} kg"
+            _report(urdf, diagnostics, link, "negative-mass", message, "mass")
             continue
         if not _plainly_sound(inertia.moments):
             suspects.append(link)
@@ -54,8 +55,8 @@ def check_inertias(urdf: Urdf, diagnostics: Diagnostics) -> None:
                 diagnostics,
                 link,
                 "inertia-triangle",
-                f"no body has the inertia of link '{link.name}': of its principal moments "
-                f"{moments[0]:.3g}, {moments[1]:.3g}, {moments[2]:.3g} kg·m² the last is more than the sum of the others",
+                f"no body has the inertia of link '{link.name}': of its principal moments {moments[0]:.3g}, "
+                f"{moments[1]:.3g}, {moments[2]:.3g} kg·m² the last is more than the sum of the others",
                 "inertia",
             )
 
@@ -92,8 +93,8 @@ def check_leaves(mechanism: Mechanism, urdf: Urdf, diagnostics: Diagnostics) -> 
             continue
         why = _immaterial(joint, members.get(joint.child, ()))
         if why and joint.child in urdf.links:
-            link = urdf.links[joint.child]
-            _report(urdf, diagnostics, link, "leaf-without-inertia", f"link '{link.name}', which joint '{joint.name}' moves, {why}")
+            message = f"link '{joint.child}', which joint '{joint.name}' moves, {why}"
+            _report(urdf, diagnostics, urdf.links[joint.child], "leaf-without-inertia", message)
 
 
 def _immaterial(joint: Joint, members: Iterable[tuple[Pose, Inertia]]) -> str | None:
@@ -182,9 +183,7 @@ def _plainly_sound(moments: Moments) -> bool:
     a, b, c = half - xx, half - yy, half - zz
     second = a * b - xy * xy
     return (
-        a > 0.0
-        and second > 0.0
-        and a * (b * c - yz * yz) - xy * (xy * c + yz * xz) - xz * (xy * yz + b * xz) > 0.0
+        a > 0.0 and second > 0.0 and a * (b * c - yz * yz) - xy * (xy * c + yz * xz) - xz * (xy * yz + b * xz) > 0.0
     ) or not any(moments)
 
 

@@ -52,9 +52,7 @@ def link(
 def _bare(urdf: Urdf, root: Root) -> Mechanism:
     bodies = bodies_of(urdf)
     ordered = tuple(joint_of(joint) for joint in urdf.walk())
-    return Mechanism(
-        urdf.name, "", root, (bodies[urdf.root], *(bodies[joint.child] for joint in ordered)), ordered
-    )
+    return Mechanism(urdf.name, "", root, (bodies[urdf.root], *(bodies[joint.child] for joint in ordered)), ordered)
 
 
 def _described(
@@ -112,7 +110,7 @@ def _closure_links(extension: Extension, urdf: Urdf) -> set[str]:
     def link_of(reference: FrameReference) -> str | None:
         if reference.name in references and reference.name not in urdf.links:
             reference = references[reference.name]
-        name = reference.link or reference.joint or reference.name
+        name = reference.link or reference.joint or reference.name or ""
         if name in urdf.links and not reference.joint:
             return name
         return urdf.joints[name].child if name in urdf.joints else None

@@ -53,7 +53,11 @@ class Chain:
 
 
 def check_chain(
-    chain: tuple[Joint, Joint, Joint], urdf: Urdf, closure_links: Collection[str], *, rotary: Collection[JointType] = _ROTARY
+    chain: tuple[Joint, Joint, Joint],
+    urdf: Urdf,
+    closure_links: Collection[str],
+    *,
+    rotary: Collection[JointType] = _ROTARY,
 ) -> Chain:
     """EU-JNT-011 to -014: the joints follow one another, nothing else hangs or weighs between them, their axes meet.
 
@@ -72,15 +76,13 @@ def check_chain(
         siblings = urdf.children.get(upper.child, ())
         if len(siblings) != 1:
             other = next(joint.name for joint in siblings if joint.name != lower.name)
-            raise NotMergeable(
-                "merge-not-chain", f"link '{upper.child}' between them also carries joint '{other}'"
-            )
+            raise NotMergeable("merge-not-chain", f"link '{upper.child}' between them also carries joint '{other}'")
         between.append(urdf.links[upper.child])
     for link in between:
         if link.inertia is not None and link.inertia.mass >= MASSLESS:
             raise NotMergeable(
                 "merge-inertia",
-                f"link '{link.name}' between them has a mass of {link.inertia.mass:g} kg; it must be below {MASSLESS:g} kg",
+                f"link '{link.name}' between them weighs {link.inertia.mass:g} kg; it must be below {MASSLESS:g} kg",
             )
         if link.name in closure_links:
             raise NotMergeable("merge-closure-frame", f"link '{link.name}' between them carries a frame of a closure")
@@ -215,7 +217,8 @@ def _meeting_point(lines: list[tuple[Vector3, Vector3]]) -> Vector3:
         if distance > MEETING:
             raise NotMergeable(
                 "merge-axes",
-                f"their axes do not meet in one point: they pass it at {distance * 1e3:.3g} mm, and may at {MEETING * 1e3:g} mm",
+                f"their axes do not meet in one point: one passes it at {distance * 1e3:.3g} mm, "
+                f"and may at {MEETING * 1e3:g} mm",
             )
     return point
 

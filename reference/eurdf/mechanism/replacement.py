@@ -183,7 +183,7 @@ class _Replacement:
                 return None
             chain.append(joint)
         taken = entry.name in self.urdf.joints and entry.name != entry.merges[2]
-        if taken or entry.name in self.joints.by_name and entry.name not in self.urdf.joints:
+        if taken or (entry.name in self.joints.by_name and entry.name not in self.urdf.joints):
             self.diagnostics.report(
                 "duplicate-joint-name",
                 f"there is already a joint '{entry.name}'",
@@ -235,9 +235,12 @@ class _Replacement:
         """The joint with another type, its rates and dynamics given to each of the new velocities."""
         coordinates = COORDINATES[kind]
         n = coordinates.nv
-        return replace(
-            joint,
-            type=kind,
+        return Joint(
+            joint.name,
+            kind,
+            joint.parent,
+            joint.child,
+            joint.placement,
             axes=() if kind is JointType.SPHERICAL else joint.axes,
             lower=(-math.inf,) * len(coordinates.names),
             upper=(math.inf,) * len(coordinates.names),
@@ -257,7 +260,8 @@ class _Replacement:
         axes = self.entry.axes
         for index, axis in enumerate(axes):
             if math.hypot(*axis) < 1e-9:
-                self.report("joint-axis-zero", f"an axis of universal joint '{joint.name}' has no direction", "axes", index)
+                message = f"an axis of universal joint '{joint.name}' has no direction"
+                self.report("joint-axis-zero", message, "axes", index)
                 return None
         first, second = axes
         cross = (

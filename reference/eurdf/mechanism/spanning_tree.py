@@ -15,9 +15,7 @@ _AXIAL = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATI
 
 def bodies_of(urdf: Urdf) -> dict[str, Body]:
     """Every link as a body, by name."""
-    return {
-        link.name: Body(link.name, link.inertia, link.visuals, link.collisions) for link in urdf.links.values()
-    }
+    return {link.name: Body(link.name, link.inertia, link.visuals, link.collisions) for link in urdf.links.values()}
 
 
 def joint_of(joint: UrdfJoint) -> Joint:

@@ -18,9 +18,7 @@ from eurdf.pinocchio.model import ROOT_JOINT
 Vector = npt.NDArray[np.float64]
 
 
-def configuration_vector(
-    mechanism: Mechanism, model: pin.Model, coordinates: Mapping[str, Sequence[float]]
-) -> Vector:
+def configuration_vector(mechanism: Mechanism, model: pin.Model, coordinates: Mapping[str, Sequence[float]]) -> Vector:
     """The configuration q in which joints have the given coordinates.
 
     Args:

@@ -17,5 +17,3 @@ def body_frame_ids(mechanism: Mechanism) -> dict[str, int]:
         last += 1 if body.virtual else 2
         ids[joint.child] = last
     return ids
-
-

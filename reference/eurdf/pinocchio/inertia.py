@@ -17,21 +17,23 @@ def inertia_of(inertia: Inertia) -> pin.Inertia:
     """Mass, centre of mass and rotational inertia about it, the last two in the body's frame.
 
     The rotational inertia is R I Rᵀ, with R the orientation of the inertial frame in the body. Pinocchio keeps the
-    lower triangle of what it is given.
+    lower triangle of what rounding leaves of its symmetry.
     """
     ixx, ixy, ixz, iyy, iyz, izz = inertia.moments
-    moments: _Matrix3 = ((ixx, ixy, ixz), (ixy, iyy, iyz), (ixz, iyz, izz))
     if inertia.pose.quaternion != _UPRIGHT:
         R = _rotation(inertia.pose.quaternion)
         # I is symmetric, so (R I)ᵢⱼ is row i of R by row j of I.
-        moments = _rows_by_rows(_rows_by_rows(R, moments), R)
+        RI = _rows_by_rows(R, ((ixx, ixy, ixz), (ixy, iyy, iyz), (ixz, iyz, izz)))
+        (ixx, _, _), (ixy, iyy, _), (ixz, iyz, izz) = _rows_by_rows(RI, R)
+    lever = np.array(inertia.pose.xyz)
+    moments = np.array(((ixx, ixy, ixz), (ixy, iyy, iyz), (ixz, iyz, izz)))
     try:
-        return pin.Inertia(inertia.mass, np.array(inertia.pose.xyz), np.array(moments))
+        return pin.Inertia(inertia.mass, lever, moments)
     except RuntimeError:
         # This constructor refuses moments that no body has, which Pinocchio's own URDF parser takes. `eurdf.check`
         # reports them; the kinematics are still of use.
-        body = pin.Inertia(inertia.mass, np.array(inertia.pose.xyz), np.zeros((3, 3)))
-        body.inertia = np.array(moments)
+        body = pin.Inertia(inertia.mass, lever, np.zeros((3, 3)))
+        body.inertia = moments
         return body
 
 

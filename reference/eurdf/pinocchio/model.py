@@ -85,9 +85,7 @@ def build_model(mechanism: Mechanism, mimic: bool = True) -> pin.Model:
             if joint.offset is not IDENTITY:
                 placement = placement * placement_of(joint.offset)
             joint_id = parent_joint
-            joint_frame = add_frame(
-                pin.Frame(joint.name, joint_id, parent_frame, placement, _FIXED_JOINT, inertia)
-            )
+            joint_frame = add_frame(pin.Frame(joint.name, joint_id, parent_frame, placement, _FIXED_JOINT, inertia))
         else:
             moving = joint_model(joint, counts_turns=joint.name in led.counted)
             law = led.laws.get(joint.name) or (Mimic(joint.name) if joint.name in source else None)

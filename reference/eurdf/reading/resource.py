@@ -12,8 +12,8 @@ def resolve(uri: str, folder: Path, package_dirs: Sequence[str | os.PathLike[str
     """The file that a mesh URI of a URDF means.
 
     ``package://name/rest`` is looked for as ``name/rest`` below the given package directories, below those of
-    ``ROS_PACKAGE_PATH`` and ``AMENT_PREFIX_PATH``, and below the folder of the URDF and the folders that hold it, one of
-    which may be the package itself. A path is relative to the folder of the URDF.
+    ``ROS_PACKAGE_PATH`` and ``AMENT_PREFIX_PATH``, and below the folder of the URDF and the folders that hold it,
+    one of which may be the package itself. A path is relative to the folder of the URDF.
 
     Args:
         uri: As the URDF writes it.
