@@ -222,7 +222,7 @@ def test_one_fault_gives_one_diagnostic_at_its_place(
 
 def test_every_code_of_linking_and_meaning_has_a_case_here() -> None:
     shown = {row[0] for row in FAULTS}
-    elsewhere = {"ambiguous-frame", "urdf-no-link", "urdf-planar-axis"}  # below
+    elsewhere = {"ambiguous-frame", "urdf-no-link", "urdf-planar-axis", "own-key-is-joint"}  # below
     elsewhere |= {code for code in REGISTRY if code.startswith(("yaml-", "file-"))}  # the tests of reading
     assert set(REGISTRY) - shown - elsewhere == set()
 
@@ -262,6 +262,14 @@ def test_a_link_and_the_joint_that_carries_it_may_share_their_name(tmp_path: Pat
         '<joint name="b" type="continuous"><parent link="a"/><child link="b"/></joint></robot>'
     )
     assert _robot(tmp_path, urdf, 'extended_urdf: "2.0"\nclosures:\n  - {name: k, type: 3d, frames: [a, b]}\n').ok
+
+
+def test_a_joint_whose_name_begins_like_the_users_own_keys_is_warned_of(tmp_path: Path) -> None:
+    folder = _workbench(tmp_path, YAML, "  stage: {limits: {velocity: 1.5}, armature: 0.02}", "  x-stage: {armature: 0.02}")
+    urdf = folder / URDF
+    urdf.write_text(urdf.read_text(encoding="utf-8").replace('"stage"', '"x-stage"'), encoding="utf-8")
+    report = eurdf.check(folder / YAML)
+    assert [(found.code, found.line) for found in report.diagnostics] == [("own-key-is-joint", 9)]
 
 
 def test_a_robot_without_links_is_told_so(tmp_path: Path) -> None:

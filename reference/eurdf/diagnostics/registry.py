@@ -132,6 +132,7 @@ closure-same-body          EU-CLO-003 error   A closure joins two frames that ca
 closure-duplicate          EU-CLO-004 error   Two closures join the same two frames.
 unknown-joint              EU-JNT-001 error   A name is no joint of the robot.
 unknown-actuator           EU-ACT-001 error   An actuator names a joint that does not exist.
+own-key-is-joint           EU-EXT-003 warning A key of the user's own is the name of a joint, and says nothing of it.
 length-mismatch            EU-ONE-003 error   Two lists that go together have different lengths.
 duplicate-replacement      EU-JNT-002 error   A joint is listed twice.
 duplicate-joint-name       EU-JNT-003 error   A joint that the description makes has a name that is taken.

@@ -68,6 +68,7 @@ def _described(
         diagnostics,
         merges_revolutes=extension.merges_revolutes,
     )
+    _own_keys(extension, urdf, document, diagnostics)
     names = FrameNames(urdf, joints.by_name, document, diagnostics)
     frames = names.add(extension.frames)
     rigid = rigid_roots(urdf.root, depth_first(urdf.root, joints.by_name.values()))
@@ -96,6 +97,18 @@ def _described(
         MappingProxyType(dict(extension.metadata)),
         MappingProxyType(dict(extension.extensions)),
     )
+
+
+def _own_keys(extension: Extension, urdf: Urdf, document: YamlDocument, diagnostics: Diagnostics) -> None:
+    """EU-EXT-003: where joints are named, a key that begins with ``x-`` does not name one."""
+    for pointer in extension.own_keys:
+        if pointer[-1] in urdf.joints:
+            diagnostics.report(
+                "own-key-is-joint",
+                f"'{pointer[-1]}' is a joint, but as a key that begins with 'x-' it is the user's own and has no effect",
+                document.place(pointer, True),
+                "rename the joint in the URDF",
+            )
 
 
 def _vanished(urdf: Urdf, joints: dict[str, Joint]) -> tuple[Frame, ...]:
