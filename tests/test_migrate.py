@@ -232,13 +232,15 @@ def written(draw: st.DrawFn, document: dict[str, Any]) -> str:
         if place == 0:
             lines.append(f"# note {number}:")
         lines.append(line + (f"  # note {number};" if place == 1 and line.strip() else ""))
-    with_comments = "\n".join(lines)
-    # In a text of several lines they would be part of it.
+    # In a text of several lines a comment would be part of it, and PyYAML quotes by the rules of YAML 1.1.
+    return next(form for form in ("\n".join(lines), text, json.dumps(document)) if reads_as(form, document))
+
+
+def reads_as(text: str, document: dict[str, Any]) -> bool:
     try:
-        same = read_yaml(Source("", with_comments, with_comments.encode())).data == document
+        return bool(read_yaml(Source("", text, text.encode())).data == document)
     except Fault:
-        same = False
-    return with_comments if same else text
+        return False
 
 
 def says_half_of_a_universal_joint(document: dict[str, Any]) -> bool:

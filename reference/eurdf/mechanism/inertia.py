@@ -142,29 +142,41 @@ def _positive(members: Iterable[tuple[Pose, Inertia]]) -> bool:
     xx = xy = xz = yy = yz = zz = 0.0
     for pose, inertia in members:
         at = pose * inertia.pose
-        ixx, ixy, ixz, iyy, iyz, izz = inertia.moments
-        u, v, w = at.rotate((1.0, 0.0, 0.0)), at.rotate((0.0, 1.0, 0.0)), at.rotate((0.0, 0.0, 1.0))
-        turned = [
-            [
-                u[i] * (ixx * u[j] + ixy * v[j] + ixz * w[j])
-                + v[i] * (ixy * u[j] + iyy * v[j] + iyz * w[j])
-                + w[i] * (ixz * u[j] + iyz * v[j] + izz * w[j])
-                for j in range(3)
-            ]
-            for i in range(3)
-        ]
+        ixx, ixy, ixz, iyy, iyz, izz = _turned(inertia.moments, at)
         (x, y, z), mass = at.xyz, inertia.mass
-        xx += turned[0][0] + mass * (y * y + z * z)
-        yy += turned[1][1] + mass * (x * x + z * z)
-        zz += turned[2][2] + mass * (x * x + y * y)
-        xy += turned[0][1] - mass * x * y
-        xz += turned[0][2] - mass * x * z
-        yz += turned[1][2] - mass * y * z
+        xx += ixx + mass * (y * y + z * z)
+        yy += iyy + mass * (x * x + z * z)
+        zz += izz + mass * (x * x + y * y)
+        xy += ixy - mass * x * y
+        xz += ixz - mass * x * z
+        yz += iyz - mass * y * z
     bound = SINGULAR * (xx + yy + zz)
     xx, yy, zz = xx - bound, yy - bound, zz - bound
     second = xx * yy - xy * xy
     third = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)
     return xx > 0.0 and second > 0.0 and third > 0.0
+
+
+def _turned(moments: Moments, pose: Pose) -> Moments:
+    """R I Rᵀ."""
+    if pose.quaternion == IDENTITY.quaternion:
+        return moments
+    a, d, g = pose.rotate((1.0, 0.0, 0.0))
+    b, e, h = pose.rotate((0.0, 1.0, 0.0))
+    c, f, i = pose.rotate((0.0, 0.0, 1.0))
+    xx, xy, xz, yy, yz, zz = moments
+
+    def product(p: float, q: float, r: float, s: float, t: float, u: float) -> float:
+        return p * (xx * s + xy * t + xz * u) + q * (xy * s + yy * t + yz * u) + r * (xz * s + yz * t + zz * u)
+
+    return (
+        product(a, b, c, a, b, c),
+        product(a, b, c, d, e, f),
+        product(a, b, c, g, h, i),
+        product(d, e, f, d, e, f),
+        product(d, e, f, g, h, i),
+        product(g, h, i, g, h, i),
+    )
 
 
 def _matrix(moments: Moments) -> np.ndarray:

@@ -58,6 +58,10 @@ class Pose:
 
     def __mul__(self, other: Pose) -> Pose:
         """Composition: the pose, in the outer frame, of what ``other`` places in this frame."""
+        if self is IDENTITY:
+            return other
+        if other is IDENTITY:
+            return self
         x1, y1, z1, w1 = self.quaternion
         x2, y2, z2, w2 = other.quaternion
         x = w1 * x2 + x1 * w2 + y1 * z2 - z1 * y2
