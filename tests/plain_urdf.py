@@ -91,7 +91,7 @@ def axes(draw: st.DrawFn) -> str:
 
 @st.composite
 def trees(draw: st.DrawFn) -> str:
-    """A robot that Pinocchio's parser takes with ``mimic=True``; names are shuffled, so that their order is not the file's."""
+    """A robot that Pinocchio's parser takes with ``mimic=True``; the order of names is not that of the file."""
     count = draw(st.integers(1, 8))
     names = draw(st.permutations([f"j{index}" for index in range(1, count)]))
     parents = [draw(st.integers(0, index)) for index in range(count - 1)]

@@ -127,6 +127,7 @@ def test_a_universal_joint_with_oblique_axes_turns_about_both_of_them() -> None:
     mechanism = one_joint(Joint("cardan", JointType.UNIVERSAL, "base", "tip", axes=axes))
     model = build_model(mechanism)
     assert (model.nq, model.nv) == (2, 2)
+    assert model.joints[1].shortname() == "JointModelComposite"  # Pinocchio's own asks for perpendicular axes
     pose = pose_of(model, configuration_vector(mechanism, model, {"cardan": (0.4, -0.7)}), "tip")
     R = by_hand.rotation(axes[0], 0.4) @ by_hand.rotation(axes[1], -0.7)
     np.testing.assert_allclose(pose[:3, :3], R, atol=1e-15)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import warnings
 from pathlib import Path
 
-import coal
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -201,23 +200,16 @@ def _fields(joint: Joint) -> dict[str, object]:
     return {name: getattr(joint, name) for name in Joint.__dataclass_fields__}
 
 
-def test_a_mesh_that_is_used_often_is_read_once(parts: Path) -> None:
+def test_a_mesh_that_is_used_often_is_read_once_and_shared(parts: Path) -> None:
     shape = Shape("mesh", (1.0, 1.0, 1.0), Pose(), "package://parts/tetrahedron.stl")
-    mechanism = Mechanism("m", "", "fixed", (Body("base", None, (shape, shape), (shape,)),), ())
-    model = build_model(mechanism)
-    loads = []
-
-    class Counting(coal.MeshLoader):  # type: ignore[misc]
-        def load(self, path: str, scale: np.ndarray) -> coal.BVHModelBase:
-            loads.append(path)
-            return super().load(path, scale)
-
-    build_geometry(mechanism, model, pin.GeometryType.VISUAL, Finder(parts), Counting())
-    assert len(loads) == 2
+    larger = Shape("mesh", (2.0, 2.0, 2.0), Pose(), "package://parts/tetrahedron.stl")
+    mechanism = Mechanism("m", "", "fixed", (Body("base", None, (shape, larger), (shape,)),), ())
     built = build_robot(mechanism, geometry=True, resolve=Finder(parts))
-    for geometry_model in (built.visual_model, built.collision_model):
-        for geometry_object in geometry_model.geometryObjects:
-            assert geometry_object.geometry.num_vertices == 4
+    small, large = (found.geometry for found in built.visual_model.geometryObjects)
+    [collision] = (found.geometry for found in built.collision_model.geometryObjects)
+    small.vertices()[0, 0] = 7.0
+    assert collision.vertices()[0, 0] == 7.0
+    assert large.vertices()[0, 0] == 0.0
 
 
 @pytest.mark.parametrize(

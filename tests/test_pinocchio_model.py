@@ -108,12 +108,13 @@ def test_a_urdf_with_every_feature_gives_pinocchios_own_model(root: Root, mimic:
 @pytest.mark.parametrize("kind", ["fixed", "revolute"])
 @pytest.mark.parametrize("mass", [-1.0, 0.0, 1e-12])
 @pytest.mark.parametrize("moments", [(0, 0, 0, 0, 0, 0), (-1, 0, 0, 2, 0, 3), (1, 5, 0, 1, 0, 1), (1, 0, 0, 1, 0, 7)])
+@pytest.mark.parametrize("origin", ["", '<origin xyz="0.1 0.2 0.3" rpy="1 2 3"/>'])
 def test_an_inertia_of_no_body_is_taken_as_it_is(
-    root: Root, kind: str, mass: float, moments: tuple[float, ...]
+    root: Root, kind: str, mass: float, moments: tuple[float, ...], origin: str
 ) -> None:
     text = robot(
         link_element("a", inertial(2.0)),
-        link_element("b", inertial(mass, '<origin xyz="0.1 0.2 0.3" rpy="1 2 3"/>', moments)),
+        link_element("b", inertial(mass, origin, moments)),
         joint_element("j", kind, "a", "b", origin='<origin xyz="1 0 0"/>'),
     )
     assert_equal(build_model(mechanism_of(text, root)), pinocchios_own(text, root))
@@ -370,13 +371,21 @@ def test_position_limits_stand_at_the_coordinates_that_pinocchio_has(kind: str) 
     np.testing.assert_array_equal(model.upperPositionLimit, [*[UNIT] * 4, *expected_upper, INF])
 
 
-def test_a_body_that_is_no_link_has_no_frame() -> None:
-    mechanism = _hand_made(Joint("j_X", JointType.REVOLUTE, "", "", axes=(X,)))
+def test_a_body_that_is_no_link_has_no_frame_and_its_joint_stands_for_it() -> None:
+    mechanism = _hand_made(
+        Joint("j_X", JointType.REVOLUTE, "", "", axes=(X,)),
+        closures=(Closure("loop", "3d", Anchor("second"), Anchor("third")),),
+    )
     bodies = tuple(replace(body, virtual=body.name == "second") for body in mechanism.bodies)
-    model = build_model(replace(mechanism, bodies=bodies))
+    mechanism = replace(mechanism, bodies=bodies)
+    model = build_model(mechanism)
     assert not model.existFrame("second")
-    third = model.frames[model.getFrameId("then")]
-    assert model.frames[third.parentFrame].name == "j_X"
+    carried = model.frames[model.getFrameId("then")]
+    assert model.frames[carried.parentFrame].name == "j_X"
+    ids = body_frame_ids(mechanism)
+    assert [model.frames[ids[body.name]].name for body in bodies] == ["base", "first", "j_X", "third"]
+    [constraint] = build_constraint_models(mechanism, model)
+    assert (constraint.joint1_id, constraint.joint2_id) == (model.getJointId("j_X"), model.getJointId("then"))
 
 
 @pytest.mark.parametrize("root", ["fixed", "floating"])
@@ -409,9 +418,10 @@ def test_frames_are_found_by_name_where_they_were_put(root: Root) -> None:
 
 
 def test_frames_leave_inertias_as_they_are_to_the_last_bit() -> None:
-    mechanism = mechanism_of(EVERYTHING)
-    framed = replace(mechanism, frames=(Frame("f", "arm", Pose((0.1, 0.2, 0.3))),))
-    for mine, other in zip(build_model(framed).inertias, build_model(mechanism).inertias, strict=True):
+    mechanism = by_hand.tree_of_all_types(np.random.default_rng(2))
+    frames = tuple(Frame(f"on_{body.name}", body.name, Pose((0.1, 0.2, 0.3))) for body in mechanism.bodies)
+    framed = build_model(replace(mechanism, frames=frames))
+    for mine, other in zip(framed.inertias, build_model(mechanism).inertias, strict=True):
         assert mine == other
 
 
