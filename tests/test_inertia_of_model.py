@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pinocchio as pin
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import by_hand
@@ -33,6 +33,7 @@ def mass_matrix(mechanism: Mechanism, coordinates: dict[str, tuple[float, ...]])
 
 
 @given(seed=SEEDS)
+@settings(deadline=None)
 def test_the_mass_and_its_centre_are_those_of_the_bodies(seed: int) -> None:
     mechanism, coordinates, _ = at_random(seed)
     # A body that nothing moves is in no joint's inertia: Pinocchio leaves it out of the robot's mass.
@@ -47,6 +48,7 @@ def test_the_mass_and_its_centre_are_those_of_the_bodies(seed: int) -> None:
 
 
 @given(seed=SEEDS)
+@settings(deadline=None)
 def test_the_mass_matrix_is_that_of_the_bodies_kinetic_energy(seed: int) -> None:
     mechanism, coordinates, _ = at_random(seed)
     model = build_model(mechanism)
@@ -57,6 +59,7 @@ def test_the_mass_matrix_is_that_of_the_bodies_kinetic_energy(seed: int) -> None
 
 
 @given(seed=SEEDS)
+@settings(deadline=None)
 def test_the_armature_adds_to_the_diagonal_of_the_mass_matrix(seed: int) -> None:
     mechanism, coordinates, random = at_random(seed)
     joints = tuple(
@@ -70,6 +73,7 @@ def test_the_armature_adds_to_the_diagonal_of_the_mass_matrix(seed: int) -> None
 
 
 @given(seed=SEEDS)
+@settings(deadline=None)
 def test_gravity_pulls_with_the_weight_of_the_bodies(seed: int) -> None:
     mechanism, coordinates, _ = at_random(seed)
     model = build_model(mechanism)
@@ -84,6 +88,7 @@ def test_gravity_pulls_with_the_weight_of_the_bodies(seed: int) -> None:
 
 
 @given(seed=SEEDS)
+@settings(deadline=None)
 def test_the_forward_dynamics_undo_the_inverse_dynamics(seed: int) -> None:
     mechanism, coordinates, random = at_random(seed)
     model = build_model(mechanism)

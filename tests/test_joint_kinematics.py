@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pinocchio as pin
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import by_hand
@@ -40,6 +40,7 @@ def jacobian_of(model: pin.Model, q: np.ndarray, body: str) -> np.ndarray:
 
 @pytest.mark.parametrize("kind", by_hand.MOVING)
 @given(seed=SEEDS)
+@settings(deadline=None)
 def test_a_joint_moves_its_body_as_its_type_says(kind: JointType, seed: int) -> None:
     random = np.random.default_rng(seed)
     joint = replace(by_hand.some_joint(kind, random), offset=by_hand.some_pose(random))
@@ -52,6 +53,7 @@ def test_a_joint_moves_its_body_as_its_type_says(kind: JointType, seed: int) -> 
 
 @pytest.mark.parametrize("kind", by_hand.MOVING)
 @given(seed=SEEDS)
+@settings(deadline=None)
 def test_the_velocities_of_a_joint_are_those_of_its_definition_seen_from_the_child(kind: JointType, seed: int) -> None:
     random = np.random.default_rng(seed)
     joint = replace(by_hand.some_joint(kind, random), offset=by_hand.some_pose(random))
@@ -64,6 +66,7 @@ def test_the_velocities_of_a_joint_are_those_of_its_definition_seen_from_the_chi
 
 @pytest.mark.parametrize("kind", by_hand.MOVING)
 @given(seed=SEEDS)
+@settings(deadline=None)
 def test_the_jacobian_of_a_joint_is_the_derivative_of_its_pose(kind: JointType, seed: int) -> None:
     random = np.random.default_rng(seed)
     joint = by_hand.some_joint(kind, random)
@@ -81,6 +84,7 @@ def test_the_jacobian_of_a_joint_is_the_derivative_of_its_pose(kind: JointType, 
 
 @pytest.mark.parametrize("kind", by_hand.MOVING)
 @given(seed=SEEDS)
+@settings(deadline=None)
 def test_the_acceleration_of_a_joint_at_constant_velocity_is_the_derivative_of_its_twist(
     kind: JointType, seed: int
 ) -> None:
@@ -99,6 +103,7 @@ def test_the_acceleration_of_a_joint_at_constant_velocity_is_the_derivative_of_i
 
 
 @given(seed=SEEDS)
+@settings(deadline=None)
 def test_bodies_of_a_tree_of_all_joint_types_stand_where_they_should(seed: int) -> None:
     random = np.random.default_rng(seed)
     mechanism = by_hand.tree_of_all_types(random)
@@ -152,6 +157,7 @@ def test_both_frames_of_a_joint_whose_body_is_off_its_centre_stand_at_the_body()
 
 
 @given(seed=SEEDS, root=st.sampled_from(["fixed", "floating"]))
+@settings(deadline=None)
 def test_coordinates_survive_the_way_to_pinocchio_and_back(seed: int, root: str) -> None:
     random = np.random.default_rng(seed)
     mechanism = replace(by_hand.tree_of_all_types(random), root=root)  # type: ignore[arg-type]

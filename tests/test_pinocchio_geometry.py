@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import by_hand
@@ -138,6 +138,7 @@ def shapes(draw: st.DrawFn) -> str:
 
 
 @given(data=st.data(), root=st.sampled_from(["fixed", "floating"]))
+@settings(deadline=None)
 def test_the_geometry_of_a_tree_is_pinocchios_own(parts: Path, data: st.DataObject, root: Root) -> None:
     count = data.draw(st.integers(1, 6))
     names = data.draw(st.permutations([f"j{index}" for index in range(1, count)]))

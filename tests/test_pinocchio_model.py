@@ -92,6 +92,7 @@ def assert_equal(model: pin.Model, expected: pin.Model) -> None:
 
 
 @given(text=trees(), root=ROOTS, mimic=st.booleans())
+@settings(deadline=None)
 def test_a_plain_urdf_gives_pinocchios_own_model_to_the_last_bit(text: str, root: Root, mimic: bool) -> None:
     assert_equal(build_model(mechanism_of(text, root), mimic), pinocchios_own(text, root, mimic))
 
@@ -136,7 +137,7 @@ def test_published_robots_give_pinocchios_own_model(root: Root) -> None:
 @example(axis=(0.0, 0.0, 1.0 + 1.1e-12), kind="revolute")
 @example(axis=(9e-13, 0.0, 1.0), kind="continuous")
 @example(axis=(0.0, 1.0, 1.1e-12), kind="prismatic")
-@settings(max_examples=200)
+@settings(max_examples=200, deadline=None)
 def test_an_axis_is_aligned_and_rounded_as_pinocchio_does_it(axis: tuple[float, float, float], kind: str) -> None:
     content = f'<axis xyz="{vector(axis)}"/><limit effort="1" velocity="1"/>'
     text = robot(link_element("a"), link_element("b"), joint_element("j", kind, "a", "b", content))

@@ -89,7 +89,7 @@ def describe(
     document = _read_yaml(files.description, diagnostics)
     extension = None if document is None else read_extension(document, diagnostics)
     urdf_path = files.urdf or _named_urdf(files.description, extension, document)
-    if files.urdf is None and not urdf_path.is_file():
+    if files.urdf is None and not os.path.isfile(urdf_path):
         # Where the description could not be read, which URDF it means is a guess that deserves no second error.
         if extension is not None and document is not None:
             _urdf_not_found(urdf_path, extension, document, diagnostics)
@@ -103,9 +103,9 @@ def describe(
 
 def _finish(description: Description) -> Description:
     if description.urdf is not None:
-        check_inertias(description.urdf, description.diagnostics)
+        faulty = check_inertias(description.urdf, description.diagnostics)
         if description.mechanism is not None:
-            check_leaves(description.mechanism, description.urdf, description.diagnostics)
+            check_leaves(description.mechanism, description.urdf, description.diagnostics, faulty)
     return description
 
 
@@ -140,13 +140,14 @@ def _named_urdf(description: Path, extension: Extension | None, document: YamlDo
 
 def _urdf_not_found(path: Path, extension: Extension, document: YamlDocument, diagnostics: Diagnostics) -> None:
     """EU-FIL-004: the URDF that the description names exists."""
-    near = sorted(other.name for other in path.parent.glob("*.urdf")) if path.parent.is_dir() else []
+    near = sorted(other.name for other in path.parent.glob("*.urdf")) if os.path.isdir(path.parent) else []
     hint = "name it by the key 'urdf', or by the option --urdf"
     if near:
         hint = f"there is '{near[0]}': " + hint
+    exists = os.path.exists(path)
     diagnostics.report(
         "urdf-not-found",
-        f"the URDF '{extension.urdf}' does not exist" if not path.exists() else f"'{extension.urdf}' is not a file",
+        f"'{extension.urdf}' is not a file" if exists else f"the URDF '{extension.urdf}' does not exist",
         document.place(("urdf",)),
         hint,
     )
@@ -162,7 +163,7 @@ def missing_meshes(
     """
     diagnostics = Diagnostics()
     found: dict[str, str] = {}
-    missing: list[str] = []
+    missing: dict[str, None] = {}
     urdf = description.urdf
     assert urdf is not None
     for link_ in urdf.links.values():
@@ -172,12 +173,12 @@ def missing_meshes(
                 continue
             path = resolve(uri, description.folder, package_dirs)
             if path is None:
-                missing.append(uri)
+                missing[uri] = None
             else:
                 found[uri] = path
     if missing:
         element = next(mesh for mesh in urdf.document.root.iter("mesh") if mesh.get("filename") in missing)
-        names = ", ".join(f"'{uri}'" for uri in missing[:3]) + (", ..." if len(missing) > 3 else "")
+        names = ", ".join(f"'{uri}'" for uri in list(missing)[:3]) + (", ..." if len(missing) > 3 else "")
         count = "1 mesh file is" if len(missing) == 1 else f"{len(missing)} mesh files are"
         diagnostics.report(
             "urdf-mesh-missing",

@@ -10,6 +10,7 @@ from eurdf.description import describe, missing_meshes
 from eurdf.exceptions import InvalidRobot
 from eurdf.mechanism.mechanism import Root
 from eurdf.pinocchio.robot import Robot, build_robot
+from eurdf.reading.resource import resolve
 
 
 def load(
@@ -56,7 +57,13 @@ def load(
         if len(missing):
             reason = f"the geometry of {description.path} cannot be built; load it with geometry=False to do without"
             raise InvalidRobot(description.path, tuple(missing), reason)
-    robot = build_robot(description.mechanism, geometry=geometry, mimic=mimic, resolve=meshes.get)
+    robot = build_robot(
+        description.mechanism,
+        geometry=geometry,
+        mimic=mimic,
+        # Meshes have been looked up; textures, which may be missing, have not.
+        resolve=lambda uri: meshes.get(uri) or resolve(uri, description.folder, package_dirs),
+    )
     if "assembled" in description.mechanism.configurations:
         for found in assembled_diagnostics(description, robot):
             diagnostics.add(found)

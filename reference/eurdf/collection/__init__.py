@@ -48,9 +48,10 @@ def find_robot(path: str | os.PathLike[str], urdf: str | os.PathLike[str] | None
     """
     where = Path(path)
     given = Path(urdf) if urdf is not None else None
-    if where.is_dir():
+    # os.path takes a text that no file system does for a path of nothing; Path raises.
+    if os.path.isdir(where):
         return _in_folder(where, given)
-    if where.exists() or where.is_symlink():
+    if os.path.lexists(where):
         if where.suffix.lower() in _URDF:
             if given is not None:
                 raise RobotNotFound(str(path), f"'{path}' is a URDF itself; give the YAML file to use it with '{urdf}'")
@@ -58,7 +59,7 @@ def find_robot(path: str | os.PathLike[str], urdf: str | os.PathLike[str] | None
         return RobotFiles(where, given)
     folder = collection_folder()
     name = os.fspath(path)
-    if folder is not None and "/" not in name and os.sep not in name and (folder / name / "robot.yaml").is_file():
+    if folder is not None and "/" not in name and os.sep not in name and os.path.isfile(folder / name / "robot.yaml"):
         return RobotFiles(folder / name / "robot.yaml", given)
     known = ", ".join(collection_names())
     message = f"there is no '{name}': it is no file, no folder, and no robot of the collection ({known})"

@@ -1,6 +1,6 @@
 """Findings: codes, places, messages, and how they are shown."""
 
-from eurdf.diagnostics.diagnostic import Diagnostic, Diagnostics, Fault, Place, did_you_mean
+from eurdf.diagnostics.diagnostic import Diagnostic, Diagnostics, Fault, Hint, Place, did_you_mean
 from eurdf.diagnostics.registry import REGISTRY, Phase, Rule, Severity
 
-__all__ = ["REGISTRY", "Diagnostic", "Diagnostics", "Fault", "Phase", "Place", "Rule", "Severity", "did_you_mean"]
+__all__ = ["REGISTRY", "Diagnostic", "Diagnostics", "Fault", "Hint", "Phase", "Place", "Rule", "Severity", "did_you_mean"]

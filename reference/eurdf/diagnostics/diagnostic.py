@@ -3,11 +3,30 @@
 from __future__ import annotations
 
 import difflib
+import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
 from eurdf.diagnostics.registry import REFUSED_PHASES, REGISTRY, Phase, Severity
+
+#: So many findings of one code are listed; the last of them says how many more there are.
+LISTED = 100
+
+#: Characters that a message or a hint may have before the long names in it are cut.
+LONGEST = 1000
+
+#: Characters of a name that is cut: as many at its beginning, and half as many at its end, are kept.
+NAME_KEPT = 60
+
+#: Pairs of letters that the search for the name that is meant may compare.
+COMPARED = 40_000
+
+_LONG_NAME = re.compile(r"'([^']{%d})[^']*([^']{%d})'" % (NAME_KEPT, NAME_KEPT // 2))
+
+#: A hint, or how to find one where that takes time.
+Hint = str | None | Callable[[], str | None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,20 +53,25 @@ class Diagnostic:
 
     Attributes:
         code: Its code in the registry.
-        message: What is wrong, in one sentence.
-        hint: What would be right, or None.
+        message: What is wrong, in one sentence; names that would make it longer than `LONGEST` are cut.
+        hint: What would be right, or None; likewise.
     """
 
     def __init__(self, code: str, message: str, place: Place | Callable[[], Place], hint: str | None = None) -> None:
         self.code = code
-        self.message = message
-        self.hint = hint
+        self.message = _bounded(message)
+        self.hint = None if hint is None else _bounded(hint)
         self._place = place
 
     @cached_property
     def place(self) -> Place:
         """Where it is; computed when first asked, since a line in an XML file takes another pass over it."""
         return self._place() if callable(self._place) else self._place
+
+    def followed_by(self, more: int) -> Diagnostic:
+        """The same finding, saying that more like it are not listed."""
+        untold = f"{more:,} more like it are not listed"
+        return Diagnostic(self.code, self.message, self._place, f"{self.hint}; {untold}" if self.hint else untold)
 
     @property
     def severity(self) -> Severity:
@@ -111,43 +135,87 @@ class Fault(Exception):  # noqa: N818 - it carries one finding; whether that is 
 
 
 class Diagnostics:
-    """The findings on one robot, in the order found."""
+    """The findings on one robot, in the order found; of each code, as many as `LISTED`.
+
+    A file can have a hundred thousand times the same fault: nobody reads them all, and telling them would take more
+    time and memory than reading the file.
+    """
 
     def __init__(self) -> None:
         self._found: list[Diagnostic] = []
+        self._count: Counter[str] = Counter()  # by code, listed or not
+        self._last: dict[str, int] = {}  # by code, the index in `_found` of the last one listed
 
-    def report(self, code: str, message: str, place: Place | Callable[[], Place], hint: str | None = None) -> None:
-        """Add a finding; ``code`` must be in the registry."""
+    def report(self, code: str, message: str, place: Place | Callable[[], Place], hint: Hint = None) -> None:
+        """Add a finding; ``code`` must be in the registry. A hint that is to be found is so only if it is listed."""
         if code not in REGISTRY:
             raise KeyError(code)
-        self._found.append(Diagnostic(code, message, place, hint))
+        if self._counts_in(code):
+            self._found.append(Diagnostic(code, message, place, hint() if callable(hint) else hint))
 
     def add(self, diagnostic: Diagnostic) -> None:
         """Add a finding made elsewhere."""
-        self._found.append(diagnostic)
+        if self._counts_in(diagnostic.code):
+            self._found.append(diagnostic)
+
+    def _counts_in(self, code: str) -> bool:
+        """Count a finding; whether it is to be listed."""
+        self._count[code] += 1
+        if self._count[code] > LISTED:
+            return False
+        self._last[code] = len(self._found)
+        return True
 
     def __iter__(self) -> Iterator[Diagnostic]:
-        return iter(self._found)
+        more = {self._last[code]: count - LISTED for code, count in self._count.items() if count > LISTED}
+        for index, found in enumerate(self._found):
+            yield found.followed_by(more[index]) if index in more else found
 
     def __len__(self) -> int:
-        return len(self._found)
+        """Number of findings, listed or not."""
+        return self._count.total()
+
+    @property
+    def error_count(self) -> int:
+        """Number of findings of severity error, listed or not."""
+        return sum(count for code, count in self._count.items() if REGISTRY[code].severity is Severity.ERROR)
 
     @property
     def errors(self) -> list[Diagnostic]:
-        """The findings of severity error."""
-        return [found for found in self._found if found.severity is Severity.ERROR]
+        """The findings of severity error that are listed."""
+        return [found for found in self if found.severity is Severity.ERROR]
 
     @property
     def refused(self) -> bool:
         """Whether an error leaves nothing that could be built without guessing."""
-        return any(found.phase in REFUSED_PHASES for found in self.errors)
+        rules = (REGISTRY[code] for code in self._count)
+        return any(rule.phase in REFUSED_PHASES and rule.severity is Severity.ERROR for rule in rules)
+
+
+def _bounded(text: str) -> str:
+    """The text, its long names cut where it is long; and cut itself where that does not do."""
+    if len(text) <= LONGEST:
+        return text
+    text = _LONG_NAME.sub(r"'\1...\2'", text)
+    return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
 
 
 def did_you_mean(wrong: str, known: Iterable[str]) -> str | None:
-    """The hint for a misspelt name: the nearest of the known ones, or None if none is near."""
-    candidates = list(known)
-    folded = {name.casefold(): name for name in candidates}
-    if wrong.casefold() in folded:
-        return f"did you mean '{folded[wrong.casefold()]}'?"
-    near = difflib.get_close_matches(wrong, candidates, n=1)
-    return f"did you mean '{near[0]}'?" if near else None
+    """The hint for a misspelt name: the nearest of the known ones, or None if none is near.
+
+    The time is bounded. Where there are too many names to compare with, those that share its first or second half are,
+    as every name does that differs in one place.
+    """
+    size = len(wrong)
+    # A name of less than 3/7 of the length of another cannot be near it, as difflib counts.
+    candidates = [name for name in known if 3 * len(name) <= 7 * size and 3 * size <= 7 * len(name)]
+    folded = wrong.casefold()
+    nearest = next((name for name in candidates if name.casefold() == folded), None)
+    if nearest is None:
+        most = COMPARED // max(size * size, 1)
+        if len(candidates) > most:
+            half = size // 2
+            first, second = wrong[:half], wrong[size - half :]
+            candidates = [name for name in candidates if name.startswith(first) or name.endswith(second)][:most]
+        nearest = next(iter(difflib.get_close_matches(wrong, candidates, n=1)), None)
+    return None if nearest is None else f"did you mean '{nearest}'?"

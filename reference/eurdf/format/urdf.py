@@ -7,14 +7,15 @@ before any C++ sees the file.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import partial
+from itertools import dropwhile
 from typing import Literal, cast
 
 from lxml import etree
 
-from eurdf.diagnostics import Diagnostics, did_you_mean
+from eurdf.diagnostics import Diagnostics, Hint, did_you_mean
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Inertia, Mimic, Shape
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
@@ -60,6 +61,9 @@ _DYNAMICS = {"damping": "0", "friction": "0"}
 _MIMIC = {"multiplier": "1", "offset": "0"}
 
 _ZERO: Vector3 = (0.0, 0.0, 0.0)
+
+#: Of so many different elements that URDF lacks it is asked whether they are misspelt.
+_MOST_STRANGE = 200
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,16 +159,16 @@ def read_urdf(document: XmlDocument, diagnostics: Diagnostics, *, geometry: bool
     Returns:
         The URDF, or None where an error was found.
     """
-    before = len(diagnostics.errors)
+    before = diagnostics.error_count
     reader = _Reader(document, diagnostics, geometry)
     urdf = reader.robot()
-    return None if len(diagnostics.errors) > before else urdf
+    return None if diagnostics.error_count > before else urdf
 
 
-@cache
-def _near_miss(tag: str, known: frozenset[str]) -> str | None:
-    """The hint for an element that URDF lacks; the same few stand in every joint of a file."""
-    return did_you_mean(tag, known)
+def _round(cycle: Sequence[str]) -> str:
+    """How a sentence names the members of a cycle, a few at most."""
+    shown = cycle if len(cycle) <= 6 else [*cycle[:5], "..."]
+    return " -> ".join(f"'{name}'" for name in [*shown, cycle[0]])
 
 
 def _floats(text: str, separator: str | None = None) -> tuple[float, ...] | None:
@@ -189,12 +193,13 @@ class _Reader:
         self.floats: dict[str, tuple[float, ...] | None] = {}
         self.joined: dict[str, tuple[float, ...] | None] = {}
         self.poses: dict[tuple[str | None, str | None], Pose] = {}
+        self.strange: dict[tuple[str, frozenset[str]], str | None] = {}
         self.materials: dict[str, tuple[tuple[float, float, float, float] | None, str]] = {}
 
     # -- reporting ------------------------------------------------------------------------------------------------
 
     def report(
-        self, code: str, message: str, element: Element, attribute: str | None = None, hint: str | None = None
+        self, code: str, message: str, element: Element, attribute: str | None = None, hint: Hint = None
     ) -> None:
         self.diagnostics.report(code, message, partial(self.document.place, element, attribute), hint)
 
@@ -305,9 +310,17 @@ class _Reader:
                 hint="state it under 'closures' in the YAML file",
             )
         elif "}" not in tag:
-            near = _near_miss(tag, known)
+            near = self.near_miss(tag, known)
             if near:
                 self.report("urdf-unknown-element", f"<{parent.tag}> has an unknown element <{tag}>", child, hint=near)
+
+    def near_miss(self, tag: str, known: frozenset[str]) -> str | None:
+        """The hint for an element that URDF lacks; mostly the same few stand in every joint of a file."""
+        if (tag, known) not in self.strange:
+            if len(self.strange) >= _MOST_STRANGE:
+                return None
+            self.strange[tag, known] = did_you_mean(tag, known)
+        return self.strange[tag, known]
 
     def need(self, parent: Element, found: Mapping[str, Element], tag: str) -> Element | None:
         """EU-URD-004: an element has the child elements that it must have."""
@@ -505,7 +518,7 @@ class _Reader:
                     f"material '{name}' is not defined",
                     element,
                     "name",
-                    did_you_mean(name, self.materials),
+                    partial(did_you_mean, name, self.materials),
                 )
                 return None, ""
             return self.materials[name]
@@ -644,7 +657,7 @@ class _Reader:
 
     def tree(self, name: str, links: list[UrdfLink], joints: list[UrdfJoint]) -> Urdf | None:
         """EU-URD-009, -010, -014 to -018: unique names, known links, and exactly one tree."""
-        before = len(self.diagnostics.errors)
+        before = self.diagnostics.error_count
         link_by_name: dict[str, UrdfLink] = {}
         for link in links:
             if link.name in link_by_name:
@@ -665,9 +678,9 @@ class _Reader:
                         f"joint '{joint.name}' names the {tag} link '{link_name}', which does not exist",
                         joint.element.find(tag),  # type: ignore[arg-type]
                         "link",
-                        did_you_mean(link_name, link_by_name),
+                        partial(did_you_mean, link_name, link_by_name),
                     )
-        if len(self.diagnostics.errors) > before:
+        if self.diagnostics.error_count > before:
             return None
         self.mimics(joint_by_name)
         parent_joint: dict[str, UrdfJoint] = {}
@@ -684,7 +697,7 @@ class _Reader:
                 )
             parent_joint[joint.child] = joint
             children.setdefault(joint.parent, []).append(joint)
-        if len(self.diagnostics.errors) > before:
+        if self.diagnostics.error_count > before:
             return None
         roots = [link for link in links if link.name not in parent_joint]
         ordered = {link: tuple(sorted(of, key=lambda joint: joint.name)) for link, of in children.items()}
@@ -725,10 +738,9 @@ class _Reader:
                 path.append(name)
                 name = parent_joint[name].parent
             cycle = list(reversed(path[seen[name] :]))
-            shown = cycle if len(cycle) <= 6 else [*cycle[:5], "..."]
             self.report(
                 "urdf-cycle",
-                "links form a cycle: " + " -> ".join(f"'{part}'" for part in [*shown, cycle[0]]),
+                "links form a cycle: " + _round(cycle),
                 parent_joint[cycle[0]].element,
                 hint="take one joint out of the cycle, and state it under 'closures' in the YAML file",
             )
@@ -750,7 +762,7 @@ class _Reader:
                     f"joint '{joint.name}' mimics '{joint.mimic.joint}', which is no joint",
                     element,
                     "joint",
-                    did_you_mean(joint.mimic.joint, joints),
+                    partial(did_you_mean, joint.mimic.joint, joints),
                 )
                 continue
             for role, other in (("mimics another", joint), ("is mimicked", target)):
@@ -761,15 +773,15 @@ class _Reader:
                         element,
                         "joint",
                     )
-            trail = [joint.name]
+            trail = dict.fromkeys([joint.name])
             at = target
             while at is not None and at.name not in trail and at.name not in done:
-                trail.append(at.name)
+                trail[at.name] = None
                 at = joints.get(at.mimic.joint) if at.mimic else None  # type: ignore[assignment]
             if at is not None and at.name in trail:
                 self.report(
                     "urdf-mimic-cycle",
-                    "joints mimic one another in a cycle: " + " -> ".join(f"'{name}'" for name in [*trail, at.name]),
+                    "joints mimic one another in a cycle: " + _round([*dropwhile(at.name.__ne__, trail)]),
                     element,
                     "joint",
                 )

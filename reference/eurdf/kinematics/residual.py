@@ -15,7 +15,7 @@ import numpy as np
 import pinocchio as pin
 
 from eurdf.kinematics.array import Matrix, Vector
-from eurdf.kinematics.loop import Loop, find_loops
+from eurdf.kinematics.loop import find_loops
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -34,10 +34,10 @@ def residual(robot: Robot, q: Vector, data: Any = None) -> Vector:
         r (nc,): m and rad.
     """
     loops = find_loops(robot)
-    placements = _placements(robot.model, q, loops, data)
+    placements = _placements(robot, q, data)
     r = np.empty(loops[-1].rows.stop if loops else 0)
     for loop, constraint in zip(loops, robot.constraint_models, strict=True):
-        aMb = _frame_a(placements, loop, constraint).actInv(_frame_b(placements, loop, constraint))
+        aMb = _frame_a(placements, constraint).actInv(_frame_b(placements, constraint))
         r[loop.rows] = pin.log6(aMb).vector if loop.spatial else aMb.translation
     return r
 
@@ -58,14 +58,14 @@ def residual_and_jacobian(robot: Robot, q: Vector, data: Any = None) -> tuple[Ve
     """
     loops = find_loops(robot)
     if data is None:
-        placements, J = _jacobian_along(robot.model, q, loops)
+        placements, J = _jacobian_along(robot, q)
     else:
         J = pin.computeJointJacobians(robot.model, data, q).reshape(6, -1)  # (6,) where nv is 1
         placements = data.oMi
     nc = loops[-1].rows.stop if loops else 0
     r, K = np.empty(nc), np.zeros((nc, robot.model.nv))
     for loop, constraint in zip(loops, robot.constraint_models, strict=True):
-        oMa, oMb = _frame_a(placements, loop, constraint), _frame_b(placements, loop, constraint)
+        oMa, oMb = _frame_a(placements, constraint), _frame_b(placements, constraint)
         aMb = oMa.actInv(oMb)
         if loop.spatial:
             r[loop.rows] = pin.log6(aMb).vector
@@ -105,37 +105,37 @@ def closure_openings(robot: Robot, q: Vector, data: Any = None) -> tuple[Opening
         q: Configuration (nq,).
         data: A `pin.Data` of the model to compute in, or None: see `residual`.
     """
-    loops = find_loops(robot)
-    placements = _placements(robot.model, q, loops, data)
+    placements = _placements(robot, q, data)
     openings = []
-    for loop, constraint in zip(loops, robot.constraint_models, strict=True):
-        aMb = _frame_a(placements, loop, constraint).actInv(_frame_b(placements, loop, constraint))
-        angle = math.hypot(*pin.log3(aMb.rotation)) if loop.spatial else 0.0
+    for constraint in robot.constraint_models:
+        aMb = _frame_a(placements, constraint).actInv(_frame_b(placements, constraint))
+        angle = math.hypot(*pin.log3(aMb.rotation)) if constraint.residualSize() == 6 else 0.0
         openings.append(Opening(constraint.name, math.hypot(*aMb.translation), angle))
     return tuple(openings)
 
 
-def _frame_a(placements: Any, loop: Loop, constraint: Any) -> Any:
-    return placements[loop.joint_a] * constraint.joint1_placement
+def _frame_a(placements: Any, constraint: Any) -> Any:
+    return placements[constraint.joint1_id] * constraint.joint1_placement
 
 
-def _frame_b(placements: Any, loop: Loop, constraint: Any) -> Any:
-    return placements[loop.joint_b] * constraint.joint2_placement
+def _frame_b(placements: Any, constraint: Any) -> Any:
+    return placements[constraint.joint2_id] * constraint.joint2_placement
 
 
-def _placements(model: Any, q: Vector, loops: tuple[Loop, ...], data: Any) -> Any:
+def _placements(robot: Robot, q: Vector, data: Any) -> Any:
     """World placements, by joint, of the joints that carry the frames."""
     if data is None:
-        return {joint: placement for joint, placement, _ in _kinematics_along(model, q, loops)}
-    pin.forwardKinematics(model, data, q)
+        return {joint: placement for joint, placement, _ in _kinematics_along(robot, q)}
+    pin.forwardKinematics(robot.model, data, q)
     return data.oMi
 
 
-def _jacobian_along(model: Any, q: Vector, loops: tuple[Loop, ...]) -> tuple[dict[int, Any], Matrix]:
+def _jacobian_along(robot: Robot, q: Vector) -> tuple[dict[int, Any], Matrix]:
     """World placements by joint, and the world Jacobian (6, nvExtended), zero but in the columns of the loops."""
+    model = robot.model
     placements, J = {}, np.zeros((6, model.nvExtended))
     first_column, width = model.idx_vExtendeds, model.nvExtendeds
-    for joint, placement, joint_data in _kinematics_along(model, q, loops):
+    for joint, placement, joint_data in _kinematics_along(robot, q):
         placements[joint] = placement
         if joint_data is not None:
             columns = slice(first_column[joint], first_column[joint] + width[joint])
@@ -143,15 +143,16 @@ def _jacobian_along(model: Any, q: Vector, loops: tuple[Loop, ...]) -> tuple[dic
     return placements, J
 
 
-def _kinematics_along(model: Any, q: Vector, loops: tuple[Loop, ...]) -> Iterator[tuple[int, Any, Any]]:
-    """Index, world placement and `pin.JointData` of the joints of the loops and of all their ancestors.
+def _kinematics_along(robot: Robot, q: Vector) -> Iterator[tuple[int, Any, Any]]:
+    """Index, world placement and `pin.JointData` of the joints that carry frames and of all their ancestors.
 
     The first is the universe, without joint data.
     """
-    parents = list(model.parents)
+    model = robot.model
+    parents = model.parents.tolist()
     needed = {0}
-    for loop in loops:
-        for joint in (loop.joint_a, loop.joint_b):
+    for constraint in robot.constraint_models:
+        for joint in (constraint.joint1_id, constraint.joint2_id):
             while joint not in needed:
                 needed.add(joint)
                 joint = parents[joint]

@@ -7,7 +7,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from eurdf.diagnostics import Diagnostics, Place, did_you_mean
+from eurdf.diagnostics import Diagnostics, Hint, Place, did_you_mean
 from eurdf.format.extension import ActuatorEntry
 from eurdf.format.urdf import Urdf
 from eurdf.mechanism.joint_type import JointType
@@ -35,7 +35,7 @@ def link_actuators(
         document: To point into.
         diagnostics: Gets what is found.
     """
-    listed: list[str] = []
+    listed: dict[str, None] = {}
     for entry in entries:
         name = entry.joint
         place = partial(_place_of_name, entry, document)
@@ -56,9 +56,9 @@ def link_actuators(
                 f"actuate '{first}' or '{second}'",
             )
         elif joint is None:
-            movable = [other.name for other in joints.values() if other.type is not JointType.FIXED]
-            hint = did_you_mean(name, movable)
-            if hint is None and name in urdf.links:
+            movable = (other.name for other in joints.values() if other.type is not JointType.FIXED)
+            hint: Hint = partial(did_you_mean, name, movable)
+            if name in urdf.links:
                 hint = f"'{name}' is a link; name the joint that moves it"
             diagnostics.report("unknown-actuator", f"actuator '{name}' is no joint of the robot", place, hint)
         elif name in listed:
@@ -73,7 +73,7 @@ def link_actuators(
                 f"actuate '{joint.mimic.joint}'",
             )
         else:
-            listed.append(name)
+            listed[name] = None
     return tuple(listed)
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Mapping
+from functools import partial
 
-from eurdf.diagnostics import Diagnostics, did_you_mean
+from eurdf.diagnostics import Diagnostics, Hint, did_you_mean
 from eurdf.format.extension import ConfigurationEntry, Pointer
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Joint
@@ -62,12 +63,11 @@ def _joint(
     joint = joints.get(name)
     if joint is not None and joint.type is not JointType.FIXED and joint.mimic is None:
         return joint
-    hint = None
+    hint: Hint = None
     if joint is None:
         why = "is no joint of the robot"
-        hint = did_you_mean(
-            name, [other.name for other in joints.values() if other.type is not JointType.FIXED and not other.mimic]
-        )
+        free = (other.name for other in joints.values() if other.type is not JointType.FIXED and not other.mimic)
+        hint = partial(did_you_mean, name, free)
     elif joint.mimic is not None:
         why = f"mimics '{joint.mimic.joint}' and has no coordinate of its own"
     else:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import partial
+from itertools import chain
 
 from eurdf.diagnostics import Diagnostics, did_you_mean
 from eurdf.format.extension import FrameEntry, FrameReference
@@ -87,12 +89,12 @@ class FrameNames:
             return Anchor(name, frame=name)
         if child is not None:
             return Anchor(child, frame=name)
-        candidates = [*self._frames, *self._urdf.links, *self._urdf.joints, *self._joints]
+        candidates = chain(self._frames, self._urdf.links, self._urdf.joints, self._joints)
         self._diagnostics.report(
             "unknown-frame",
             f"'{name}' is no link, joint or frame of the robot",
             self._document.place(reference.pointer),
-            did_you_mean(name, candidates),
+            partial(did_you_mean, name, candidates),
         )
         return None
 
@@ -100,17 +102,17 @@ class FrameNames:
         if reference.link is not None:
             if reference.link in self._urdf.links:
                 return reference.link
-            kind, name, candidates = "link", reference.link, list(self._urdf.links)
+            kind, name, candidates = "link", reference.link, chain(self._urdf.links)
         else:
             assert reference.joint is not None
             child = self._joint_child(reference.joint)
             if child is not None:
                 return child
-            kind, name, candidates = "joint", reference.joint, [*self._urdf.joints, *self._joints]
+            kind, name, candidates = "joint", reference.joint, chain(self._urdf.joints, self._joints)
         self._diagnostics.report(
             "unknown-frame",
             f"'{name}' is no {kind} of the robot",
             self._document.place((*reference.pointer, kind)),
-            did_you_mean(name, candidates),
+            partial(did_you_mean, name, candidates),
         )
         return None

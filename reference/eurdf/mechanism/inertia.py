@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Collection, Iterable, Sequence
 from functools import partial
 
 import numpy as np
@@ -22,9 +23,29 @@ SINGULAR = 1e-12
 
 Moments = tuple[float, float, float, float, float, float]
 
+#: The pose of a link in the frame that its joint moves, and its inertia.
+Member = tuple[Pose, Inertia]
 
-def check_inertias(urdf: Urdf, diagnostics: Diagnostics) -> None:
-    """EU-INR-001 to -003, link by link: mass not negative, inertia positive semidefinite, triangle inequality."""
+_SLIDES = frozenset({JointType.PRISMATIC, JointType.CYLINDRICAL, JointType.PLANAR, JointType.FLOATING})
+_TURNS = frozenset(
+    {
+        JointType.REVOLUTE,
+        JointType.CONTINUOUS,
+        JointType.HELICAL,
+        JointType.UNIVERSAL,
+        JointType.CYLINDRICAL,
+        JointType.PLANAR,
+    }
+)
+
+
+def check_inertias(urdf: Urdf, diagnostics: Diagnostics) -> set[str]:
+    """EU-INR-001 to -003, link by link: mass not negative, inertia positive semidefinite, triangle inequality.
+
+    Returns:
+        Names of the links with an error, of which nothing more can be said.
+    """
+    faulty: set[str] = set()
     links = [link for link in urdf.links.values() if link.inertia is not None]
     suspects: list[UrdfLink] = []
     for link in links:
@@ -33,6 +54,7 @@ def check_inertias(urdf: Urdf, diagnostics: Diagnostics) -> None:
         if inertia.mass < 0.0:
             message = f"link '{link.name}' has a mass of {inertia.mass:g} kg"
             _report(urdf, diagnostics, link, "negative-mass", message, "mass")
+            faulty.add(link.name)
             continue
         if not _plainly_sound(inertia.moments):
             suspects.append(link)
@@ -41,6 +63,7 @@ def check_inertias(urdf: Urdf, diagnostics: Diagnostics) -> None:
         moments = np.linalg.eigvalsh(_matrix(link.inertia.moments))
         largest = float(np.abs(moments).max())
         if moments[0] < -MOMENT_TOLERANCE * largest:
+            faulty.add(link.name)
             _report(
                 urdf,
                 diagnostics,
@@ -59,20 +82,30 @@ def check_inertias(urdf: Urdf, diagnostics: Diagnostics) -> None:
                 f"{moments[1]:.3g}, {moments[2]:.3g} kg·m² the last is more than the sum of the others",
                 "inertia",
             )
+    return faulty
 
 
-def check_leaves(mechanism: Mechanism, urdf: Urdf, diagnostics: Diagnostics) -> None:
+def check_leaves(
+    mechanism: Mechanism, urdf: Urdf, diagnostics: Diagnostics, faulty: Collection[str] = frozenset()
+) -> None:
     """EU-INR-004: what a joint moves at the end of the tree has inertia along every motion of that joint.
 
     Elsewhere a massless body is a way to write joints of several axes; at a leaf it makes the mass matrix singular.
+
+    Args:
+        mechanism: The mechanism.
+        urdf: To point into.
+        diagnostics: Gets what is found.
+        faulty: Links whose inertia is at fault by itself: leaves that they are part of are passed over.
     """
     root = mechanism.bodies[0].name
     rigid = rigid_roots(root, mechanism.joints)
     inner = {rigid[joint.parent] for joint in mechanism.joints if joint.type is not JointType.FIXED}
     inertia_of = {body.name: body.inertia for body in mechanism.bodies}
     poses: dict[str, Pose] = {root: IDENTITY}
-    members: dict[str, list[tuple[Pose, Inertia]]] = {}
+    members: dict[str, list[Member]] = {}
     moving: list[Joint] = []
+    passed_over: set[str] = set()
     for joint in mechanism.joints:
         if joint.type is JointType.FIXED:
             parent = poses.get(joint.parent)
@@ -88,8 +121,10 @@ def check_leaves(mechanism: Mechanism, urdf: Urdf, diagnostics: Diagnostics) -> 
         inertia = inertia_of[joint.child]
         if inertia is not None:
             members.setdefault(rigid[joint.child], []).append((pose, inertia))
+            if joint.child in faulty:
+                passed_over.add(rigid[joint.child])
     for joint in moving:
-        if joint.mimic is not None or (joint.armature and min(joint.armature) > 0.0):
+        if joint.child in passed_over or joint.mimic is not None or min(joint.armature, default=0.0) > 0.0:
             continue
         why = _immaterial(joint, members.get(joint.child, ()))
         if why and joint.child in urdf.links:
@@ -97,24 +132,40 @@ def check_leaves(mechanism: Mechanism, urdf: Urdf, diagnostics: Diagnostics) -> 
             _report(urdf, diagnostics, urdf.links[joint.child], "leaf-without-inertia", message)
 
 
-def _immaterial(joint: Joint, members: Iterable[tuple[Pose, Inertia]]) -> str | None:
-    """Why a leaf does not resist a motion of its joint; None where it resists them all."""
-    members = list(members)
+def _immaterial(joint: Joint, members: Sequence[Member]) -> str | None:
+    """Why a leaf does not resist a motion of its joint, in any configuration; None where it resists them all."""
+    kind = joint.type
     mass = sum(inertia.mass for _, inertia in members)
-    if mass < 0.0:
-        return None  # reported as a negative mass
     if mass == 0.0 and not any(any(inertia.moments) for _, inertia in members):
         return "has no mass and carries nothing that has"
-    if joint.type is JointType.PRISMATIC:
-        return None if mass > 0.0 else "has no mass"
-    if joint.type in (JointType.REVOLUTE, JointType.CONTINUOUS):
-        axis, squared = joint.axes[0], sum(value * value for value in joint.axes[0])
-        smallest = sum(_about_axis(axis, pose, inertia) for pose, inertia in members) / squared
-        largest = sum(_trace_about_origin(pose, inertia) for pose, inertia in members)
-        return None if smallest > SINGULAR * largest else "has no inertia about the joint's axis"
-    if joint.type is JointType.SPHERICAL and not _positive(members):
+    if mass == 0.0 and kind in _SLIDES:
+        return "has no mass"
+    scale = sum(_trace_about_origin(pose, inertia) for pose, inertia in members)
+    if kind in (JointType.PLANAR, JointType.FLOATING):
+        # They slide as well: what then resists turning is the inertia about the centre of mass.
+        members = _centred(members, mass)
+    if kind is JointType.SPHERICAL and not _positive(members, SINGULAR * scale):
         return "has no inertia about one of the axes through the joint"
-    return None  # those joints also slide, or their axes move: any mass resists them somewhere
+    if kind is JointType.FLOATING and not _positive(members, SINGULAR * scale):
+        return "has no inertia about one of the axes through its centre of mass"
+    if kind in _TURNS:
+        # Of a universal joint the first axis moves in the child: only mass on the second resists nothing for ever.
+        axis: Vector3 = (0.0, 0.0, 1.0) if kind is JointType.PLANAR else joint.axes[-1]
+        squared = sum(value * value for value in axis)
+        resists = sum(_about_axis(axis, pose, inertia) for pose, inertia in members) / squared
+        if kind is JointType.HELICAL:
+            advance = joint.pitch / (2.0 * math.pi)
+            resists, scale = resists + advance * advance * mass, scale + advance * advance * mass
+        if resists <= SINGULAR * scale:
+            return f"has no inertia about the joint's {'second ' if kind is JointType.UNIVERSAL else ''}axis"
+    return None
+
+
+def _centred(members: Sequence[Member], mass: float) -> list[Member]:
+    """The members, seen from a frame at their centre of mass."""
+    weighed = [(inertia.mass / mass, pose.act(inertia.pose.xyz)) for pose, inertia in members]
+    x, y, z = (-sum(weight * point[axis] for weight, point in weighed) for axis in range(3))
+    return [(Pose((x, y, z)) * pose, inertia) for pose, inertia in members]
 
 
 def _about_axis(axis: Vector3, pose: Pose, inertia: Inertia) -> float:
@@ -124,8 +175,8 @@ def _about_axis(axis: Vector3, pose: Pose, inertia: Inertia) -> float:
     xx, xy, xz, yy, yz, zz = inertia.moments
     own = xx * x * x + yy * y * y + zz * z * z + 2.0 * (xy * x * y + xz * x * z + yz * y * z)
     (cx, cy, cz), (ax, ay, az) = at.xyz, axis
-    apart = (ay * cz - az * cy) ** 2 + (az * cx - ax * cz) ** 2 + (ax * cy - ay * cx) ** 2
-    return own + inertia.mass * apart
+    u, v, w = ay * cz - az * cy, az * cx - ax * cz, ax * cy - ay * cx
+    return own + inertia.mass * (u * u + v * v + w * w)
 
 
 def _trace_about_origin(pose: Pose, inertia: Inertia) -> float:
@@ -134,10 +185,10 @@ def _trace_about_origin(pose: Pose, inertia: Inertia) -> float:
     return inertia.moments[0] + inertia.moments[3] + inertia.moments[5] + 2.0 * inertia.mass * (x * x + y * y + z * z)
 
 
-def _positive(members: Iterable[tuple[Pose, Inertia]]) -> bool:
-    """Whether the rotational inertia about the joint's origin, Σ R I Rᵀ + m (cᵀc 1 - c cᵀ), is positive definite.
+def _positive(members: Iterable[Member], bound: float) -> bool:
+    """Whether the rotational inertia about the origin, Σ R I Rᵀ + m (cᵀc 1 - c cᵀ), exceeds the bound about all axes.
 
-    Sylvester's criterion on the matrix less `SINGULAR` of its trace.
+    Sylvester's criterion on the matrix less the bound.
     """
     xx = xy = xz = yy = yz = zz = 0.0
     for pose, inertia in members:
@@ -150,7 +201,6 @@ def _positive(members: Iterable[tuple[Pose, Inertia]]) -> bool:
         xy += ixy - mass * x * y
         xz += ixz - mass * x * z
         yz += iyz - mass * y * z
-    bound = SINGULAR * (xx + yy + zz)
     xx, yy, zz = xx - bound, yy - bound, zz - bound
     second = xx * yy - xy * xy
     third = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)

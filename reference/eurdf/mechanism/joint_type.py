@@ -20,6 +20,9 @@ class JointType(StrEnum):
     CYLINDRICAL = "cylindrical"
     HELICAL = "helical"
 
+    # As for the string it equals; the one of Enum is a Python function, and joints are looked up by type all the time.
+    __hash__ = str.__hash__
+
 
 @dataclass(frozen=True, slots=True)
 class Coordinates:

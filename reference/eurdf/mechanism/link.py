@@ -39,14 +39,15 @@ def link(
     Returns:
         The mechanism, or None where an error was found.
     """
-    before = len(diagnostics.errors)
+    before = diagnostics.error_count
     if extension is None or document is None:
         mechanism = _bare(urdf, root or "fixed")
     else:
         mechanism = _described(urdf, extension, document, diagnostics, root or extension.root)
+        _reserve_names(extension, document, diagnostics, mechanism.root)
     if mechanism.root == "floating":
         _reserve_root_joint(urdf, diagnostics)
-    return None if len(diagnostics.errors) > before else mechanism
+    return None if diagnostics.error_count > before else mechanism
 
 
 def _bare(urdf: Urdf, root: Root) -> Mechanism:
@@ -130,6 +131,21 @@ def _closure_links(extension: Extension, urdf: Urdf) -> set[str]:
 
     sides = (link_of(side) for closure in extension.closures for side in (closure.a, closure.b))
     return {side for side in sides if side is not None}
+
+
+def _reserve_names(extension: Extension, document: YamlDocument, diagnostics: Diagnostics, root: Root) -> None:
+    """EU-URD-011: what the description names anew takes no name that the model needs for itself."""
+    reserved = ("universe", ROOT_JOINT) if root == "floating" else ("universe",)
+    named = [("joint", entry.name, entry.pointer, True) for entry in extension.joints if entry.merges]
+    named += [("frame", entry.name, (*entry.pointer, "name"), False) for entry in extension.frames]
+    for kind, name, pointer, key in named:
+        if name in reserved:
+            diagnostics.report(
+                "urdf-reserved-name",
+                f"'{name}' is a name that the model needs for itself, and cannot be that of a {kind}",
+                document.place(pointer, key),
+                f"give the {kind} another name",
+            )
 
 
 def _reserve_root_joint(urdf: Urdf, diagnostics: Diagnostics) -> None:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 
-from eurdf.diagnostics import Diagnostics, did_you_mean
+from eurdf.diagnostics import Diagnostics, Hint, did_you_mean
 from eurdf.format.extension import JointEntry, Pointer
 from eurdf.format.urdf import Urdf
 from eurdf.mechanism.joint_type import COORDINATES, JointType
@@ -81,8 +82,17 @@ def replace_joints(
     faulty: set[str] = set()
     mimicking = {joint.name: joint.mimic.joint for joint in urdf.joints.values() if joint.mimic}
     mimicked = {target: name for name, target in mimicking.items()}
+    merged = {name: entry.name for entry in entries for name in entry.merges if name != entry.name}
     seen: set[str] = set()
     for entry in entries:
+        if entry.name in merged and entry.name in urdf.joints:
+            diagnostics.report(
+                "duplicate-replacement",
+                f"joint '{entry.name}' is changed, and merged into '{merged[entry.name]}' too",
+                document.place(entry.pointer),
+                f"say it of '{merged[entry.name]}', or leave '{entry.name}' out of its 'merges'",
+            )
+            continue
         if entry.name in seen:
             diagnostics.report(
                 "duplicate-replacement",
@@ -143,8 +153,8 @@ class _Replacement:
         joint = self.joints.by_name.get(name) if name in self.urdf.joints else None
         if joint is None:
             key = bool(pointer) and pointer[-1] == name
-            hint = did_you_mean(name, self.urdf.joints)
-            if hint is None and name in self.urdf.links:
+            hint: Hint = partial(did_you_mean, name, self.urdf.joints)
+            if name in self.urdf.links:
                 hint = f"'{name}' is a link; name the joint that moves it"
             self.diagnostics.report(
                 "unknown-joint", f"'{name}' is no joint of the robot", self.document.place(pointer, key), hint
@@ -171,15 +181,15 @@ class _Replacement:
         chain = []
         for index, name in enumerate(entry.merges):
             pointer = (*entry.pointer, "merges", index)
-            joint = self.target(name, pointer)
-            if joint is None or self.mimics(joint, pointer):
-                return None
             if name in self.joints.merged:
                 self.diagnostics.report(
                     "duplicate-replacement",
                     f"joint '{name}' is already merged into '{self.joints.merged[name]}'",
                     self.document.place(pointer),
                 )
+                return None
+            joint = self.target(name, pointer)
+            if joint is None or self.mimics(joint, pointer):
                 return None
             chain.append(joint)
         taken = entry.name in self.urdf.joints and entry.name != entry.merges[2]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.pinocchio.coordinates import slots
+from eurdf.pinocchio.coordinates import Slot, slots
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,11 +31,17 @@ class Actuation:
     selection: npt.NDArray[np.float64]
 
 
-def build_actuation(mechanism: Mechanism, model: pin.Model) -> Actuation:
-    """The actuation of a mechanism, in the model that `build_model` made of it."""
+def build_actuation(mechanism: Mechanism, model: pin.Model, at: Mapping[str, Slot] | None = None) -> Actuation:
+    """The actuation of a mechanism.
+
+    Args:
+        mechanism: The mechanism.
+        model: What `build_model` made of it.
+        at: The `slots` of the two, where the caller has them.
+    """
     if not mechanism.actuators:
         return Actuation((), np.empty(0, np.intp), np.empty(0, np.intp), np.empty((model.nv, 0)))
-    at = slots(mechanism, model)
+    at = slots(mechanism, model) if at is None else at
     actuated = [at[name] for name in mechanism.actuators]
     idx_q = np.array([slot.idx_q + k for slot in actuated for k in range(slot.nq)], np.intp)
     idx_v = np.array([slot.idx_v + k for slot in actuated for k in range(slot.nv)], np.intp)

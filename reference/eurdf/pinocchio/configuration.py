@@ -18,7 +18,12 @@ from eurdf.pinocchio.model import ROOT_JOINT
 Vector = npt.NDArray[np.float64]
 
 
-def configuration_vector(mechanism: Mechanism, model: pin.Model, coordinates: Mapping[str, Sequence[float]]) -> Vector:
+def configuration_vector(
+    mechanism: Mechanism,
+    model: pin.Model,
+    coordinates: Mapping[str, Sequence[float]],
+    at: Mapping[str, Slot] | None = None,
+) -> Vector:
     """The configuration q in which joints have the given coordinates.
 
     Args:
@@ -27,6 +32,7 @@ def configuration_vector(mechanism: Mechanism, model: pin.Model, coordinates: Ma
         coordinates: For each joint its coordinates as files have them (`eurdf.mechanism.joint_type.COORDINATES`), for a
             floating root those of a floating joint under ``root_joint``. A joint left out stands at its neutral.
             Quaternions are brought to unit length. What is said of a joint that follows another is not looked at.
+        at: The `slots` of mechanism and model, where the caller has them.
 
     Returns:
         q, of shape (nq,).
@@ -36,7 +42,7 @@ def configuration_vector(mechanism: Mechanism, model: pin.Model, coordinates: Ma
             quaternion of length 0.
     """
     q: Vector = pin.neutral(model)
-    at = slots(mechanism, model)
+    at = slots(mechanism, model) if at is None else at
     for name, given in coordinates.items():
         values = [float(value) for value in given]
         if name == ROOT_JOINT and mechanism.root == "floating":

@@ -15,6 +15,8 @@ from eurdf.pinocchio.frames import body_frame_ids
 from eurdf.pinocchio.placement import placement_of
 
 Resolve = Callable[[str], str | None]
+#: Meshes that were read, by path and scale.
+Meshes = dict[tuple[str, tuple[float, ...]], coal.BVHModelBase]
 
 _GRAY = np.array((0.9, 0.9, 0.9, 1.0))
 _BLACK = np.array((0.0, 0.0, 0.0, 1.0))
@@ -42,7 +44,7 @@ def build_geometry(
     model: pin.Model,
     kind: pin.GeometryType,
     resolve: Resolve,
-    loader: coal.MeshLoader | None = None,
+    meshes: Meshes | None = None,
 ) -> pin.GeometryModel:
     """Build the visual or the collision geometry of a mechanism.
 
@@ -55,14 +57,15 @@ def build_geometry(
         kind: ``pin.VISUAL`` or ``pin.COLLISION``.
         resolve: Path of the file that a URI of the URDF means. It must find every mesh; a texture that it does not find
             is left out.
-        loader: Reads the meshes; a ``coal.CachedMeshLoader`` reads each once for all geometries it is used for.
+        meshes: Those read so far; they are shared, and those read here are added. (The ``coal.CachedMeshLoader`` that
+            Python sees reads a mesh anew each time.)
 
     Raises:
         UnreadableMesh: A mesh file is no mesh.
         FileNotFoundError: `resolve` does not find a mesh.
     """
     geometry_model = pin.GeometryModel()
-    loader = coal.MeshLoader() if loader is None else loader
+    meshes = {} if meshes is None else meshes
     body_frames = body_frame_ids(mechanism)
     for body in mechanism.bodies:
         shapes = body.visuals if kind == pin.GeometryType.VISUAL else body.collisions
@@ -71,7 +74,7 @@ def build_geometry(
         frame_id = body_frames[body.name]
         frame = model.frames[frame_id]
         for index, shape in enumerate(shapes):
-            geometry, path, scale = _geometry(shape, resolve, loader)
+            geometry, path, scale = _geometry(shape, resolve, meshes)
             colored = shape.color is not None or shape.texture != ""
             geometry_model.addGeometryObject(
                 pin.GeometryObject(
@@ -91,7 +94,7 @@ def build_geometry(
 
 
 def _geometry(
-    shape: Shape, resolve: Resolve, loader: coal.MeshLoader
+    shape: Shape, resolve: Resolve, meshes: Meshes
 ) -> tuple[coal.CollisionGeometry, str, npt.NDArray[np.float64]]:
     """The geometry; the path of its mesh, or in its place the name Pinocchio gives to the kind; the scale."""
     size = shape.size
@@ -108,11 +111,16 @@ def _geometry(
             path = resolve(shape.filename)
             if path is None:
                 raise FileNotFoundError(f"there is no mesh '{shape.filename}'")
-            scale = np.array(size)
-            try:
-                return loader.load(path, scale), path, scale
-            except ValueError as error:
-                raise UnreadableMesh(shape.filename, path, _reason(error)) from None
+            if (path, size) not in meshes:
+                meshes[path, size] = _read(shape, path)
+            return meshes[path, size], path, np.array(size)
+
+
+def _read(shape: Shape, path: str) -> coal.BVHModelBase:
+    try:
+        return coal.MeshLoader().load(path, np.array(shape.size))
+    except ValueError as error:
+        raise UnreadableMesh(shape.filename, path, _reason(error)) from None
 
 
 def _reason(error: ValueError) -> str:
@@ -123,4 +131,7 @@ def _reason(error: ValueError) -> str:
 
 def _color(shape: Shape) -> npt.NDArray[np.float64]:
     """In single precision, as urdfdom keeps colors; black where a material has a texture only."""
-    return _BLACK if shape.color is None else np.array(shape.color, np.float32).astype(np.float64)
+    if shape.color is None:
+        return _BLACK
+    with np.errstate(over="ignore", under="ignore"):  # of a component far out of 0 to 1, infinity is as good as any
+        return np.array(shape.color, np.float32).astype(np.float64)

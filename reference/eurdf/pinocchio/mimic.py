@@ -38,19 +38,28 @@ def following(mechanism: Mechanism) -> Following:
     }
     if not mimics:
         return NONE
-    laws = {name: _end_of_chain(mimic, mimics) for name, mimic in mimics.items()}
+    laws: dict[str, Mimic] = {}
+    for name in mimics:
+        _follow_chain(name, mimics, laws)
     place = {joint.name: index for index, joint in enumerate(mechanism.joints)}
     overtaken = {law.joint for name, law in laws.items() if place[name] < place[law.joint]}
     late = tuple(joint for joint in mechanism.joints if joint.name in overtaken)
     return Following(laws, late, _counted(mechanism, laws))
 
 
-def _end_of_chain(mimic: Mimic, mimics: Mapping[str, Mimic]) -> Mimic:
-    """The law that leads a joint in the end: m₂ (m₁ q + o₁) + o₂."""
-    while mimic.joint in mimics:
-        step = mimics[mimic.joint]
-        mimic = Mimic(step.joint, mimic.multiplier * step.multiplier, mimic.multiplier * step.offset + mimic.offset)
-    return mimic
+def _follow_chain(name: str, mimics: Mapping[str, Mimic], laws: dict[str, Mimic]) -> None:
+    """Find the law that leads a joint in the end, m₂ (m₁ q + o₁) + o₂, and those of the joints on the way to it."""
+    chain = []
+    while name in mimics and name not in laws:
+        chain.append(name)
+        name = mimics[name].joint
+    for follower in reversed(chain):
+        mimic = mimics[follower]
+        step = laws.get(mimic.joint)
+        if step is not None:
+            offset = mimic.multiplier * step.offset + mimic.offset
+            mimic = Mimic(step.joint, mimic.multiplier * step.multiplier, offset)
+        laws[follower] = mimic
 
 
 def _counted(mechanism: Mechanism, laws: Mapping[str, Mimic]) -> frozenset[str]:

@@ -6,6 +6,8 @@ the same operations in the same order, through the same functions where Python c
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import pinocchio as pin
 
 from eurdf.mechanism.joint_type import JointType
@@ -19,6 +21,8 @@ from eurdf.pinocchio.placement import placement_of
 
 #: Name of the joint by which a floating root moves in the world.
 ROOT_JOINT = "root_joint"
+
+_Indices = tuple[int, int, int, int]  # of a joint: its own, and where its q, its v and its v with followers start
 
 _UNIVERSE = 0
 _HERE = pin.SE3.Identity()
@@ -51,30 +55,21 @@ def build_model(mechanism: Mechanism, mimic: bool = True) -> pin.Model:
     model = pin.Model()
     model.name = mechanism.name
     led = following(mechanism) if mimic else NONE
-
-    add_joint, add_frame, append_body = model.addJoint, model.addFrame, model.appendBodyToJoint
-    add_joint_frame, add_body_frame = model.addJointFrame, model.addBodyFrame
     root = mechanism.bodies[0]
-    inertia = _MASSLESS if root.inertia is None else inertia_of(root.inertia)
-    if mechanism.root == "floating":
-        joint_id = add_joint(_UNIVERSE, _FREE_FLYER, _HERE, ROOT_JOINT)
-        joint_frame = add_joint_frame(joint_id, 0)
-        if root.inertia is not None and not is_zero(root.inertia):
-            append_body(joint_id, inertia, _HERE)
-        body_frame = add_body_frame(root.name, joint_id, _HERE, joint_frame)
-    else:
-        joint_id = _UNIVERSE
-        body_frame = add_frame(pin.Frame(root.name, _UNIVERSE, 0, _HERE, _BODY, inertia))
+    joint_id, body_frame = _add_root(model, mechanism)
     root_nq, root_nv = model.nq, model.nv
 
     free: list[tuple[Joint, int]] = []  # joints with coordinates of their own, in the model's order
-    source: dict[str, tuple[int, int, int, int]] = {}  # for each of them, if any follows: its indices in the model
+    sources: dict[str, _Indices] = {}  # where these coordinates stand, if there are followers
     for joint in led.late:
         moving = joint_model(joint, counts_turns=joint.name in led.counted)
         free.append((joint, moving.nq))
-        # Below a floating root, whose own coordinates stay the first.
-        source[joint.name] = _indices(model, add_joint(joint_id, moving, _HERE, _coordinate_name(joint, mechanism)))
+        # It hangs from a floating root, whose own coordinates stay the first.
+        coordinate = model.addJoint(joint_id, moving, _HERE, _coordinate_name(joint, mechanism))
+        sources[joint.name] = _indices(model, coordinate)
 
+    add_joint, add_frame, append_body = model.addJoint, model.addFrame, model.appendBodyToJoint
+    add_joint_frame, add_body_frame = model.addJointFrame, model.addBodyFrame
     # For each body: the joint that moves it, its frame, and its placement in that joint.
     sites = {root.name: (joint_id, body_frame, _HERE)}
     for joint, body in zip(mechanism.joints, mechanism.bodies[1:], strict=True):
@@ -88,17 +83,14 @@ def build_model(mechanism: Mechanism, mimic: bool = True) -> pin.Model:
             joint_frame = add_frame(pin.Frame(joint.name, joint_id, parent_frame, placement, _FIXED_JOINT, inertia))
         else:
             moving = joint_model(joint, counts_turns=joint.name in led.counted)
-            law = led.laws.get(joint.name) or (Mimic(joint.name) if joint.name in source else None)
+            law = led.laws.get(joint.name) or (Mimic(joint.name) if joint.name in sources else None)
             if law is None:
                 free.append((joint, moving.nq))
                 joint_id = add_joint(parent_joint, moving, placement, joint.name)
                 if led.laws:
-                    source[joint.name] = _indices(model, joint_id)
+                    sources[joint.name] = _indices(model, joint_id)
             else:
-                moving = pin.JointModel(moving)
-                moving.setIndexes(*source[law.joint])
-                moving = pin.JointModelMimic(moving, law.multiplier, law.offset)
-                joint_id = add_joint(parent_joint, moving, placement, joint.name)
+                joint_id = add_joint(parent_joint, _follower(moving, law, sources), placement, joint.name)
             if joint.offset is IDENTITY:
                 placement = _HERE
                 joint_frame = add_joint_frame(joint_id, parent_frame)
@@ -120,9 +112,29 @@ def build_model(mechanism: Mechanism, mimic: bool = True) -> pin.Model:
     return model
 
 
-def _indices(model: pin.Model, joint_id: int) -> tuple[int, int, int, int]:
+def _add_root(model: pin.Model, mechanism: Mechanism) -> tuple[int, int]:
+    """Add the root body; returns the joint that moves it, and its frame."""
+    root = mechanism.bodies[0]
+    inertia = _MASSLESS if root.inertia is None else inertia_of(root.inertia)
+    if mechanism.root == "fixed":
+        return _UNIVERSE, model.addFrame(pin.Frame(root.name, _UNIVERSE, 0, _HERE, _BODY, inertia))
+    joint_id = model.addJoint(_UNIVERSE, _FREE_FLYER, _HERE, ROOT_JOINT)
+    joint_frame = model.addJointFrame(joint_id, 0)
+    if root.inertia is not None and not is_zero(root.inertia):
+        model.appendBodyToJoint(joint_id, inertia, _HERE)
+    return joint_id, model.addBodyFrame(root.name, joint_id, _HERE, joint_frame)
+
+
+def _indices(model: pin.Model, joint_id: int) -> _Indices:
     joint = model.joints[joint_id]
     return joint_id, joint.idx_q, joint.idx_v, joint.idx_vExtended
+
+
+def _follower(moving: pin.JointModel, law: Mimic, sources: Mapping[str, _Indices]) -> pin.JointModelMimic:
+    # The constructor takes the joint that leads from the indices of the joint that it is given.
+    moving = pin.JointModel(moving)
+    moving.setIndexes(*sources[law.joint])
+    return pin.JointModelMimic(moving, law.multiplier, law.offset)
 
 
 def _coordinate_name(leader: Joint, mechanism: Mechanism) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any
 
-import coal
 import pinocchio as pin
 
 from eurdf.diagnostics import Diagnostic
@@ -13,7 +12,8 @@ from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.actuation import Actuation, build_actuation
 from eurdf.pinocchio.configuration import Vector, configuration_vector
 from eurdf.pinocchio.constraint import build_constraint_models
-from eurdf.pinocchio.geometry import Resolve, build_geometry
+from eurdf.pinocchio.coordinates import slots
+from eurdf.pinocchio.geometry import Meshes, Resolve, build_geometry
 from eurdf.pinocchio.model import build_model
 
 
@@ -110,18 +110,19 @@ def build_robot(
     visual_model = collision_model = None
     if geometry:
         find = _nothing if resolve is None else resolve
-        loader = coal.CachedMeshLoader()  # a mesh that is used twice is read once and shared
-        visual_model = build_geometry(mechanism, model, pin.GeometryType.VISUAL, find, loader)
-        collision_model = build_geometry(mechanism, model, pin.GeometryType.COLLISION, find, loader)
+        meshes: Meshes = {}
+        visual_model = build_geometry(mechanism, model, pin.GeometryType.VISUAL, find, meshes)
+        collision_model = build_geometry(mechanism, model, pin.GeometryType.COLLISION, find, meshes)
+    at = slots(mechanism, model)
     return Robot(
         mechanism,
         model,
         build_constraint_models(mechanism, model),
-        build_actuation(mechanism, model),
+        build_actuation(mechanism, model, at),
         visual_model,
         collision_model,
         {
-            name: configuration_vector(mechanism, model, coordinates)
+            name: configuration_vector(mechanism, model, coordinates, at)
             for name, coordinates in mechanism.configurations.items()
         },
         diagnostics,

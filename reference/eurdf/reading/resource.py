@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from pathlib import Path
-from urllib.parse import unquote, urlsplit
+from urllib.parse import unquote
 
 
 def resolve(uri: str, folder: Path, package_dirs: Sequence[str | os.PathLike[str]] = ()) -> str | None:
@@ -23,16 +23,15 @@ def resolve(uri: str, folder: Path, package_dirs: Sequence[str | os.PathLike[str
     Returns:
         A path, or None where there is no such file.
     """
-    parts = urlsplit(uri) if "://" in uri else None
-    if parts is None:
-        found = folder / uri
-        return str(found) if found.is_file() else None
-    if parts.scheme == "file":
-        found = folder / unquote(parts.netloc + parts.path)
-        return str(found) if found.is_file() else None
-    if parts.scheme not in ("package", "model"):
+    scheme, separator, rest = uri.partition("://")
+    if not separator:
+        return _file(folder / uri)
+    if scheme == "file":
+        return _file(folder / unquote(rest))
+    if scheme not in ("package", "model"):
         return None
-    package, rest = parts.netloc, parts.path.lstrip("/")
+    package, _, rest = rest.partition("/")
+    rest = rest.lstrip("/")
     homes = [Path(home) for home in package_dirs]
     homes += [Path(home) for home in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if home]
     homes += [Path(home) / "share" for home in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if home]
@@ -42,6 +41,11 @@ def resolve(uri: str, folder: Path, package_dirs: Sequence[str | os.PathLike[str
         if home.name == package:
             candidates.append(home / rest)
         for candidate in candidates:
-            if candidate.is_file():
-                return str(candidate)
+            if found := _file(candidate):
+                return found
     return None
+
+
+def _file(path: Path) -> str | None:
+    """The path where there is such a file; a text too long or too odd to be a path is none."""
+    return str(path) if os.path.isfile(path) else None
