@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 import pinocchio as pin
-from plain_urdf import inertial, joint_element, link_element
 
 import eurdf
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.configuration import configuration_vector
+from plain_urdf import inertial, joint_element, link_element
 
 LIMITED = '<axis xyz="{}"/><limit lower="-3" upper="3" effort="1" velocity="1"/>'
 

@@ -97,6 +97,7 @@ FAULTS = [
     ("urdf-unknown-element", URDF, '<dynamics damping="0.3" friction="0.4"/>', '<dynamcis damping="0.3"/>', "<dynamcis", "did you mean 'dynamics'?"),
     ("urdf-closure-ignored", URDF, "</robot>", '<loop name="l"/></robot>', "<loop", "'closures'"),
     ("urdf-mesh-missing", URDF, '<box size="0.2 0.04 0.04"/>', '<mesh filename="package://a/b.stl"/>', "package://a/b.stl", "ROS_PACKAGE_PATH"),
+    ("urdf-texture-missing", URDF, '<material name="grey"/>', '<material name="wood"><texture filename="wood.png"/></material>', "wood.png", "ROS_PACKAGE_PATH"),
     ("urdf-unknown-material", URDF, '<material name="grey"/>', '<material name="gray"/>', "gray", "did you mean 'grey'?"),
     # names
     ("unknown-frame", YAML, "[rod_tip, rocker_top]", "[rod_tip, rocker_tpo]", "rocker_tpo", "did you mean 'rocker_top'?"),
@@ -222,7 +223,13 @@ def test_one_fault_gives_one_diagnostic_at_its_place(
 
 def test_every_code_of_linking_and_meaning_has_a_case_here() -> None:
     shown = {row[0] for row in FAULTS}
-    elsewhere = {"ambiguous-frame", "urdf-no-link", "urdf-planar-axis", "own-key-is-joint"}  # below
+    elsewhere = {
+        "ambiguous-frame",
+        "urdf-no-link",
+        "urdf-planar-axis",
+        "own-key-is-joint",
+        "urdf-mesh-unreadable",
+    }  # below
     elsewhere |= {code for code in REGISTRY if code.startswith(("yaml-", "file-"))}  # the tests of reading
     assert set(REGISTRY) - shown - elsewhere == set()
 
@@ -265,11 +272,24 @@ def test_a_link_and_the_joint_that_carries_it_may_share_their_name(tmp_path: Pat
 
 
 def test_a_joint_whose_name_begins_like_the_users_own_keys_is_warned_of(tmp_path: Path) -> None:
-    folder = _workbench(tmp_path, YAML, "  stage: {limits: {velocity: 1.5}, armature: 0.02}", "  x-stage: {armature: 0.02}")
+    folder = _workbench(
+        tmp_path, YAML, "  stage: {limits: {velocity: 1.5}, armature: 0.02}", "  x-stage: {armature: 0.02}"
+    )
     urdf = folder / URDF
     urdf.write_text(urdf.read_text(encoding="utf-8").replace('"stage"', '"x-stage"'), encoding="utf-8")
     report = eurdf.check(folder / YAML)
     assert [(found.code, found.line) for found in report.diagnostics] == [("own-key-is-joint", 9)]
+
+
+def test_a_mesh_file_that_is_no_mesh_is_refused_where_geometry_is_loaded(tmp_path: Path) -> None:
+    folder = _workbench(tmp_path, URDF, '<box size="0.2 0.04 0.04"/>', '<mesh filename="bad.stl"/>')
+    (folder / "bad.stl").write_bytes(b"no mesh")
+    with pytest.raises(eurdf.InvalidRobot, match="geometry=False") as refusal:
+        eurdf.load(folder / YAML)
+    fault = refusal.value.diagnostics[0]
+    assert fault.code == "urdf-mesh-unreadable"
+    assert "bad.stl" in (folder / URDF).read_text(encoding="utf-8").split("\n")[fault.line - 1][fault.column - 1 :]
+    assert eurdf.load(folder / YAML, geometry=False).model.nv > 0
 
 
 def test_a_robot_without_links_is_told_so(tmp_path: Path) -> None:

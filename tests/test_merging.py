@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 import pytest
-from by_hand import rotation
-from described import at, body, codes, frame_poses, link_poses, load, mass_matrix, origin, q_of, revolute
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+
+from by_hand import rotation
+from described import at, body, codes, frame_poses, link_poses, load, mass_matrix, origin, q_of, revolute
 from plain_urdf import inertial, joint_element, link_element, robot
 
 ANGLES = st.floats(-3.0, 3.0)

@@ -9,15 +9,15 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 import pytest
-from by_hand import quaternion_rotation, rotation, transform
-from described import at, body, codes, frame_poses, free_names, link_poses, load, mass_matrix, q_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from plain_urdf import Root, inertial, joint_element, link_element, mechanism_of, pinocchios_own, robot, trees
 
 import eurdf
+from by_hand import quaternion_rotation, rotation, transform
+from described import at, body, codes, frame_poses, free_names, link_poses, load, mass_matrix, q_of
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Joint
+from plain_urdf import Root, inertial, joint_element, link_element, mechanism_of, pinocchios_own, robot, trees
 
 INF = math.inf
 ROOTS: st.SearchStrategy[Root] = st.sampled_from(["fixed", "floating"])

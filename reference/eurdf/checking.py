@@ -7,7 +7,7 @@ import os
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from eurdf.description import Description, describe, missing_meshes
+from eurdf.description import Description, describe, find_meshes
 from eurdf.diagnostics import Diagnostics
 from eurdf.diagnostics.report import Report
 
@@ -35,7 +35,7 @@ def check(path: str | os.PathLike[str], urdf: str | os.PathLike[str] | None = No
     description = describe(path, urdf)
     diagnostics = description.diagnostics
     if description.urdf is not None:
-        for found in missing_meshes(description)[1]:
+        for found in find_meshes(description)[1]:
             diagnostics.add(found)
     if not diagnostics.refused:
         for found in closure_diagnostics(description):

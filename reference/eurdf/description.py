@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from eurdf.collection import find_robot
@@ -153,37 +154,44 @@ def _urdf_not_found(path: Path, extension: Extension, document: YamlDocument, di
     )
 
 
-def missing_meshes(
+def find_meshes(
     description: Description, package_dirs: Sequence[str | os.PathLike[str]] = ()
 ) -> tuple[dict[str, str], Diagnostics]:
-    """EU-URD-028: look every mesh up.
+    """EU-URD-028, EU-URD-033: look every mesh and every texture up.
 
     Returns:
-        The path of each mesh found, by URI; and one diagnostic for all that were not.
+        The path of each file found, by URI; and one diagnostic for all meshes, one for all textures that were not.
     """
-    diagnostics = Diagnostics()
+    assert description.urdf is not None
+    shapes = [shape for link_ in description.urdf.links.values() for shape in (*link_.visuals, *link_.collisions)]
     found: dict[str, str] = {}
-    missing: dict[str, None] = {}
-    urdf = description.urdf
-    assert urdf is not None
-    for link_ in urdf.links.values():
-        for shape in (*link_.visuals, *link_.collisions):
-            uri = shape.filename
-            if shape.kind != "mesh" or uri in found or uri in missing:
-                continue
+    diagnostics = Diagnostics()
+    for tag, uris in (
+        ("mesh", dict.fromkeys(shape.filename for shape in shapes if shape.filename)),
+        ("texture", dict.fromkeys(shape.texture for shape in shapes if shape.texture)),
+    ):
+        missing = []
+        for uri in uris:
             path = resolve(uri, description.folder, package_dirs)
             if path is None:
-                missing[uri] = None
+                missing.append(uri)
             else:
                 found[uri] = path
-    if missing:
-        element = next(mesh for mesh in urdf.document.root.iter("mesh") if mesh.get("filename") in missing)
-        names = ", ".join(f"'{uri}'" for uri in list(missing)[:3]) + (", ..." if len(missing) > 3 else "")
-        count = "1 mesh file is" if len(missing) == 1 else f"{len(missing)} mesh files are"
-        diagnostics.report(
-            "urdf-mesh-missing",
-            f"{count} not found: {names}",
-            urdf.document.place(element, "filename"),
-            "put them beside the URDF, or set ROS_PACKAGE_PATH to the folder that holds their package",
-        )
+        if missing:
+            names = ", ".join(f"'{uri}'" for uri in missing[:3]) + (", ..." if len(missing) > 3 else "")
+            count = f"1 {tag} file is" if len(missing) == 1 else f"{len(missing)} {tag} files are"
+            diagnostics.report(
+                f"urdf-{tag}-missing",
+                f"{count} not found: {names}",
+                partial(place_of_file, description, tag, missing[0]),
+                "put them beside the URDF, or set ROS_PACKAGE_PATH to the folder that holds their package",
+            )
     return found, diagnostics
+
+
+def place_of_file(description: Description, tag: str, uri: str) -> Place:
+    """Where the URDF first names a mesh or a texture."""
+    assert description.urdf is not None
+    document = description.urdf.document
+    element = next(element for element in document.root.iter(tag) if element.get("filename") == uri)
+    return document.place(element, "filename")

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from functools import partial
 
 from eurdf.checking import assembled_diagnostics, closure_diagnostics
-from eurdf.description import describe, missing_meshes
+from eurdf.description import describe, find_meshes, place_of_file
+from eurdf.diagnostics import Diagnostic
 from eurdf.exceptions import InvalidRobot
 from eurdf.mechanism.mechanism import Root
+from eurdf.pinocchio.geometry import UnreadableMesh
 from eurdf.pinocchio.robot import Robot, build_robot
-from eurdf.reading.resource import resolve
 
 
 def load(
@@ -43,7 +45,8 @@ def load(
 
     Raises:
         RobotNotFound: There are no such files.
-        InvalidRobot: The robot cannot be built without guessing, or `geometry` is asked for and a mesh is missing.
+        InvalidRobot: The robot cannot be built without guessing, or `geometry` is asked for and a mesh is missing or
+            unreadable.
     """
     if root not in (None, "fixed", "floating"):
         raise ValueError(f"root is {root!r}; it must be 'fixed' or 'floating'")
@@ -51,19 +54,21 @@ def load(
     diagnostics = description.diagnostics
     if diagnostics.refused or description.mechanism is None:
         raise InvalidRobot(description.path, tuple(diagnostics))
-    meshes: dict[str, str] = {}
+    files: dict[str, str] = {}
+    no_geometry = f"the geometry of {description.path} cannot be built; load it with geometry=False to do without"
     if geometry:
-        meshes, missing = missing_meshes(description, package_dirs)
-        if len(missing):
-            reason = f"the geometry of {description.path} cannot be built; load it with geometry=False to do without"
-            raise InvalidRobot(description.path, tuple(missing), reason)
-    robot = build_robot(
-        description.mechanism,
-        geometry=geometry,
-        mimic=mimic,
-        # Meshes have been looked up; textures, which may be missing, have not.
-        resolve=lambda uri: meshes.get(uri) or resolve(uri, description.folder, package_dirs),
-    )
+        files, missing = find_meshes(description, package_dirs)
+        for found in missing:
+            diagnostics.add(found)
+        meshes_missing = tuple(found for found in missing if found.code == "urdf-mesh-missing")
+        if meshes_missing:
+            raise InvalidRobot(description.path, meshes_missing, no_geometry)
+    try:
+        robot = build_robot(description.mechanism, geometry=geometry, mimic=mimic, resolve=files.get)
+    except UnreadableMesh as mesh:
+        place = partial(place_of_file, description, "mesh", mesh.uri)
+        unreadable = Diagnostic("urdf-mesh-unreadable", f"mesh '{mesh.uri}' cannot be read: {mesh.reason}", place)
+        raise InvalidRobot(description.path, (unreadable,), no_geometry) from None
     if "assembled" in description.mechanism.configurations:
         for found in assembled_diagnostics(description, robot):
             diagnostics.add(found)

@@ -117,6 +117,8 @@ urdf-unknown-element       EU-URD-026 warning An element or attribute is nearly 
 urdf-closure-ignored       EU-URD-027 warning The URDF says a closure in a dialect that is not part of this format.
 urdf-mesh-missing          EU-URD-028 warning A mesh file is not found.
 urdf-unknown-material      EU-URD-029 warning A material is used but not defined.
+urdf-texture-missing       EU-URD-033 warning A texture file is not found.
+urdf-mesh-unreadable       EU-URD-034 error   A mesh file is no mesh.
 urdf-planar-axis           EU-URD-030 warning The axis of a planar joint is not its z, along which it is read.
 """,
     ),
