@@ -1,0 +1,127 @@
+"""Named configurations: from the coordinates of files to Pinocchio's q."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from by_hand import rotation
+from described import at, codes, link_poses, load
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from test_actuation import STAR
+
+HALF = math.sqrt(0.5)
+
+JOINTS = "joints: {d: spherical}\n"
+
+#: joints, what a configuration says of a joint, that joint, its part of q
+WRITTEN = [
+    ("{}", "a: 0.5", "a", [0.5]),
+    ("{}", "a: [0.5]", "a", [0.5]),
+    ("{}", "b: 0.5", "b", [math.cos(0.5), math.sin(0.5)]),
+    ("{}", "b: 7", "b", [math.cos(7), math.sin(7)]),
+    ("{}", "c: -1.5", "c", [-1.5]),
+    ("{}", "e: [1, 2, 0.5]", "e", [1, 2, math.cos(0.5), math.sin(0.5)]),
+    ("{}", "f: [1, 2, 3, 0.5, -0.5, 0.5, 0.5]", "f", [1, 2, 3, 0.5, -0.5, 0.5, 0.5]),
+    ("{d: spherical}", "d: [0.6, 0, 0, 0.8]", "d", [0.6, 0, 0, 0.8]),
+    ("{d: spherical}", "d: [0.6, 0, 0, -0.8]", "d", [0.6, 0, 0, -0.8]),
+    ("{d: {type: universal, axes: xy}}", "d: [0.1, 0.2]", "d", [0.1, 0.2]),
+    ("{d: cylindrical}", "d: [7, 0.2]", "d", [7, 0.2]),
+    ("{d: {type: helical, pitch: 1}}", "d: 0.2", "d", [0.2]),
+    ("{b: {type: helical, pitch: 1}}", "b: 20", "b", [20]),
+]
+
+
+@pytest.mark.parametrize(("joints", "says", "name", "numbers"), WRITTEN)
+@pytest.mark.parametrize("root", ["fixed", "floating"])
+def test_a_configuration_stands_at_the_joints_place_in_q_and_the_others_at_neutral(
+    joints: str, says: str, name: str, numbers: list[float], root: str
+) -> None:
+    loaded = load(STAR, f"joints: {joints}\nconfigurations: {{ready: {{{says}}}}}\n", root=root)
+    idx_q, nq, _, _ = at(loaded.model, name)
+    q = loaded.configurations["ready"]
+    np.testing.assert_allclose(q[idx_q : idx_q + nq], numbers, atol=1e-15)
+    others = np.delete(q, range(idx_q, idx_q + nq))
+    np.testing.assert_array_equal(others, np.delete(pin.neutral(loaded.model), range(idx_q, idx_q + nq)))
+
+
+def test_an_empty_configuration_is_the_neutral_one() -> None:
+    loaded = load(STAR, "configurations: {zero: {}}\n")
+    np.testing.assert_array_equal(loaded.configurations["zero"], pin.neutral(loaded.model))
+
+
+def test_configurations_stand_in_file_order() -> None:
+    loaded = load(STAR, "configurations: {z: {}, a: {a: 1}, m: {}}\n")
+    assert list(loaded.configurations) == ["z", "a", "m"]
+
+
+def test_the_first_angle_of_a_universal_joint_is_about_its_first_axis() -> None:
+    loaded = load(STAR, "joints: {d: {type: universal, axes: xy}}\nconfigurations: {ready: {d: [0.5, 1.5]}}\n")
+    turned = link_poses(loaded.model, loaded.configurations["ready"])["ld"][:3, :3]
+    np.testing.assert_allclose(turned, rotation((1, 0, 0), 0.5) @ rotation((0, 1, 0), 1.5), atol=1e-15)
+
+
+@settings(max_examples=50, deadline=None)
+@given(st.tuples(*[st.floats(-1, 1)] * 4), st.floats(-1.9e-6, 1.9e-6))
+def test_a_quaternion_of_nearly_unit_length_is_normalised_and_any_other_refused(
+    direction: tuple[float, ...], off: float
+) -> None:
+    norm = math.hypot(*direction)
+    assume(norm > 1e-3 and abs(abs(off) - 1e-6) > 1e-9)
+    written = [float(value / norm * (1.0 + off)) for value in direction]
+    yaml = f"{JOINTS}configurations: {{ready: {{d: {written}}}}}\n"
+    if abs(off) > 1e-6:
+        assert codes(STAR, yaml) == ["configuration-quaternion"]
+        return
+    loaded = load(STAR, yaml)
+    idx_q = at(loaded.model, "d")[0]
+    found = loaded.configurations["ready"][idx_q : idx_q + 4]
+    assert np.linalg.norm(found) == pytest.approx(1.0, abs=1e-15)
+    np.testing.assert_allclose(found, np.array(direction) / norm, atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("joints", "says", "fault"),
+    [
+        ("{}", "a: 2.000000002", "configuration-limits"),
+        ("{}", "a: -2.000000002", "configuration-limits"),
+        ("{}", "a: 2.0000000005", ""),
+        ("{}", "b: 100", ""),
+        ("{a: {limits: {upper: 1}}}", "a: 1.5", "configuration-limits"),
+        ("{a: {limits: {upper: 3}}}", "a: 2.5", ""),
+        ("{d: {type: universal, axes: xy}}", "d: [0, 2.1]", "configuration-limits"),
+        ("{d: cylindrical}", "d: [2.1, 0]", ""),
+        ("{d: cylindrical}", "d: [0, 2.1]", "configuration-limits"),
+        ("{c: cylindrical}", "c: [0, 2.1]", ""),
+        ("{c: cylindrical}", "c: [2.1, 0]", "configuration-limits"),
+        # 2 m of travel at 1 m a revolution are two turns.
+        ("{c: {type: helical, pitch: 1}}", f"c: {2.01 * math.tau}", "configuration-limits"),
+        ("{c: {type: helical, pitch: 1}}", f"c: {1.99 * math.tau}", ""),
+        ("{}", "e: [100, 100, 100]", ""),
+        ("{}", "a: []", "configuration-length"),
+        ("{}", "e: [1, 2]", "configuration-length"),
+        ("{}", "f: [0, 0, 0, 0, 0, 0, 2]", "configuration-quaternion"),
+        ("{d: spherical}", "d: 0.5", "configuration-length"),
+        ("{d: spherical}", f"d: [0, 0, {HALF}]", "configuration-length"),
+        ("{}", "g: 0", "configuration-joint"),
+        ("{a: fixed}", "a: 0", "configuration-joint"),
+        ("{}", "la: 0", "configuration-joint"),
+    ],
+)
+def test_a_coordinate_is_within_the_limits_of_the_joint_as_the_description_makes_it(
+    joints: str, says: str, fault: str
+) -> None:
+    assert codes(STAR, f"joints: {joints}\nconfigurations: {{ready: {{{says}}}}}\n") == ([fault] if fault else [])
+
+
+def test_the_root_of_the_description_holds_unless_the_caller_says_otherwise() -> None:
+    fixed, floating = "configurations: {ready: {a: 1}}\n", "root: floating\nconfigurations: {ready: {a: 1}}\n"
+    assert load(STAR, fixed).model.nv + 6 == load(STAR, floating).model.nv
+    assert load(STAR, fixed, root="floating").model == load(STAR, floating).model
+    assert load(STAR, floating, root="fixed").model == load(STAR, fixed).model
+    q = load(STAR, floating).configurations["ready"]
+    np.testing.assert_array_equal(q[:7], [0, 0, 0, 0, 0, 0, 1])
+    assert load(STAR, floating).model.names[1] == "root_joint"
