@@ -101,7 +101,7 @@ def test_a_quaternion_of_nearly_unit_length_is_normalised_and_any_other_refused(
         ("{c: {type: helical, pitch: 1}}", f"c: {2.01 * math.tau}", "configuration-limits"),
         ("{c: {type: helical, pitch: 1}}", f"c: {1.99 * math.tau}", ""),
         ("{}", "e: [100, 100, 100]", ""),
-        ("{}", "a: []", "configuration-length"),
+        ("{}", "a: []", "wrong-length"),
         ("{}", "e: [1, 2]", "configuration-length"),
         ("{}", "f: [0, 0, 0, 0, 0, 0, 2]", "configuration-quaternion"),
         ("{d: spherical}", "d: 0.5", "configuration-length"),

@@ -73,8 +73,6 @@ def test_a_pose_written_in_place_makes_the_same_closure_as_a_frame_of_that_pose(
 
 
 def test_closures_between_links_on_chains_of_fixed_joints_join_what_moves_them() -> None:
-    loaded = load(ARM, "closures: [{name: c, type: 6d, frames: [stub, brace]}]\n", strict=False) if False else None
-    assert loaded is None
     assert codes(ARM, "closures: [{name: c, type: 6d, frames: [stub, brace]}]\n") == ["closure-same-body"]
     loaded = load(ARM, "closures: [{name: c, type: 6d, frames: [stub, fore]}]\n")
     constraint = loaded.constraint_models[0]
@@ -109,8 +107,8 @@ def test_frames_and_closures_may_be_on_a_joint_that_the_description_makes() -> N
         body("hand"),
         body("cart"),
         joint_element("x", "revolute", "base", "a", wrist.format("1 0 0"), '<origin xyz="0 0 1"/>'),
-        joint_element("y", "revolute", "a", "b", wrist.format("0 1 0"), '<origin xyz="0 1 -1"/>'),
-        joint_element("z", "revolute", "b", "hand", wrist.format("0 0 1"), '<origin xyz="0 -1 2"/>'),
+        joint_element("y", "revolute", "a", "b", wrist.format("0 1 0"), '<origin xyz="0 1 0"/>'),
+        joint_element("z", "revolute", "b", "hand", wrist.format("0 0 1"), '<origin xyz="0 -1 1"/>'),
         joint_element("slide", "prismatic", "base", "cart", wrist.format("1 0 0")),
     )
     entry = "joints: {ball: {type: spherical, merges: [x, y, z]}}\n"
@@ -125,6 +123,15 @@ def test_frames_and_closures_may_be_on_a_joint_that_the_description_makes() -> N
         constraint = loaded.constraint_models[0]
         oMa = loaded.model.jointPlacements[constraint.joint1_id] * constraint.joint1_placement
         np.testing.assert_allclose(oMa.translation, (0, 0, 2), atol=1e-14)
+
+
+def test_a_joint_that_could_not_be_made_is_told_of_once_however_often_it_is_named() -> None:
+    yaml = (
+        "joints: {ball: {type: spherical, merges: [shoulder, elbow, slide]}}\n"
+        "frames: [{name: mark, joint: ball}]\nactuators: [ball]\nconfigurations: {ready: {ball: [0, 0, 0, 1]}}\n"
+        "closures: [{name: c, type: 3d, frames: [ball, cart]}, {name: d, type: 3d, frames: [mark, cart]}]\n"
+    )
+    assert codes(ARM, yaml) == ["merge-not-chain"]
 
 
 @settings(max_examples=40, deadline=None)

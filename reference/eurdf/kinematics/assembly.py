@@ -34,6 +34,10 @@ _MOST_VELOCITIES_WITH_DATA = 60
 
 _MOST_STEPS = 60
 
+# Multiplications that one assembly may take in its steps, some ten seconds. Loops that share joints by the hundred are
+# given up earlier than after all restarts.
+_MOST_WORK = 2e10
+
 # How far from the first place further descents start (rad, or characteristic lengths); the last one is repeated.
 _SPREADS = (0.1, 0.3, 1.0, 2.0, 3.0)
 
@@ -72,7 +76,7 @@ def assemble(
     """Find a closed configuration near the one given.
 
     Only joints of the loops move. The same arguments give the same answer. The time is bounded also where the loops
-    cannot be closed: by ``restarts`` + 1 descents of at most 60 steps.
+    cannot be closed: by ``restarts`` + 1 descents of at most 60 steps, and fewer where hundreds of loops share joints.
 
     Args:
         robot: The robot.
@@ -136,6 +140,7 @@ class Assembler:
         self._row_scale = row_scale(robot, length)
         self._velocity_scale = velocity_scale(robot, length)
         self._tolerance = tolerance
+        self._work = 0.0
         self._limits = position_limits(model) if limits else None
 
     def assemble(self, q: Vector, restarts: int = 20) -> Assembly:
@@ -145,11 +150,12 @@ class Assembler:
 
     def _assemble(self, q: Vector, restarts: int) -> Assembly:
         before, random = self.iterations, np.random.default_rng(0)
+        self._work = 0.0
         q = self._within_limits(q, self.groups)
         best, errors = np.array(q), np.full(len(self.groups), math.inf)
         for attempt in range(restarts + 1):
             still_open = [index for index, error in enumerate(errors) if not error <= CLOSED]
-            if not still_open:
+            if not still_open or (attempt > 0 and self._work > _MOST_WORK):
                 break
             groups, place = [self.groups[index] for index in still_open], q
             if attempt > 0:
@@ -196,7 +202,8 @@ class Assembler:
         descents = [Descent(group, *self._part(r, K, group)) for group in groups]
         for _ in range(_MOST_STEPS):
             going = [descent for descent in descents if descent.error > self._tolerance and not descent.stuck]
-            if not going:
+            self._work += sum(_work_of_step(descent.group) for descent in going)
+            if not going or self._work > _MOST_WORK:
                 break
             steps = [descent.step(*self._room(q, descent.group)) for descent in going]
             trial = self.moved(q, [descent.group for descent in going], steps)
@@ -224,6 +231,12 @@ class Assembler:
         down, up = self._limits.room(q, group.velocities)
         unit = self._velocity_scale[group.velocities]
         return down / unit, up / unit
+
+
+def _work_of_step(group: LoopGroup) -> float:
+    """Multiplications that the smaller one of A Aᵀ and Aᵀ A takes."""
+    m, n = len(group.rows), len(group.velocities)
+    return float(m) * n * min(m, n)
 
 
 def _held_velocities(model: Any, names: Iterable[str]) -> list[int]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from functools import partial
 from itertools import chain
 
@@ -18,10 +18,17 @@ class FrameNames:
     """Looks frames up: links, joints (their frame on the child's side), and the frames that the description adds."""
 
     def __init__(
-        self, urdf: Urdf, joints: Mapping[str, Joint], document: YamlDocument, diagnostics: Diagnostics
+        self,
+        urdf: Urdf,
+        joints: Mapping[str, Joint],
+        faulty: Collection[str],
+        document: YamlDocument,
+        diagnostics: Diagnostics,
     ) -> None:
         self._urdf = urdf
         self._joints = joints
+        # Joints that an entry at fault speaks of: where there are none of that name, it has been said why.
+        self._faulty = faulty
         # None for a frame that is at fault itself: what uses it is not told so again.
         self._frames: dict[str, Anchor | None] = {}
         self._document = document
@@ -89,6 +96,8 @@ class FrameNames:
             return Anchor(name, frame=name)
         if child is not None:
             return Anchor(child, frame=name)
+        if name in self._faulty:
+            return None
         candidates = chain(self._frames, self._urdf.links, self._urdf.joints, self._joints)
         self._diagnostics.report(
             "unknown-frame",
@@ -108,6 +117,8 @@ class FrameNames:
             child = self._joint_child(reference.joint)
             if child is not None:
                 return child
+            if reference.joint in self._faulty:
+                return None
             kind, name, candidates = "joint", reference.joint, chain(self._urdf.joints, self._joints)
         self._diagnostics.report(
             "unknown-frame",

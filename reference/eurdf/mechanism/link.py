@@ -16,6 +16,12 @@ from eurdf.mechanism.replacement import Joints, replace_joints
 from eurdf.mechanism.spanning_tree import bodies_of, depth_first, joint_of, rigid_roots
 from eurdf.reading.yaml_reader import YamlDocument
 
+#: Joints that a robot may have. The memory of a model grows with the square of the depth of its tree.
+JOINT_LIMIT = 10_000
+
+#: Closures that a robot may have.
+CLOSURE_LIMIT = 1_000
+
 #: The joint that a floating root hangs from, in every model.
 ROOT_JOINT = "root_joint"
 
@@ -47,7 +53,21 @@ def link(
         _reserve_names(extension, document, diagnostics, mechanism.root)
     if mechanism.root == "floating":
         _reserve_root_joint(urdf, diagnostics)
+    _refuse_too_large(mechanism, urdf, document, diagnostics)
     return None if diagnostics.error_count > before else mechanism
+
+
+def _refuse_too_large(
+    mechanism: Mechanism, urdf: Urdf, document: YamlDocument | None, diagnostics: Diagnostics
+) -> None:
+    """EU-FIL-002: a robot is not so large that its model could not be held, or its loops not be closed."""
+    joints, closures = len(mechanism.joints), len(mechanism.closures)
+    if joints > JOINT_LIMIT:
+        message = f"the robot has {joints:,} joints; it may have {JOINT_LIMIT:,}"
+        diagnostics.report("file-too-large", message, urdf.document.place(urdf.document.root))
+    if closures > CLOSURE_LIMIT and document is not None:
+        message = f"the robot has {closures:,} closures; it may have {CLOSURE_LIMIT:,}"
+        diagnostics.report("file-too-large", message, document.place())
 
 
 def _bare(urdf: Urdf, root: Root) -> Mechanism:
@@ -70,7 +90,7 @@ def _described(
         merges_revolutes=extension.merges_revolutes,
     )
     _own_keys(extension, urdf, document, diagnostics)
-    names = FrameNames(urdf, joints.by_name, document, diagnostics)
+    names = FrameNames(urdf, joints.by_name, faulty, document, diagnostics)
     frames = names.add(extension.frames)
     rigid = rigid_roots(urdf.root, depth_first(urdf.root, joints.by_name.values()))
     closures = link_closures(extension.closures, names, rigid, document, diagnostics)

@@ -77,7 +77,7 @@ def replace_joints(
         merges_revolutes: Whether version 1's rule holds.
 
     Returns:
-        Names of the joints that an entry at fault speaks of.
+        Names of the joints that an entry at fault speaks of, or would have made.
     """
     faulty: set[str] = set()
     mimicking = {joint.name: joint.mimic.joint for joint in urdf.joints.values() if joint.mimic}
@@ -105,7 +105,7 @@ def replace_joints(
         before = len(diagnostics)
         _Replacement(entry, joints, urdf, mimicking, mimicked, closure_links, document, diagnostics).apply()
         if len(diagnostics) > before:
-            faulty.update({entry.name, *entry.merges})
+            faulty.update({entry.name, *entry.merges, *(f"{entry.name}_{letter}" for letter in entry.split)})
     if merges_revolutes:
         excluded = {*seen, *mimicking, *mimicked}
         for chain in find_chains(urdf, joints.by_name, excluded, closure_links):
