@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from described import at, body, codes, load
 from plain_urdf import joint_element, link_element, robot
 
 CONTENT = '<axis xyz="0 0 1"/><limit lower="-2" upper="2" effort="1" velocity="1"/>'
-KINDS = {"a": "revolute", "b": "continuous", "c": "prismatic", "d": "revolute", "e": "planar", "f": "floating", "g": "fixed"}
+KINDS = {"a": "revolute", "b": "continuous", "c": "prismatic", "d": "revolute", "e": "planar", "f": "floating"}
+KINDS["g"] = "fixed"
 
 #: One link on the base for each kind of joint.
 STAR = robot(

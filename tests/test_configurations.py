@@ -7,10 +7,11 @@ import math
 import numpy as np
 import pinocchio as pin
 import pytest
-from by_hand import rotation
-from described import at, codes, link_poses, load
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+
+from by_hand import rotation
+from described import at, codes, link_poses, load
 from test_actuation import STAR
 
 HALF = math.sqrt(0.5)

@@ -286,7 +286,7 @@ def test_a_mesh_file_that_is_no_mesh_is_refused_where_geometry_is_loaded(tmp_pat
     (folder / "bad.stl").write_bytes(b"no mesh")
     with pytest.raises(eurdf.InvalidRobot, match="geometry=False") as refusal:
         eurdf.load(folder / YAML)
-    fault = refusal.value.diagnostics[0]
+    (fault,) = refusal.value.diagnostics
     assert fault.code == "urdf-mesh-unreadable"
     assert "bad.stl" in (folder / URDF).read_text(encoding="utf-8").split("\n")[fault.line - 1][fault.column - 1 :]
     assert eurdf.load(folder / YAML, geometry=False).model.nv > 0

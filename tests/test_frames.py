@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 import pytest
-from by_hand import rotation, transform
-from described import body, codes, frame_poses, free_names, load, q_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+from by_hand import rotation, transform
+from described import body, codes, frame_poses, free_names, load, q_of
 from plain_urdf import joint_element, link_element, mechanism_of, robot, trees
 
 SHOULDER, BRACE, ELBOW = '<origin xyz="0 0 1"/>', '<origin xyz="0 0.2 0" rpy="0.3 0 0"/>', '<origin xyz="0.5 0 0"/>'
@@ -59,7 +60,9 @@ def test_a_frame_of_the_description_is_found_by_name_at_its_pose(place: str, pos
 
 @pytest.mark.parametrize(("place", "pose"), PLACES)
 @pytest.mark.parametrize("kind", ["3d", "6d"])
-def test_a_pose_written_in_place_makes_the_same_closure_as_a_frame_of_that_pose(place: str, pose: Any, kind: str) -> None:
+def test_a_pose_written_in_place_makes_the_same_closure_as_a_frame_of_that_pose(
+    place: str, pose: Any, kind: str
+) -> None:
     named = load(
         ARM,
         f"frames: [{{name: mark, {place}}}]\nclosures: [{{name: c, type: {kind}, frames: [mark, cart]}}]\n",
@@ -91,7 +94,9 @@ def test_locking_a_joint_makes_what_it_joined_one_rigid_body() -> None:
     np.testing.assert_allclose(constraint.joint2_placement.translation, (0.5, 0.4, 0), atol=1e-15)
 
 
-@pytest.mark.parametrize("entry", ["spherical", "{type: universal, axes: xy}", "cylindrical", "{type: helical, pitch: 1}"])
+@pytest.mark.parametrize(
+    "entry", ["spherical", "{type: universal, axes: xy}", "cylindrical", "{type: helical, pitch: 1}"]
+)
 def test_a_closure_on_a_replaced_joint_is_on_the_link_it_carries(entry: str) -> None:
     loaded = load(ARM, f"joints: {{elbow: {entry}}}\nclosures: [{{name: c, type: 3d, frames: [elbow, cart]}}]\n")
     by_link = load(ARM, f"joints: {{elbow: {entry}}}\nclosures: [{{name: c, type: 3d, frames: [fore, cart]}}]\n")

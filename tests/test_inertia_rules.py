@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from described import codes, load, mass_matrix, q_of
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from plain_urdf import joint_element, link_element, robot
+
+from described import codes, load, mass_matrix, q_of
+from plain_urdf import inertial, joint_element, link_element, robot, vector
 
 LIMIT = '<limit lower="-2" upper="2" effort="1" velocity="1"/>'
 
@@ -17,10 +18,8 @@ LIMIT = '<limit lower="-2" upper="2" effort="1" velocity="1"/>'
 def _inertial(mass: float, moments: Any, xyz: Any = (0, 0, 0), rpy: Any = (0, 0, 0)) -> str:
     m = np.asarray(moments, dtype=float)
     m = np.diag(m) if m.ndim == 1 else m
-    text = {name: repr(float(m["xyz".index(name[1]), "xyz".index(name[2])])) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")}
-    place = " ".join(f'{key}="{" ".join(repr(float(value)) for value in values)}"' for key, values in (("xyz", xyz), ("rpy", rpy)))
-    inertia = " ".join(f'{name}="{value}"' for name, value in text.items())
-    return f'<inertial><origin {place}/><mass value="{float(mass)!r}"/><inertia {inertia}/></inertial>'
+    origin = f'<origin xyz="{vector(xyz)}" rpy="{vector(rpy)}"/>'
+    return inertial(float(mass), origin, tuple(float(m[i, j]) for i, j in zip(*np.triu_indices(3), strict=True)))
 
 
 def _one(mass: float, moments: Any) -> list[str]:
@@ -115,6 +114,8 @@ def test_errors_of_inertia_do_not_keep_a_robot_from_being_loaded() -> None:
 POINT, NONE = (0, 0, 0), ""
 ROD_X = (0, 1, 1)  # a thin rod along x
 
+CYLINDER, SCREW = "cylindrical", "{type: helical, pitch: 1}"
+
 #: title: what the last joint is (a kind of the URDF, an entry), what it moves, whether that resists all its motions
 LEAVES: dict[str, tuple[str, str, str, bool]] = {
     "a revolute that moves nothing": ("revolute", "", NONE, False),
@@ -143,12 +144,12 @@ LEAVES: dict[str, tuple[str, str, str, bool]] = {
         _inertial(1, POINT, (0, 1, 0)),
         False,
     ),
-    "a cylindrical joint that moves a point off its axis": ("revolute", "cylindrical", _inertial(1, POINT, (1, 0, 0)), True),
-    "a cylindrical joint that moves a point on its axis": ("revolute", "cylindrical", _inertial(1, POINT, (0, 0, 1)), False),
-    "a cylindrical joint that moves a flywheel without mass": ("revolute", "cylindrical", _inertial(0, (1, 1, 1)), False),
-    "a screw that moves a point on its axis": ("revolute", "{type: helical, pitch: 1}", _inertial(1, POINT), True),
-    "a screw that moves a flywheel without mass": ("revolute", "{type: helical, pitch: 1}", _inertial(0, (0, 0, 1)), True),
-    "a screw that moves a moment about another axis": ("revolute", "{type: helical, pitch: 1}", _inertial(0, (1, 0, 0)), False),
+    "a cylindrical joint that moves a point off its axis": ("revolute", CYLINDER, _inertial(1, POINT, (1, 0, 0)), True),
+    "a cylindrical joint that moves a point on its axis": ("revolute", CYLINDER, _inertial(1, POINT, (0, 0, 1)), False),
+    "a cylindrical joint that moves a flywheel without mass": ("revolute", CYLINDER, _inertial(0, (1, 1, 1)), False),
+    "a screw that moves a point on its axis": ("revolute", SCREW, _inertial(1, POINT), True),
+    "a screw that moves a flywheel without mass": ("revolute", SCREW, _inertial(0, (0, 0, 1)), True),
+    "a screw that moves a moment about another axis": ("revolute", SCREW, _inertial(0, (1, 0, 0)), False),
     "a planar joint that moves a point": ("planar", "", _inertial(1, POINT, (1, 2, 3)), False),
     "a planar joint that moves a rod in its plane": ("planar", "", _inertial(1, ROD_X, (1, 2, 3)), True),
     "a planar joint that moves a flywheel without mass": ("planar", "", _inertial(0, (1, 1, 1)), False),
@@ -159,13 +160,13 @@ LEAVES: dict[str, tuple[str, str, str, bool]] = {
 }
 
 
-def _leaf(kind: str, inertial: str, more: str = "") -> str:
-    """A body of its own, so that only the last joint can be at fault; the joint has z for its axis."""
+def _leaf(kind: str, inside: str, more: str = "") -> str:
+    """base -j- tip, where j turns or slides about z."""
     content = "" if kind == "floating" else f'<axis xyz="0 0 1"/>{LIMIT}'
     origin = '<origin xyz="1 2 3" rpy="0.1 0.2 0.3"/>'
     return robot(
         link_element("base", _inertial(1, (1, 1, 1))),
-        link_element("tip", inertial),
+        link_element("tip", inside),
         joint_element("j", kind, "base", "tip", content, origin),
         more,
     )
@@ -195,7 +196,8 @@ def test_inertia_on_links_fixed_to_a_leaf_counts_where_it_is() -> None:
 
 def test_a_massless_link_within_the_tree_is_a_way_to_write_two_axes() -> None:
     hand = link_element("hand", _inertial(1, (1, 1, 1)))
-    assert codes(_leaf("revolute", NONE, hand + joint_element("k", "revolute", "tip", "hand", f'<axis xyz="1 0 0"/>{LIMIT}'))) == []
+    joint = joint_element("k", "revolute", "tip", "hand", f'<axis xyz="1 0 0"/>{LIMIT}')
+    assert codes(_leaf("revolute", NONE, hand + joint)) == []
 
 
 @pytest.mark.parametrize(

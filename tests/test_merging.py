@@ -77,7 +77,8 @@ def wrists(draw: st.DrawFn) -> Wrist:
         units = [axis / np.linalg.norm(axis) for axis in axes]
         assume(all(np.linalg.norm(np.cross(units[i], units[j])) > 0.1 for i, j in ((0, 1), (0, 2), (1, 2))))
     point = draw(vectors)
-    along = draw(st.sampled_from([(0.0, 0.0, 0.0), (0.0, 0.0, 0.4), (0.2, -0.3, 0.0)]) | st.tuples(numbers, numbers, numbers))
+    usual = st.sampled_from([(0.0, 0.0, 0.0), (0.0, 0.0, 0.4), (0.2, -0.3, 0.0)])
+    along = draw(usual | st.tuples(numbers, numbers, numbers))
     along = [distance if abs(distance) > 1e-2 else 0.0 for distance in along]
     order = draw(st.permutations(range(3)))
     return Wrist(
@@ -118,7 +119,8 @@ def test_a_merged_ball_puts_everything_beyond_it_where_the_three_revolutes_did(
 @given(wrists(), st.tuples(ANGLES, ANGLES, ANGLES), ANGLES)
 def test_a_merged_ball_carries_the_same_inertia(wrist: Wrist, angles: Any, grip: float) -> None:
     """M_plain = Tᵀ M T, where T takes the three joints' velocities to the angular velocity; all mass is kept."""
-    urdf = wrist.urdf.replace('"9e-06"', '"0"')  # what weighs in between stays behind in one model, and moves in the other
+    # What weighs in between stays behind in one model, and moves in the other.
+    urdf = wrist.urdf.replace('"9e-06"', '"0"')
     plain, merged = load(urdf), load(urdf, MERGE.format("ball"))
     q_plain = q_of(plain, {**{k: (v,) for k, v in zip("xyz", angles, strict=True)}, "grip": (grip,)})
     q = q_of(merged, {"ball": wrist.quaternion(angles), "grip": (grip,)})
@@ -140,7 +142,9 @@ def _joint(name: str, parent: str, child: str, axis: str, number: int, kind: str
     return joint_element(name, kind, parent, child, content, origin)
 
 
-def _chain(*axes: str, between: str = "", kinds: tuple[str, ...] = (), origins: tuple[str, ...] = (), more: str = "") -> str:
+def _chain(
+    *axes: str, between: str = "", kinds: tuple[str, ...] = (), origins: tuple[str, ...] = (), more: str = ""
+) -> str:
     """base -(j1)- l1 -(j2)- l2 - … with one joint for each axis; the last link has mass, those in between are given."""
     n = len(axes)
     links = ["base", *(f"l{k}" for k in range(1, n + 1))]
@@ -178,7 +182,7 @@ X, Y, Z = "1 0 0", "0 1 0", "0 0 1"
 def test_each_axis_of_a_ball_keeps_what_belonged_to_the_nearest_revolute(axes: Any, order: tuple[int, ...]) -> None:
     model = load(_chain(*axes), "joints: {ball: {type: spherical, merges: [j1, j2, j3]}}\n").model
     _, _, v, _ = at(model, "ball")
-    assert model.upperEffortLimit[v : v + 3].tolist() == [number for number in order]
+    assert model.upperEffortLimit[v : v + 3].tolist() == list(order)
     assert model.upperVelocityLimit[v : v + 3].tolist() == [10 + number for number in order]
     assert model.damping[v : v + 3].tolist() == [20 + number for number in order]
     assert model.upperDryFrictionLimit[v : v + 3].tolist() == [30 + number for number in order]
@@ -193,8 +197,9 @@ def test_the_axes_are_told_in_the_last_joints_frame_at_zero() -> None:
 
 
 def test_what_the_description_states_of_a_ball_stands_in_place_of_what_it_kept() -> None:
-    entry = "{type: spherical, merges: [j1, j2, j3], limits: {effort: 9, velocity: [1, 2, 3]}, damping: 0, armature: 0.1}"
-    model = load(_chain(X, Y, Z), f"joints: {{ball: {entry}}}\n").model
+    stated = "limits: {effort: 9, velocity: [1, 2, 3]}, damping: 0, armature: 0.1"
+    yaml = f"joints: {{ball: {{type: spherical, merges: [j1, j2, j3], {stated}}}}}\n"
+    model = load(_chain(X, Y, Z), yaml).model
     _, _, v, _ = at(model, "ball")
     assert model.upperEffortLimit[v : v + 3].tolist() == [9, 9, 9]
     assert model.upperVelocityLimit[v : v + 3].tolist() == [1, 2, 3]
@@ -262,21 +267,33 @@ def _moved(distance: float) -> tuple[str, ...]:
     return ("", "", f'<origin xyz="{distance} 0 0"/>')
 
 
-_MIMIC = '<mimic joint="{}"/><limit effort="1" velocity="1" lower="-1" upper="1"/>'
+_LIMIT = '<limit effort="1" velocity="1" lower="-1" upper="1"/>'
+_MIMIC = '<mimic joint="{}"/>' + _LIMIT
 _SIDE = body("side")
 
 #: title: URDF, description of version 1
 NOT_MERGED = {
     "one of them is continuous": (_chain(X, Y, Z, kinds=("revolute", "continuous", "revolute")), ""),
     "one of them mimics": (
-        _chain(X, Y, Z).replace(_joint("j2", "l1", "l2", Y, 2), joint_element("j2", "revolute", "l1", "l2", f'<axis xyz="{Y}"/>' + _MIMIC.format("j1"))),
+        _chain(X, Y, Z).replace(
+            _joint("j2", "l1", "l2", Y, 2),
+            joint_element("j2", "revolute", "l1", "l2", f'<axis xyz="{Y}"/>' + _MIMIC.format("j1")),
+        ),
+        "",
+    ),
+    "one of them mimics a joint beside them": (
+        _chain(X, Y, Z, more=_SIDE + joint_element("s", "revolute", "base", "side", _LIMIT)).replace(
+            _joint("j2", "l1", "l2", Y, 2),
+            joint_element("j2", "revolute", "l1", "l2", f'<axis xyz="{Y}"/>' + _MIMIC.format("s")),
+        ),
         "",
     ),
     "one of them is mimicked": (
         _chain(X, Y, Z, more=_SIDE + joint_element("s", "revolute", "l3", "side", _MIMIC.format("j1"))),
         "",
     ),
-    "one of them is listed": (_chain(X, Y, Z), "joint_name: [j2]\njoint_type: [FIXED]\n"),
+    "one of them is locked": (_chain(X, Y, Z), "joint_name: [j2]\njoint_type: [FIXED]\n"),
+    "one of them is split": (_chain(X, Y, Z), "joint_name: [j2]\njoint_type: [UJOINT_XY]\n"),
     "a link between carries a frame of a closure": (
         _chain(X, Y, Z, more=_SIDE + joint_element("s", "continuous", "base", "side", "")),
         "closed_loop: [[l2, side]]\n",
@@ -286,7 +303,10 @@ NOT_MERGED = {
         "closed_loop: [[side, j1]]\n",
     ),
     "a link between weighs 1e-5 kg": (_chain(X, Y, Z, between=inertial(1e-5)), ""),
-    "a link between carries another joint": (_chain(X, Y, Z, more=_SIDE + joint_element("s", "fixed", "l1", "side", "")), ""),
+    "a link between carries another joint": (
+        _chain(X, Y, Z, more=_SIDE + joint_element("s", "fixed", "l1", "side", "")),
+        "",
+    ),
     "two axes are parallel": (_chain(X, Y, "-2 0 0"), ""),
     "the axes pass one another by more than 0.1 mm": (_chain(X, Y, Z, origins=_moved(4e-4)), ""),
 }
@@ -310,7 +330,7 @@ MERGED = {
             X,
             Y,
             Z,
-            more=body("s1") + body("s2") + "".join(joint_element(f"k{k}", "continuous", "l3", f"s{k}", "") for k in (1, 2)),
+            more="".join(body(f"s{k}") + joint_element(f"k{k}", "continuous", "l3", f"s{k}", "") for k in (1, 2)),
         ),
         "closed_loop: [[base, l3]]\ntype: [3d]\n",
     ),
@@ -346,12 +366,14 @@ _BALL = "ball: {type: spherical, merges: [j1, j2, j3]}"
 @pytest.mark.parametrize("first", [True, False])
 def test_a_joint_that_is_merged_is_not_changed_as_well_in_whatever_order(joint: str, entry: str, first: bool) -> None:
     entries = [f"  {joint}: {entry}\n", f"  {_BALL}\n"]
-    assert codes(_chain(X, Y, Z), "joints:\n" + "".join(entries if first else reversed(entries))) == ["duplicate-replacement"]
+    yaml = "joints:\n" + "".join(entries if first else reversed(entries))
+    assert codes(_chain(X, Y, Z), yaml) == ["duplicate-replacement"]
 
 
 @pytest.mark.parametrize("last", ["j3", "ball"])
 def test_a_joint_is_merged_once(last: str) -> None:
-    yaml = f"joints:\n  {last}: {{type: spherical, merges: [j1, j2, j3]}}\n  other: {{type: spherical, merges: [j3, j4, j5]}}\n"
+    entries = {last: "[j1, j2, j3]", "other": "[j3, j4, j5]"}
+    yaml = "joints:\n" + "".join(f"  {name}: {{type: spherical, merges: {of}}}\n" for name, of in entries.items())
     assert codes(_chain(X, Y, Z, X, Y), yaml) == ["duplicate-replacement"]
 
 

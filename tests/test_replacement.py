@@ -46,7 +46,8 @@ def _arm(kind: str) -> str:
             "prismatic",
             "arm",
             "hand",
-            '<axis xyz="0 1 0"/><limit lower="-1" upper="2" effort="3" velocity="4"/><dynamics damping="8" friction="9"/>',
+            '<axis xyz="0 1 0"/><limit lower="-1" upper="2" effort="3" velocity="4"/>'
+            '<dynamics damping="8" friction="9"/>',
         ),
     )
 
@@ -62,8 +63,9 @@ def _yaml(entry: str) -> str:
 
 
 QUATERNION = np.array((0.1, -0.5, 0.7, 0.4)) / np.linalg.norm((0.1, -0.5, 0.7, 0.4))
-HERE = np.zeros(3)
-A, SKEW = np.array(AXIS), np.array((0.0, 0.6, 0.8))
+HERE: Any = np.zeros(3)
+A: Any = np.array(AXIS)
+SKEW = (0.0, 0.6, 0.8)
 
 # kind in the URDF, entry, coordinates of j, its motion at them
 MOTIONS = [
@@ -130,7 +132,7 @@ KEPT = [
     # overrides
     ("revolute", "{limits: {upper: 0.1, effort: 2}, damping: 4}", [(-0.4, 0.1)], [(5, 2, 4, 0.2)]),
     ("revolute", "{limits: {lower: -9, velocity: 0}, friction: 4}", [(-9, 0.6)], [(0, 7, 0.3, 4)]),
-    ("revolute", "{type: spherical, limits: {effort: [1, 2, 3]}}", [], [(5, 1, 0.3, 0.2), (5, 2, 0.3, 0.2), (5, 3, 0.3, 0.2)]),
+    ("revolute", "{type: spherical, limits: {effort: [1, 2, 3]}}", [], [(5, n, 0.3, 0.2) for n in (1, 2, 3)]),
     (
         "revolute",
         "{type: universal, axes: xy, limits: {lower: [-1, -2], upper: 3, velocity: [8, 9]}, friction: [0, 6]}",
@@ -188,8 +190,8 @@ def test_a_changed_joint_keeps_what_belonged_to_it_at_its_own_indices(
 def test_armature_stands_at_the_velocities_and_on_the_diagonal_of_the_mass_matrix(
     entry: str, armature: list[float]
 ) -> None:
-    robots = [load(_arm("revolute"), _yaml(text)) for text in (entry, re.sub(r"armature: [^\]}]*\]?", "damping: 1", entry))]
-    with_armature, without = (loaded.model for loaded in robots)
+    with_armature = load(_arm("revolute"), _yaml(entry)).model
+    without = load(_arm("revolute"), _yaml(re.sub(r"armature: [^\]}]*\]?", "damping: 1", entry))).model
     _, _, idx_v, nv = at(with_armature, "j")
     assert with_armature.armature[idx_v : idx_v + nv].tolist() == armature
     q = pin.randomConfiguration(with_armature, -np.ones(with_armature.nq), np.ones(with_armature.nq))
@@ -216,7 +218,8 @@ def test_a_locked_joint_takes_no_properties() -> None:
 
 
 def test_a_mimicked_joint_keeps_its_type_but_may_have_other_properties() -> None:
-    follow = joint_element("f", "revolute", "base", "tail", '<mimic joint="j" multiplier="2"/><limit effort="1" velocity="1" lower="-1" upper="1"/>')
+    law = '<mimic joint="j" multiplier="2"/><limit effort="1" velocity="1" lower="-1" upper="1"/>'
+    follow = joint_element("f", "revolute", "base", "tail", law)
     urdf = _arm("revolute").replace("</robot>", body("tail") + follow + "</robot>")
     assert codes(urdf, _yaml("{limits: {effort: 2}}")) == []
     model = load(urdf, _yaml("{limits: {effort: 2}}")).model
@@ -275,7 +278,7 @@ def test_at_neutral_everything_stands_where_the_plain_urdf_puts_it(data: st.Data
     assert before.keys() == after.keys()
     for name, pose in before.items():
         np.testing.assert_allclose(after[name], pose, atol=1e-13)
-    fixed = any(replacements[name] == "fixed" for name in replacements)  # to a fixed root, perhaps, which weighs nothing
+    fixed = "fixed" in replacements.values()  # to a fixed root, perhaps, whose mass is not in the model
     if root == "floating" or not fixed:
         assert pin.computeTotalMass(loaded.model) == pytest.approx(pin.computeTotalMass(model), rel=1e-14)
 
@@ -309,7 +312,7 @@ def test_a_replaced_joint_can_still_do_what_the_urdfs_did_with_the_same_inertia(
     coordinates: dict[str, tuple[float, ...]] = {}
     wanted: dict[str, tuple[float, ...]] = {}
     T = np.zeros((loaded.model.nv, plain.model.nv))
-    kept = []
+    kept: list[int] = []
     for joint in plain.mechanism.joints:
         if joint.type is JointType.FIXED:
             continue

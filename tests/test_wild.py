@@ -71,7 +71,7 @@ def test_the_known_faults_are_found_and_no_others(name: str) -> None:
 def test_geometry_that_needs_a_missing_mesh_is_refused_with_the_way_out(name: str) -> None:
     with pytest.raises(eurdf.InvalidRobot, match="geometry=False") as refusal:
         eurdf.load(WILD / name)
-    assert [found.code for found in refusal.value.diagnostics] == ["urdf-mesh-missing"]
+    assert "urdf-mesh-missing" in {found.code for found in refusal.value.diagnostics}
 
 
 def test_a_loop_that_cannot_close_is_kept_in_the_diagnostics_and_refused_when_strict() -> None:

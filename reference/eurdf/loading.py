@@ -8,7 +8,6 @@ from functools import partial
 
 from eurdf.checking import assembled_diagnostics, closure_diagnostics
 from eurdf.description import describe, find_meshes, place_of_file
-from eurdf.diagnostics import Diagnostic
 from eurdf.exceptions import InvalidRobot
 from eurdf.mechanism.mechanism import Root
 from eurdf.pinocchio.geometry import UnreadableMesh
@@ -60,15 +59,14 @@ def load(
         files, missing = find_meshes(description, package_dirs)
         for found in missing:
             diagnostics.add(found)
-        meshes_missing = tuple(found for found in missing if found.code == "urdf-mesh-missing")
-        if meshes_missing:
-            raise InvalidRobot(description.path, meshes_missing, no_geometry)
+        if any(found.code == "urdf-mesh-missing" for found in missing):
+            raise InvalidRobot(description.path, tuple(diagnostics), no_geometry)
     try:
         robot = build_robot(description.mechanism, geometry=geometry, mimic=mimic, resolve=files.get)
     except UnreadableMesh as mesh:
         place = partial(place_of_file, description, "mesh", mesh.uri)
-        unreadable = Diagnostic("urdf-mesh-unreadable", f"mesh '{mesh.uri}' cannot be read: {mesh.reason}", place)
-        raise InvalidRobot(description.path, (unreadable,), no_geometry) from None
+        diagnostics.report("urdf-mesh-unreadable", f"mesh '{mesh.uri}' cannot be read: {mesh.reason}", place)
+        raise InvalidRobot(description.path, tuple(diagnostics), no_geometry) from None
     if "assembled" in description.mechanism.configurations:
         for found in assembled_diagnostics(description, robot):
             diagnostics.add(found)

@@ -3,4 +3,15 @@
 from eurdf.diagnostics.diagnostic import Diagnostic, Diagnostics, Fault, Hint, Place, did_you_mean
 from eurdf.diagnostics.registry import REGISTRY, Phase, Rule, Severity
 
-__all__ = ["REGISTRY", "Diagnostic", "Diagnostics", "Fault", "Hint", "Phase", "Place", "Rule", "Severity", "did_you_mean"]
+__all__ = [
+    "REGISTRY",
+    "Diagnostic",
+    "Diagnostics",
+    "Fault",
+    "Hint",
+    "Phase",
+    "Place",
+    "Rule",
+    "Severity",
+    "did_you_mean",
+]

@@ -23,7 +23,7 @@ NAME_KEPT = 60
 #: Pairs of letters that the search for the name that is meant may compare.
 COMPARED = 40_000
 
-_LONG_NAME = re.compile(r"'([^']{%d})[^']*([^']{%d})'" % (NAME_KEPT, NAME_KEPT // 2))
+_LONG_NAME = re.compile(rf"'([^']{{{NAME_KEPT}}})[^']*([^']{{{NAME_KEPT // 2}}})'")
 
 #: A hint, or how to find one where that takes time.
 Hint = str | None | Callable[[], str | None]

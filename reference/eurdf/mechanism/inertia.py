@@ -60,8 +60,8 @@ def check_inertias(urdf: Urdf, diagnostics: Diagnostics) -> set[str]:
             suspects.append(link)
     for link in suspects:
         assert link.inertia is not None
-        moments = np.linalg.eigvalsh(_matrix(link.inertia.moments))
-        largest = float(np.abs(moments).max())
+        moments: list[float] = np.linalg.eigvalsh(_matrix(link.inertia.moments)).tolist()  # which overflow in silence
+        largest = max(map(abs, moments))
         if moments[0] < -MOMENT_TOLERANCE * largest:
             faulty.add(link.name)
             _report(

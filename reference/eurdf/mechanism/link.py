@@ -19,8 +19,9 @@ from eurdf.reading.yaml_reader import YamlDocument
 #: Joints that a robot may have. The memory of a model grows with the square of the depth of its tree.
 JOINT_LIMIT = 10_000
 
-#: Closures that a robot may have.
-CLOSURE_LIMIT = 1_000
+#: What the number of closures times that of joints may be: as many entries, at most, has the constraint Jacobian for
+#: each of a closure's rows.
+CLOSURES_TIMES_JOINTS_LIMIT = 1_000_000
 
 #: The joint that a floating root hangs from, in every model.
 ROOT_JOINT = "root_joint"
@@ -65,9 +66,10 @@ def _refuse_too_large(
     if joints > JOINT_LIMIT:
         message = f"the robot has {joints:,} joints; it may have {JOINT_LIMIT:,}"
         diagnostics.report("file-too-large", message, urdf.document.place(urdf.document.root))
-    if closures > CLOSURE_LIMIT and document is not None:
-        message = f"the robot has {closures:,} closures; it may have {CLOSURE_LIMIT:,}"
-        diagnostics.report("file-too-large", message, document.place())
+    elif closures * joints > CLOSURES_TIMES_JOINTS_LIMIT and document is not None:
+        most = CLOSURES_TIMES_JOINTS_LIMIT // joints
+        message = f"the robot has {closures:,} closures on {joints:,} joints; on so many it may have {most:,}"
+        diagnostics.report("file-too-large", message, document.place(("closures",)))
 
 
 def _bare(urdf: Urdf, root: Root) -> Mechanism:
@@ -126,7 +128,7 @@ def _own_keys(extension: Extension, urdf: Urdf, document: YamlDocument, diagnost
         if pointer[-1] in urdf.joints:
             diagnostics.report(
                 "own-key-is-joint",
-                f"'{pointer[-1]}' is a joint, but as a key that begins with 'x-' it is the user's own and has no effect",
+                f"'{pointer[-1]}' is a joint, but as a key that begins with 'x-' it is the user's own, without effect",
                 document.place(pointer, True),
                 "rename the joint in the URDF",
             )

@@ -1,0 +1,115 @@
+"""Where a mesh lies that a URDF names."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from eurdf.reading.resource import resolve
+
+
+@pytest.fixture(autouse=True)
+def _no_packages(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("ROS_PACKAGE_PATH", raising=False)
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+
+
+def _file(path: Path) -> Path:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("", encoding="utf-8")
+    return path
+
+
+def _found(uri: str, folder: Path, package_dirs: tuple[Path, ...] = ()) -> Path | None:
+    found = resolve(uri, folder, package_dirs)
+    return None if found is None else Path(found).resolve()
+
+
+def test_a_path_is_relative_to_the_folder_of_the_urdf_or_absolute(tmp_path: Path) -> None:
+    mesh = _file(tmp_path / "meshes" / "a.stl")
+    folder = tmp_path / "urdf"
+    folder.mkdir()
+    assert _found("../meshes/a.stl", folder) == mesh
+    assert _found("meshes/a.stl", tmp_path) == mesh
+    assert _found(str(mesh), folder) == mesh
+    assert _found("meshes/a.stl", folder) is None
+
+
+def test_a_file_uri_is_a_path_with_its_escapes_undone(tmp_path: Path) -> None:
+    mesh = _file(tmp_path / "my mesh.stl")
+    assert _found(f"file://{tmp_path}/my%20mesh.stl", Path("/")) == mesh
+    assert _found("file://my%20mesh.stl", tmp_path) == mesh
+
+
+@pytest.mark.parametrize("scheme", ["package", "model"])
+def test_a_package_is_looked_for_beside_the_urdf_and_above_it(tmp_path: Path, scheme: str) -> None:
+    mesh = _file(tmp_path / "arm_description" / "meshes" / "a.stl")
+    urdf = tmp_path / "arm_description" / "urdf"
+    urdf.mkdir()
+    for folder in (urdf, urdf.parent, tmp_path):
+        assert _found(f"{scheme}://arm_description/meshes/a.stl", folder) == mesh
+    assert _found(f"{scheme}://other_description/meshes/a.stl", urdf) is None
+
+
+@pytest.mark.parametrize("name", ["a#1.stl", "a?b.stl", "a b.stl", "é.stl", "[x].stl", "100%.stl"])
+def test_a_name_is_taken_as_it_is_written(tmp_path: Path, name: str) -> None:
+    mesh = _file(tmp_path / "arm" / name)
+    assert _found(name, tmp_path / "arm") == mesh
+    assert _found(f"package://arm/{name}", tmp_path) == mesh
+
+
+def test_the_folders_given_come_before_the_environment_and_that_before_the_urdfs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    uri = "package://arm/a.stl"
+    beside = _file(tmp_path / "here" / "arm" / "a.stl")
+    folder = tmp_path / "here"
+    assert _found(uri, folder) == beside
+    ament = _file(tmp_path / "ament" / "share" / "arm" / "a.stl")
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "ament"))
+    assert _found(uri, folder) == ament
+    second = _file(tmp_path / "second" / "arm" / "a.stl")
+    monkeypatch.setenv("ROS_PACKAGE_PATH", f"{tmp_path / 'first'}:{tmp_path / 'second'}:")
+    assert _found(uri, folder) == second
+    first = _file(tmp_path / "first" / "arm" / "a.stl")
+    assert _found(uri, folder) == first
+    given = _file(tmp_path / "given" / "arm" / "a.stl")
+    assert _found(uri, folder, (tmp_path / "none", tmp_path / "given")) == given
+
+
+def test_a_folder_given_may_be_the_package_itself(tmp_path: Path) -> None:
+    mesh = _file(tmp_path / "ws" / "arm" / "a.stl")
+    elsewhere = tmp_path / "elsewhere"
+    elsewhere.mkdir()
+    assert _found("package://arm/a.stl", elsewhere, (tmp_path / "ws" / "arm",)) == mesh
+
+
+@pytest.mark.parametrize(
+    "uri",
+    [
+        "",
+        ".",
+        "http://example.org/a.stl",
+        "https://[::1/a.stl",
+        "package://",
+        "package://arm",
+        "package:///a.stl",
+        "package://[arm/a.stl",
+        "file://",
+        "://",
+        "a" * 5000,
+        "package://arm/" + "b/" * 3000,
+        "a\0b.stl",
+        "file://a%00b.stl",
+        "file://%ff",
+    ],
+)
+def test_what_names_no_file_is_not_found_whatever_it_is(tmp_path: Path, uri: str) -> None:
+    assert resolve(uri, tmp_path) is None
+
+
+def test_a_folder_is_no_mesh(tmp_path: Path) -> None:
+    (tmp_path / "arm" / "meshes").mkdir(parents=True)
+    assert resolve("arm", tmp_path) is None
+    assert resolve("package://arm/meshes", tmp_path) is None
