@@ -6,9 +6,15 @@ import argparse
 import sys
 from collections.abc import Callable
 
-from benchmarks import check, growth, load
+from benchmarks import assembly, check, growth, load, loops
 
-MEASUREMENTS: dict[str, Callable[[], None]] = {"load": load.main, "growth": growth.main, "check": check.main}
+MEASUREMENTS: dict[str, Callable[[], None]] = {
+    "load": load.main,
+    "growth": growth.main,
+    "check": check.main,
+    "assembly": assembly.main,
+    "loops": loops.main,
+}
 
 
 def _first_line(run: Callable[[], None]) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pinocchio as pin
+from plain_urdf import inertial, joint_element, link_element
 
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
@@ -189,3 +190,74 @@ def stewart() -> Linkage:
         else:
             constraints.append(closure(model, carrier, hMt * tMh, ball, pin.SE3.Identity(), name=f"leg{leg}"))
     return Linkage(model, constraints, [f"slider{leg}" for leg in range(6)])
+
+
+def three_rrr() -> Linkage:
+    """A planar platform on three legs of three pins each, a motor at each foot; the first leg carries the platform.
+
+    The neutral configuration is closed, and every closure says three things that the plane says already.
+    """
+    model, constraints = pin.Model(), []
+    heads = [np.array([np.cos(a), np.sin(a), 0.0]) for a in (0.3, 2.4, 4.5)]
+    for leg, head in enumerate(heads):
+        foot, knee = 3.0 * head, 2.0 * head + 0.7 * np.array([-head[1], head[0], 0.0])
+        shank = model.addJoint(0, pin.JointModelRZ(), translation(*foot), f"motor{leg}")
+        shin = model.addJoint(shank, pin.JointModelRZ(), translation(*(knee - foot)), f"knee{leg}")
+        ankle = model.addJoint(shin, pin.JointModelRZ(), translation(*(head - knee)), f"ankle{leg}")
+        if leg == 0:
+            platform = ankle
+        else:
+            constraints.append(
+                closure(model, platform, translation(*(head - heads[0])), ankle, pin.SE3.Identity(), name=f"leg{leg}")
+            )
+    return Linkage(model, constraints, ["motor0", "motor1", "motor2"])
+
+
+def ball_ended(kind: str) -> Linkage:
+    """A crank, a slide and a swing that meet the ground in a ball: closed in 3d there, or in 6d behind a ball joint."""
+    pairs: list[Pair] = [("R", (0, 0, 0), Z), ("R", (1, 0, 0.2), Y), ("P", (1, 0.5, 0), X), ("R", (1.5, 0.5, 0), X)]
+    end = (2.0, 1.0, 0.6)
+    if kind == "6d":
+        return loop([*pairs, ("S", end, Z)], "6d", end)
+    return loop(pairs, "3d", end)
+
+
+def described(linkage: Linkage) -> tuple[str, str]:
+    """The two files of a linkage: its URDF, and its description without the line of the version."""
+    model = linkage.model
+    types = {"JointModelRZ": "revolute", "JointModelPZ": "prismatic"}
+    body = inertial(1.0, '<origin xyz="0.1 0.2 0.3"/>')
+    parts, joints = [link_element("b0", body)], []
+    for joint in range(1, model.njoints):
+        kind, name = model.joints[joint].shortname(), model.names[joint]
+        content = '<axis xyz="0 0 1"/><limit lower="-7" upper="7" effort="1" velocity="1"/>'
+        xyz, rpy = _numbers(model.jointPlacements[joint])
+        at = f'<origin xyz="{xyz}" rpy="{rpy}"/>'
+        parts.append(link_element(f"b{joint}", body))
+        parent = f"b{model.parents[joint]}"
+        parts.append(joint_element(name, types.get(kind, "revolute"), parent, f"b{joint}", content, at))
+        if kind == "JointModelSpherical":
+            joints.append(f"  {name}: spherical\n")
+        elif kind == "JointModelUniversal":
+            joints.append(f"  {name}: {{type: universal, axes: xy}}\n")
+        else:
+            assert kind in types
+    yaml = "closures:\n"
+    for found in linkage.constraint_models:
+        ends = (found.joint1_id, found.joint1_placement), (found.joint2_id, found.joint2_placement)
+        frames = []
+        for joint, placement in ends:
+            xyz, rpy = (numbers.replace(" ", ", ") for numbers in _numbers(placement))
+            frames.append(f"{{link: b{joint}, xyz: [{xyz}], rpy: [{rpy}]}}")
+        kind = {3: "3d", 6: "6d"}[found.residualSize()]
+        yaml += f"  - {{name: {found.name}, type: {kind}, frames: [{', '.join(frames)}]}}\n"
+    if joints:
+        yaml += "joints:\n" + "".join(joints)
+    return f'<robot name="linkage">{"".join(parts)}</robot>', yaml + f"actuators: [{', '.join(linkage.actuated)}]\n"
+
+
+def _numbers(placement: Any) -> tuple[str, str]:
+    """Position, and roll, pitch and yaw, as files have them."""
+    rpy = pin.rpy.matrixToRpy(placement.rotation)
+    xyz, angles = (" ".join(repr(float(value)) for value in values) for values in (placement.translation, rpy))
+    return xyz, angles

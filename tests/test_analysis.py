@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 
 import eurdf
 from eurdf.kinematics.analysis import analyze
-from eurdf.kinematics.residual import residual
+from eurdf.kinematics.residual import residual, residual_and_jacobian
+from eurdf.kinematics.sparse_basis import sparse_basis
 from linkage import (
     Linkage,
     X,
@@ -52,6 +53,25 @@ def folded_parallelogram() -> Linkage:
 def flat_truss() -> Linkage:
     """Two bars stretched out between two pins: it cannot move, though K loses rank where it is."""
     return loop([("R", (0, 0, 0), Z), ("R", (1, 0, 0), Z)], "3d", (3, 0, 0))
+
+
+def side_by_side(*linkages: Linkage) -> Linkage:
+    """Linkages that share nothing but the ground; their joints are called a0, a1, …, b0, b1, …"""
+    model, constraints, actuated = pin.Model(), [], []
+    for letter, linkage in zip("abcdef", linkages, strict=False):
+        known = {0: 0}
+        for joint in range(1, linkage.model.njoints):
+            name = letter + linkage.model.names[joint][1:]
+            parent, placement = known[linkage.model.parents[joint]], linkage.model.jointPlacements[joint]
+            known[joint] = model.addJoint(parent, linkage.model.joints[joint], placement, name)
+        for found in linkage.constraint_models:
+            a, b = known[found.joint1_id], known[found.joint2_id]
+            kind = {3: "3d", 6: "6d"}[found.residualSize()]
+            constraints.append(
+                closure(model, a, found.joint1_placement, b, found.joint2_placement, kind, f"{letter}_{found.name}")
+            )
+        actuated += [letter + name[1:] for name in linkage.actuated]
+    return Linkage(model, constraints, actuated)
 
 
 def welded_to_the_ground() -> Any:
@@ -212,6 +232,183 @@ def test_a_mimic_joint_takes_a_velocity_away() -> None:
         linkage = Linkage(model, [closure(model, slide, pin.SE3.Identity(), fold, translation(1.0, 0.0, 0.0), "3d")])
         analysis = analyze(linkage, np.array([0.8, 1.3] if mimic else [0.8, -1.6, 1.3]))
         assert (analysis.nv, analysis.rank, analysis.mobility) == expected
+
+
+def test_each_group_of_loops_is_analysed_on_its_own_and_the_whole_is_their_sum() -> None:
+    parts = [n_bar(5), slider_crank(), n_bar(4, "3d", actuated=[]), stewart()]
+    robot = side_by_side(*parts)
+    robot.model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "float")
+    whole = analyze(robot)
+    assert [loops.closures for loops in whole.loops] == [
+        ("a_end",),
+        ("b_end",),
+        ("c_end",),
+        tuple(f"d_leg{leg}" for leg in range(1, 6)),
+    ]
+    for part, loops in zip(parts, whole.loops, strict=True):
+        alone = analyze(part)
+        for key in ("nv", "nc", "rank", "mobility", "redundant", "uncontrolled", "actuated", "controlled"):
+            assert getattr(loops, key) == getattr(alone, key), key
+        assert len(loops.joints) == part.model.njoints - 1
+    for key in ("nc", "rank", "redundant", "actuated", "controlled"):
+        assert getattr(whole, key) == sum(getattr(loops, key) for loops in whole.loops), key
+    assert whole.mobility == sum(loops.mobility for loops in whole.loops) + 6
+    assert whole.uncontrolled == sum(loops.uncontrolled for loops in whole.loops) + 6 == len(whole.motions)
+    assert whole.motions[-1].joints == ("float",)
+
+
+@pytest.mark.parametrize(
+    ("build", "uncontrolled", "surplus", "fighting"),
+    [
+        (lambda: n_bar(4), 0, 0, ()),
+        (lambda: n_bar(4, actuated=["j0", "j2"]), 0, 1, (("j0", "j2"),)),
+        (lambda: n_bar(5, actuated=["j0", "j1", "j4"]), 0, 1, (("j0", "j1", "j4"),)),
+        (lambda: n_bar(7, actuated=["j0", "j1", "j4"]), 1, 0, ()),
+        # As many motors as motions, and yet one motion is nobody's.
+        (lambda: side_by_side(n_bar(4, actuated=["j0", "j1"]), n_bar(4, actuated=[])), 1, 1, (("a0", "a1"),)),
+        (
+            lambda: side_by_side(n_bar(4, actuated=["j3", "j0"]), n_bar(4, actuated=["j0", "j1", "j2"])),
+            0,
+            3,
+            (("a0", "a3"), ("b0", "b1", "b2")),
+        ),
+        # A triangle does not move: each of its motors fights the closure.
+        (lambda: n_bar(3, actuated=["j1", "j2"]), 0, 2, (("j1",), ("j2",))),
+        (lambda: Linkage(n_bar(5).model, actuated=["j0", "j3"]), 3, 0, ()),
+    ],
+)
+def test_actuators_suffice_are_redundant_or_fight(
+    build: Callable[[], Linkage], uncontrolled: int, surplus: int, fighting: tuple[tuple[str, ...], ...]
+) -> None:
+    analysis = analyze(build())
+    assert (analysis.uncontrolled, analysis.surplus, analysis.fighting) == (uncontrolled, surplus, fighting)
+    assert analysis.mobility is not None
+    assert analysis.controlled == analysis.actuated - surplus == analysis.mobility - uncontrolled
+
+
+def test_actuators_that_fight_are_told_from_those_of_the_same_loops_that_do_not() -> None:
+    # A four-bar whose coupler carries a five-bar: two groups of motors in one group of loops, through a shared pin.
+    linkage = n_bar(4, "3d", actuated=["j0", "j2", "wheel"])
+    model = linkage.model
+    wheel = model.addJoint(2, pin.JointModelRZ(), translation(0.3, 0.2, 0.0), "wheel")
+    rod = model.addJoint(wheel, pin.JointModelRZ(), translation(0.4, 0.0, 0.0), "rod")
+    arm = model.addJoint(rod, pin.JointModelRZ(), translation(1.0, 0.3, 0.0), "arm")
+    # Ends on the body before: the loop wheel-rod-arm goes around pin j2 too.
+    end = translation(0.2, 0.1, 0.0)
+    data = model.createData()
+    pin.forwardKinematics(model, data, pin.neutral(model))
+    on_rocker = (data.oMi[3].inverse() * data.oMi[arm]) * end
+    linkage.constraint_models.append(closure(model, 3, on_rocker, arm, end, "3d", "other"))
+    analysis = analyze(linkage)
+    assert [loops.closures for loops in analysis.loops] == [("end", "other")]
+    assert analysis.mobility == 2
+    assert analysis.surplus == 1
+    assert analysis.fighting == (("j0", "j2"),)
+
+
+def test_an_uncontrolled_motion_keeps_the_loops_closed_and_the_actuators_still() -> None:
+    for linkage in (rod_between_balls(), n_bar(8), n_bar(7, "3d", actuated=["j2", "j5"]), slider_crank(actuated=[])):
+        analysis = analyze(linkage)
+        K = residual_and_jacobian(linkage, analysis.q)[1]
+        basis = np.zeros((len(analysis.motions), linkage.model.nv))
+        for row, motion in zip(basis, analysis.motions, strict=True):
+            row[motion.velocities] = motion.values
+            names = {linkage.model.names[1 + j] for j in range(linkage.model.njoints - 1) if moves(linkage, j + 1, row)}
+            assert set(motion.joints) == names
+        np.testing.assert_allclose(K @ basis.T, 0.0, atol=1e-9)
+        np.testing.assert_array_equal(basis @ linkage.actuation.selection, 0.0)
+        assert np.linalg.matrix_rank(basis) == analysis.uncontrolled == len(analysis.motions)
+
+
+def moves(linkage: Linkage, joint: int, v: Any) -> bool:
+    first, width = linkage.model.idx_vs[joint], linkage.model.nvs[joint]
+    return bool(np.any(v[first : first + width]))
+
+
+def test_a_rod_that_spins_turns_its_two_balls_and_nothing_else() -> None:
+    (motion,) = analyze(rod_between_balls()).motions
+    assert motion.joints == ("j1", "j2")
+    # About the line between the balls, each as fast as the other.
+    assert np.linalg.norm(motion.values[:3]) == pytest.approx(np.linalg.norm(motion.values[3:]))
+
+
+def test_a_planar_linkage_with_motions_left_names_four_pins_for_each() -> None:
+    for motion in analyze(n_bar(9)).motions:
+        assert len(motion.joints) == 4
+        assert "j0" not in motion.joints
+
+
+@given(seed=st.integers(0, 2**32 - 1), sizes=st.lists(st.integers(1, 4), min_size=1, max_size=4))
+@settings(max_examples=50, deadline=None)
+def test_a_sparse_basis_takes_a_sum_of_spaces_apart(seed: int, sizes: list[int]) -> None:
+    random = np.random.default_rng(seed)
+    blocks = [random.normal(size=(size, size + 2)) for size in sizes]
+    n, k = sum(block.shape[1] for block in blocks), sum(sizes)
+    whole, row, column = np.zeros((k, n)), 0, 0
+    owner = np.zeros(n, dtype=int)
+    for index, block in enumerate(blocks):
+        whole[row : row + block.shape[0], column : column + block.shape[1]] = block
+        owner[column : column + block.shape[1]] = index
+        row, column = row + block.shape[0], column + block.shape[1]
+    mixed, _ = np.linalg.qr(whole.T @ random.normal(size=(k, k)))
+    basis = sparse_basis(mixed.T)
+    assert all(len(set(owner[np.flatnonzero(vector)])) == 1 for vector in basis)
+    assert np.linalg.matrix_rank(basis) == k
+    assert np.linalg.matrix_rank(np.vstack([basis, mixed.T]), 1e-3) == k
+    np.testing.assert_allclose(np.abs(basis).max(axis=1), 1.0)
+
+
+def test_the_distance_to_singularity_falls_to_nothing_where_a_linkage_folds_flat() -> None:
+    flat = analyze(folded_parallelogram())
+    assert flat.rank == 3
+    assert flat.singularity == pytest.approx(0.0, abs=1e-12)
+    lifted = [analyze(folded_parallelogram(), np.array([a, -a, a, -a])).singularity for a in (0.02, 0.1, 0.3, 0.8)]
+    assert lifted == sorted(lifted)
+    assert lifted[0] is not None
+    assert 0.0 < lifted[0] < 0.1 < lifted[3]
+
+
+def test_the_distance_is_that_to_the_nearest_matrix_of_lower_rank() -> None:
+    linkage = n_bar(4)
+    analysis = analyze(linkage)
+    assert analysis.singularity is not None
+    K = residual_and_jacobian(linkage, analysis.q)[1]
+    (end,) = linkage.constraint_models
+    around = [linkage.model.jointPlacements[j].translation for j in range(1, 5)]
+    around += [end.joint1_placement.translation, end.joint2_placement.translation]
+    K[:3] /= sum(np.linalg.norm(step) for step in around) / 2.0
+    U, values, V = np.linalg.svd(K, full_matrices=False)
+    values[2] = 0.0
+    nearest = U @ np.diag(values) @ V
+    assert analysis.singularity == pytest.approx(np.linalg.norm(nearest - K, 2), rel=1e-9)
+
+
+def test_the_size_of_a_linkage_changes_no_distance_to_singularity() -> None:
+    one, other = analyze(slider_crank()), analyze(slider_crank(size=100.0))
+    assert other.singularity == pytest.approx(one.singularity, rel=1e-6)
+    assert other.actuation_singularity == pytest.approx(one.actuation_singularity, rel=1e-6)
+
+
+def test_a_slider_crank_with_its_slide_driven_is_singular_for_it_at_the_dead_point_alone() -> None:
+    dead = loop(
+        [("R", (0, 0, 0), Z), ("R", (1, 0, 0), Z), ("R", (3, 0, 0), Z), ("P", (3, 0, 0), X)], actuated=["j3"]
+    )
+    analysis = analyze(dead)
+    assert analysis.uncontrolled == 0
+    assert analysis.singularity is not None
+    assert analysis.singularity > 0.1
+    assert analysis.actuation_singularity == pytest.approx(0.0, abs=1e-12)
+    turned = analyze(slider_crank(actuated=["j3"]))
+    assert turned.actuation_singularity is not None
+    assert turned.actuation_singularity > 0.05
+
+
+def test_what_does_not_close_has_no_motions_and_no_distances() -> None:
+    linkage = n_bar(4, actuated=["j0", "j1"])
+    linkage.constraint_models[0].joint1_placement = translation(50.0, 0.0, 0.0)
+    analysis = analyze(linkage)
+    assert (analysis.controlled, analysis.surplus, analysis.singularity, analysis.actuation_singularity) == (None,) * 4
+    assert (analysis.fighting, analysis.motions, analysis.loops) == ((), (), ())
 
 
 @needs_wild

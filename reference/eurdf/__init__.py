@@ -13,48 +13,166 @@ if TYPE_CHECKING:
     from eurdf.collection import collection_names
     from eurdf.diagnostics import Diagnostic
     from eurdf.diagnostics.report import Report
-    from eurdf.exceptions import EurdfError, InvalidRobot, RobotNotFound
+    from eurdf.exceptions import (
+        CannotLock,
+        DependentActuators,
+        EurdfError,
+        InconsistentMotion,
+        InvalidRobot,
+        LockedOpen,
+        NotClosable,
+        RobotNotFound,
+        SimulationDiverged,
+        UnderactuatedMotion,
+        UndeterminedMotion,
+    )
     from eurdf.kinematics.analysis import Analysis, analyze
     from eurdf.kinematics.assembly import Assembly, assemble
+    from eurdf.kinematics.dynamics import (
+        ForwardDynamics,
+        InverseDynamics,
+        achievable_acceleration,
+        forward_dynamics,
+        inverse_dynamics,
+    )
+    from eurdf.kinematics.forward_kinematics import forward_kinematics
+    from eurdf.kinematics.inverse_kinematics import FrameError, InverseKinematics, inverse_kinematics
+    from eurdf.kinematics.locking import LockedRobot, lock
+    from eurdf.kinematics.projection import project_acceleration, project_configuration, project_velocity
+    from eurdf.kinematics.residual import Opening, closure_openings, residual, residual_and_jacobian
+    from eurdf.kinematics.sensitivity import actuated_jacobian, dq_dq_actuated
+    from eurdf.kinematics.simulation import Simulation, simulate
+    from eurdf.kinematics.split import merge_configuration, merge_velocity, split_configuration, split_velocity
     from eurdf.loading import load
     from eurdf.mechanism.mechanism import Mechanism
     from eurdf.pinocchio.robot import Robot
 
 __version__ = "0.1.0"
 
-_HOMES = {
-    "Analysis": "eurdf.kinematics.analysis",
-    "Assembly": "eurdf.kinematics.assembly",
-    "Diagnostic": "eurdf.diagnostics",
-    "EurdfError": "eurdf.exceptions",
-    "InvalidRobot": "eurdf.exceptions",
-    "Mechanism": "eurdf.mechanism.mechanism",
-    "Report": "eurdf.diagnostics.report",
-    "Robot": "eurdf.pinocchio.robot",
-    "RobotNotFound": "eurdf.exceptions",
-    "analyze": "eurdf.kinematics.analysis",
-    "assemble": "eurdf.kinematics.assembly",
-    "check": "eurdf.checking",
-    "collection_names": "eurdf.collection",
-    "load": "eurdf.loading",
+_NAMES = {
+    "eurdf.checking": ("check",),
+    "eurdf.collection": ("collection_names",),
+    "eurdf.diagnostics": ("Diagnostic",),
+    "eurdf.diagnostics.report": ("Report",),
+    "eurdf.exceptions": (
+        "CannotLock",
+        "DependentActuators",
+        "EurdfError",
+        "InconsistentMotion",
+        "InvalidRobot",
+        "LockedOpen",
+        "NotClosable",
+        "RobotNotFound",
+        "SimulationDiverged",
+        "UnderactuatedMotion",
+        "UndeterminedMotion",
+    ),
+    "eurdf.kinematics.analysis": (
+        "Analysis",
+        "analyze",
+    ),
+    "eurdf.kinematics.assembly": (
+        "Assembly",
+        "assemble",
+    ),
+    "eurdf.kinematics.dynamics": (
+        "ForwardDynamics",
+        "InverseDynamics",
+        "achievable_acceleration",
+        "forward_dynamics",
+        "inverse_dynamics",
+    ),
+    "eurdf.kinematics.forward_kinematics": ("forward_kinematics",),
+    "eurdf.kinematics.inverse_kinematics": (
+        "FrameError",
+        "InverseKinematics",
+        "inverse_kinematics",
+    ),
+    "eurdf.kinematics.locking": (
+        "LockedRobot",
+        "lock",
+    ),
+    "eurdf.kinematics.projection": (
+        "project_acceleration",
+        "project_configuration",
+        "project_velocity",
+    ),
+    "eurdf.kinematics.residual": (
+        "Opening",
+        "closure_openings",
+        "residual",
+        "residual_and_jacobian",
+    ),
+    "eurdf.kinematics.sensitivity": (
+        "actuated_jacobian",
+        "dq_dq_actuated",
+    ),
+    "eurdf.kinematics.simulation": (
+        "Simulation",
+        "simulate",
+    ),
+    "eurdf.kinematics.split": (
+        "merge_configuration",
+        "merge_velocity",
+        "split_configuration",
+        "split_velocity",
+    ),
+    "eurdf.loading": ("load",),
+    "eurdf.mechanism.mechanism": ("Mechanism",),
+    "eurdf.pinocchio.robot": ("Robot",),
 }
+_HOMES = {name: home for home, names in _NAMES.items() for name in names}
 
 __all__ = [
     "Analysis",
     "Assembly",
+    "CannotLock",
+    "DependentActuators",
     "Diagnostic",
     "EurdfError",
+    "ForwardDynamics",
+    "FrameError",
+    "InconsistentMotion",
     "InvalidRobot",
+    "InverseDynamics",
+    "InverseKinematics",
+    "LockedOpen",
+    "LockedRobot",
     "Mechanism",
+    "NotClosable",
+    "Opening",
     "Report",
     "Robot",
     "RobotNotFound",
+    "Simulation",
+    "SimulationDiverged",
+    "UnderactuatedMotion",
+    "UndeterminedMotion",
     "__version__",
+    "achievable_acceleration",
+    "actuated_jacobian",
     "analyze",
     "assemble",
     "check",
+    "closure_openings",
     "collection_names",
+    "dq_dq_actuated",
+    "forward_dynamics",
+    "forward_kinematics",
+    "inverse_dynamics",
+    "inverse_kinematics",
     "load",
+    "lock",
+    "merge_configuration",
+    "merge_velocity",
+    "project_acceleration",
+    "project_configuration",
+    "project_velocity",
+    "residual",
+    "residual_and_jacobian",
+    "simulate",
+    "split_configuration",
+    "split_velocity",
 ]
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from eurdf.commands.cannot_run import CannotRun
@@ -16,6 +17,9 @@ if TYPE_CHECKING:
     from rich.text import Text
 
     from eurdf.commands.robot_info import RobotInfo
+
+# More motions than these are counted, not named.
+_MOST_MOTIONS = 12
 
 
 def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -76,6 +80,12 @@ def _show(info: RobotInfo) -> None:
     shown: list[Text | Table] = [_heading(info), _dimensions(info)]
     if info.closure_list:
         shown.append(_closures(info))
+    if len(info.loop_list) > 1:
+        shown.append(_loops(info))
+    if info.motion_list and info.actuated:  # without actuators, that is every motion
+        shown.append(_motions(info))
+    if info.fighting_list:
+        shown.append(_fighting(info))
     if info.joint_list:
         shown.append(_joints(info))
     if info.frame_list:
@@ -120,7 +130,12 @@ def _dimensions(info: RobotInfo) -> Table:
         ("mobility", info.mobility, "motions that the closures leave, nv - rank"),
         ("actuated", info.actuated, "velocities"),
         ("uncontrolled", info.uncontrolled, "motions left with every actuator held"),
+        ("surplus", info.surplus, "actuated velocities that follow from the others"),
     ]
+    if info.singularity is not None:
+        rows.append(("singularity", f"{info.singularity:.2g}", "distance to it: 0 where the closures lose rank"))
+    if info.actuation_singularity is not None:
+        rows.append(("", f"{info.actuation_singularity:.2g}", "the same with every actuator held"))
     for name, value, meaning in rows:
         style = "red" if value == "open" else "green" if value == "close" else "bold"
         table.add_row(name, _text("-" if value is None else str(value), style), _text(meaning, "dim"))
@@ -136,6 +151,37 @@ def _closures(info: RobotInfo) -> Table:
             for frame, body in zip(closure.frames, closure.bodies, strict=True)
         ]
         table.add_row(_text(closure.name, "bold"), closure.type, *frames, _number(closure.residual))
+    return table
+
+
+def _loops(info: RobotInfo) -> Table:
+    table = _table("loops of", "nv", "nc", "rank", "mobility", "redundant", "uncontrolled", "singularity")
+    for column in table.columns[1:]:
+        column.justify = "right"
+    for loops in info.loop_list:
+        counts = (loops.nv, loops.nc, loops.rank, loops.mobility, loops.redundant, loops.uncontrolled)
+        table.add_row(
+            _text(", ".join(loops.closures), "bold"),
+            *(str(count) for count in counts),
+            "-" if loops.singularity is None else f"{loops.singularity:.2g}",
+        )
+    return table
+
+
+def _motions(info: RobotInfo) -> Table:
+    table = _table("uncontrolled motion of")
+    counts = Counter(motion.joints for motion in info.motion_list)
+    for joints, count in counts.most_common(_MOST_MOTIONS):
+        table.add_row(_text(", ".join(joints) + (f"  ({count} motions)" if count > 1 else "")))
+    if len(counts) > _MOST_MOTIONS:
+        table.add_row(_text(f"and {len(counts) - _MOST_MOTIONS} more", "dim"))
+    return table
+
+
+def _fighting(info: RobotInfo) -> Table:
+    table = _table("actuators that fight through the closures")
+    for joints in info.fighting_list:
+        table.add_row(_text(", ".join(joints), "yellow"))
     return table
 
 

@@ -89,6 +89,42 @@ class ConfigurationInfo(_Entry):
     """Norm of the residual of all closures at it, m and rad."""
 
 
+class LoopInfo(_Entry):
+    """A group of loops that share joints with one another and with no other loop."""
+
+    closures: tuple[str, ...]
+    """Names of its closures."""
+    joints: tuple[str, ...]
+    """Names of its joints, in the model's order."""
+    nv: Count
+    """Number of velocities of its joints."""
+    nc: Count
+    """Number of its constraint rows."""
+    rank: Count
+    """Rank of its constraint Jacobian."""
+    mobility: Count
+    """Motions that its closures leave, nv - rank."""
+    redundant: Count
+    """Its constraint rows that say nothing new, nc - rank."""
+    uncontrolled: Count
+    """Its motions left with every actuator held."""
+    actuated: Count
+    """Number of its velocities that are actuated."""
+    controlled: Count
+    """Motions that its actuators decide, mobility - uncontrolled."""
+    singularity: float | None
+    """Its distance to singularity, as of the whole."""
+    actuation_singularity: float | None
+    """Its distance to a singularity of its actuation, as of the whole."""
+
+
+class MotionInfo(_Entry):
+    """A motion left with every actuator held."""
+
+    joints: tuple[str, ...]
+    """Names of the joints that it moves."""
+
+
 class RobotInfo(_Entry):
     """What 'eurdf info --json' writes of one robot; dimensions are of the root asked for."""
 
@@ -118,6 +154,14 @@ class RobotInfo(_Entry):
     """Motions left with every actuator held; null where the loops do not close."""
     actuated: Count
     """Number of actuated velocities."""
+    controlled: Count | None
+    """Motions that the actuators decide, mobility - uncontrolled; null where the loops do not close."""
+    surplus: Count | None
+    """Actuated velocities that follow from the others, actuated - controlled; null where the loops do not close."""
+    singularity: float | None
+    """Distance to singularity: least singular value of the constraint Jacobian, free of unit; null without loops."""
+    actuation_singularity: float | None
+    """The same of the constraint Jacobian with the rows that select the actuated velocities."""
     mass: float | None
     """Mass of all links, the root included, kg."""
     residual: float | None
@@ -128,6 +172,12 @@ class RobotInfo(_Entry):
     """The moving joints, depth first."""
     closure_list: tuple[ClosureInfo, ...]
     """The closures, in file order."""
+    loop_list: tuple[LoopInfo, ...]
+    """The independent groups of loops; empty where the loops do not close."""
+    motion_list: tuple[MotionInfo, ...]
+    """The motions left with every actuator held, each of as few joints as can be; empty where the loops do not close."""
+    fighting_list: tuple[tuple[str, ...], ...]
+    """Sets of actuated joints of which none moves without another of its set or, alone in it, at all."""
     actuator_list: tuple[ActuatorInfo, ...]
     """The actuated joints, in file order."""
     frame_list: tuple[FrameInfo, ...]
@@ -164,6 +214,10 @@ def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
         redundant=analysis.redundant,
         uncontrolled=analysis.uncontrolled,
         actuated=len(robot.actuation.idx_v),
+        controlled=analysis.controlled,
+        surplus=analysis.surplus,
+        singularity=_finite(analysis.singularity),
+        actuation_singularity=_finite(analysis.actuation_singularity),
         mass=_finite(math.fsum(body.inertia.mass for body in mechanism.bodies if body.inertia)),
         residual=_finite(analysis.residual),
         closes=analysis.closes,
@@ -179,6 +233,25 @@ def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
             )
             for closure, start in zip(mechanism.closures, starts, strict=False)
         ),
+        loop_list=tuple(
+            LoopInfo(
+                closures=loops.closures,
+                joints=loops.joints,
+                nv=loops.nv,
+                nc=loops.nc,
+                rank=loops.rank,
+                mobility=loops.mobility,
+                redundant=loops.redundant,
+                uncontrolled=loops.uncontrolled,
+                actuated=loops.actuated,
+                controlled=loops.controlled,
+                singularity=_finite(loops.singularity),
+                actuation_singularity=_finite(loops.actuation_singularity),
+            )
+            for loops in analysis.loops
+        ),
+        motion_list=tuple(MotionInfo(joints=motion.joints) for motion in analysis.motions),
+        fighting_list=analysis.fighting,
         actuator_list=tuple(
             ActuatorInfo(joint=name, type=joints[name].type, nv=joints[name].coordinates.nv)
             for name in mechanism.actuators

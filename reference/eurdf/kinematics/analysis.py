@@ -1,15 +1,19 @@
-"""The dimensions of a mechanism: how its loops constrain it and what can still move."""
+"""The dimensions of a mechanism: how its loops constrain it, what can still move, and whether the actuators move it."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eurdf.kinematics.array import Mask, Matrix, Vector
-from eurdf.kinematics.assembly import Assembler, Assembly, start
+from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.kinematics.assembly import Assembler, start
+from eurdf.kinematics.evaluation import Evaluation
 from eurdf.kinematics.rank import numerical_rank
+from eurdf.kinematics.sparse_basis import sparse_basis
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -19,18 +23,85 @@ _MOVES = (0.05, 0.1, 0.2, 0.2)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Motion:
+    """A motion of the closed mechanism with every actuator held.
+
+    Attributes:
+        joints: Names of the joints that it moves.
+        velocities: Indices (k,) in v of their velocities that are not zero.
+        values: These velocities (k,), rad/s and m/s; the largest is 1, lengths counted in characteristic lengths.
+    """
+
+    joints: tuple[str, ...]
+    velocities: Indices
+    values: Vector
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LoopAnalysis:
+    """Dimensions of a group of loops that share joints with one another and with no other loop.
+
+    Attributes:
+        closures: Names of its closures, in file order.
+        joints: Names of its joints, in the model's order.
+        nv: Velocities of its joints.
+        nc: Rows of its closures.
+        rank: Rank of its block of K.
+        mobility: nv - rank.
+        redundant: Redundant rows, nc - rank.
+        uncontrolled: Motions left with its actuators held, nv - rank [K; Sᵀ].
+        actuated: Number of its velocities that are actuated.
+        controlled: Motions that its actuators decide, mobility - uncontrolled: the rank of Sᵀ on the null space of K.
+        singularity: See `Analysis`.
+        actuation_singularity: See `Analysis`.
+        fighting: See `Analysis`.
+        motions: Its uncontrolled motions: see `Analysis`.
+    """
+
+    closures: tuple[str, ...]
+    joints: tuple[str, ...]
+    nv: int
+    nc: int
+    rank: int
+    mobility: int
+    redundant: int
+    uncontrolled: int
+    actuated: int
+    controlled: int
+    singularity: float
+    actuation_singularity: float
+    fighting: tuple[tuple[str, ...], ...]
+    motions: tuple[Motion, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Analysis:
-    """Dimensions of a mechanism.
+    """Dimensions of a mechanism, of all of it and of each of its independent groups of loops.
+
+    What follows from ranks is None, or empty, where the loops do not close.
 
     Attributes:
         nq: Coordinates of the spanning tree.
         nv: Velocities of the spanning tree.
         nc: Constraint rows.
-        rank: Rank of the constraint Jacobian K at a generic closed configuration; None if the loops do not close.
-        mobility: nv - rank, or None.
-        redundant: Redundant rows, nc - rank, or None.
-        uncontrolled: Uncontrolled mobility, nv - rank [K; S], what still moves with every actuator held, or None.
+        rank: Rank of the constraint Jacobian K at a generic closed configuration.
+        mobility: nv - rank.
+        redundant: Redundant rows, nc - rank.
+        uncontrolled: Uncontrolled mobility, nv - rank [K; Sᵀ]: what still moves with every actuator held. The actuators
+            suffice where it is 0.
         actuated: Number of actuated velocities.
+        controlled: Motions that the actuators decide, mobility - uncontrolled: the rank of Sᵀ on the null space of K.
+        surplus: Actuated velocities that follow from the others through the closures, actuated - controlled. The torques
+            of as many dimensions move nothing and only load the closures: actuation is redundant where it is not 0.
+        fighting: Names of the actuators that are in surplus together, set by set: none of a set can move without
+            another of it, or, alone in its set, it cannot move at all.
+        motions: The uncontrolled motions: a basis of the null space of [K; Sᵀ], each of few joints. They are those at
+            ``q``, or where q is singular those at a configuration beside it.
+        singularity: Distance to singularity at ``q``: of K, free of unit, the singular value number ``rank``. By so much,
+            lengths counted in characteristic lengths, K would have to change to lose rank (Eckart, Young, 1936): it is 0
+            where q is singular. The smallest of all groups of loops; None without loops.
+        actuation_singularity: The same of [K; Sᵀ]: 0 where the actuators, held, leave one more motion at ``q``.
+        loops: The independent groups of loops.
         residual: Norm of the residual at q, m and rad: the smallest found.
         closes: Whether the loops close, with every row of the residual at q at most 1e-6.
         q: The configuration (nq,) looked at: closed, or the least open one found.
@@ -44,13 +115,20 @@ class Analysis:
     redundant: int | None
     uncontrolled: int | None
     actuated: int
+    controlled: int | None
+    surplus: int | None
+    fighting: tuple[tuple[str, ...], ...]
+    motions: tuple[Motion, ...]
+    singularity: float | None
+    actuation_singularity: float | None
+    loops: tuple[LoopAnalysis, ...]
     residual: float
     closes: bool
     q: Vector
 
 
 def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
-    """Close the loops and count what they constrain.
+    """Close the loops, count what they constrain and what moves, and name what the actuators leave or fight over.
 
     Ranks are those of a generic configuration: the largest found at the closed configuration and at some others
     around it, reached by small steps along the null space of K that are closed again, so that a straight or folded
@@ -64,63 +142,197 @@ def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
     Raises:
         ValueError: ``q`` is no configuration.
     """
+    model = robot.model
     actuated: Mask = np.any(robot.actuation.selection, axis=1)
     assembler = Assembler(robot)
     assembly = assembler.assemble(start(robot, q))
-    r, K = assembler.evaluate(assembly.q)
-    nv, nc = robot.model.nv, len(r)
-    rank = held = None
+    nv, nc = model.nv, sum(len(evaluation.group.rows) for evaluation in assembler.evaluations)
+    names = _names_of_velocities(model)
+    loops: tuple[LoopAnalysis, ...] = ()
+    motions: list[Motion] = []
     if assembly.closes:
-        rank, held = _generic_ranks(assembler, assembly, K, actuated)
+        closures = [constraint.name for constraint in robot.constraint_models]
+        loops = tuple(
+            _analyze(evaluation, jacobians, actuated[evaluation.group.velocities], names, closures)
+            for evaluation, jacobians in zip(
+                assembler.evaluations, _generic_jacobians(assembler, assembly.q), strict=True
+            )
+        )
+        outside = np.ones(nv, dtype=bool)
+        for evaluation in assembler.evaluations:
+            outside[evaluation.group.velocities] = False
+        motions = [motion for loop in loops for motion in loop.motions]
+        motions += [_unit_motion(names, velocity) for velocity in np.flatnonzero(outside & ~actuated).tolist()]
+    closes, count = assembly.closes, int(actuated.sum())
+    rank = sum(loop.rank for loop in loops)
     return Analysis(
-        nq=robot.model.nq,
+        nq=model.nq,
         nv=nv,
         nc=nc,
-        rank=rank,
-        mobility=None if rank is None else nv - rank,
-        redundant=None if rank is None else nc - rank,
-        uncontrolled=None if held is None else nv - held,
-        actuated=int(actuated.sum()),
+        rank=rank if closes else None,
+        mobility=nv - rank if closes else None,
+        redundant=nc - rank if closes else None,
+        uncontrolled=len(motions) if closes else None,
+        actuated=count,
+        controlled=nv - rank - len(motions) if closes else None,
+        surplus=count - (nv - rank - len(motions)) if closes else None,
+        fighting=tuple(together for loop in loops for together in loop.fighting),
+        motions=tuple(motions),
+        singularity=min((loop.singularity for loop in loops), default=None),
+        actuation_singularity=min((loop.actuation_singularity for loop in loops), default=None),
+        loops=loops,
         residual=assembly.residual,
-        closes=assembly.closes,
+        closes=closes,
         q=assembly.q,
     )
 
 
-def _generic_ranks(assembler: Assembler, closed: Assembly, K: Matrix, actuated: Mask) -> tuple[int, int]:
-    """Largest rank of K, and of [K; S], found at a closed configuration and around it."""
-    ranks = [_ranks(assembler, K, actuated)]
-    allowed = max(10.0 * closed.residual, 1e-8)
+def _generic_jacobians(assembler: Assembler, q: Vector) -> list[list[Matrix]]:
+    """For each group the blocks of K (m, n), free of unit, at a closed configuration and at some around it."""
+    evaluations = assembler.evaluations
+    open_by = [_size(evaluation.residual(q)) for evaluation in evaluations]
+    found = [[evaluation.jacobian()] for evaluation in evaluations]
+    bases = [_null_space(blocks[0]) for blocks in found]
     random = np.random.default_rng(0)
     for length in _MOVES:
-        steps = [_free_step(assembler.scaled(K, group), random, length) for group in assembler.groups]
-        near = assembler.assemble(assembler.moved(closed.q, assembler.groups, steps), restarts=0)
-        if near.residual <= allowed:
-            ranks.append(_ranks(assembler, assembler.evaluate(near.q)[1], actuated))
-    return max(rank for rank, _ in ranks), max(held for _, held in ranks)
+        steps = [_free_step(basis, random, length) for basis in bases]
+        near, _ = assembler.close(assembler.moved(q, evaluations, steps), restarts=0)
+        for evaluation, blocks, error in zip(evaluations, found, open_by, strict=True):
+            if _size(evaluation.residual(near)) <= max(10.0 * error, 1e-8):
+                blocks.append(evaluation.jacobian())
+    return found
 
 
-def _ranks(assembler: Assembler, K: Matrix, actuated: Mask) -> tuple[int, int]:
-    """Rank of K and of [K; S]: the actuated velocities, and what K makes of the others."""
-    rank, held = 0, int(actuated.sum())
-    for group in assembler.groups:
-        A = assembler.scaled(K, group)
-        values = _singular_values(A)
-        reference = values.max(initial=0.0)
-        rank += numerical_rank(values, reference)
-        held += numerical_rank(_singular_values(A[:, ~actuated[group.velocities]]), reference)
-    return rank, held
+def _analyze(
+    evaluation: Evaluation, jacobians: Sequence[Matrix], actuated: Mask, names: Sequence[str], closures: Sequence[str]
+) -> LoopAnalysis:
+    """Analyse one group of loops.
+
+    Args:
+        evaluation: The group.
+        jacobians: Its blocks of K, free of unit, the first of them at the configuration looked at.
+        actuated: Which of its velocities (n,) are actuated.
+        names: For each velocity of the robot, the name of its joint.
+        closures: Names of the robot's closures.
+    """
+    group = evaluation.group
+    ranks = [_ranks(A, actuated) for A in jacobians]
+    rank, held = max(rank for rank, _ in ranks), max(held for _, held in ranks)
+    A = next(block for block, found in zip(jacobians, ranks, strict=True) if found[1] == held)
+    nv, nc = len(group.velocities), len(group.rows)
+    members = [names[velocity] for velocity in group.velocities.tolist()]
+    stacked = np.vstack([jacobians[0], np.eye(nv)[actuated]])
+    return LoopAnalysis(
+        closures=tuple(closures[index] for index in group.closures),
+        joints=_distinct(members),
+        nv=nv,
+        nc=nc,
+        rank=rank,
+        mobility=nv - rank,
+        redundant=nc - rank,
+        uncontrolled=nv - held,
+        actuated=int(actuated.sum()),
+        controlled=held - rank,
+        singularity=_nth(_singular_values(jacobians[0]), rank),
+        actuation_singularity=_nth(_singular_values(stacked), held),
+        fighting=_fighting(A, rank, held - rank, actuated, members),
+        motions=_motions(A, held, actuated, evaluation, members),
+    )
+
+
+def _ranks(A: Matrix, actuated: Mask) -> tuple[int, int]:
+    """Rank of K and of [K; Sᵀ]: the actuated velocities, and what K makes of the others."""
+    values = _singular_values(A)
+    reference = values.max(initial=0.0)
+    rest = numerical_rank(_singular_values(A[:, ~actuated]), reference)
+    return numerical_rank(values, reference), int(actuated.sum()) + rest
+
+
+def _fighting(
+    A: Matrix, rank: int, controlled: int, actuated: Mask, members: Sequence[str]
+) -> tuple[tuple[str, ...], ...]:
+    """Names of the actuators whose velocities depend on one another, set by set.
+
+    The torques z with zᵀ Sᵀ v = 0 for all v with K v = 0 do no work on any motion: what actuators stand in one of a
+    sparse basis of them depend on one another, and so do those of two that have an actuator in common.
+    """
+    count = int(actuated.sum())
+    if count == controlled:
+        return ()
+    basis = _right_vectors(A)[rank:].T[actuated]  # of what the actuators can do, (nu, mobility)
+    columns = np.linalg.svd(basis, full_matrices=True)[0][:, controlled:]
+    names = [name for name, moves in zip(members, actuated.tolist(), strict=True) if moves]
+    sets: list[set[str]] = []
+    for row in sparse_basis(columns.T):
+        together = {name for name, value in zip(names, row.tolist(), strict=True) if value}
+        apart = [other for other in sets if not other & together]
+        sets = [*apart, together.union(*(other for other in sets if other & together))]
+    order = {name: index for index, name in enumerate(_distinct(names))}
+    ordered = (tuple(sorted(together, key=order.__getitem__)) for together in sets)
+    return tuple(sorted(ordered, key=lambda together: order[together[0]]))
+
+
+def _motions(
+    A: Matrix, held: int, actuated: Mask, evaluation: Evaluation, members: Sequence[str]
+) -> tuple[Motion, ...]:
+    """The motions of a group that its actuators, held, leave."""
+    free = np.flatnonzero(~actuated)
+    basis = _right_vectors(A[:, free])[held - int(actuated.sum()) :]
+    motions = []
+    for row in sparse_basis(basis):
+        moving = free[np.flatnonzero(row)]
+        values = row[np.flatnonzero(row)] * evaluation.unit[moving]
+        joints = _distinct(members[index] for index in moving.tolist())
+        motions.append(Motion(joints, evaluation.group.velocities[moving], values))
+    return tuple(motions)
+
+
+def _unit_motion(names: Sequence[str], velocity: int) -> Motion:
+    return Motion((names[velocity],), np.array([velocity]), np.ones(1))
+
+
+def _names_of_velocities(model: Any) -> list[str]:
+    """For each velocity the name of its joint."""
+    names = [""] * model.nv
+    for name, first, width in zip(model.names, model.idx_vs, model.nvs, strict=True):
+        names[first : first + width] = [name] * width
+    # The coordinate of a joint that comes after one which follows it belongs to a joint of its own.
+    return [
+        name.removesuffix("/coordinate") if name.endswith("/coordinate") and model.existJointName(name[:-11]) else name
+        for name in names
+    ]
+
+
+def _distinct(names: Iterable[str]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(names))
+
+
+def _size(r: Vector) -> float:
+    return math.hypot(*r.tolist())
+
+
+def _nth(values: Vector, number: int) -> float:
+    """The singular value number ``number``; there being none to lose, infinitely far from losing one."""
+    return float(values[number - 1]) if number > 0 else math.inf
 
 
 def _singular_values(A: Matrix) -> Vector:
     return np.asarray(np.linalg.svd(A, compute_uv=False), dtype=np.float64)
 
 
-def _free_step(A: Matrix, random: np.random.Generator, length: float) -> Vector:
-    """A random step (n,) in the null space of A, its largest entry ``length``; zero where there is none."""
-    _, values, right = np.linalg.svd(A, full_matrices=False)
-    bound = right[: numerical_rank(values, values.max(initial=0.0))]
-    step = random.normal(size=A.shape[1])
-    free = step - bound.T @ (bound @ step)
+def _right_vectors(A: Matrix) -> Matrix:
+    """All right singular vectors (n, n) of A, one a row, those of the largest singular values first."""
+    return np.asarray(np.linalg.svd(A, full_matrices=True)[2], dtype=np.float64)
+
+
+def _null_space(A: Matrix) -> Matrix:
+    """Orthonormal basis (k, n) of the null space of A, one vector a row."""
+    _, values, right = np.linalg.svd(A, full_matrices=True)
+    return np.asarray(right[numerical_rank(values, values.max(initial=0.0)) :], dtype=np.float64)
+
+
+def _free_step(basis: Matrix, random: np.random.Generator, length: float) -> Vector:
+    """A random step (n,) in the null space that ``basis`` spans, its largest entry ``length``; zero where there is none."""
+    free = np.asarray(random.normal(size=basis.shape[1]) @ basis.T @ basis)
     largest = np.abs(free).max(initial=0.0)
     return free * (length / largest) if largest > 1e-6 else np.zeros_like(free)

@@ -1,14 +1,16 @@
 """Assembly: a configuration in which every loop is closed.
 
-The residual is brought to zero by damped Gauss-Newton steps on the configuration manifold, each group of loops that
-share joints on its own. Where a descent ends open, as it may from a straight or symmetric configuration, the group
-starts again from places drawn around the first.
+The residual is brought to zero by damped Gauss-Newton steps on the configuration manifold: in a small robot that of all
+loops at once; then, and in a large robot from the first, that of each group of loops that share joints on its own. Where
+a group's descent ends open, as it may from a straight or symmetric configuration, it starts again from places drawn
+around the first.
 """
 
 from __future__ import annotations
 
 import difflib
 import math
+import weakref
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -16,11 +18,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pinocchio as pin
 
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.kinematics.array import Vector
 from eurdf.kinematics.descent import Descent
-from eurdf.kinematics.loop import LoopGroup, independent_groups
+from eurdf.kinematics.evaluation import Evaluation, evaluations
+from eurdf.kinematics.loop import LoopGroup, find_loops, independent_groups
 from eurdf.kinematics.position_limit import position_limits
-from eurdf.kinematics.residual import Opening, closure_openings, residual, residual_and_jacobian
+from eurdf.kinematics.residual import Opening
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
 
 if TYPE_CHECKING:
@@ -29,17 +32,21 @@ if TYPE_CHECKING:
 #: What each row of the residual may be, m or rad, where a description says that the loops are closed.
 CLOSED = 1e-6
 
-# Above this many velocities a pin.Data, some 8 nv³ numbers, takes longer to make than it saves.
+# Above this many velocities a pin.Data, some 8 nv³ numbers, takes longer to make than it saves, and so does the solution
+# of all loops at once.
 _MOST_VELOCITIES_WITH_DATA = 60
 
 _MOST_STEPS = 60
 
-# Multiplications that one assembly may take in its steps, some ten seconds. Loops that share joints by the hundred are
-# given up earlier than after all restarts.
-_MOST_WORK = 2e10
+# Multiplications that one assembly may take in its steps, some five seconds. Loops that share joints by the hundred
+# are given up earlier than after all restarts.
+_MOST_WORK = 1e10
 
 # How far from the first place further descents start (rad, or characteristic lengths); the last one is repeated.
 _SPREADS = (0.1, 0.3, 1.0, 2.0, 3.0)
+
+# Of one robot, at most so many assemblers are kept: one for each set of joints held.
+_MOST_KEPT = 8
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,7 +83,9 @@ def assemble(
     """Find a closed configuration near the one given.
 
     Only joints of the loops move. The same arguments give the same answer. The time is bounded also where the loops
-    cannot be closed: by ``restarts`` + 1 descents of at most 60 steps, and fewer where hundreds of loops share joints.
+    cannot be closed: by ``restarts`` + 2 descents of at most 60 steps.
+
+    What is found out about the structure of a small robot is kept with it, until its model or closures change.
 
     Args:
         robot: The robot.
@@ -93,7 +102,16 @@ def assemble(
     Raises:
         ValueError: ``q0`` is no configuration, or ``hold`` names no joint of the model.
     """
-    return Assembler(robot, hold, tolerance=tolerance, limits=limits).assemble(start(robot, q0), restarts)
+    q, held = start(robot, q0), tuple(hold)
+    # Taken away while in use, so that no other thread works in the same memory.
+    known = _KNOWN.get(robot, {}).pop(held, None)
+    if known is None or not known.fits(robot):
+        known = _Known(robot, held)
+    known.assembler.tolerance = tolerance
+    known.assembler.limits = position_limits(robot.model) if limits else None
+    assembly = known.assembler.assemble(q, restarts)
+    known.keep(robot, held)
+    return assembly
 
 
 def start(robot: Robot, q0: Vector | None = None) -> Vector:
@@ -121,122 +139,177 @@ def start(robot: Robot, q0: Vector | None = None) -> Vector:
 class Assembler:
     """Closes the loops of one robot, any number of times, having looked at its structure once.
 
-    Groups of loops that share no joint descend each on its own, all in the same evaluations.
-
     Attributes:
-        groups: The groups.
-        iterations: Evaluations of the residual and its Jacobian so far.
+        evaluations: One for each group of loops that share no joint with the others.
+        iterations: Evaluations of the residual and its Jacobian so far. Groups that descend side by side count once.
+        tolerance: What each row of the residual may be where the loops are closed, m or rad.
+        limits: The position limits to keep, if any.
     """
 
     def __init__(
         self, robot: Robot, hold: Iterable[str] = (), *, tolerance: float = 1e-10, limits: bool = False
     ) -> None:
         """For the arguments see `assemble`."""
-        model, length = robot.model, characteristic_length(robot)
-        self.groups = independent_groups(robot, _held_velocities(model, hold))
+        # Not the robot: it would be kept alive by what is kept with it.
+        model = self._model = robot.model
+        self._names = [constraint.name for constraint in robot.constraint_models]
+        loops = find_loops(robot)
+        self._nc = loops[-1].rows.stop if loops else 0
+        groups = list(independent_groups(robot, _held_velocities(model, hold)))
+        small = model.nv <= _MOST_VELOCITIES_WITH_DATA and model.nv == model.nvExtended
+        merged = [_merged(groups, self._nc)] if small and len(groups) > 1 else []
+        length = characteristic_length(robot)
+        made = evaluations(
+            robot,
+            groups + merged,
+            row_scale(robot, length),
+            velocity_scale(robot, length),
+            model.createData() if small else None,
+        )
+        self.evaluations = made[: len(groups)]
+        self._whole = made[len(groups) :] if merged else self.evaluations
         self.iterations = 0
-        self._robot = robot
-        self._data = model.createData() if model.nv <= _MOST_VELOCITIES_WITH_DATA else None
-        self._row_scale = row_scale(robot, length)
-        self._velocity_scale = velocity_scale(robot, length)
-        self._tolerance = tolerance
-        self._work = 0.0
-        self._limits = position_limits(model) if limits else None
+        self._work = 0.0  # of the assembly under way, in multiplications
+        self.tolerance = tolerance
+        self.limits = position_limits(model) if limits else None
 
     def assemble(self, q: Vector, restarts: int = 20) -> Assembly:
         """Close the loops, starting from q (nq,) and then, up to ``restarts`` times, from around it."""
+        before = self.iterations
         with np.errstate(over="ignore", invalid="ignore"):  # lengths such as 1e200 m overflow, and so never close
-            return self._assemble(q, restarts)
+            q, _ = self.close(q, restarts)
+            r, open_by = np.zeros(self._nc), [(0.0, 0.0)] * len(self._names)
+            for evaluation in self._whole:
+                r[evaluation.group.rows] = evaluation.residual(q)
+                for index, opening in zip(evaluation.group.closures, evaluation.openings(), strict=True):
+                    open_by[index] = opening
+        largest = float(np.abs(r).max(initial=0.0))
+        return Assembly(
+            q=q,
+            residual=math.hypot(*r),
+            converged=largest <= self.tolerance,
+            closes=largest <= max(CLOSED, self.tolerance),
+            iterations=self.iterations - before,
+            open=tuple(Opening(name, *opening) for name, opening in zip(self._names, open_by, strict=True)),
+        )
 
-    def _assemble(self, q: Vector, restarts: int) -> Assembly:
-        before, random = self.iterations, np.random.default_rng(0)
+    @np.errstate(over="ignore", invalid="ignore")  # lengths such as 1e200 m overflow, and so never close
+    def close(self, q: Vector, restarts: int = 20) -> tuple[Vector, list[float]]:
+        """The configuration (nq,) that `assemble` ends at, and the norm there of the residual of each group, m and rad.
+
+        Args:
+            q: Where to start (nq,).
+            restarts: How often to start again, at most, where a group is open by more than `CLOSED`.
+        """
         self._work = 0.0
-        q = self._within_limits(q, self.groups)
-        best, errors = np.array(q), np.full(len(self.groups), math.inf)
+        q = self._within_limits(q, self.evaluations)
+        best, errors = np.array(q), [math.inf] * len(self.evaluations)
+        if self._whole is not self.evaluations:
+            best, (descent,) = self._descend(q, self._whole)
+            errors = [math.hypot(*descent.r[evaluation.group.rows]) for evaluation in self.evaluations]
+        random: np.random.Generator | None = None
         for attempt in range(restarts + 1):
             still_open = [index for index, error in enumerate(errors) if not error <= CLOSED]
             if not still_open or (attempt > 0 and self._work > _MOST_WORK):
                 break
-            groups, place = [self.groups[index] for index in still_open], q
+            going, place = [self.evaluations[index] for index in still_open], q
             if attempt > 0:
+                random = random or np.random.default_rng(0)
                 spread = _SPREADS[min(attempt, len(_SPREADS)) - 1]
-                away = [random.uniform(-spread, spread, len(group.velocities)) for group in groups]
-                place = self._within_limits(self.moved(q, groups, away), groups)
-            end, reached = self._descend(place, groups)
-            for index, group, error in zip(still_open, groups, reached, strict=True):
-                if error < errors[index]:
-                    errors[index] = error
-                    best[group.coordinates] = end[group.coordinates]
-        r = residual(self._robot, best, self._data)
-        largest = float(np.abs(r).max(initial=0.0))
-        return Assembly(
-            q=best,
-            residual=math.hypot(*r),
-            converged=largest <= self._tolerance,
-            closes=largest <= max(CLOSED, self._tolerance),
-            iterations=self.iterations - before,
-            open=closure_openings(self._robot, best, self._data),
-        )
+                away = [random.uniform(-spread, spread, len(evaluation.unit)) for evaluation in going]
+                place = self._within_limits(self.moved(q, going, away), going)
+            end, descents = self._descend(place, going)
+            for index, descent in zip(still_open, descents, strict=True):
+                if descent.error < errors[index]:
+                    errors[index] = descent.error
+                    coordinates = self.evaluations[index].group.coordinates
+                    best[coordinates] = end[coordinates]
+        return best, errors
 
-    def evaluate(self, q: Vector) -> tuple[Vector, Matrix]:
-        """Residual (nc,) and Jacobian (nc, nv) at q (nq,)."""
-        self.iterations += 1
-        return residual_and_jacobian(self._robot, q, self._data)
-
-    def scaled(self, K: Matrix, group: LoopGroup) -> Matrix:
-        """The block of K of a group of loops, lengths counted in characteristic lengths."""
-        block = K[np.ix_(group.rows, group.velocities)]
-        return self._row_scale[group.rows, None] * block * self._velocity_scale[group.velocities]
-
-    def moved(self, q: Vector, groups: Sequence[LoopGroup], steps: Sequence[Vector]) -> Vector:
+    def moved(self, q: Vector, going: Sequence[Evaluation], steps: Sequence[Vector]) -> Vector:
         """Configuration (nq,) after a step of each group, lengths counted in characteristic lengths."""
-        v = np.zeros(self._robot.model.nv)
-        for group, step in zip(groups, steps, strict=True):
-            v[group.velocities] = self._velocity_scale[group.velocities] * step
-        return np.asarray(pin.normalize(self._robot.model, pin.integrate(self._robot.model, q, v)))
+        v = np.zeros(self._model.nv)
+        for evaluation, step in zip(going, steps, strict=True):
+            v[evaluation.group.velocities] = evaluation.unit * step
+        # Pinocchio brings quaternions back to unit length to first order alone.
+        return np.asarray(pin.normalize(self._model, pin.integrate(self._model, q, v)))
 
-    def _descend(self, q: Vector, groups: Sequence[LoopGroup]) -> tuple[Vector, list[float]]:
-        """Where the descents of the groups lead to, and the norm of the residual of each there."""
+    def _descend(self, q: Vector, going: Sequence[Evaluation]) -> tuple[Vector, list[Descent]]:
+        """Where the descents of the groups lead to (nq,), and the descents."""
         q = np.array(q)
-        r, K = self.evaluate(q)
-        descents = [Descent(group, *self._part(r, K, group)) for group in groups]
+        self.iterations += 1
+        descents = [Descent(evaluation, q) for evaluation in going]
         for _ in range(_MOST_STEPS):
-            going = [descent for descent in descents if descent.error > self._tolerance and not descent.stuck]
-            self._work += sum(_work_of_step(descent.group) for descent in going)
-            if not going or self._work > _MOST_WORK:
+            moving = [descent for descent in descents if descent.error > self.tolerance and not descent.stuck]
+            self._work += sum(_work_of_step(descent.evaluation.group) for descent in moving)
+            if not moving or self._work > _MOST_WORK:
                 break
-            steps = [descent.step(*self._room(q, descent.group)) for descent in going]
-            trial = self.moved(q, [descent.group for descent in going], steps)
-            r, K = self.evaluate(trial)
-            for descent in going:
-                if descent.accept(*self._part(r, K, descent.group)):
-                    q[descent.group.coordinates] = trial[descent.group.coordinates]
-        return q, [descent.error for descent in descents]
+            steps = [descent.step(self._room(q, descent.evaluation)) for descent in moving]
+            trial = self.moved(q, [descent.evaluation for descent in moving], steps)
+            self.iterations += 1
+            for descent in moving:
+                if descent.arrive(trial):
+                    coordinates = descent.evaluation.group.coordinates
+                    q[coordinates] = trial[coordinates]
+        return q, descents
 
-    def _part(self, r: Vector, K: Matrix, group: LoopGroup) -> tuple[Vector, Matrix, Vector]:
-        """Residual of a group in m and rad, its block of K, scaled, and its residual, scaled."""
-        part = r[group.rows]
-        return part, self.scaled(K, group), self._row_scale[group.rows] * part
-
-    def _within_limits(self, q: Vector, groups: Sequence[LoopGroup]) -> Vector:
-        if self._limits is not None:
-            for group in groups:
-                q = self._limits.clip(q, group.velocities)
+    def _within_limits(self, q: Vector, going: Sequence[Evaluation]) -> Vector:
+        if self.limits is not None:
+            for evaluation in going:
+                q = self.limits.clip(q, evaluation.group.velocities)
         return q
 
-    def _room(self, q: Vector, group: LoopGroup) -> tuple[Vector, Vector]:
+    def _room(self, q: Vector, evaluation: Evaluation) -> tuple[Vector, Vector] | None:
         """How far the velocities of a group may go down and up, in rad and characteristic lengths."""
-        if self._limits is None:
-            return np.full(len(group.velocities), -np.inf), np.full(len(group.velocities), np.inf)
-        down, up = self._limits.room(q, group.velocities)
-        unit = self._velocity_scale[group.velocities]
-        return down / unit, up / unit
+        if self.limits is None:
+            return None
+        down, up = self.limits.room(q, evaluation.group.velocities)
+        return down / evaluation.unit, up / evaluation.unit
+
+
+class _Known:
+    """An assembler, and what the robot was like when it was made."""
+
+    def __init__(self, robot: Robot, held: tuple[str, ...]) -> None:
+        self.assembler = Assembler(robot, held)
+        self._small = robot.model.nv <= _MOST_VELOCITIES_WITH_DATA
+        self._model = robot.model
+        if self._small:
+            self._same_model = robot.model.copy()
+            self._constraints = [pin.RigidConstraintModel(constraint) for constraint in robot.constraint_models]
+
+    def fits(self, robot: Robot) -> bool:
+        """Whether the robot is as it was."""
+        return robot.model is self._model and bool(
+            robot.model == self._same_model and robot.constraint_models == self._constraints
+        )
+
+    def keep(self, robot: Robot, held: tuple[str, ...]) -> None:
+        """Keep it with the robot, where that is small: it takes memory, and time to compare."""
+        if self._small:
+            kept = _KNOWN.setdefault(robot, {})
+            if len(kept) >= _MOST_KEPT:
+                kept.clear()
+            kept[held] = self
+
+
+_KNOWN: weakref.WeakKeyDictionary[Any, dict[tuple[str, ...], _Known]] = weakref.WeakKeyDictionary()
 
 
 def _work_of_step(group: LoopGroup) -> float:
     """Multiplications that the smaller one of A Aᵀ and Aᵀ A takes."""
     m, n = len(group.rows), len(group.velocities)
     return float(m) * n * min(m, n)
+
+
+def _merged(groups: Sequence[LoopGroup], nc: int) -> LoopGroup:
+    """All groups as one."""
+    return LoopGroup(
+        closures=tuple(sorted(index for group in groups for index in group.closures)),
+        rows=np.arange(nc),
+        velocities=np.sort(np.concatenate([group.velocities for group in groups])),
+        coordinates=np.sort(np.concatenate([group.coordinates for group in groups])),
+    )
 
 
 def _held_velocities(model: Any, names: Iterable[str]) -> list[int]:

@@ -98,11 +98,13 @@ class LoopGroup:
     """Loops that share joints, so that only together they can be closed.
 
     Attributes:
+        closures: Indices of their closures, ascending.
         rows: Their rows in the stacked residual.
         velocities: Indices in v of their joints, without those held.
         coordinates: Indices in q of the same joints.
     """
 
+    closures: tuple[int, ...]
     rows: Indices
     velocities: Indices
     coordinates: Indices
@@ -130,6 +132,7 @@ def independent_groups(robot: Robot, held: Iterable[int] = ()) -> tuple[LoopGrou
         joints = sorted({joint for index in members for joint in moving[index]})
         groups.append(
             LoopGroup(
+                closures=tuple(members),
                 rows=_indices((loops[index].rows.start, loops[index].rows.stop) for index in members),
                 velocities=_indices((model.idx_vs[j], model.idx_vs[j] + model.nvs[j]) for j in joints),
                 coordinates=_indices((model.idx_qs[j], model.idx_qs[j] + model.nqs[j]) for j in joints),

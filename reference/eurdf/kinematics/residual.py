@@ -38,15 +38,15 @@ def residual(robot: Robot, q: Vector, data: Any = None) -> Vector:
     r = np.empty(loops[-1].rows.stop if loops else 0)
     for loop, constraint in zip(loops, robot.constraint_models, strict=True):
         aMb = _frame_a(placements, constraint).actInv(_frame_b(placements, constraint))
-        r[loop.rows] = pin.log6(aMb).vector if loop.spatial else aMb.translation
+        r[loop.rows] = residual_rows(aMb, loop.spatial)
     return r
 
 
 def residual_and_jacobian(robot: Robot, q: Vector, data: Any = None) -> tuple[Vector, Matrix]:
     """Residual of all closures and its derivative.
 
-    With J_A and J_B the world Jacobians of the bodies of A and B, the 6d rows of K are
-    Jlog6(ᴬM_B) · Ad(ᴮM_0) · (J_B - J_A), and the 3d rows are [1, -skew(ᴬp_B)] · Ad(ᴬM_0) · (J_B - J_A).
+    With J_A and J_B the world Jacobians of the bodies of A and B, the rows of K are those of `rows_of_twist` times
+    Ad(ᴬM_0) · (J_B - J_A).
 
     Args:
         robot: The robot.
@@ -67,19 +67,31 @@ def residual_and_jacobian(robot: Robot, q: Vector, data: Any = None) -> tuple[Ve
     for loop, constraint in zip(loops, robot.constraint_models, strict=True):
         oMa, oMb = _frame_a(placements, constraint), _frame_b(placements, constraint)
         aMb = oMa.actInv(oMb)
-        if loop.spatial:
-            r[loop.rows] = pin.log6(aMb).vector
-            projection = pin.Jlog6(aMb) @ oMb.toActionMatrixInverse()
-        else:
-            r[loop.rows] = aMb.translation
-            to_a = oMa.toActionMatrixInverse()
-            projection = to_a[:3] - pin.skew(aMb.translation) @ to_a[3:]
+        r[loop.rows] = residual_rows(aMb, loop.spatial)
+        projection = rows_of_twist(aMb, loop.spatial) @ oMa.toActionMatrixInverse()
         block = projection @ (J[:, loop.columns] * loop.signs)
         if loop.mimics:
             np.add.at(K[loop.rows].T, loop.velocities, block.T)
         else:
             K[loop.rows, loop.velocities] = block
     return r, K
+
+
+def residual_rows(aMb: Any, spatial: bool) -> Vector:
+    """The rows of one closure: log6(ᴬM_B) for a 6d one, (linear, angular), and ᴬp_B for a 3d one; m and rad."""
+    return np.asarray(pin.log6(aMb).vector if spatial else aMb.translation)
+
+
+def rows_of_twist(aMb: Any, spatial: bool) -> Matrix:
+    """The derivative of `residual_rows` by the twist of B against A, seen from A: (6, 6) or (3, 6).
+
+    It is Jlog6(ᴬM_B) · Ad(ᴮM_A) = Jlog6(ᴮM_A) for a 6d closure and [1, -skew(ᴬp_B)] for a 3d one.
+    """
+    if spatial:
+        return np.asarray(pin.Jlog6(aMb.inverse()))
+    rows = np.eye(3, 6)
+    rows[:, 3:] = -pin.skew(aMb.translation)
+    return rows
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,10 +21,12 @@ def characteristic_length(robot: Robot) -> float:
     1 m for loops without extent, such as a spherical linkage whose joints all stand in one point.
     """
     longest = 0.0
-    for loop, constraint in zip(find_loops(robot), robot.constraint_models, strict=True):
-        placements = [constraint.joint1_placement, constraint.joint2_placement]
-        placements += [robot.model.jointPlacements[joint] for joint in loop.joints]
-        longest = max(longest, sum(math.hypot(*placement.translation) for placement in placements))
+    loops, placements = find_loops(robot), robot.model.jointPlacements
+    # Once a joint: loops may share most of theirs.
+    reach = {joint: math.hypot(*placements[joint].translation) for joint in {j for loop in loops for j in loop.joints}}
+    for loop, constraint in zip(loops, robot.constraint_models, strict=True):
+        ends = math.hypot(*constraint.joint1_placement.translation), math.hypot(*constraint.joint2_placement.translation)
+        longest = max(longest, sum(ends) + sum(reach[joint] for joint in loop.joints))
     return longest / 2.0 if longest > 1e-9 else 1.0
 
 

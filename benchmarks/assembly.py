@@ -1,0 +1,106 @@
+"""`eurdf.assemble` from 1,000 random starts a robot, and against `scipy.optimize.fmin_slsqp` with equality constraints.
+
+The starts are drawn within ±0.5 rad, or half a characteristic length, of an assembled configuration. SLSQP is set up in
+two ways, the residual of the closures its equality constraints and the distance from the start its objective: over a step
+v in the tangent space at the start, and over q itself with rows for the lengths of quaternions. It differentiates by finite
+differences, as the published toolbox has it, and evaluates the same residual as we do. Times are of the processor.
+"""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pinocchio as pin
+from scipy.optimize import fmin_slsqp
+
+import eurdf
+from benchmarks.load import robots
+from eurdf.kinematics.assembly import assemble
+from eurdf.kinematics.residual import residual, residual_and_jacobian
+from eurdf.kinematics.scale import characteristic_length, velocity_scale
+
+Vector = npt.NDArray[np.float64]
+
+STARTS = 1000
+COMPARED = 20
+
+
+def main() -> None:
+    """Print two tables."""
+    loaded = {folder.name: eurdf.load(folder, geometry=False) for folder in robots()}
+    closing = {name: robot for name, robot in loaded.items() if robot.constraint_models and assemble(robot).closes}
+    print(f"{'robot':20} {'neutral':>8} {'converged':>10} {'median':>7} {'99 %':>5} {'most':>5}   (evaluations)")
+    for name, robot in closing.items():
+        from_neutral = assemble(robot, pin.neutral(robot.model)).iterations
+        found = [assemble(robot, start) for start in starts(robot, STARTS)]
+        evaluations = [assembly.iterations for assembly in found]
+        share = sum(assembly.converged for assembly in found) / STARTS
+        most = np.percentile(evaluations, [50, 99, 100], method="higher").astype(int)
+        print(f"{name:20} {from_neutral:8} {share:10.1%} {most[0]:7} {most[1]:5} {most[2]:5}")
+    print(f"\n{'robot':20} {'from':8} {'eurdf':>9} {'residual':>9} {'over v':>9} {'residual':>9} {'over q':>9}", end="")
+    print(f" {'residual':>9} {'v/eurdf':>8} {'q/eurdf':>8}")
+    for name in ("digit_leg", "digit_like", "digit_like_2legs"):
+        if name in closing:
+            compare(name, "neutral", closing[name], [pin.neutral(closing[name].model)])
+            compare(name, "random", closing[name], starts(closing[name], COMPARED))
+
+
+def starts(robot: eurdf.Robot, count: int) -> list[Vector]:
+    """Configurations (nq,) around an assembled one, the same every time."""
+    random, model, closed = np.random.default_rng(1), robot.model, assemble(robot).q
+    unit = velocity_scale(robot, characteristic_length(robot))
+    return [pin.integrate(model, closed, unit * random.uniform(-0.5, 0.5, model.nv)) for _ in range(count)]
+
+
+def compare(name: str, where: str, robot: eurdf.Robot, places: list[Vector]) -> None:
+    """Print a row: median times over some starts, the worst residual of each way, the ratio of the times."""
+    ways = (lambda q: assemble(robot, q).q, lambda q: slsqp_over_v(robot, q), lambda q: slsqp_over_q(robot, q))
+    medians, worst = [], []
+    for way in ways:
+        calls = [timed(lambda way=way, q=q: way(q)) for q in places * (COMPARED // len(places))]  # type: ignore[misc]
+        medians.append(statistics.median(taken for taken, _ in calls))
+        worst.append(max(float(np.linalg.norm(residual(robot, end))) for _, end in calls))
+    ours, over_v, over_q = medians
+    columns = " ".join(f"{t * 1e3:6.2f} ms {r:9.0e}" for t, r in zip(medians, worst, strict=True))
+    print(f"{name:20} {where:8} {columns} {over_v / ours:7.1f}x {over_q / ours:7.1f}x")
+    data, q = robot.model.createData(), places[0]
+    one = min(timed(lambda: residual_and_jacobian(robot, q, data))[0] for _ in range(100))
+    print(f"{'':20} {ours / one:8.1f} times one call of `residual_and_jacobian`, {one * 1e6:.0f} µs")
+
+
+def timed(function: Callable[[], Any]) -> tuple[float, Any]:
+    """Processor time of a call, s, and what it returned."""
+    begin = time.process_time()
+    result = function()
+    return time.process_time() - begin, result
+
+
+def slsqp_over_v(robot: eurdf.Robot, q: Vector) -> Vector:
+    """The nearest closed configuration, as a step from q in its tangent space: ½ |v|² least, subject to r(q ⊕ v) = 0."""
+    model, data = robot.model, robot.model.createData()
+    v = fmin_slsqp(
+        lambda v: 0.5 * v @ v,
+        np.zeros(model.nv),
+        f_eqcons=lambda v: residual(robot, pin.integrate(model, q, v), data),
+        iter=200,
+        iprint=0,
+    )
+    return np.asarray(pin.integrate(model, q, v))
+
+
+def slsqp_over_q(robot: eurdf.Robot, q: Vector) -> Vector:
+    """The nearest closed configuration by its coordinates: ½ |x - q|² least, subject to r(x) = 0, |quaternions| = 1."""
+    model, data = robot.model, robot.model.createData()
+    spheres = [slice(j.idx_q, j.idx_q + j.nq) for j in list(model.joints)[1:] if j.nq in (2, 4) and j.nq > j.nv]
+
+    def constraints(x: Vector) -> Vector:
+        lengths = [x[sphere] @ x[sphere] - 1.0 for sphere in spheres]
+        return np.concatenate([residual(robot, pin.normalize(model, x), data), lengths])
+
+    x = fmin_slsqp(lambda x: 0.5 * (x - q) @ (x - q), q, f_eqcons=constraints, iter=200, iprint=0)
+    return np.asarray(pin.normalize(model, x))

@@ -1,0 +1,60 @@
+"""A small convex quadratic program: the best step that stays within bounds."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eurdf.kinematics.array import Matrix, Vector
+
+_ROUNDING = 1e-12
+# Changes of the active set, times the dimension and one more.
+_MOST_CHANGES = 5
+
+
+def bounded_step(H: Matrix, g: Vector, G: Matrix, h: Vector) -> Vector:
+    """The y that minimises ½ yᵀ H y + gᵀ y subject to G y ≤ h.
+
+    A primal active-set method from y = 0. Every iterate is within the bounds and no worse than the one before; should
+    it walk in circles, as it may where many bounds meet, it stops at the best one found.
+
+    Source: Nocedal and Wright, Numerical Optimization, 2006, algorithm 16.3.
+
+    Args:
+        H: Positive definite (m, m).
+        g: (m,).
+        G: (n, m).
+        h: Not negative (n,), so that y = 0 is within the bounds.
+
+    Returns:
+        y (m,).
+    """
+    y, slack = np.zeros(len(g)), _ROUNDING * float(np.abs(g).max(initial=0.0))
+    active: list[int] = []
+    for _ in range(_MOST_CHANGES * (len(g) + 1)):
+        p = _to_lowest(H, H @ y + g, G[active])
+        along, room = G @ p, np.maximum(h - G @ y, 0.0)
+        approached = along > _ROUNDING * np.abs(p).max(initial=0.0)
+        approached[active] = False
+        reach = np.full(len(h), np.inf)
+        reach[approached] = room[approached] / along[approached]
+        if reach.min(initial=np.inf) < 1.0:
+            nearest = int(np.argmin(reach))
+            y = y + reach[nearest] * p
+            active.append(nearest)
+            continue
+        y = y + p  # the lowest point on the active bounds: do all of them hold it back?
+        pressures = -np.linalg.lstsq(G[active].T, H @ y + g, rcond=None)[0] if active else np.zeros(1)
+        loosest = int(np.argmin(pressures))
+        if pressures[loosest] >= -slack:
+            break
+        active.pop(loosest)
+    return y
+
+
+def _to_lowest(H: Matrix, slope: Vector, normals: Matrix) -> Vector:
+    """The step (m,) to the lowest point from one with the given slope, across the normals (k, m)."""
+    if not len(normals):
+        return -np.asarray(np.linalg.solve(H, slope), dtype=np.float64)
+    orthogonal, _ = np.linalg.qr(normals.T, mode="complete")
+    N = orthogonal[:, len(normals) :]
+    return -np.asarray(N @ np.linalg.solve(N.T @ H @ N, N.T @ slope), dtype=np.float64)

@@ -1,0 +1,490 @@
+"""Dynamics of the closed mechanism: the acceleration that torques make, and the torques that an acceleration takes.
+
+The equation of motion and the closures, differentiated twice, are
+
+    M(q) a + h(q, v) = S u + τ + Kᵀ λ,        K(q) a + K̇(q, v) v = 0,
+
+with K the derivative of the residual of `eurdf.kinematics.residual`. The forces λ of a closure are conjugate to its
+rows, so that λᵀ K v is their power: at a closed configuration (EU-CLO-008, EU-CLO-009), the force (N), and for a 6d
+closure also the moment (N·m), that act at frame A on the body of B, in the axes of A. The body of A gets the opposite.
+Pinocchio's ``contact_force`` is what acts on the body of A: the negative of it.
+"""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Mapping
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import ArrayLike
+
+from eurdf.exceptions import InconsistentMotion, UnderactuatedMotion, UndeterminedMotion
+from eurdf.kinematics.acceleration_drift import acceleration_drift
+from eurdf.kinematics.array import Matrix, Vector
+from eurdf.kinematics.assembly import start
+from eurdf.kinematics.frame_index import frame_index
+from eurdf.kinematics.loop import Loop, find_loops
+from eurdf.kinematics.rank import numerical_rank
+from eurdf.kinematics.residual import residual_and_jacobian
+from eurdf.kinematics.tangent_space import TangentSpaces
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+#: Forces and moments at frames, by frame name: six numbers each, or a `pin.Force`.
+External = Mapping[str, ArrayLike]
+
+# What Pinocchio's solver may leave, of the largest term, in either equation.
+_SOLVED = 1e-9
+
+# Of the largest inertia of a free motion, what is below this is none.
+_MASSLESS = 1e-14
+
+# μ regularises the solver's first step alone: with the steps that follow it has no part in the answer.
+_MU, _MOST_PROXIMAL_STEPS = 1e-8, 50
+
+
+class ForwardDynamics(NamedTuple):
+    """What the torques make of a motion.
+
+    Attributes:
+        a: Acceleration (nv,), rad/s² and m/s².
+        forces: For each closure, in their order, λ: (3,) N, or (6,) N and N·m. See the head of this module.
+    """
+
+    a: Vector
+    forces: tuple[Vector, ...]
+
+
+class InverseDynamics(NamedTuple):
+    """What a motion takes.
+
+    Attributes:
+        u: Motor torques (nu,), in the order of the actuation, N·m and N.
+        forces: For each closure, in their order, λ: (3,) N, or (6,) N and N·m. See the head of this module.
+    """
+
+    u: Vector
+    forces: tuple[Vector, ...]
+
+
+def forward_dynamics(
+    robot: Robot,
+    q: Vector,
+    v: Vector,
+    u: Vector | None = None,
+    *,
+    tau: Vector | None = None,
+    external: External | None = None,
+    dissipation: bool = False,
+    gains: tuple[float, float] | None = None,
+    data: Any = None,
+) -> ForwardDynamics:
+    """Acceleration of the closed mechanism, and the forces in its closures.
+
+    Solves M a + h = S u + τ + Kᵀ λ together with K a + K̇ v = -kd K v - kp r, through Pinocchio's proximal solver
+    (Carpentier, Budhiraja, Mansard, *Proximal and sparse resolution of constrained dynamic equations*, 2021).
+    Redundant rows share their force so that λ is the least, lengths counted in characteristic lengths.
+
+    Pinocchio's solver does not take joints that mimic; it wants inertia at every joint, also where the closures leave
+    it no motion of its own; it takes rows that differ by the rounding of numbers in files for independent ones, which
+    lock the mechanism. So its answer counts where it satisfies both equations to 1e-9, with the rank of K that
+    `analyze` counts. Elsewhere they are solved by elimination.
+
+    M contains the armature. Limits of joints and of motors are not looked at.
+
+    Args:
+        robot: The robot.
+        q: Configuration (nq,), closed.
+        v: Velocity (nv,), with K v = 0. One that opens the closures keeps opening them, but for ``gains``.
+        u: Motor torques (nu,), in the order of the actuation, N·m and N; zero by default.
+        tau: Further generalized forces (nv,), such as of springs, N·m and N.
+        external: For frames of the model, by name, the force and moment (6,) that act at its origin, in the axes of
+            the world, N and N·m.
+        dissipation: Whether damping and dry friction of the joints act: -d v - f sign(v). They do not by default.
+            Friction does not hold what stands still: sign(0) = 0.
+        gains: Baumgarte's kp (1/s²) and kd (1/s), which draw an open mechanism closed; kd = 2 √kp without overshoot.
+            Those that the constraint models carry by default, which are zero unless set.
+        data: A `pin.Data` of the model to compute in; without one, one is made.
+
+    Raises:
+        ValueError: A vector is of another shape or not finite, a frame is not known.
+        UndeterminedMotion: Something without inertia can move.
+    """
+    motion = _Motion(robot, q, v, data)
+    force = motion.applied(u, tau, external, dissipation)
+    constraint_models, kp, kd = _stabilised(robot, gains)
+    target = -motion.drift - kd * (motion.K @ motion.v) - kp * motion.r
+    if len(target) and not len(robot.model.mimicking_joints):
+        solved = _proximal(motion, constraint_models, force, target)
+        if solved is not None:
+            return solved
+    return _eliminate(motion, force, target)
+
+
+def inverse_dynamics(
+    robot: Robot,
+    q: Vector,
+    v: Vector,
+    a: Vector,
+    *,
+    tau: Vector | None = None,
+    external: External | None = None,
+    dissipation: bool = False,
+    weights: Vector | None = None,
+    tolerance: float = 1e-6,
+    data: Any = None,
+) -> InverseDynamics:
+    """Motor torques that a motion of the closed mechanism takes, and the forces in its closures.
+
+    Solves S u + Kᵀ λ = M a + h - τ. With N a basis of the motions that the closures leave, K N = 0, the torques are
+    those of least Σ wᵢ uᵢ² with Nᵀ S u = Nᵀ (M a + h - τ); λ is the least that does the rest, lengths counted in
+    characteristic lengths. (Nakamura, Ghodoussi, *Dynamics computation of closed-link robot mechanisms with
+    nonredundant and redundant actuators*, 1989.) It is the inverse of `forward_dynamics`.
+
+    A motion that the closures forbid is refused, not changed: project it onto them first. So is one that the motors
+    cannot make; `achievable_acceleration` gives the nearest one that they can.
+
+    Args:
+        robot: The robot.
+        q: Configuration (nq,), closed.
+        v: Velocity (nv,), with K v = 0.
+        a: Acceleration (nv,), with K a + K̇ v = 0.
+        tau: As in `forward_dynamics`.
+        external: As in `forward_dynamics`.
+        dissipation: As in `forward_dynamics`.
+        weights: w (nu,), positive; all 1 by default.
+        tolerance: By how much v and a may differ from the nearest that keep the closures closed, and a from what the
+            motors can make, in parts of 1 plus the largest component (rad and s, or characteristic lengths).
+        data: As in `forward_dynamics`.
+
+    Raises:
+        ValueError: A vector is of another shape or not finite, a frame is not known, a weight is not positive.
+        InconsistentMotion: v or a does not keep the closures closed.
+        UnderactuatedMotion: The motors cannot make this motion.
+    """
+    motion = _Motion(robot, q, v, data)
+    a = checked_vector(a, robot.model.nv, "an acceleration")
+    S, norm = robot.actuation.selection, _norm(robot, weights)
+    motion.refuse_open(a, tolerance)
+    force = motion.bias - motion.applied(None, tau, external, dissipation)
+    inertial = motion.mass(a)
+    deviation, missing = _uncontrolled(motion, inertial, force)
+    _refuse_uncontrolled(motion, a, deviation, missing, tolerance)
+    required = force + inertial
+    controlled, _ = motion.by_motors
+    along = controlled.T @ motion.N.T
+    u = norm * (np.linalg.pinv(along @ S * norm) @ (along @ required))
+    return InverseDynamics(u, _per_closure(motion.loops, motion.P.T @ (required - S @ u)))
+
+
+def achievable_acceleration(
+    robot: Robot,
+    q: Vector,
+    v: Vector,
+    a: Vector,
+    *,
+    tau: Vector | None = None,
+    external: External | None = None,
+    dissipation: bool = False,
+    tolerance: float = 1e-6,
+    data: Any = None,
+) -> Vector:
+    """The acceleration that the motors can make, which moves them as the one given does.
+
+    What moves with every motor held goes as the dynamics has it: with U a basis of these motions, K U = 0 and
+    Sᵀ U = 0, the result is a' = a + U z with Uᵀ (M a' + h - τ) = 0. By Gauss' principle no other such acceleration is
+    as near to the unconstrained one. `inverse_dynamics` takes what comes out.
+
+    Args:
+        robot: The robot.
+        q: Configuration (nq,), closed.
+        v: Velocity (nv,), with K v = 0.
+        a: Acceleration (nv,), with K a + K̇ v = 0.
+        tau: As in `forward_dynamics`.
+        external: As in `forward_dynamics`.
+        dissipation: As in `forward_dynamics`.
+        tolerance: As in `inverse_dynamics`, of the closures.
+        data: As in `forward_dynamics`.
+
+    Returns:
+        a' (nv,), rad/s² and m/s².
+
+    Raises:
+        ValueError: A vector is of another shape or not finite, a frame is not known.
+        InconsistentMotion: v or a does not keep the closures closed.
+        UnderactuatedMotion: What is without inertia would have to take a force.
+    """
+    motion = _Motion(robot, q, v, data)
+    a = checked_vector(a, robot.model.nv, "an acceleration")
+    motion.refuse_open(a, tolerance)
+    force = motion.bias - motion.applied(None, tau, external, dissipation)
+    deviation, missing = _uncontrolled(motion, motion.mass(a), force)
+    if missing.any():
+        raise UnderactuatedMotion(_by_joint(robot.model, missing), np.inf)
+    return a - deviation
+
+
+class _Motion:
+    """A robot in motion, and what its equations are made of there.
+
+    Attributes:
+        r: Residual (nc,).
+        K: Its derivative (nc, nv).
+        drift: K̇ v (nc,).
+        P: Generalized inverse of K (nv, nc): P b is the least of the x with K x = b, lengths counted in
+            characteristic lengths; Pᵀ f the least of the λ with Kᵀ λ = f.
+        unit: Unit (nv,) of each velocity: a characteristic length, or 1.
+        bias: h (nv,).
+    """
+
+    def __init__(self, robot: Robot, q: Vector, v: Vector, data: Any) -> None:
+        model = robot.model
+        self.robot = robot
+        self.q = start(robot, q)
+        self.v = checked_vector(v, model.nv, "a velocity")
+        self.data = model.createData() if data is None else data
+        self.loops = find_loops(robot)
+        self.r, self.K = residual_and_jacobian(robot, self.q, self.data)
+        self.drift = acceleration_drift(robot, self.q, self.v, self.data)
+        spaces = _spaces(robot)
+        space = spaces.at(self.K)
+        self.P, self.unit, self._basis = space.inverse, spaces.scale, space.basis
+        self.bias: Vector = np.array(pin.rnea(model, self.data, self.q, self.v, np.zeros(model.nv)))
+
+    @cached_property
+    def free(self) -> Matrix:
+        """Basis (nv, f) of the motions that the closures leave, orthonormal in the units of the velocities."""
+        return np.linalg.qr(self._basis / self.unit[:, None])[0]
+
+    @cached_property
+    def N(self) -> Matrix:  # noqa: N802 - the field's own symbol
+        """The same in rad/s and m/s: K N = 0."""
+        return self.unit[:, None] * self.free
+
+    @cached_property
+    def by_motors(self) -> tuple[Matrix, Matrix]:
+        """Orthonormal bases, (f, k) and (f, f - k), of the free motions that motors make and of those that none makes.
+
+        The rank k is counted as in `numerical_rank`. With the second, Z, no motor moves along N Z.
+        """
+        S = self.robot.actuation.selection
+        if not S.shape[1]:
+            return np.zeros((self.N.shape[1], 0)), np.eye(self.N.shape[1])
+        basis, values, _ = np.linalg.svd(self.free.T @ S)
+        rank = numerical_rank(values, values.max(initial=0.0))
+        return basis[:, :rank], basis[:, rank:]
+
+    def differ(self, change: Vector, given: Vector, tolerance: float) -> bool:
+        """Whether a velocity or acceleration (nv,) changed so is another: by parts of 1 + its largest component."""
+        largest = np.abs(change / self.unit).max(initial=0.0)
+        return bool(largest > tolerance * (1.0 + np.abs(given / self.unit).max(initial=0.0)))
+
+    def mass(self, a: Vector) -> Vector:
+        """M a, with the armature."""
+        return np.asarray(pin.rnea(self.robot.model, self.data, self.q, self.v, a) - self.bias)
+
+    def mass_along(self, motions: Matrix) -> Matrix:
+        """M times the columns (nv, n)."""
+        model = self.robot.model
+        if len(model.mimicking_joints):  # crba is wrong, up to Pinocchio 4.1, where a follower carries several branches
+            return np.array([self.mass(column) for column in motions.T]).reshape(motions.T.shape).T
+        M = np.triu(pin.crba(model, self.data, self.q))
+        return np.asarray((M + np.triu(M, 1).T) @ motions)
+
+    def applied(self, u: Vector | None, tau: Vector | None, external: External | None, dissipation: bool) -> Vector:
+        """Generalized force (nv,) of motors, external forces, damping and friction."""
+        model, S = self.robot.model, self.robot.actuation.selection
+        force: Vector = np.zeros(model.nv)
+        if u is not None:
+            force += S @ checked_vector(u, S.shape[1], "the motor torques")
+        if tau is not None:
+            force += checked_vector(tau, model.nv, "a generalized force")
+        if external:
+            at_joints = _at_joints(model, self.data, self.q, external)
+            still = np.zeros(model.nv)
+            force += self.bias - pin.rnea(model, self.data, self.q, self.v, still, at_joints)
+        if dissipation:
+            force -= model.damping * self.v + model.upperDryFrictionLimit * np.sign(self.v)
+        return force
+
+    def refuse_open(self, a: Vector, tolerance: float) -> None:
+        """Raise `InconsistentMotion` where v or a would open the closures."""
+        for order, opening, given in (
+            ("velocity", self.K @ self.v, self.v),
+            ("acceleration", self.K @ a + self.drift, a),
+        ):
+            change = self.P @ opening  # nothing of what redundant rows have by rounding
+            if self.differ(change, given, tolerance):
+                opening = self.K @ change
+                least = 1e-3 * np.abs(opening).max()
+                rows = zip(self.robot.constraint_models, _per_closure(self.loops, opening), strict=True)
+                opened = {
+                    constraint.name: tuple(own.tolist()) for constraint, own in rows if (np.abs(own) > least).any()
+                }
+                raise InconsistentMotion(order, opened)
+
+
+def _proximal(motion: _Motion, constraint_models: Any, force: Vector, target: Vector) -> ForwardDynamics | None:
+    """What Pinocchio's solver finds; None where that does not solve the equations.
+
+    Forces along rows that P does not count are left out of it, and so cannot hold anything.
+    """
+    model, data = motion.robot.model, motion.data
+    constraint_datas = pin.StdVec_RigidConstraintData()
+    for constraint in constraint_models:
+        constraint_datas.append(constraint.createData())
+    pin.initConstraintDynamics(model, data, constraint_models, constraint_datas)
+    settings = pin.ProximalSettings(1e-14, 1e-14, _MU, _MOST_PROXIMAL_STEPS)
+    a = np.array(
+        pin.constraintDynamics(model, data, motion.q, motion.v, force, constraint_models, constraint_datas, settings)
+    )
+    on_a = [
+        found.contact_force.vector[: loop.rows.stop - loop.rows.start]
+        for found, loop in zip(constraint_datas, motion.loops, strict=True)
+    ]
+    K, P = motion.K, motion.P
+    lambdas = -P.T @ (K.T @ np.concatenate(on_a))
+    if not (np.isfinite(a).all() and np.isfinite(lambdas).all()):
+        return None
+    inertial = motion.mass(a)
+    terms = max(np.abs(part).max(initial=0.0) for part in (inertial, motion.bias, force))
+    wrong = np.abs(inertial + motion.bias - force - K.T @ lambdas).max()
+    opening, moved = K @ (P @ (K @ a - target)), np.abs(K) @ np.abs(a) + np.abs(target)
+    if wrong > _SOLVED * terms or np.abs(opening).max() > _SOLVED * moved.max():
+        return None
+    return ForwardDynamics(a, _per_closure(motion.loops, lambdas))
+
+
+def _eliminate(motion: _Motion, force: Vector, target: Vector) -> ForwardDynamics:
+    """The equations in the motions that the closures leave: a = P b + N z, with Nᵀ M N z = Nᵀ (τ - h - M P b)."""
+    N, P = motion.N, motion.P
+    a = P @ target
+    MN = motion.mass_along(N)
+    required = force - motion.bias - motion.mass(a)
+    inertia, axes = np.linalg.eigh(N.T @ MN)
+    massless = inertia <= _MASSLESS * inertia.max(initial=0.0)
+    if massless.any():
+        motions = N @ axes[:, massless]
+        raise UndeterminedMotion(tuple(_by_joint(motion.robot.model, np.abs(motions).max(axis=1))))
+    z = axes @ ((axes.T @ (N.T @ required)) / inertia)
+    lambdas = P.T @ (MN @ z - required)
+    return ForwardDynamics(a + N @ z, _per_closure(motion.loops, lambdas))
+
+
+def _uncontrolled(motion: _Motion, inertial: Vector, force: Vector) -> tuple[Vector, Vector]:
+    """How far an acceleration is from what the motors can make.
+
+    Args:
+        motion: The robot in motion.
+        inertial: M a (nv,).
+        force: h - τ (nv,).
+
+    Returns:
+        What a has too much (nv,), along motions that no motor moves, and the generalized force (nv,) that is missing
+        along those of them that have no inertia.
+    """
+    _, Z = motion.by_motors
+    if not Z.shape[1]:
+        return np.zeros(len(force)), np.zeros(len(force))
+    free_inertia = motion.N.T @ motion.mass_along(motion.N)
+    inertia, axes = np.linalg.eigh(Z.T @ free_inertia @ Z)
+    massive = inertia > _MASSLESS * np.diagonal(free_inertia).max()
+    U = motion.N @ Z @ axes
+    along = U.T @ (inertial + force)
+    terms = np.abs(U.T) @ (np.abs(inertial) + np.abs(force))
+    unborne = np.where(massive | (np.abs(along) <= _SOLVED * terms), 0.0, along)
+    deviation = U[:, massive] @ (along[massive] / inertia[massive])
+    return deviation, motion.free @ (Z @ (axes @ unborne)) / motion.unit
+
+
+def _refuse_uncontrolled(motion: _Motion, a: Vector, deviation: Vector, missing: Vector, tolerance: float) -> None:
+    model = motion.robot.model
+    if missing.any():
+        raise UnderactuatedMotion(_by_joint(model, missing), np.inf)
+    if motion.differ(deviation, a, tolerance):
+        # The least force, besides motors and closures, that does it.
+        along = motion.free @ motion.by_motors[1]
+        force = along @ (along.T @ (motion.unit * motion.mass(deviation))) / motion.unit
+        raise UnderactuatedMotion(_by_joint(model, force), float(np.abs(deviation / motion.unit).max()))
+
+
+# Found once a robot: they depend on its structure alone.
+_SPACES: weakref.WeakKeyDictionary[Any, tuple[tuple[Loop, ...], TangentSpaces]] = weakref.WeakKeyDictionary()
+
+
+def _spaces(robot: Robot) -> TangentSpaces:
+    loops = find_loops(robot)
+    known = _SPACES.get(robot)
+    if known is None or known[0] is not loops:
+        known = loops, TangentSpaces(robot)
+        _SPACES[robot] = known
+    return known[1]
+
+
+def _stabilised(robot: Robot, gains: tuple[float, float] | None) -> tuple[Any, Vector, Vector]:
+    """The constraint models with their Baumgarte gains, and these for each row, kp (nc,) and kd (nc,)."""
+    constraint_models, kp, kd = pin.StdVec_RigidConstraintModel(), [], []
+    for constraint in robot.constraint_models:
+        if gains is not None:
+            constraint = pin.RigidConstraintModel(constraint)
+            constraint.m_baumgarte_parameters.Kp, constraint.m_baumgarte_parameters.Kd = map(float, gains)
+        constraint_models.append(constraint)
+        kp += [constraint.m_baumgarte_parameters.Kp] * constraint.residualSize()
+        kd += [constraint.m_baumgarte_parameters.Kd] * constraint.residualSize()
+    return constraint_models, np.array(kp), np.array(kd)
+
+
+def _at_joints(model: Any, data: Any, q: Vector, external: External) -> Any:
+    """The forces at frames as Pinocchio's, at each joint and in its axes."""
+    pin.forwardKinematics(model, data, q)
+    forces = [pin.Force.Zero() for _ in range(model.njoints)]
+    for name, given in external.items():
+        frame = model.frames[frame_index(model, name)]
+        joint = frame.parentJoint
+        values = given.vector if isinstance(given, pin.Force) else given
+        upright = pin.SE3(data.oMi[joint].rotation.T, frame.placement.translation)
+        forces[joint] += upright.act(pin.Force(checked_vector(values, 6, f"the force at '{name}'")))
+    at_joints = pin.StdVec_Force()
+    for force in forces:
+        at_joints.append(force)
+    return at_joints
+
+
+def _norm(robot: Robot, weights: Vector | None) -> Vector:
+    """1/√w (nu,)."""
+    nu = robot.actuation.selection.shape[1]
+    if weights is None:
+        return np.ones(nu)
+    given = checked_vector(weights, nu, "the weights")
+    if not (given > 0.0).all():
+        raise ValueError("a weight of a motor is not positive")
+    return np.asarray(1.0 / np.sqrt(given))
+
+
+def _per_closure(loops: tuple[Loop, ...], lambdas: Vector) -> tuple[Vector, ...]:
+    return tuple(lambdas[loop.rows] for loop in loops)
+
+
+def _by_joint(model: Any, values: Vector) -> dict[str, tuple[float, ...]]:
+    """The values (nv,) of the joints in which one is more than rounding, by joint name."""
+    least = 1e-6 * np.abs(values).max(initial=0.0)
+    found = {}
+    for name, first, width in zip(model.names, model.idx_vs, model.nvs, strict=True):
+        own = values[first : first + width]
+        if width and (np.abs(own) > least).any():
+            found[name] = tuple(own.tolist())
+    return found
+
+
+def checked_vector(given: ArrayLike, size: int, what: str) -> Vector:
+    """The numbers given, as an array of this size (size,) that is finite."""
+    values = np.asarray(given, dtype=np.float64)
+    if values.shape != (size,):
+        raise ValueError(f"{what} has the shape ({size},) here, not {values.shape}")
+    if not np.isfinite(values).all():
+        raise ValueError(f"{what} has a number that is not finite")
+    return values

@@ -1,0 +1,264 @@
+"""Inverse kinematics of frames of a closed mechanism, within its joint limits."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pinocchio as pin
+
+from eurdf.kinematics.array import Matrix, Vector
+from eurdf.kinematics.assembly import Assembler, start
+from eurdf.kinematics.bounded_step import bounded_step
+from eurdf.kinematics.frame_index import frame_index
+from eurdf.kinematics.metric import orthonormal
+from eurdf.kinematics.position_limit import position_limits
+from eurdf.kinematics.residual import Opening, residual_and_jacobian
+from eurdf.kinematics.tangent_space import TangentSpaces
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+_MOST_STEPS = 60
+# A descent gives up after this many steps in a row that bring the squared error down by less than a part of it: one
+# that is to reach the targets by 2%, the last one, where they are out of reach, by next to nothing; ...
+_MOST_IDLE_STEPS = 6
+_IDLE = 0.02
+_IDLE_AT_LAST = 1e-8
+# ... or when a step is to bring it down by less than this part of it.
+_LEAST_GAIN = 1e-12
+# How far from the start further descents begin (rad, or characteristic lengths); the last one is repeated.
+_SPREADS = (0.2, 0.5, 1.0, 2.0)
+
+
+@dataclass(frozen=True, slots=True)
+class FrameError:
+    """How far a frame is from its target.
+
+    Attributes:
+        frame: Name of the frame.
+        position: Distance between its origin and the target's, m.
+        angle: Angle between its axes and the target's, rad; 0 where the target is a position, which leaves it free.
+    """
+
+    frame: str
+    position: float
+    angle: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class InverseKinematics:
+    """What `inverse_kinematics` found.
+
+    Attributes:
+        q: Configuration (nq,): closed and within the limits, if any such was found, and nearest to the targets.
+        converged: Whether every frame is at its target, and every loop closed, within the tolerances.
+        errors: How far each frame is from its target, in the order of the targets.
+        open: How far each closure is open at q, in their order.
+        iterations: Number of steps tried.
+    """
+
+    q: Vector
+    converged: bool
+    errors: tuple[FrameError, ...]
+    open: tuple[Opening, ...]
+    iterations: int
+
+
+def inverse_kinematics(
+    robot: Robot,
+    targets: Mapping[str, Any],
+    q0: Vector | None = None,
+    limits: bool = True,
+    *,
+    tolerance: float = 1e-8,
+    restarts: int = 10,
+) -> InverseKinematics:
+    """Bring frames of the closed mechanism to where they are wanted.
+
+    It minimises the sum over the frames of |oMf.translation - p|² / L² + |log3(Rᵀ oMf.rotation)|², the second for
+    targets that are poses, L the characteristic length of the robot's loops (1 m without loops), subject to r(q) = 0
+    and the joint limits. Every step is a damped Gauss-Newton step y along the closed configurations, v = Z y with
+    K Z = 0, bounded by the limits (an active set), and closed again by `assemble`: so loops are closed and limits kept
+    at every step, whether or not the targets can be reached. Where a descent ends off target, others start around q0.
+
+    Source: `closedLoopInverseKinematics` of the toolbox of Batto, De Matteïs and Mansard, 2025, there with the loops as
+    equality constraints of a general solver.
+
+    Args:
+        robot: The robot.
+        targets: For each frame, by the name of a link, of a joint (its frame on the child's side) or of a frame of the
+            description, where it is wanted in the world: a pose (`pin.SE3`), or a position (3,), m, that leaves its
+            orientation free.
+        q0: Where to start (nq,): of all solutions, it ends at one near by. It is closed first, and brought within the
+            limits. The `assembled` configuration by default, or else the neutral one.
+        limits: Whether to keep the position limits of the joints whose coordinates are plain angles or lengths. Those
+            of a joint that mimics another are not looked at. A joint whose URDF gives no range has one of zero width
+            (`urdf-no-range`), and does not move.
+        tolerance: How far a frame may be from its target, m and rad; loops are closed to 1e-10 where they can be.
+        restarts: How often to start again, at most, where frames are off target. The time is bounded by
+            ``restarts`` + 2 descents of at most 60 steps.
+
+    Returns:
+        The configuration found. The same arguments give the same answer.
+
+    Raises:
+        ValueError: ``q0`` is no configuration; a frame is unknown, or its name stands for two; a target is neither a
+            pose nor a finite position.
+    """
+    search = _Search(robot, targets, limits, tolerance)
+    return search.run(start(robot, q0), restarts)
+
+
+class _Search:
+    """The descents of one question."""
+
+    def __init__(self, robot: Robot, targets: Mapping[str, Any], limits: bool, tolerance: float) -> None:
+        self.robot = robot
+        self.model = robot.model
+        self.data = robot.model.createData()
+        self.targets = [
+            (name, frame_index(robot.model, name), _target(name, target)) for name, target in targets.items()
+        ]
+        self.assembler = Assembler(robot, limits=limits)
+        self.spaces = TangentSpaces(robot)
+        self.tolerance = tolerance
+        self.iterations = 0
+        self.limits = position_limits(robot.model) if limits else None
+        self.velocities = np.arange(robot.model.nv)
+
+    def run(self, q: Vector, restarts: int) -> InverseKinematics:
+        assembly = self.assembler.assemble(self._clipped(q))
+        q = best = assembly.q
+        if assembly.closes:
+            best, cost = self._descend(q)
+            random = np.random.default_rng(0)
+            for attempt in range(restarts):
+                if self._reached(best):
+                    break
+                spread = _SPREADS[min(attempt, len(_SPREADS) - 1)]
+                place = self._moved(q, self.spaces.scale * random.uniform(-spread, spread, self.model.nv))
+                beginning = self.assembler.assemble(place, restarts=0)
+                if not beginning.closes:
+                    continue
+                end, reached = self._descend(beginning.q)
+                if reached < cost:
+                    best, cost = end, reached
+            best, _ = self._descend(best, _IDLE_AT_LAST)
+        closed = self.assembler.assemble(best, restarts=0)
+        return InverseKinematics(
+            q=best,
+            converged=assembly.closes and self._reached(best),
+            errors=self._errors(best),
+            open=closed.open,
+            iterations=self.iterations,
+        )
+
+    def _descend(self, q: Vector, least: float = _IDLE) -> tuple[Vector, float]:
+        """Where a descent from a closed configuration leads to, and the squared error there.
+
+        Args:
+            q: Where to start (nq,).
+            least: Part of the squared error that a step must take off it not to be idle.
+        """
+        e, E = self._error_and_jacobian(q)
+        cost, damping, idle = float(e @ e), 1e-3, 0
+        for _ in range(_MOST_STEPS):
+            if idle > _MOST_IDLE_STEPS or self._reached(q):
+                break
+            v = self._step(q, e, E, damping * cost)
+            expected = cost - float(np.sum(np.square(e + E @ v)))
+            if not expected > _LEAST_GAIN * cost:
+                break
+            self.iterations += 1
+            trial = self.assembler.assemble(self._moved(q, v), restarts=0)
+            e_trial, E_trial = self._error_and_jacobian(trial.q)
+            reached = float(e_trial @ e_trial)
+            gain = (cost - reached) / expected if trial.closes else 0.0
+            idle = 0 if trial.closes and reached < (1.0 - least) * cost else idle + 1
+            if not gain > 0.01:
+                damping *= 8.0
+                continue
+            damping = max(damping * (0.1 if gain > 0.75 else 1.0 if gain > 0.25 else 4.0), 1e-8)
+            q, e, E, cost = trial.q, e_trial, E_trial, reached
+        return q, cost
+
+    def _step(self, q: Vector, e: Vector, E: Matrix, damping: float) -> Vector:
+        """The v (nv,) of ker K that minimises |E v + e|² + λ|v|² within the limits, of at most 1 rad or length."""
+        scale = self.spaces.scale
+        _, K = residual_and_jacobian(self.robot, q, self.data)
+        Z = orthonormal(self.spaces.at(K).basis, np.diag(scale**-2.0))
+        A = E @ Z
+        H = A.T @ A
+        np.einsum("ii->i", H)[:] += max(damping, 1e-13 * float(np.trace(H)), 1e-300)
+        G, h = self._bounds(q, Z)
+        v = Z @ bounded_step(H, A.T @ e, G, h)
+        return np.asarray(v / np.abs(v / scale).max(initial=1.0), dtype=np.float64)
+
+    def _bounds(self, q: Vector, Z: Matrix) -> tuple[Matrix, Vector]:
+        """G and h such that v = Z y keeps the limits where G y ≤ h: those that a step of 1 rad or length can reach."""
+        if self.limits is None:
+            return np.empty((0, Z.shape[1])), np.empty(0)
+        down, up = self.limits.room(q, self.velocities)
+        scale = self.spaces.scale
+        rows = Z / scale[:, None]
+        moves = np.linalg.norm(rows, axis=1) > 1e-9
+        above, below = moves & (up <= scale), moves & (-down <= scale)
+        return np.vstack([rows[above], -rows[below]]), np.concatenate([(up / scale)[above], (-down / scale)[below]])
+
+    def _moved(self, q: Vector, v: Vector) -> Vector:
+        return self._clipped(np.asarray(pin.normalize(self.model, pin.integrate(self.model, q, v))))
+
+    def _clipped(self, q: Vector) -> Vector:
+        return q if self.limits is None else self.limits.clip(q, self.velocities)
+
+    def _error_and_jacobian(self, q: Vector) -> tuple[Vector, Matrix]:
+        """Errors of all frames, stacked, lengths in characteristic lengths, and their derivative by v."""
+        model, data = self.model, self.data
+        pin.computeJointJacobians(model, data, q)
+        errors, jacobians = [np.empty(0)], [np.empty((0, model.nv))]
+        for _, index, target in self.targets:
+            oMf = pin.updateFramePlacement(model, data, index)
+            J = pin.getFrameJacobian(model, data, index, pin.LOCAL).reshape(6, -1)
+            position = target.translation if isinstance(target, pin.SE3) else target
+            errors.append((oMf.translation - position) / self.spaces.length)
+            jacobians.append(oMf.rotation @ J[:3] / self.spaces.length)
+            if isinstance(target, pin.SE3):
+                turn = target.rotation.T @ oMf.rotation
+                errors.append(pin.log3(turn))
+                jacobians.append(pin.Jlog3(turn) @ J[3:])
+        return np.concatenate(errors), np.vstack(jacobians)
+
+    def _errors(self, q: Vector) -> tuple[FrameError, ...]:
+        pin.forwardKinematics(self.model, self.data, q)
+        errors = []
+        for name, index, target in self.targets:
+            oMf = pin.updateFramePlacement(self.model, self.data, index)
+            if isinstance(target, pin.SE3):
+                angle = math.hypot(*pin.log3(target.rotation.T @ oMf.rotation))
+                errors.append(FrameError(name, math.dist(oMf.translation, target.translation), angle))
+            else:
+                errors.append(FrameError(name, math.dist(oMf.translation, target), 0.0))
+        return tuple(errors)
+
+    def _reached(self, q: Vector) -> bool:
+        return all(max(error.position, error.angle) <= self.tolerance for error in self._errors(q))
+
+
+def _target(name: str, target: Any) -> Any:
+    """A target, checked: a pose, or a position (3,)."""
+    if isinstance(target, pin.SE3):
+        R, p = target.rotation, target.translation
+        if np.isfinite(p).all() and np.abs(R.T @ R - np.eye(3)).max() <= 1e-6 and np.linalg.det(R) > 0.0:
+            return target
+        raise ValueError(f"the target of frame '{name}' is no pose: its rotation or its translation is not sound")
+    try:
+        position = np.asarray(target, dtype=np.float64)
+    except (TypeError, ValueError):
+        position = np.empty(0)
+    if position.shape != (3,) or not np.isfinite(position).all():
+        raise ValueError(f"the target of frame '{name}' is neither a pose (pin.SE3) nor three finite numbers")
+    return position

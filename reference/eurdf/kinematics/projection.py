@@ -1,0 +1,172 @@
+"""Projections onto the closures: of a configuration, a velocity and an acceleration.
+
+Source: `configurationProjection`, `velocityProjection` and `accelerationProjection` of the toolbox of Batto, De Matteïs
+and Mansard, 2025.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pinocchio as pin
+
+from eurdf.exceptions import NotClosable
+from eurdf.kinematics.acceleration_drift import acceleration_drift
+from eurdf.kinematics.array import Matrix, Vector
+from eurdf.kinematics.assembly import Assembler, start
+from eurdf.kinematics.metric import metric, nearest
+from eurdf.kinematics.residual import residual, residual_and_jacobian
+from eurdf.kinematics.tangent_space import TangentSpaces
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+_MOST_STEPS = 50
+_MOST_HALVINGS = 20
+
+# Step of the differences that the second derivatives are taken by: they steer the search and are not in its answer.
+_DIFFERENCE = 1e-6
+
+
+def project_configuration(
+    robot: Robot, q: Vector, weights: Vector | Matrix | None = None, *, tolerance: float = 1e-10
+) -> Vector:
+    """The closed configuration nearest to q.
+
+    It minimises ½ xᵀ W x subject to r(q ⊕ x) = 0, where x = q' ⊖ q is the velocity (nv,) that leads from q to q' in
+    unit time: W x is normal to the closed configurations. The loops are closed first, then q' slides along them by
+    Newton steps, and so comes to a nearest one of those around: there may be a nearer one beyond a farther one.
+    Where W is diagonal, joints that are in no loop stay where they are.
+
+    Args:
+        robot: The robot.
+        q: Any configuration (nq,).
+        weights: The metric W: a matrix (nv, nv), or its diagonal (nv,). By default the identity: the sum of squares of
+            all motions, rad and m alike.
+        tolerance: What each row of the residual may be, m or rad, where the loops are closed.
+
+    Returns:
+        q' (nq,), which is q itself where that is closed. Where redundant rows contradict one another by the rounding of
+        numbers in files, it is as closed as `assemble` can do.
+
+    Raises:
+        NotClosable: No closed configuration was found; it says which closures stay open.
+        ValueError: ``q`` is no configuration, or ``weights`` are no metric.
+    """
+    model, W = robot.model, metric(weights, robot.model.nv)
+    q = start(robot, q)
+    if np.abs(residual(robot, q)).max(initial=0.0) <= tolerance:
+        return q
+    assembler, spaces, data = Assembler(robot, tolerance=tolerance), TangentSpaces(robot), model.createData()
+    assembly = assembler.assemble(q)
+    if not assembly.closes:
+        raise NotClosable("there is no closed configuration near this one", assembly.open, assembly.q)
+
+    def away(at: Vector) -> Vector:
+        return np.asarray(pin.difference(model, q, at))
+
+    def gradient(at: Vector) -> Vector:
+        return np.asarray(pin.dDifference(model, q, at, pin.ARG1).T @ (W @ away(at)))
+
+    here = assembly.q
+    cost = 0.5 * float(away(here) @ W @ away(here))
+    for _ in range(_MOST_STEPS):
+        _, K = residual_and_jacobian(robot, here, data)
+        space, g = spaces.at(K), gradient(here)
+        Z, multipliers = space.basis, space.inverse.T @ g
+        slope = Z.T @ g
+        normal = g - K.T @ multipliers
+        columns = []
+        for direction in Z.T:
+            beside = np.asarray(pin.integrate(model, here, _DIFFERENCE * direction))
+            _, K_beside = residual_and_jacobian(robot, beside, data)
+            columns.append((gradient(beside) - K_beside.T @ multipliers - normal) / _DIFFERENCE)
+        H = Z.T @ np.column_stack(columns) if columns else np.zeros((0, 0))
+        step = _downhill(H, slope)
+        gain = -float(slope @ step)
+        if not gain > 1e-14 * cost:
+            break
+        for halving in range(_MOST_HALVINGS):
+            part = 0.5**halving
+            trial = assembler.assemble(np.asarray(pin.integrate(model, here, part * (Z @ step))), restarts=0)
+            reached = 0.5 * float(away(trial.q) @ W @ away(trial.q))
+            if trial.closes and reached <= cost - 1e-4 * part * gain + 1e-14 * cost:
+                break
+        else:
+            break
+        here, cost = trial.q, reached
+    return here
+
+
+def project_velocity(robot: Robot, q: Vector, v: Vector, weights: Vector | Matrix | None = None) -> Vector:
+    """The velocity nearest to v that keeps the loops closed.
+
+    The orthogonal projection onto ker K(q): v' = Z (Zᵀ W Z)⁻¹ Zᵀ W v with K Z = 0, which minimises (v' - v)ᵀ W (v' - v)
+    subject to K v' = 0. With the mass matrix for W it is the velocity after an impact of the closures on one another.
+
+    Args:
+        robot: The robot.
+        q: Configuration (nq,), closed or not. Where it is singular, motions of the first order count as free.
+        v: Velocity (nv,), rad/s or m/s.
+        weights: The metric W: a matrix (nv, nv), or its diagonal (nv,); the identity by default.
+
+    Returns:
+        v' (nv,).
+
+    Raises:
+        ValueError: ``q`` or ``v`` has another shape or is not finite, or ``weights`` are no metric.
+    """
+    W = metric(weights, robot.model.nv)
+    v = _velocity(robot, v, "velocity")
+    _, K = residual_and_jacobian(robot, start(robot, q))
+    return nearest(TangentSpaces(robot).at(K).basis, W, v)
+
+
+def project_acceleration(
+    robot: Robot, q: Vector, v: Vector, a: Vector, weights: Vector | Matrix | None = None
+) -> Vector:
+    """The acceleration nearest to a that keeps the loops closed.
+
+    It minimises (a' - a)ᵀ W (a' - a) subject to K(q) a' + K̇ v = 0, K̇ v as `acceleration_drift` has it.
+
+    Args:
+        robot: The robot.
+        q: Configuration (nq,).
+        v: Velocity (nv,), rad/s or m/s. It should keep the loops closed, K v = 0. Where it does not, redundant rows may
+            ask for accelerations that contradict one another: they are then met in the least-squares sense, lengths
+            counted in characteristic lengths.
+        a: Acceleration (nv,), rad/s² or m/s².
+        weights: The metric W: a matrix (nv, nv), such as the mass matrix (Gauss' principle of least constraint), or
+            its diagonal (nv,); the identity by default.
+
+    Returns:
+        a' (nv,).
+
+    Raises:
+        ValueError: ``q``, ``v`` or ``a`` has another shape or is not finite, or ``weights`` are no metric.
+    """
+    W = metric(weights, robot.model.nv)
+    v, a, q = _velocity(robot, v, "velocity"), _velocity(robot, a, "acceleration"), start(robot, q)
+    _, K = residual_and_jacobian(robot, q)
+    space = TangentSpaces(robot).at(K)
+    forced = -space.inverse @ acceleration_drift(robot, q, v)
+    return forced + nearest(space.basis, W, a - forced)
+
+
+def _velocity(robot: Robot, values: Vector, what: str) -> Vector:
+    vector = np.asarray(values, dtype=np.float64)
+    if vector.shape != (robot.model.nv,):
+        article = "an" if what[0] in "aeiou" else "a"
+        raise ValueError(f"{article} {what} of this robot has the shape ({robot.model.nv},), not {vector.shape}")
+    if not np.isfinite(vector).all():
+        raise ValueError(f"the {what} has a number that is not finite")
+    return vector
+
+
+def _downhill(H: Matrix, slope: Vector) -> Vector:
+    """The Newton step -H⁻¹ slope, with H made positive definite where it is not."""
+    values, vectors = np.linalg.eigh(0.5 * (H + H.T))
+    values = np.abs(values)
+    values = np.maximum(values, max(1e-3 * values.max(initial=0.0), 1e-300))
+    return -np.asarray(vectors @ ((vectors.T @ slope) / values), dtype=np.float64)

@@ -1,0 +1,114 @@
+"""Motion in time of the closed mechanism."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import pinocchio as pin
+
+from eurdf.exceptions import NotClosable, SimulationDiverged
+from eurdf.kinematics.array import Matrix, Vector
+from eurdf.kinematics.assembly import assemble, start
+from eurdf.kinematics.dynamics import External, checked_vector, forward_dynamics
+from eurdf.kinematics.residual import residual_and_jacobian
+from eurdf.kinematics.tangent_space import TangentSpaces
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+#: Motor torques (nu,) at a time (s), a configuration (nq,) and a velocity (nv,).
+Control = Callable[[float, Vector, Vector], Vector]
+
+
+# What moves faster, rad/s or m/s, is no mechanism.
+_FASTEST = 1e9
+
+
+class Simulation(NamedTuple):
+    """A motion, at equal steps of time.
+
+    Attributes:
+        t: Times (n + 1,), s.
+        q: Configurations (n + 1, nq).
+        v: Velocities (n + 1, nv), rad/s and m/s.
+    """
+
+    t: Vector
+    q: Matrix
+    v: Matrix
+
+
+def simulate(
+    robot: Robot,
+    q: Vector,
+    v: Vector | None = None,
+    *,
+    duration: float,
+    step: float = 1e-3,
+    control: Control | None = None,
+    external: External | None = None,
+    dissipation: bool = False,
+) -> Simulation:
+    """Move the closed mechanism by its dynamics.
+
+    Each step is one of the classical Runge-Kutta method, of the fourth order, in the coordinates x of q ⊕ x around
+    where it begins, in which ẋ = J(x)⁻¹ v, J the derivative of ⊕ (Munthe-Kaas). At the start, and after each step, q
+    and v are put back on the closures, v by the least change, lengths counted in characteristic lengths.
+
+    Args:
+        robot: The robot.
+        q: Configuration (nq,) to start from; where it is open, from what `assemble` makes of it.
+        v: Velocity (nv,) to start with; at rest by default.
+        duration: Time to move for, s: as many whole steps as come nearest to it.
+        step: Time of a step, s.
+        control: The motor torques; none by default.
+        external: As in `forward_dynamics`, the same all the time.
+        dissipation: As in `forward_dynamics`. Dry friction that changes sign within a step makes it one of the first
+            order.
+
+    Raises:
+        NotClosable: There is no closed configuration near q.
+        ValueError: A vector is of another shape or not finite, the duration is negative, the step is not positive.
+        UndeterminedMotion: Something without inertia can move.
+        SimulationDiverged: The steps are too long for the motion.
+    """
+    if not (step > 0.0 and duration >= 0.0 and np.isfinite(duration / step)):
+        raise ValueError("a simulation takes a duration of 0 s or more, and a step of more than 0 s")
+    model, data, spaces = robot.model, robot.model.createData(), TangentSpaces(robot)
+    count = round(duration / step)
+    times: Vector = np.linspace(0.0, count * step, count + 1)
+    qs, vs = np.empty((count + 1, model.nq)), np.empty((count + 1, model.nv))
+    assembly = assemble(robot, start(robot, q))
+    if not assembly.closes:
+        raise NotClosable("the simulation cannot start", assembly.open, assembly.q)
+
+    def rates(t: float, begin: Vector, x: Vector, v: Vector) -> tuple[Vector, Vector]:
+        q = np.asarray(pin.integrate(model, begin, x))
+        if not (np.abs(v).max(initial=0.0) < _FASTEST and np.isfinite(q).all()):
+            raise SimulationDiverged(t, step)
+        u = None if control is None else control(t, q, v)
+        a = forward_dynamics(robot, q, v, u, external=external, dissipation=dissipation, data=data).a
+        return np.linalg.solve(pin.dIntegrate(model, begin, x, pin.ARG1), v), a
+
+    def closed(q: Vector, v: Vector, newton_steps: int) -> tuple[Vector, Vector]:
+        for _ in range(newton_steps):
+            r, K = residual_and_jacobian(robot, q, data)
+            q = np.asarray(pin.normalize(model, pin.integrate(model, q, -spaces.at(K).inverse @ r)))
+        _, K = residual_and_jacobian(robot, q, data)
+        return q, v - spaces.at(K).inverse @ (K @ v)
+
+    qs[0], vs[0] = closed(assembly.q, checked_vector(np.zeros(model.nv) if v is None else v, model.nv, "a velocity"), 0)
+    for n in range(count):
+        t, q, v, still = float(times[n]), qs[n], vs[n], np.zeros(model.nv)
+        x1, v1 = rates(t, q, still, v)
+        x2, v2 = rates(t + step / 2.0, q, step / 2.0 * x1, v + step / 2.0 * v1)
+        x3, v3 = rates(t + step / 2.0, q, step / 2.0 * x2, v + step / 2.0 * v2)
+        x4, v4 = rates(t + step, q, step * x3, v + step * v3)
+        end = pin.integrate(model, q, step / 6.0 * (x1 + 2.0 * x2 + 2.0 * x3 + x4))
+        v = v + step / 6.0 * (v1 + 2.0 * v2 + 2.0 * v3 + v4)
+        if not (np.isfinite(end).all() and np.isfinite(v).all()):
+            raise SimulationDiverged(float(times[n + 1]), step)
+        qs[n + 1], vs[n + 1] = closed(np.asarray(end), v, 2)
+    return Simulation(times, qs, vs)

@@ -1,0 +1,75 @@
+"""The tangent space of the closed configurations: the velocities that keep the loops closed, ker K."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from eurdf.kinematics.array import Matrix
+from eurdf.kinematics.loop import independent_groups
+from eurdf.kinematics.rank import numerical_rank
+from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TangentSpace:
+    """What K lets move, and what it does not.
+
+    Attributes:
+        basis: Z (nv, nv - rank) with K Z = 0 and Zᵀ Z = 1.
+        inverse: K⁺ (nv, nc), for which v = K⁺ b solves K v = b where that can be solved: the least of all v, and else
+            the v that comes nearest to it, lengths counted in characteristic lengths.
+    """
+
+    basis: Matrix
+    inverse: Matrix
+
+
+class TangentSpaces:
+    """Finds the tangent spaces of one robot, having looked at its structure once.
+
+    Attributes:
+        scale: Unit (nv,) of each velocity: the characteristic length for one of a loop that only translates, else 1.
+        length: Characteristic length, m.
+    """
+
+    def __init__(self, robot: Robot) -> None:
+        self.length = characteristic_length(robot)
+        self.scale = velocity_scale(robot, self.length)
+        self._row_scale = row_scale(robot, self.length)
+        self._groups = independent_groups(robot)
+
+    def at(self, K: Matrix) -> TangentSpace:
+        """The tangent space where the constraint Jacobian is K (nc, nv).
+
+        The rank is decided as in `eurdf.kinematics.analysis.analyze`: of K free of unit, for each group of loops on its
+        own, as `numerical_rank` says. At a singular configuration the space is larger than around it.
+        """
+        nc, nv = K.shape
+        blocks, inverse = [], np.zeros((nv, nc))
+        outside = np.ones(nv, dtype=bool)
+        for group in self._groups:
+            rows, velocities = group.rows, group.velocities
+            if not len(velocities):
+                continue
+            outside[velocities] = False
+            scale = self.scale[velocities]
+            A = self._row_scale[rows, None] * K[np.ix_(rows, velocities)] * scale
+            left, values, right = np.linalg.svd(A)
+            rank = numerical_rank(values, values.max(initial=0.0))
+            Z, _ = np.linalg.qr(scale[:, None] * right[rank:].T)
+            blocks.append((velocities, Z))
+            pseudoinverse = (right[:rank].T / values[:rank]) @ left[:, :rank].T
+            inverse[np.ix_(velocities, rows)] = scale[:, None] * pseudoinverse * self._row_scale[rows]
+        blocks.append((np.flatnonzero(outside), np.eye(int(outside.sum()))))
+        basis = np.zeros((nv, sum(Z.shape[1] for _, Z in blocks)))
+        column = 0
+        for velocities, Z in blocks:
+            basis[velocities, column : column + Z.shape[1]] = Z
+            column += Z.shape[1]
+        return TangentSpace(basis, inverse)
