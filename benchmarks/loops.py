@@ -1,7 +1,7 @@
 """Time per loop of `eurdf.assemble` and `eurdf.analyze` on chains of 10, 100 and 1,000 independent four-bars.
 
-Each four-bar stands on the rocker of the one before, or all stand side by side on the ground. The robot is built from plain
-data; that, and the memory of its Pinocchio model, which is quadratic in nv, is not measured. Times are of the processor.
+Each four-bar stands on the rocker of the one before, or all stand side by side on the ground. Building the robot, whose
+Pinocchio model takes memory quadratic in nv, is not measured. Times are of the processor.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ SIZES = (10, 100, 1000)
 
 
 def four_bars(count: int, in_series: bool) -> eurdf.Robot:
-    """Four-bars of bars 1.0, 1.5, 1.2 and 1.6 m, closed in 3d where the rocker meets the ground bar; cranks actuated."""
+    """Four-bars of bars 1.0, 1.5, 1.2 and 1.6 m, closed in 3d where the rocker meets the ground; cranks actuated."""
     bodies, joints, closures = [Body("ground")], [], []
     foot, place = "ground", (0.0, 0.0, 0.0)
     for index in range(count):

@@ -14,6 +14,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
+from described import load
+from eurdf.commands.robot_info import robot_info
 from eurdf.kinematics.analysis import analyze
 from eurdf.kinematics.residual import residual, residual_and_jacobian
 from eurdf.kinematics.sparse_basis import sparse_basis
@@ -24,6 +26,7 @@ from linkage import (
     Z,
     bennett,
     closure,
+    described,
     flat_sarrus,
     loop,
     n_bar,
@@ -390,9 +393,7 @@ def test_the_size_of_a_linkage_changes_no_distance_to_singularity() -> None:
 
 
 def test_a_slider_crank_with_its_slide_driven_is_singular_for_it_at_the_dead_point_alone() -> None:
-    dead = loop(
-        [("R", (0, 0, 0), Z), ("R", (1, 0, 0), Z), ("R", (3, 0, 0), Z), ("P", (3, 0, 0), X)], actuated=["j3"]
-    )
+    dead = loop([("R", (0, 0, 0), Z), ("R", (1, 0, 0), Z), ("R", (3, 0, 0), Z), ("P", (3, 0, 0), X)], actuated=["j3"])
     analysis = analyze(dead)
     assert analysis.uncontrolled == 0
     assert analysis.singularity is not None
@@ -409,6 +410,20 @@ def test_what_does_not_close_has_no_motions_and_no_distances() -> None:
     analysis = analyze(linkage)
     assert (analysis.controlled, analysis.surplus, analysis.singularity, analysis.actuation_singularity) == (None,) * 4
     assert (analysis.fighting, analysis.motions, analysis.loops) == ((), (), ())
+
+
+def test_info_says_what_the_actuators_leave_and_what_they_fight_over() -> None:
+    robot = load(*described(side_by_side(n_bar(6, actuated=["j1"]), n_bar(4, actuated=["j0", "j2"]))))
+    analysis = eurdf.analyze(robot)
+    info = robot_info(robot, analysis)
+    assert (info.controlled, info.surplus, info.uncontrolled) == (2, 1, 2)
+    assert [motion.joints for motion in info.motion_list] == [motion.joints for motion in analysis.motions]
+    assert info.fighting_list == (("b0", "b2"),)
+    assert [(loops.closures, loops.mobility, loops.uncontrolled) for loops in info.loop_list] == [
+        (("a_end",), 3, 2),
+        (("b_end",), 1, 0),
+    ]
+    assert info.singularity == analysis.singularity == min(loops.singularity for loops in analysis.loops)
 
 
 @needs_wild

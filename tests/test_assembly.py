@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import time
+import weakref
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +19,9 @@ from hypothesis import strategies as st
 
 import eurdf
 from eurdf.kinematics.assembly import assemble
-from eurdf.kinematics.residual import residual
+from eurdf.kinematics.evaluation import evaluations
+from eurdf.kinematics.loop import independent_groups
+from eurdf.kinematics.residual import closure_openings, residual, residual_and_jacobian
 from linkage import (
     Linkage,
     X,
@@ -273,7 +278,8 @@ def test_limits_do_not_hold_back_balls_and_turning_wheels() -> None:
     np.testing.assert_allclose(assembly.q[:2], [-1.0, 0.0], atol=1e-9)
 
 
-def test_a_loop_closed_by_a_joint_that_mimics_another_closes() -> None:
+def scissors() -> Linkage:
+    """Two bars of which the second folds back twice as fast as the first turns, and a slide under their end."""
     text = """<robot name="scissors"><link name="g"/><link name="a"/><link name="b"/><link name="c"/>
       <joint name="lead" type="revolute"><parent link="g"/><child link="a"/><axis xyz="0 0 1"/>
         <limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
@@ -283,8 +289,11 @@ def test_a_loop_closed_by_a_joint_that_mimics_another_closes() -> None:
         <limit lower="-3" upper="3" effort="1" velocity="1"/></joint></robot>"""
     model = pin.buildModelFromXML(text, mimic=True)
     fold, slide = model.getJointId("fold"), model.getJointId("slide")
-    linkage = Linkage(model, [closure(model, slide, pin.SE3.Identity(), fold, translation(1.0, 0.0, 0.0), "3d")])
-    assembly = assemble(linkage, np.array([0.8, 0.3]), hold=["fold"])
+    return Linkage(model, [closure(model, slide, pin.SE3.Identity(), fold, translation(1.0, 0.0, 0.0), "3d")])
+
+
+def test_a_loop_closed_by_a_joint_that_mimics_another_closes() -> None:
+    assembly = assemble(scissors(), np.array([0.8, 0.3]), hold=["fold"])
     assert assembly.converged
     np.testing.assert_allclose(assembly.q, [0.8, 2.0 * np.cos(0.8)], atol=1e-9)
 
@@ -307,6 +316,131 @@ def test_a_large_robot_is_closed_without_the_memory_that_data_takes(monkeypatch:
     assembly = assemble(linkage)
     assert assembly.converged
     assert assembly.iterations < 15
+
+
+@pytest.mark.parametrize("hold", [False, True])
+@pytest.mark.parametrize(
+    "build",
+    [
+        lambda: eurdf.load("digit_leg", root="floating", geometry=False),
+        lambda: eurdf.load("four_bar", geometry=False),
+        lambda: n_bar(5, "3d"),
+        stewart,
+        scissors,
+    ],
+)
+def test_the_two_ways_of_evaluation_agree_with_the_residual_and_its_jacobian(
+    build: Callable[[], Any], hold: bool
+) -> None:
+    robot = build()
+    model = robot.model
+    random = np.random.default_rng(3)
+    held = range(model.nvs[1] if hold else 0)
+    groups = independent_groups(robot, held)
+    r, K = residual_and_jacobian(robot, pin.neutral(model))
+    row_scale, velocity_scale = random.uniform(0.5, 2.0, len(r)), random.uniform(0.5, 2.0, model.nv)
+    ways = [None] if model.nv < model.nvExtended else [None, model.createData()]  # not where joints mimic
+    for data in ways * 3:
+        made = evaluations(robot, groups, row_scale, velocity_scale, data)
+        q = pin.integrate(model, pin.neutral(model), random.uniform(-2.0, 2.0, model.nv))
+        r, K = residual_and_jacobian(robot, q)
+        openings = closure_openings(robot, q)
+        for group, evaluation in zip(groups, made, strict=True):
+            assert not set(held) & set(group.velocities.tolist())
+            np.testing.assert_allclose(evaluation.residual(q), r[group.rows], atol=1e-13)
+            block = row_scale[group.rows, None] * K[np.ix_(group.rows, group.velocities)]
+            np.testing.assert_allclose(
+                evaluation.jacobian(), block * velocity_scale[group.velocities], atol=1e-12, rtol=1e-12
+            )
+            expected = [(openings[index].position, openings[index].angle) for index in group.closures]
+            np.testing.assert_allclose(evaluation.openings(), expected, atol=1e-13)
+
+
+def test_what_is_kept_with_a_robot_is_given_up_when_the_robot_changes() -> None:
+    linkage = four_bar(1.0, 3.0, 2.5, 2.8)
+    start = np.array([0.3, 0.5, 0.5])
+    assert assemble(linkage, start).converged
+    (end,) = linkage.constraint_models
+    end.joint1_placement = translation(3.1, 0.0, 0.0)
+    moved = assemble(linkage, start)
+    assert np.abs(residual(linkage, moved.q)).max() <= 1e-10
+    linkage.model.jointPlacements[2].translation *= 1.1
+    longer = assemble(linkage, start)
+    assert np.abs(residual(linkage, longer.q)).max() <= 1e-10
+    linkage.model.lowerPositionLimit, linkage.model.upperPositionLimit = np.full(3, -1.0), np.full(3, 1.5)
+    assert assemble(linkage, start, limits=True).q.max() <= 1.5
+    linkage.model.upperPositionLimit = np.full(3, 0.7)
+    assert assemble(linkage, start, limits=True).q.max() <= 0.7
+    end.name = "renamed"
+    assert [opening.name for opening in assemble(linkage).open] == ["renamed"]
+    linkage.constraint_models.clear()
+    assert assemble(linkage, start).open == ()
+
+
+def test_what_is_kept_with_a_robot_keeps_nothing_else_alive() -> None:
+    linkage = n_bar(5, away=0.3)
+    for hold in ([], ["j0"], ["j1"]):
+        assert assemble(linkage, hold=hold).converged
+    alive = weakref.ref(linkage)
+    del linkage
+    gc.collect()
+    assert alive() is None
+
+
+def test_joints_held_before_are_not_held_now() -> None:
+    linkage = n_bar(5, away=0.4)
+    free = assemble(linkage).q
+    held = assemble(linkage, hold=["j0", "j1"]).q
+    np.testing.assert_array_equal(held[:2], [0.0, 0.0])
+    np.testing.assert_array_equal(assemble(linkage).q, free)
+    np.testing.assert_array_equal(assemble(linkage, hold=["j0", "j1"]).q, held)
+    assert np.abs(free[:2]).min() > 1e-3
+
+
+def test_threads_get_the_answers_that_they_would_get_alone() -> None:
+    robot = eurdf.load("digit_leg", geometry=False)
+    random = np.random.default_rng(0)
+    starts = [
+        pin.integrate(robot.model, pin.neutral(robot.model), random.uniform(-0.5, 0.5, robot.model.nv))
+        for _ in range(40)
+    ]
+    alone = [assemble(robot, start).q for start in starts]
+    with ThreadPoolExecutor(4) as threads:
+        together = list(threads.map(lambda start: assemble(robot, start).q, starts))
+    for one, other in zip(alone, together, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
+def test_a_chain_of_loops_takes_as_many_evaluations_as_its_slowest_link() -> None:
+    model, constraints = pin.Model(), []
+    foot = 0
+    for index in range(40):
+        parent, name = foot, f"{index}_"
+        for bar, length in enumerate((0.0, 1.0, 1.5)):
+            parent = model.addJoint(parent, pin.JointModelRZ(), translation(length, 0.0, 0.0), f"{name}{bar}")
+        constraints.append(
+            closure(model, foot, translation(1.6, 0, 0), parent, translation(1.2, 0, 0), "3d", f"loop{index}")
+        )
+        foot = parent
+    q0 = np.tile([0.9, -0.7, 1.9], 40) + np.random.default_rng(0).uniform(-0.1, 0.1, 120)
+    chain = Linkage(model, constraints)
+    assembly = assemble(chain, q0)
+    assert assembly.converged
+    assert assembly.iterations < 10
+    assert np.abs(residual(chain, assembly.q)).max() <= 1e-10
+
+
+@pytest.mark.parametrize("name", ["digit_leg", "four_bar"])
+def test_within_limits_a_robot_closes_from_wherever_it_is_disturbed_to(name: str) -> None:
+    robot = eurdf.load(name, geometry=False)
+    model, closed, random = robot.model, eurdf.assemble(robot).q, np.random.default_rng(5)
+    bounded = np.isfinite(model.lowerPositionLimit) & np.isfinite(model.upperPositionLimit)
+    for _ in range(20):
+        start = pin.integrate(model, closed, random.uniform(-0.5, 0.5, model.nv))
+        assembly = assemble(robot, start, limits=True)
+        assert assembly.converged
+        assert (assembly.q >= model.lowerPositionLimit)[bounded].all()
+        assert (assembly.q <= model.upperPositionLimit)[bounded].all()
 
 
 def test_a_robot_without_closures_is_closed() -> None:

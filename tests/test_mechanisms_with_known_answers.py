@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 import pytest
-from described import load
 
 import eurdf
+from described import load
 from eurdf.kinematics.residual import residual, residual_and_jacobian
 from linkage import (
     Linkage,

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
         UnderactuatedMotion,
         UndeterminedMotion,
     )
-    from eurdf.kinematics.analysis import Analysis, analyze
+    from eurdf.kinematics.analysis import Analysis, LoopAnalysis, Motion, analyze
     from eurdf.kinematics.assembly import Assembly, assemble
     from eurdf.kinematics.dynamics import (
         ForwardDynamics,
@@ -67,10 +67,7 @@ _NAMES = {
         "UnderactuatedMotion",
         "UndeterminedMotion",
     ),
-    "eurdf.kinematics.analysis": (
-        "Analysis",
-        "analyze",
-    ),
+    "eurdf.kinematics.analysis": ("Analysis", "LoopAnalysis", "Motion", "analyze"),
     "eurdf.kinematics.assembly": (
         "Assembly",
         "assemble",
@@ -90,6 +87,7 @@ _NAMES = {
     ),
     "eurdf.kinematics.locking": (
         "LockedRobot",
+        "LoopAnalysis",
         "lock",
     ),
     "eurdf.kinematics.projection": (
@@ -138,7 +136,9 @@ __all__ = [
     "InverseKinematics",
     "LockedOpen",
     "LockedRobot",
+    "LoopAnalysis",
     "Mechanism",
+    "Motion",
     "NotClosable",
     "Opening",
     "Report",

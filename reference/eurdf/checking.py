@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
@@ -14,9 +13,6 @@ from eurdf.diagnostics.report import Report
 if TYPE_CHECKING:
     from eurdf.kinematics.residual import Opening
     from eurdf.pinocchio.robot import Robot
-
-#: Where a configuration is called assembled, no closure is open by more than this, in m or rad (EU-CLO-005).
-ASSEMBLED_TOLERANCE = 1e-6
 
 
 def check(path: str | os.PathLike[str], urdf: str | os.PathLike[str] | None = None) -> Report:
@@ -64,11 +60,11 @@ def closure_diagnostics(description: Description, robot: Robot | None = None) ->
         return assembled_diagnostics(description, robot)
     assembly = assemble(robot)
     if not assembly.closes:
-        worst = max(assembly.open, key=lambda opening: max(opening.position, opening.angle))
+        worst = max(assembly.open, key=_width)
         closure = next(closure for closure in mechanism.closures if closure.name == worst.name)
         diagnostics.report(
             "closure-cannot-close",
-            f"no configuration was found that closes the loops; at the best, {_openings(assembly.open)}",
+            f"no configuration was found that closes the loops; at the best, {_told(assembly.open)}",
             description.place_of_closure(closure),
             "check where its frames are, and that enough joints can move",
         )
@@ -81,28 +77,21 @@ def assembled_diagnostics(description: Description, robot: Robot) -> Diagnostics
 
     diagnostics = Diagnostics()
     openings = closure_openings(robot, robot.configurations["assembled"])
-    if not all(max(opening.position, opening.angle) <= ASSEMBLED_TOLERANCE for opening in openings):
+    if any(opening.is_open for opening in openings):
         diagnostics.report(
             "assembled-open",
-            f"the loops are open at the assembled configuration: {_openings(openings)}",
+            f"the loops are open at the assembled configuration: {_told(openings)}",
             description.place_of_configuration("assembled"),
             "`eurdf.assemble` finds a configuration that closes them",
         )
     return diagnostics
 
 
-def _openings(openings: Iterable[Opening]) -> str:
+def _told(openings: Iterable[Opening]) -> str:
     """The open ones, widest first, a few at most."""
-    wide = [opening for opening in openings if not max(opening.position, opening.angle) <= ASSEMBLED_TOLERANCE]
-    wide.sort(key=lambda opening: max(opening.position, opening.angle), reverse=True)
-    told = "; ".join(_opening(opening.name, opening.position, opening.angle) for opening in wide[:4])
-    return told + (f"; and {len(wide) - 4} more" if len(wide) > 4 else "")
+    wide = sorted((found for found in openings if found.is_open), key=_width, reverse=True)
+    return "; ".join(map(str, wide[:4])) + (f"; and {len(wide) - 4} more" if len(wide) > 4 else "")
 
 
-def _opening(name: str, position: float, angle: float) -> str:
-    parts = []
-    if position > ASSEMBLED_TOLERANCE or angle <= ASSEMBLED_TOLERANCE:
-        parts.append(f"{position * 1e3:.3g} mm")
-    if angle > ASSEMBLED_TOLERANCE:
-        parts.append(f"{math.degrees(angle):.3g} degrees")
-    return f"'{name}' by {' and '.join(parts)}"
+def _width(opening: Opening) -> float:
+    return max(opening.position, opening.angle)

@@ -71,10 +71,7 @@ class LockedOpen(EurdfError, ValueError):  # noqa: N818 - part of the public int
     def __init__(self, openings: tuple[Opening, ...], tolerance: float) -> None:
         self.openings = openings
         self.tolerance = tolerance
-        apart = ", ".join(
-            f"'{found.name}' by {found.position * 1e3:.3g} mm and {math.degrees(found.angle):.3g}°"
-            for found in openings
-        )
+        apart = ", ".join(map(str, openings))
         super().__init__(
             f"locked there, closures stay open: {apart}; each row of their residual may be {tolerance:g} m or rad"
         )
@@ -91,11 +88,7 @@ class NotClosable(EurdfError, ValueError):  # noqa: N818 - part of the public in
     def __init__(self, reason: str, openings: tuple[Opening, ...], q: Vector) -> None:
         self.openings = openings
         self.q = q
-        apart = ", ".join(
-            f"'{found.name}' by {found.position * 1e3:.3g} mm and {math.degrees(found.angle):.3g}°"
-            for found in openings
-            if max(found.position, found.angle) > 1e-6
-        )
+        apart = ", ".join(str(found) for found in openings if found.is_open)
         super().__init__(f"{reason}: closures stay open, {apart}" if apart else reason)
 
 

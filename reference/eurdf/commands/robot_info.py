@@ -175,7 +175,7 @@ class RobotInfo(_Entry):
     loop_list: tuple[LoopInfo, ...]
     """The independent groups of loops; empty where the loops do not close."""
     motion_list: tuple[MotionInfo, ...]
-    """The motions left with every actuator held, each of as few joints as can be; empty where the loops do not close."""
+    """The motions left with every actuator held, each of few joints; empty where the loops do not close."""
     fighting_list: tuple[tuple[str, ...], ...]
     """Sets of actuated joints of which none moves without another of its set or, alone in it, at all."""
     actuator_list: tuple[ActuatorInfo, ...]

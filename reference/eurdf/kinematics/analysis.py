@@ -91,15 +91,15 @@ class Analysis:
             suffice where it is 0.
         actuated: Number of actuated velocities.
         controlled: Motions that the actuators decide, mobility - uncontrolled: the rank of Sᵀ on the null space of K.
-        surplus: Actuated velocities that follow from the others through the closures, actuated - controlled. The torques
-            of as many dimensions move nothing and only load the closures: actuation is redundant where it is not 0.
+        surplus: Actuated velocities that follow from the others through the closures, actuated - controlled. Torques of
+            as many dimensions move nothing and only load the closures: actuation is redundant where it is not 0.
         fighting: Names of the actuators that are in surplus together, set by set: none of a set can move without
             another of it, or, alone in its set, it cannot move at all.
         motions: The uncontrolled motions: a basis of the null space of [K; Sᵀ], each of few joints. They are those at
             ``q``, or where q is singular those at a configuration beside it.
-        singularity: Distance to singularity at ``q``: of K, free of unit, the singular value number ``rank``. By so much,
-            lengths counted in characteristic lengths, K would have to change to lose rank (Eckart, Young, 1936): it is 0
-            where q is singular. The smallest of all groups of loops; None without loops.
+        singularity: Distance to singularity at ``q``: singular value number ``rank`` of K, lengths counted in
+            characteristic lengths. By so much K would have to change to lose rank (Eckart, Young, 1936); it is 0 where
+            q is singular. The smallest of all groups of loops; inf where no closure constrains, None without loops.
         actuation_singularity: The same of [K; Sᵀ]: 0 where the actuators, held, leave one more motion at ``q``.
         loops: The independent groups of loops.
         residual: Norm of the residual at q, m and rad: the smallest found.
@@ -332,7 +332,7 @@ def _null_space(A: Matrix) -> Matrix:
 
 
 def _free_step(basis: Matrix, random: np.random.Generator, length: float) -> Vector:
-    """A random step (n,) in the null space that ``basis`` spans, its largest entry ``length``; zero where there is none."""
+    """A random step (n,) in the space that ``basis`` spans, its largest entry ``length``; zero where there is none."""
     free = np.asarray(random.normal(size=basis.shape[1]) @ basis.T @ basis)
     largest = np.abs(free).max(initial=0.0)
     return free * (length / largest) if largest > 1e-6 else np.zeros_like(free)

@@ -1,9 +1,9 @@
 """Assembly: a configuration in which every loop is closed.
 
 The residual is brought to zero by damped Gauss-Newton steps on the configuration manifold: in a small robot that of all
-loops at once; then, and in a large robot from the first, that of each group of loops that share joints on its own. Where
-a group's descent ends open, as it may from a straight or symmetric configuration, it starts again from places drawn
-around the first.
+loops at once; where that fails, and in a large robot from the first, that of each group of loops that share joints on
+its own. Where a group's descent ends open, as it may from a straight or symmetric configuration, it starts again from
+places drawn around the first.
 """
 
 from __future__ import annotations
@@ -23,17 +23,14 @@ from eurdf.kinematics.descent import Descent
 from eurdf.kinematics.evaluation import Evaluation, evaluations
 from eurdf.kinematics.loop import LoopGroup, find_loops, independent_groups
 from eurdf.kinematics.position_limit import position_limits
-from eurdf.kinematics.residual import Opening
+from eurdf.kinematics.residual import CLOSED, Opening
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
-#: What each row of the residual may be, m or rad, where a description says that the loops are closed.
-CLOSED = 1e-6
-
-# Above this many velocities a pin.Data, some 8 nv³ numbers, takes longer to make than it saves, and so does the solution
-# of all loops at once.
+# Above this many velocities a pin.Data, some 8 nv³ numbers, takes longer to make than it saves, and all loops at once
+# take longer than one by one.
 _MOST_VELOCITIES_WITH_DATA = 60
 
 _MOST_STEPS = 60
@@ -45,8 +42,8 @@ _MOST_WORK = 1e10
 # How far from the first place further descents start (rad, or characteristic lengths); the last one is repeated.
 _SPREADS = (0.1, 0.3, 1.0, 2.0, 3.0)
 
-# Of one robot, at most so many assemblers are kept: one for each set of joints held.
-_MOST_KEPT = 8
+# Of one robot, at most so many assemblers are kept, each with its pin.Data: one for each set of joints held.
+_MOST_KEPT = 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -276,12 +273,14 @@ class _Known:
         self._model = robot.model
         if self._small:
             self._same_model = robot.model.copy()
-            self._constraints = [pin.RigidConstraintModel(constraint) for constraint in robot.constraint_models]
+            self._closures = _said_of_closures(robot)
 
     def fits(self, robot: Robot) -> bool:
         """Whether the robot is as it was."""
-        return robot.model is self._model and bool(
-            robot.model == self._same_model and robot.constraint_models == self._constraints
+        return (
+            robot.model is self._model
+            and robot.model == self._same_model
+            and _said_of_closures(robot) == self._closures
         )
 
     def keep(self, robot: Robot, held: tuple[str, ...]) -> None:
@@ -300,6 +299,21 @@ def _work_of_step(group: LoopGroup) -> float:
     """Multiplications that the smaller one of A Aᵀ and Aᵀ A takes."""
     m, n = len(group.rows), len(group.velocities)
     return float(m) * n * min(m, n)
+
+
+def _said_of_closures(robot: Robot) -> list[tuple[Any, ...]]:
+    """All that an assembler takes from the closures: Pinocchio finds two equal whose frames stand elsewhere."""
+    return [
+        (
+            found.name,
+            found.residualSize(),
+            found.joint1_id,
+            found.joint2_id,
+            pin.SE3(found.joint1_placement),  # for itself, it gives a reference
+            pin.SE3(found.joint2_placement),
+        )
+        for found in robot.constraint_models
+    ]
 
 
 def _merged(groups: Sequence[LoopGroup], nc: int) -> LoopGroup:

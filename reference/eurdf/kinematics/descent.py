@@ -29,6 +29,7 @@ class Descent:
     def __init__(self, evaluation: Evaluation, q: Vector) -> None:
         """Begin at q (nq,)."""
         self.evaluation = evaluation
+        self._A: Matrix | None = None
         r = evaluation.residual(q)
         b = evaluation.row_scale * r
         self._stay(r, b, float(b.dot(b)))
@@ -82,7 +83,7 @@ class Descent:
     def _stay(self, r: Vector, b: Vector, square: float) -> None:
         self.r, self.error = r, math.hypot(*r.tolist())
         self._b, self._square = b, square
-        self._A: Matrix | None = None  # evaluated with the next step, if there is one
+        self._A = None  # evaluated with the next step, if there is one
 
 
 def _within(A: Matrix, b: Vector, damping: float, down: Vector, up: Vector) -> Vector:

@@ -80,7 +80,7 @@ class DataEvaluation(Evaluation):
         velocity_scale: Vector,
         data: pin.Data,
     ) -> None:
-        """``data`` is of the robot's model. Groups may share it that go from configuration to configuration together."""
+        """``data`` is of the robot's model. Groups may share it that go from one configuration to the next together."""
         super().__init__(group, loops, row_scale, velocity_scale)
         model = self._model = robot.model
         self._data = data
@@ -109,7 +109,7 @@ class DataEvaluation(Evaluation):
         K = np.matmul(self._rows, J.reshape(len(rows), 6, -1)).reshape(6 * len(rows), -1)
         if self._kept is not None:
             K = K[self._kept]
-        return K if self._columns is None else K[:, self._columns]
+        return np.asarray(K if self._columns is None else K[:, self._columns])
 
 
 class PathEvaluation(Evaluation):
@@ -136,7 +136,8 @@ class PathEvaluation(Evaluation):
         column = {velocity: index for index, velocity in enumerate(group.velocities.tolist())}
         constraints = [robot.constraint_models[index] for index in group.closures]
         self._frames = [
-            (found.joint1_id, found.joint1_placement, found.joint2_id, found.joint2_placement) for found in constraints
+            (found.joint1_id, pin.SE3(found.joint1_placement), found.joint2_id, pin.SE3(found.joint2_placement))
+            for found in constraints
         ]
         # Of each loop: its columns in J, with their signs, and where they stand in K; those held stand nowhere.
         self._columns = []

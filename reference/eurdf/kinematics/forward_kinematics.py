@@ -15,9 +15,9 @@ from eurdf.kinematics.array import Indices, Vector
 from eurdf.kinematics.assembly import Assembler, assemble, start
 from eurdf.kinematics.residual import closure_openings, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.configuration import configuration_vector
 from eurdf.pinocchio.coordinates import slots
-from eurdf.pinocchio.model import ROOT_JOINT
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot

@@ -20,6 +20,9 @@ from eurdf.kinematics.loop import find_loops
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
+#: A closure that is open by no more than this, in m or rad, counts as closed (EU-CLO-005).
+CLOSED = 1e-6
+
 
 def residual(robot: Robot, q: Vector, data: Any = None) -> Vector:
     """Residual of all closures, stacked in their order.
@@ -107,6 +110,19 @@ class Opening:
     name: str
     position: float
     angle: float
+
+    def __str__(self) -> str:
+        parts = []
+        if self.position > CLOSED or self.angle <= CLOSED:
+            parts.append(f"{self.position * 1e3:.3g} mm")
+        if self.angle > CLOSED:
+            parts.append(f"{math.degrees(self.angle):.3g} degrees")
+        return f"'{self.name}' by {' and '.join(parts)}"
+
+    @property
+    def is_open(self) -> bool:
+        """Whether it is open by more than `CLOSED`; what is no number is open."""
+        return not max(self.position, self.angle) <= CLOSED
 
 
 def closure_openings(robot: Robot, q: Vector, data: Any = None) -> tuple[Opening, ...]:

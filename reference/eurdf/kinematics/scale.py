@@ -25,7 +25,10 @@ def characteristic_length(robot: Robot) -> float:
     # Once a joint: loops may share most of theirs.
     reach = {joint: math.hypot(*placements[joint].translation) for joint in {j for loop in loops for j in loop.joints}}
     for loop, constraint in zip(loops, robot.constraint_models, strict=True):
-        ends = math.hypot(*constraint.joint1_placement.translation), math.hypot(*constraint.joint2_placement.translation)
+        ends = (
+            math.hypot(*constraint.joint1_placement.translation),
+            math.hypot(*constraint.joint2_placement.translation),
+        )
         longest = max(longest, sum(ends) + sum(reach[joint] for joint in loop.joints))
     return longest / 2.0 if longest > 1e-9 else 1.0
 

@@ -13,8 +13,9 @@ NEGLIGIBLE = 1e-4
 def sparse_basis(vectors: Matrix) -> Matrix:
     """A basis of the same space whose vectors have few entries that are not zero.
 
-    It is the reduced echelon form with complete pivoting: each vector is, but for a factor, the only one of the space that
-    is zero wherever it is zero. Where the space is a sum of spaces with no entry in common, each vector is of one of them.
+    It is the reduced echelon form with complete pivoting: each vector is, but for a factor, the only one of the space
+    that is zero wherever it is zero. Where the space is a sum of spaces with no entry in common, each vector is of one
+    of them.
 
     Args:
         vectors: A basis (k, n), one vector a row.

@@ -11,7 +11,7 @@ from eurdf.mechanism.actuators import link_actuators, with_motor
 from eurdf.mechanism.closures import link_closures
 from eurdf.mechanism.configurations import link_configurations
 from eurdf.mechanism.frame_names import FrameNames
-from eurdf.mechanism.mechanism import Frame, Joint, Mechanism, Root
+from eurdf.mechanism.mechanism import ROOT_JOINT, Frame, Joint, Mechanism, Root
 from eurdf.mechanism.replacement import Joints, replace_joints
 from eurdf.mechanism.spanning_tree import bodies_of, depth_first, joint_of, rigid_roots
 from eurdf.reading.yaml_reader import YamlDocument
@@ -22,9 +22,6 @@ JOINT_LIMIT = 10_000
 #: What the number of closures times that of joints may be: as many entries, at most, has the constraint Jacobian for
 #: each of a closure's rows.
 CLOSURES_TIMES_JOINTS_LIMIT = 1_000_000
-
-#: The joint that a floating root hangs from, in every model.
-ROOT_JOINT = "root_joint"
 
 
 def link(

@@ -18,6 +18,9 @@ from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 ClosureType = Literal["3d", "6d"]
 Root = Literal["fixed", "floating"]
 
+#: Name of the joint by which a floating root moves in the world, in every model.
+ROOT_JOINT = "root_joint"
+
 
 @dataclass(frozen=True, slots=True)
 class Inertia:

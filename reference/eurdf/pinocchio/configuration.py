@@ -10,10 +10,9 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from eurdf.mechanism.joint_type import COORDINATES, Coordinates, JointType
-from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.pinocchio.coordinates import Slot, slots
 from eurdf.pinocchio.mimic import following
-from eurdf.pinocchio.model import ROOT_JOINT
 
 Vector = npt.NDArray[np.float64]
 

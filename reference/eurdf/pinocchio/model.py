@@ -11,16 +11,13 @@ from collections.abc import Mapping
 import pinocchio as pin
 
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Joint, Mechanism, Mimic
+from eurdf.mechanism.mechanism import ROOT_JOINT, Joint, Mechanism, Mimic
 from eurdf.mechanism.pose import IDENTITY
 from eurdf.pinocchio.inertia import inertia_of, is_zero
 from eurdf.pinocchio.joint_model import joint_model
 from eurdf.pinocchio.limits import set_limits
 from eurdf.pinocchio.mimic import NONE, following
 from eurdf.pinocchio.placement import placement_of
-
-#: Name of the joint by which a floating root moves in the world.
-ROOT_JOINT = "root_joint"
 
 _Indices = tuple[int, int, int, int]  # of a joint: its own, and where its q, its v and its v with followers start
 
