@@ -87,7 +87,6 @@ _NAMES = {
     ),
     "eurdf.kinematics.locking": (
         "LockedRobot",
-        "LoopAnalysis",
         "lock",
     ),
     "eurdf.kinematics.projection": (

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import dropwhile
-from typing import Literal, cast
+from typing import Literal, NamedTuple, cast
 
 from lxml import etree
 
@@ -51,6 +51,9 @@ _KNOWN_CHILDREN: dict[str, frozenset[str]] = {
     ),
 }
 
+_RANGED = frozenset({JointType.REVOLUTE, JointType.PRISMATIC})
+_AXLESS = frozenset({JointType.FIXED, JointType.FLOATING})
+
 # Attributes of one number each, and what they are where they are left out.
 _MASS = {"value": None}
 _INERTIA = dict.fromkeys(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
@@ -66,8 +69,7 @@ _ZERO: Vector3 = (0.0, 0.0, 0.0)
 _MOST_STRANGE = 200
 
 
-@dataclass(frozen=True, slots=True)
-class Limit:
+class Limit(NamedTuple):
     """A joint's ``limit``: positions in rad or m, velocity in rad/s or m/s, effort in N·m or N."""
 
     lower: float
@@ -76,8 +78,7 @@ class Limit:
     effort: float
 
 
-@dataclass(frozen=True, slots=True)
-class UrdfLink:
+class UrdfLink(NamedTuple):
     """A ``link`` element as read; ``inertial`` is its element, to point at."""
 
     name: str
@@ -88,8 +89,7 @@ class UrdfLink:
     collisions: tuple[Shape, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class UrdfJoint:
+class UrdfJoint(NamedTuple):
     """A ``joint`` element as read.
 
     Attributes:
@@ -567,7 +567,7 @@ class _Reader:
 
     def axis(self, name: str | None, kind: JointType, element: Element | None) -> Vector3 | None:
         """EU-URD-013: the axis of a joint that turns about or slides along it has a direction."""
-        if element is None or kind in (JointType.FIXED, JointType.FLOATING):
+        if element is None or kind in _AXLESS:
             return (1.0, 0.0, 0.0)
         text = element.get("xyz")
         if text is None:
@@ -593,7 +593,7 @@ class _Reader:
 
     def limit(self, name: str | None, kind: JointType, joint: Element, element: Element | None) -> Limit | None:
         """EU-URD-004, EU-URD-019, EU-URD-020: what moves in a range says a range, lower before upper."""
-        ranged = kind in (JointType.REVOLUTE, JointType.PRISMATIC)
+        ranged = kind in _RANGED
         if element is None:
             if ranged:
                 self.report(
@@ -607,7 +607,8 @@ class _Reader:
         if values is None:
             return None
         effort, velocity, lower, upper = values
-        self.not_negative(element, effort=effort, velocity=velocity)
+        if effort < 0.0 or velocity < 0.0:
+            self.negative(element, effort=effort, velocity=velocity)
         if ranged and lower > upper:
             self.report(
                 "urdf-reversed-limits",
@@ -619,11 +620,12 @@ class _Reader:
         return Limit(lower, upper, velocity, effort)
 
     def dynamics(self, element: Element) -> tuple[float, ...]:
-        values = self.several(element, _DYNAMICS) or (0.0, 0.0)
-        self.not_negative(element, damping=values[0], friction=values[1])
-        return values
+        damping, friction = self.several(element, _DYNAMICS) or (0.0, 0.0)
+        if damping < 0.0 or friction < 0.0:
+            self.negative(element, damping=damping, friction=friction)
+        return damping, friction
 
-    def not_negative(self, element: Element, **values: float) -> None:
+    def negative(self, element: Element, **values: float) -> None:
         """EU-URD-020: what is a magnitude is not negative."""
         for attribute, value in values.items():
             if value < 0.0:
@@ -639,7 +641,7 @@ class _Reader:
         stuck = [
             joint
             for joint in joints
-            if joint.type in (JointType.REVOLUTE, JointType.PRISMATIC)
+            if joint.type in _RANGED
             and joint.limit is not None
             and joint.limit.lower == joint.limit.upper == 0.0
         ]

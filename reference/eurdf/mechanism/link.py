@@ -91,7 +91,8 @@ def _described(
     _own_keys(extension, urdf, document, diagnostics)
     names = FrameNames(urdf, joints.by_name, faulty, document, diagnostics)
     frames = names.add(extension.frames)
-    rigid = rigid_roots(urdf.root, depth_first(urdf.root, joints.by_name.values()))
+    order = depth_first(urdf.root, joints.by_name.values())
+    rigid = rigid_roots(urdf.root, order)
     closures = link_closures(extension.closures, names, rigid, document, diagnostics)
     # What is said of a joint whose own entry is at fault would only repeat that fault.
     entries = [entry for entry in extension.actuators if entry.joint not in faulty]
@@ -102,7 +103,7 @@ def _described(
             joints.by_name[entry.joint] = with_motor(
                 joints.by_name[entry.joint], entry, armature_given=entry.joint in joints.armature_given
             )
-    ordered = depth_first(urdf.root, joints.by_name.values())
+    ordered = [joints.by_name[joint.name] for joint in order]
     bodies = bodies_of(urdf) | {body.name: body for body in joints.bodies}
     return Mechanism(
         urdf.name,
