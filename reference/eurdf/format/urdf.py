@@ -641,9 +641,7 @@ class _Reader:
         stuck = [
             joint
             for joint in joints
-            if joint.type in _RANGED
-            and joint.limit is not None
-            and joint.limit.lower == joint.limit.upper == 0.0
+            if joint.type in _RANGED and joint.limit is not None and joint.limit.lower == joint.limit.upper == 0.0
         ]
         if stuck:
             names = ", ".join(f"'{joint.name}'" for joint in stuck[:3]) + (", ..." if len(stuck) > 3 else "")
