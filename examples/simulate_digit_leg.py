@@ -1,0 +1,76 @@
+"""Simulates a leg of Digit under gravity, its motors held as by springs with dampers.
+
+Run as ``python examples/simulate_digit_leg.py``.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import pinocchio as pin
+
+import eurdf
+
+Array = npt.NDArray[np.float64]
+
+DURATION = 1.0  # s
+STEP = 2e-3  # s
+
+# Of each motor: hips and knee are stiff, the two of the foot move little.
+STIFFNESS = np.array([2000.0, 1000.0, 2000.0, 2000.0, 300.0, 300.0])  # N·m/rad
+DAMPING = np.array([60.0, 30.0, 60.0, 60.0, 1.0, 1.0])  # N·m·s/rad
+
+
+class Held(NamedTuple):
+    """How the leg hangs.
+
+    Attributes:
+        motion: What was simulated.
+        sag: By how much each motor has given way, at most (nu,), rad.
+        opening: How far closures come open, at most: the largest row of their residual, m or rad.
+        energy: Kinetic and potential energy (n + 1,), J.
+        energy_error: What the energy differs by from what the motors put into it, at most, J.
+    """
+
+    motion: eurdf.Simulation
+    sag: Array
+    opening: float
+    energy: Array
+    energy_error: float
+
+
+def main() -> Held:
+    """Let the leg hang from its torso, from rest, where it is drawn."""
+    robot = eurdf.load("digit_leg")
+    start = robot.configurations["assembled"]
+    held_at, _ = eurdf.split_configuration(robot, start)
+
+    def hold(t: float, q: Array, v: Array) -> Array:
+        at, _ = eurdf.split_configuration(robot, q)
+        rate, _ = eurdf.split_velocity(robot, v)
+        return STIFFNESS * (held_at - at) - DAMPING * rate
+
+    motion = eurdf.simulate(robot, start, duration=DURATION, step=STEP, control=hold)
+
+    steps = list(zip(motion.t, motion.q, motion.v, strict=True))
+    power = np.array([hold(t, q, v) @ eurdf.split_velocity(robot, v)[0] for t, q, v in steps])
+    work = np.concatenate([[0.0], np.cumsum(STEP * (power[1:] + power[:-1]) / 2.0)])
+    energy = np.array([pin.computeMechanicalEnergy(robot.model, robot.data, q, v) for _, q, v in steps])
+    return Held(
+        motion,
+        sag=np.abs(motion.q[:, robot.actuation.idx_q] - held_at).max(axis=0),
+        opening=max(float(np.abs(eurdf.residual(robot, q)).max()) for q in motion.q),
+        energy=energy,
+        energy_error=float(np.abs(energy - energy[0] - work).max()),
+    )
+
+
+if __name__ == "__main__":
+    result = main()
+    print(f"simulated          {result.motion.t[-1]:.3f} s in {len(result.motion.t) - 1} steps")
+    print(f"motors give way by {np.degrees(result.sag).max():.3f} degrees at most")
+    print(f"closures open by   {result.opening:.1e} m or rad at most")
+    print(f"energy             from {result.energy[0]:.4f} J to {result.energy[-1]:.4f} J")
+    print(f"unexplained of it  {result.energy_error:.1e} J at most")
