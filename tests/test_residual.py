@@ -10,6 +10,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+import eurdf
 from eurdf.kinematics.analysis import analyze
 from eurdf.kinematics.residual import closure_openings, residual, residual_and_jacobian
 from linkage import Linkage, X, Y, Z, closure, n_bar, stewart, swapped, translation
@@ -148,6 +149,30 @@ def test_a_3d_residual_is_the_origin_of_b_in_a() -> None:
     # B is at (3, 0, 0) before the hinge turns, and at (1, 2, 0) after 90 degrees.
     np.testing.assert_allclose(residual(linkage, np.array([0.0])), [-2.0, -2.0, -3.0], atol=1e-12)
     np.testing.assert_allclose(residual(linkage, np.array([np.pi / 2])), [0.0, 0.0, -3.0], atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["digit_leg", "four_bar"])
+def test_where_the_loops_are_closed_residual_and_jacobian_are_minus_pinocchios_own(name: str) -> None:
+    """Pinocchio measures A from B, and in 3d along the axes of A as well: where they coincide only the sign differs."""
+    robot = eurdf.load(name, geometry=False)
+    model, data = robot.model, robot.data
+    rng = np.random.default_rng(1)
+    moved = 0.2 * eurdf.project_velocity(robot, robot.configurations["assembled"], rng.normal(size=model.nv))
+    q = eurdf.assemble(robot, pin.integrate(model, robot.configurations["assembled"], moved)).q
+    assert np.abs(q - robot.configurations["assembled"]).max() > 0.01
+    r, K = residual_and_jacobian(robot, q)
+    pin.computeJointJacobians(model, data, q)
+    row = 0
+    for constraint in robot.constraint_models:
+        theirs = constraint.createData()
+        constraint.calc(model, data, theirs)
+        jacobian = pin.getConstraintJacobian(model, data, constraint, theirs)
+        rows = slice(row, row + constraint.residualSize())
+        np.testing.assert_allclose(K[rows], -jacobian, rtol=0.0, atol=1e-9)
+        error = (theirs.c1Mc2.inverse() * pin.SE3.Identity()).translation
+        np.testing.assert_allclose(r[rows][:3], -error, rtol=0.0, atol=1e-9)
+        row = rows.stop
+    assert row == len(r)
 
 
 def test_closures_are_stacked_in_their_order() -> None:

@@ -130,6 +130,9 @@ class Analysis:
 def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
     """Close the loops, count what they constrain and what moves, and name what the actuators leave or fight over.
 
+    rank = rank K, mobility = nv - rank, redundant = nc - rank, uncontrolled = nv - rank [K; Sᵀ], where S (nv, nu)
+    selects the actuated velocities (the words of dimension at the head of the specification).
+
     Ranks are those of a generic configuration: the largest found at the closed configuration and at some others
     around it, reached by small steps along the null space of K that are closed again, so that a straight or folded
     start does not pass for the rule. K is taken free of unit, lengths over the characteristic length of the robot,

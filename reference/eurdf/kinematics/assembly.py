@@ -77,7 +77,10 @@ def assemble(
     limits: bool = False,
     restarts: int = 20,
 ) -> Assembly:
-    """Find a closed configuration near the one given.
+    """Find a closed configuration near the one given: r(q) = 0.
+
+    Each step x solves (KᵀK + μ 1) x = -Kᵀ r, and q becomes q ⊕ x (Levenberg, *A method for the solution of certain
+    non-linear problems in least squares*, 1944; Marquardt, 1963), on the residual r and the K of EU-CLO-008 to -010.
 
     Only joints of the loops move. The same arguments give the same answer. The time is bounded also where the loops
     cannot be closed: by ``restarts`` + 2 descents of at most 60 steps.

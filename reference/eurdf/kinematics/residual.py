@@ -1,7 +1,8 @@
 """The residual of the closures, r(q), and its derivative, the constraint Jacobian K(q).
 
-A 6d closure has the six rows log6(ᴬM_B), (linear, angular), and a 3d closure has the three of the origin of B in A.
-K is the exact derivative, K v = d/dt r(q ⊕ t v) at t = 0, at every configuration, closed or not.
+A 6d closure has the six rows log6(ᴬM_B), (linear, angular) (EU-CLO-008), and a 3d closure has the three of the origin
+of B in A (EU-CLO-009). K is the exact derivative, K v = d/dt r(q ⊕ t v) at t = 0 (EU-CLO-010), at every configuration,
+closed or not.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ CLOSED = 1e-6
 
 
 def residual(robot: Robot, q: Vector, data: Any = None) -> Vector:
-    """Residual of all closures, stacked in their order.
+    """Residual of all closures, stacked in their order: log6(ᴬM_B) or ᴬp_B (EU-CLO-008, EU-CLO-009).
 
     Args:
         robot: The robot.
@@ -46,7 +47,7 @@ def residual(robot: Robot, q: Vector, data: Any = None) -> Vector:
 
 
 def residual_and_jacobian(robot: Robot, q: Vector, data: Any = None) -> tuple[Vector, Matrix]:
-    """Residual of all closures and its derivative.
+    """Residual of all closures and its derivative (EU-CLO-010).
 
     With J_A and J_B the world Jacobians of the bodies of A and B, the rows of K are those of `rows_of_twist` times
     Ad(ᴬM_0) · (J_B - J_A).
