@@ -26,14 +26,14 @@ UNKNOWN = Diagnostic(
 )
 
 
-def run_of(*found: Diagnostic, folder: str = "/work") -> dict[str, Any]:
+def run_of(*found: Diagnostic, folder: str = "/shop") -> dict[str, Any]:
     log = sarif_log([Report("robots/knee", found)], "1.2.3", folder)
     VALIDATOR.validate(log)
     run: dict[str, Any] = log["runs"][0]
     return run
 
 
-def uri_of(file: str, folder: str = "/work") -> str:
+def uri_of(file: str, folder: str = "/shop") -> str:
     result = run_of(Diagnostic("wrong-type", "it is wrong", Place(file, 1)), folder=folder)["results"][0]
     uri: str = result["locations"][0]["physicalLocation"]["artifactLocation"]["uri"]
     return uri
@@ -125,14 +125,14 @@ def test_a_region_says_as_much_as_is_known(place: Place, region: dict[str, int] 
     [
         ("robots/knee/robot.yaml", "robots/knee/robot.yaml"),
         ("./robots/../robots/knee.yaml", "robots/knee.yaml"),
-        ("/work/robots/knee.yaml", "robots/knee.yaml"),
+        ("/shop/robots/knee.yaml", "robots/knee.yaml"),
         ("my robots/50% [new]#1?.yaml", "my%20robots/50%25%20%5Bnew%5D%231%3F.yaml"),
         ("a:b.yaml", "a%3Ab.yaml"),
         ("é名.yaml", "%C3%A9%E5%90%8D.yaml"),
         ("half\udc80.yaml", "half%80.yaml"),
         ("../other/knee.yaml", "file:///other/knee.yaml"),
         ("/other/my knee.yaml", "file:///other/my%20knee.yaml"),
-        ("/workshop/knee.yaml", "file:///workshop/knee.yaml"),
+        ("/shopfloor/knee.yaml", "file:///shopfloor/knee.yaml"),
     ],
 )
 def test_a_path_is_a_uri_relative_to_the_folder_or_absolute_outside_of_it(file: str, uri: str) -> None:
