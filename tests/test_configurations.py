@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
@@ -10,6 +11,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+import eurdf
 from by_hand import rotation
 from described import at, codes, link_poses, load
 from test_actuation import STAR
@@ -126,3 +128,12 @@ def test_the_root_of_the_description_holds_unless_the_caller_says_otherwise() ->
     q = load(STAR, floating).configurations["ready"]
     np.testing.assert_array_equal(q[:7], [0, 0, 0, 0, 0, 0, 1])
     assert load(STAR, floating).model.names[1] == "root_joint"
+
+
+def test_a_joint_that_follows_stands_in_the_same_place_where_it_is_loaded_free() -> None:
+    places = []
+    for mimic in (True, False):
+        robot = eurdf.load(Path(__file__).parent / "data" / "workbench.yaml", geometry=False, mimic=mimic)
+        pin.framesForwardKinematics(robot.model, robot.data, robot.configurations["ready"])
+        places.append(robot.data.oMf[robot.model.getFrameId("thumb")].homogeneous)
+    np.testing.assert_allclose(places[1], places[0], rtol=0.0, atol=1e-15)

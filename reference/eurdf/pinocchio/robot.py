@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import pinocchio as pin
@@ -14,6 +14,7 @@ from eurdf.pinocchio.configuration import Vector, configuration_vector
 from eurdf.pinocchio.constraint import build_constraint_models
 from eurdf.pinocchio.coordinates import slots
 from eurdf.pinocchio.geometry import Meshes, Resolve, build_geometry
+from eurdf.pinocchio.mimic import following
 from eurdf.pinocchio.model import build_model
 
 
@@ -122,11 +123,20 @@ def build_robot(
         visual_model,
         collision_model,
         {
-            name: configuration_vector(mechanism, model, coordinates, at)
+            name: configuration_vector(mechanism, model, coordinates if mimic else _led(mechanism, coordinates), at)
             for name, coordinates in mechanism.configurations.items()
         },
         diagnostics,
     )
+
+
+def _led(mechanism: Mechanism, coordinates: Mapping[str, Sequence[float]]) -> Mapping[str, Sequence[float]]:
+    """The coordinates of a named configuration with those of the joints that follow: free, they stand there too."""
+    laws = following(mechanism).laws
+    followers = {
+        name: (law.multiplier * coordinates.get(law.joint, (0.0,))[0] + law.offset,) for name, law in laws.items()
+    }
+    return {**coordinates, **followers}
 
 
 def _nothing(uri: str) -> None:
