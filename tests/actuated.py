@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,9 +15,7 @@ from eurdf.kinematics.position_limit import position_limits
 from eurdf.pinocchio.actuation import Actuation
 from eurdf.pinocchio.robot import Robot
 from linkage import Linkage
-
-WILD = Path(__file__).parents[2] / "shared" / "wild"
-FACTS: dict[str, Any] = json.loads((WILD / "facts.json").read_text()) if (WILD / "facts.json").is_file() else {}
+from wild import FACTS, WILD
 
 #: Names of the robots of the collection, and of the published ones that close and that nobody here wrote.
 ROBOTS = ["digit_leg", "four_bar", *(f"wild/{name}" for name, facts in FACTS.items() if facts["closes"])]

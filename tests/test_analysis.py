@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -37,10 +35,7 @@ from linkage import (
     swapped,
     translation,
 )
-
-WILD = Path(__file__).parents[2] / "shared" / "wild"
-FACTS: dict[str, Any] = json.loads((WILD / "facts.json").read_text()) if (WILD / "facts.json").is_file() else {}
-needs_wild = pytest.mark.skipif(not FACTS, reason="the folder of published robots, ../shared/wild, is not there")
+from wild import FACTS, WILD, needs_wild
 
 
 def rod_between_balls() -> Linkage:

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import gc
-import json
 import time
 import weakref
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -37,10 +35,7 @@ from linkage import (
     stewart,
     translation,
 )
-
-WILD = Path(__file__).parents[2] / "shared" / "wild"
-FACTS: dict[str, Any] = json.loads((WILD / "facts.json").read_text()) if (WILD / "facts.json").is_file() else {}
-needs_wild = pytest.mark.skipif(not FACTS, reason="the folder of published robots, ../shared/wild, is not there")
+from wild import FACTS, WILD, needs_wild
 
 OPEN = {
     "four-bar in 6d": lambda: n_bar(4, away=0.7),

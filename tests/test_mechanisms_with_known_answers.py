@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -27,9 +25,7 @@ from linkage import (
     stewart,
     three_rrr,
 )
-
-WILD = Path(__file__).parents[2] / "shared" / "wild"
-FACTS: dict[str, Any] = json.loads((WILD / "facts.json").read_text()) if (WILD / "facts.json").is_file() else {}
+from wild import FACTS, WILD
 
 
 def spatial_loop(n: int) -> Linkage:

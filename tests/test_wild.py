@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
 import eurdf
+from wild import FACTS, WILD
 
-WILD = Path(__file__).parents[2] / "shared" / "wild"
-if not (WILD / "facts.json").is_file():
+if not FACTS:
     pytest.skip("the folder of published robots, ../shared/wild, is not there", allow_module_level=True)
 
-FACTS: dict[str, dict[str, Any]] = json.loads((WILD / "facts.json").read_text(encoding="utf-8"))
 
 #: Faults of the published files: everything that `check` finds, but for the meshes that were left out.
 FAULTS = {name: {"urdf-no-range"} for name in FACTS}
