@@ -131,12 +131,12 @@ def build_robot(
 
 
 def _led(mechanism: Mechanism, coordinates: Mapping[str, Sequence[float]]) -> Mapping[str, Sequence[float]]:
-    """The coordinates of a named configuration with those of the joints that follow: free, they stand there too."""
+    """A named configuration with the joints that follow, where it does not state them: free, they stand there too."""
     laws = following(mechanism).laws
     followers = {
         name: (law.multiplier * coordinates.get(law.joint, (0.0,))[0] + law.offset,) for name, law in laws.items()
     }
-    return {**coordinates, **followers}
+    return {**followers, **coordinates}
 
 
 def _nothing(uri: str) -> None:
