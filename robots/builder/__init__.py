@@ -1,12 +1,12 @@
 """Robots drawn in one assembled pose, in world coordinates, and written as Extended URDF.
 
 Every body's frame has its origin at the joint that carries the body, and its axes parallel to the world's in the drawn
-pose. So the drawn pose is the one at which every joint stands at zero, the origin of a joint is the difference of two
-points, and every loop is closed at zero because both its sides are the same point of the drawing.
+pose; only those of a universal joint lie along its two axes. So the drawn pose is the one at which every joint stands
+at zero, and every loop is closed there because both its sides are the same point of the drawing.
 """
 
 from robots.builder.drawing import Drawing
-from robots.builder.joint import Motor, ball, revolute
+from robots.builder.joint import Motor, ball, prismatic, revolute, universal
 from robots.builder.shape import Box, Cylinder, Sphere, Vector3, midpoint
 from robots.builder.write import write
 
@@ -19,6 +19,8 @@ __all__ = [
     "Vector3",
     "ball",
     "midpoint",
+    "prismatic",
     "revolute",
+    "universal",
     "write",
 ]

@@ -6,10 +6,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from robots.builder.joint import Joint, ball
-from robots.builder.shape import Cylinder, Shape, Sphere, Vector3, midpoint
+import numpy as np
+
+from robots.builder.joint import Joint, ball, cross, unit, universal
+from robots.builder.mirror import mirrored_joint, mirrored_shape, mirrored_vector
+from robots.builder.shape import Cylinder, Matrix3, Shape, Sphere, Vector3, midpoint
 
 Color = tuple[float, float, float, float]
+
+#: What a rod has at its end: a joint, or (at its second end) a point that a 3d closure holds.
+End = Literal["ball", "universal", "point"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +40,11 @@ class Body:
     def origin(self) -> Vector3:
         """Origin of its frame in the world, m: its joint; for the root, the world's own origin."""
         return self.joint.at if self.joint else (0.0, 0.0, 0.0)
+
+    @property
+    def rotation(self) -> Matrix3:
+        """Orientation of its frame in the world, 3 x 3: its joint's; for the root, the world's own."""
+        return self.joint.rotation if self.joint else np.eye(3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,14 +76,22 @@ class Drawing:
         name: Name of the robot.
         materials: Colours by name: red, green, blue, alpha from 0 to 1.
         metadata: What the description says of itself.
+        root: Whether its root stands in the world or floats.
         bodies: By name; parents before their children.
         closures: In the order drawn.
     """
 
-    def __init__(self, name: str, materials: Mapping[str, Color], metadata: Mapping[str, str]) -> None:
+    def __init__(
+        self,
+        name: str,
+        materials: Mapping[str, Color],
+        metadata: Mapping[str, str],
+        root: Literal["fixed", "floating"] = "fixed",
+    ) -> None:
         self.name = name
         self.materials = materials
         self.metadata = metadata
+        self.root = root
         self.bodies: dict[str, Body] = {}
         self.closures: list[Closure] = []
 
@@ -128,25 +147,85 @@ class Drawing:
         radius: float,
         mass: float,
         material: str,
+        ends: tuple[End, End] = ("ball", "ball"),
     ) -> None:
-        """Draws a rod with a ball joint at each end: cut in the middle, and the halves held together by a 6d closure.
+        """Draws a rod between two bodies, and closes the loop through it.
+
+        With a joint at each end it is cut in the middle, and the halves are held together by a 6d closure. A rod that
+        ends in a point is whole: it hangs from the joint at its start, and a 3d closure holds its end.
 
         Args:
-            name: The halves are ``name_start`` and ``name_end``, their balls ``ball_name_start`` and ``ball_name_end``,
-                the closure ``name``.
-            start: Body at one end, and the centre of the ball in the world, m.
+            name: Of the closure, and of a whole rod. The halves of a cut one are ``name_start`` and ``name_end``. The
+                joints are called by what they are: ``ball_name_start``, ``universal_name_end``, ``ball_name``.
+            start: Body at one end, and the centre of the joint in the world, m.
             end: Likewise at the other.
             radius: m; the heads are spheres of twice that radius.
             mass: Of the whole rod, kg; each head has an eighth of it.
             material: Name of its colour.
+            ends: What it has at its ends. The axes of a universal joint lie across the rod, the first one level, so
+                that it cannot spin.
+
+        Raises:
+            ValueError: If it starts in a point, or something of that name is drawn.
         """
+        if ends[0] == "point":
+            raise ValueError(f"rod '{name}' starts in a point: it hangs from nothing")
+        if ends[1] == "point":
+            heads = (Sphere(start[1], 2.0 * radius, mass * 0.125), Sphere(end[1], 2.0 * radius, mass * 0.125))
+            shaft = Cylinder(start[1], end[1], radius, mass * 0.75)
+            self.body(name, _rod_joint(ends[0], name, start, end[1]), shaft, *heads, material=material)
+            self.close(name, "3d", name, end[0], end[1])
+            return
         middle = midpoint(start[1], end[1])
-        for side, (parent, at) in (("start", start), ("end", end)):
-            self.body(
-                f"{name}_{side}",
-                ball(f"ball_{name}_{side}", parent, at),
-                Cylinder(at, middle, radius, mass * 0.375),
-                Sphere(at, 2.0 * radius, mass * 0.125),
-                material=material,
-            )
+        for side, kind, (parent, at) in (("start", ends[0], start), ("end", ends[1], end)):
+            half = f"{name}_{side}"
+            shaft = Cylinder(at, middle, radius, mass * 0.375)
+            head = Sphere(at, 2.0 * radius, mass * 0.125)
+            self.body(half, _rod_joint(kind, half, (parent, at), middle), shaft, head, material=material)
         self.close(name, "6d", f"{name}_start", f"{name}_end", middle)
+
+    def mirror(self, side: str, other: str) -> None:
+        """Draws once more, mirrored in the plane y = 0, all that has ``side`` in its name, with ``other`` in its place.
+
+        Where a joint and its mirror image have the same coordinate (a quaternion: with x and z negated), what they
+        carry is mirrored too.
+
+        Args:
+            side: Part of the names of the bodies, joints and closures to be mirrored: ``left``.
+            other: What stands in its place in the names of the mirror images: ``right``.
+
+        Raises:
+            ValueError: If something hangs from or holds a body of that side but is not named so.
+        """
+
+        def renamed(name: str) -> str:
+            return name.replace(side, other)
+
+        for body in list(self.bodies.values()):
+            of_side = side in body.name
+            if body.joint and (side in body.joint.name) != of_side:
+                raise ValueError(f"of body '{body.name}' and joint '{body.joint.name}', one is named '{side}' only")
+            if body.joint and side in body.joint.parent and not of_side:
+                raise ValueError(f"body '{body.name}' hangs from '{body.joint.parent}' but is not named '{side}'")
+            if of_side:
+                joint = mirrored_joint(body.joint, renamed) if body.joint else None
+                contacts = tuple(map(mirrored_shape, body.contacts))
+                shapes = map(mirrored_shape, body.shapes)
+                self.body(renamed(body.name), joint, *shapes, material=body.material, contacts=contacts)
+        for closure in list(self.closures):
+            a, b = closure.bodies
+            if side in closure.name:
+                self.close(renamed(closure.name), closure.type, renamed(a), renamed(b), mirrored_vector(closure.at))
+            elif side in a or side in b:
+                raise ValueError(f"closure '{closure.name}' holds '{a}' and '{b}' but is not named '{side}'")
+
+
+def _rod_joint(kind: End, rod: str, start: tuple[str, Vector3], toward: Vector3) -> Joint:
+    """The joint at an end of a rod that runs from there toward a point."""
+    parent, at = start
+    if kind == "ball":
+        return ball(f"ball_{rod}", parent, at)
+    along = unit((toward[0] - at[0], toward[1] - at[1], toward[2] - at[2]))
+    upright = abs(along[2]) > 1.0 - 1e-9
+    level = (1.0, 0.0, 0.0) if upright else unit((-along[1], along[0], 0.0))
+    return universal(f"universal_{rod}", parent, at, level, cross(along, level))

@@ -6,7 +6,15 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from robots.builder.shape import Vector3
+import numpy as np
+
+from robots.builder.shape import Matrix3, Vector3
+
+#: The world's own axes: those of every joint frame that is not turned.
+WORLD: tuple[Vector3, Vector3, Vector3] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+#: Cosine of the angle of two axes below which they count as perpendicular.
+_PERPENDICULAR = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -14,10 +22,10 @@ class Motor:
     """What drives a joint.
 
     Attributes:
-        effort: Largest torque at the joint, N·m.
-        velocity: Largest velocity of the joint, rad/s.
-        damping: N·m·s/rad.
-        friction: N·m.
+        effort: Largest torque at the joint, N·m; force in N at one that slides.
+        velocity: Largest velocity of the joint, rad/s; m/s at one that slides.
+        damping: N·m·s/rad; N·s/m.
+        friction: N·m; N.
     """
 
     effort: float
@@ -36,21 +44,28 @@ class Joint:
 
     Attributes:
         name: Unique among the joints.
-        type: What the joint is. A spherical one stands in the URDF as a continuous one about ``axis``.
+        type: What the joint is. A spherical or universal one stands in the URDF as a continuous one about ``axis``.
         parent: Body that it hangs the next one from.
         at: Its centre, m.
-        axis: Unit vector.
-        stops: Lowest and highest angle, rad, seen from the drawn pose; None where nothing stops it.
+        axis: Unit vector; of a universal joint the first axis, fixed to the parent.
+        axes: Unit vectors x, y, z of its frame. A universal joint turns about x, then y; others keep the world's axes.
+        stops: Lowest and highest angle (rad) or travel (m), seen from the drawn pose; None where nothing stops it.
         motor: What drives it; None if nothing does.
     """
 
     name: str
-    type: Literal["revolute", "spherical"]
+    type: Literal["revolute", "prismatic", "spherical", "universal"]
     parent: str
     at: Vector3
     axis: Vector3
+    axes: tuple[Vector3, Vector3, Vector3] = WORLD
     stops: tuple[float, float] | None = None
     motor: Motor | None = None
+
+    @property
+    def rotation(self) -> Matrix3:
+        """Orientation of its frame in the world, 3 x 3: the columns are its axes."""
+        return np.array(self.axes).T
 
 
 def revolute(
@@ -75,11 +90,64 @@ def revolute(
         motor: What drives it.
     """
     stops = degrees and (round(math.radians(degrees[0] - drawn), 4), round(math.radians(degrees[1] - drawn), 4))
-    length = math.hypot(*axis)
-    unit = (axis[0] / length, axis[1] / length, axis[2] / length)
-    return Joint(name, "revolute", parent, at, unit, stops, motor)
+    return Joint(name, "revolute", parent, at, unit(axis), stops=stops, motor=motor)
+
+
+def prismatic(
+    name: str,
+    parent: str,
+    at: Vector3,
+    axis: Vector3,
+    *,
+    metres: tuple[float, float],
+    drawn: float = 0.0,
+    motor: Motor | None = None,
+) -> Joint:
+    """A prismatic joint.
+
+    Args:
+        name: Unique among the joints.
+        parent: Body that it hangs the next one from.
+        at: Origin of the next body in the world, m.
+        axis: Direction in which it slides, in the world; any length.
+        metres: Shortest and longest travel on the maker's scale, m.
+        drawn: Travel of the drawn pose on that scale, m.
+        motor: What drives it.
+    """
+    stops = (round(metres[0] - drawn, 6), round(metres[1] - drawn, 6))
+    return Joint(name, "prismatic", parent, at, unit(axis), stops=stops, motor=motor)
 
 
 def ball(name: str, parent: str, at: Vector3) -> Joint:
     """A ball joint that nothing drives and nothing stops, at a point of the world (m)."""
     return Joint(name, "spherical", parent, at, (0.0, 0.0, 1.0))
+
+
+def universal(name: str, parent: str, at: Vector3, first: Vector3, second: Vector3) -> Joint:
+    """A universal joint (Cardan's) that nothing drives and nothing stops.
+
+    Args:
+        name: Unique among the joints.
+        parent: Body that it hangs the next one from.
+        at: Its centre in the world, m.
+        first: Axis fixed to the parent, in the world; any length.
+        second: Axis fixed to the next body, in the drawn pose, in the world; any length.
+
+    Raises:
+        ValueError: If the two axes are not perpendicular.
+    """
+    x, y = unit(first), unit(second)
+    if abs(float(np.dot(x, y))) > _PERPENDICULAR:
+        raise ValueError(f"the axes of universal joint '{name}' are not perpendicular")
+    return Joint(name, "universal", parent, at, x, axes=(x, y, cross(x, y)))
+
+
+def unit(vector: Vector3) -> Vector3:
+    """The unit vector in a direction."""
+    length = math.hypot(*vector)
+    return (vector[0] / length, vector[1] / length, vector[2] / length)
+
+
+def cross(a: Vector3, b: Vector3) -> Vector3:
+    """The vector product of two."""
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])

@@ -118,3 +118,14 @@ def rotation_of(rpy: Vector3) -> Matrix3:
     about_z = np.array([[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]])
     rotation: Matrix3 = about_z @ about_y @ about_x
     return rotation
+
+
+def rpy_of(rotation: Matrix3) -> Vector3:
+    """The roll, pitch and yaw (rad) that ``rotation_of`` turns into a rotation (3 x 3); where pitch is ±90°, too.
+
+    Roll is taken from the rotation with the yaw taken off, so that both agree where yaw is nothing but rounding.
+    """
+    (r00, r01, r02), (r10, r11, r12), (r20, _, _) = rotation.tolist()
+    yaw = math.atan2(r10, r00)
+    sy, cy = math.sin(yaw), math.cos(yaw)
+    return (math.atan2(sy * r02 - cy * r12, cy * r11 - sy * r01), math.atan2(-r20, cy * r00 + sy * r10), yaw)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import numpy as np
 from lxml import etree
 
 from robots.builder.drawing import Body, Drawing
-from robots.builder.joint import PASSIVE, Joint
+from robots.builder.joint import PASSIVE, WORLD, Joint
 from robots.builder.number_text import length_text, mass_text, number_text
-from robots.builder.shape import Box, Cylinder, Matrix3, Shape, Vector3
+from robots.builder.shape import Box, Cylinder, Matrix3, Shape, Vector3, rotation_of, rpy_of
 from robots.builder.solid import solid_of
 
 _HEAD = '<?xml version="1.0" encoding="UTF-8"?>\n<!-- Written by build.py beside this file: change it there. -->\n'
@@ -21,12 +22,13 @@ def urdf_text(drawing: Drawing) -> str:
         etree.SubElement(material, "color", rgba=" ".join(map(number_text, color)))
     for body in drawing.bodies.values():
         if body.joint:
-            _write_joint(robot, body.joint, body.name, drawing.bodies[body.joint.parent].origin)
+            _write_joint(robot, body.joint, body.name, drawing.bodies[body.joint.parent])
         _write_link(robot, body)
     for closure in drawing.closures:
         for frame, body_name in zip(closure.frames, closure.bodies, strict=True):
             joint = etree.SubElement(robot, "joint", name=f"weld_{frame}", type="fixed")
-            _write_origin(joint, closure.at, drawing.bodies[body_name].origin)
+            body = drawing.bodies[body_name]
+            _write_origin(joint, closure.at, rpy_of(body.rotation.T), body)
             etree.SubElement(joint, "parent", link=body_name)
             etree.SubElement(joint, "child", link=frame)
             etree.SubElement(robot, "link", name=frame)
@@ -34,13 +36,13 @@ def urdf_text(drawing: Drawing) -> str:
     return _HEAD + etree.tostring(robot, encoding="unicode") + "\n"
 
 
-def _write_joint(robot: etree._Element, joint: Joint, child: str, parent_origin: Vector3) -> None:
-    kind = "revolute" if joint.stops else "continuous"
+def _write_joint(robot: etree._Element, joint: Joint, child: str, parent: Body) -> None:
+    kind = "prismatic" if joint.type == "prismatic" else "revolute" if joint.stops else "continuous"
     element = etree.SubElement(robot, "joint", name=joint.name, type=kind)
-    _write_origin(element, joint.at, parent_origin)
+    _write_origin(element, joint.at, rpy_of(parent.rotation.T @ joint.rotation), parent)
     etree.SubElement(element, "parent", link=joint.parent)
     etree.SubElement(element, "child", link=child)
-    etree.SubElement(element, "axis", xyz=length_text(joint.axis))
+    etree.SubElement(element, "axis", xyz=length_text(joint.rotation.T @ joint.axis))
     if joint.stops or joint.motor:
         motor = joint.motor or PASSIVE
         limit = etree.SubElement(element, "limit")
@@ -60,27 +62,31 @@ def _write_link(robot: etree._Element, body: Body) -> None:
     if body.shapes:
         solid = solid_of(body.shapes)
         inertial = etree.SubElement(link, "inertial")
-        _write_origin(inertial, solid.center, body.origin)
+        # The moments are about the body's own axes, so that the inertial frame need not be turned.
+        _write_origin(inertial, solid.center, (0.0, 0.0, 0.0), body)
         etree.SubElement(inertial, "mass", value=mass_text(solid.mass))
-        etree.SubElement(inertial, "inertia", attrib=_moments(solid.inertia))
+        etree.SubElement(inertial, "inertia", attrib=_moments(body.rotation.T @ solid.inertia @ body.rotation))
     for shape in body.shapes:
-        visual = _write_shape(link, "visual", shape, body.origin)
+        visual = _write_shape(link, "visual", shape, body)
         etree.SubElement(visual, "material", name=body.material)
     for shape in body.contacts:
-        _write_shape(link, "collision", shape, body.origin)
+        _write_shape(link, "collision", shape, body)
 
 
-def _write_origin(element: etree._Element, at: Vector3, origin: Vector3, rpy: Vector3 = (0.0, 0.0, 0.0)) -> None:
-    xyz = length_text(world - own for world, own in zip(at, origin, strict=True))
+def _write_origin(element: etree._Element, at: Vector3, rpy: Vector3, parent: Body) -> None:
+    """The pose of a frame in its parent: given are its position in the world (m) and its turn in the parent (rad)."""
+    xyz = length_text(parent.rotation.T @ np.subtract(at, parent.origin))
     turn = length_text(rpy)
     attributes = {key: text for key, text in (("xyz", xyz), ("rpy", turn)) if text != "0 0 0"}
     if attributes:
         etree.SubElement(element, "origin", attrib=attributes)
 
 
-def _write_shape(link: etree._Element, purpose: str, shape: Shape, origin: Vector3) -> etree._Element:
+def _write_shape(link: etree._Element, purpose: str, shape: Shape, body: Body) -> etree._Element:
     element = etree.SubElement(link, purpose)
-    _write_origin(element, shape.center, origin, shape.rpy)
+    turned = body.joint is not None and body.joint.axes != WORLD
+    rpy = rpy_of(body.rotation.T @ rotation_of(shape.rpy)) if turned else shape.rpy
+    _write_origin(element, shape.center, rpy, body)
     geometry = etree.SubElement(element, "geometry")
     if isinstance(shape, Box):
         etree.SubElement(geometry, "box", size=length_text(shape.size))

@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 
 from robots.builder.drawing import Drawing
+from robots.builder.joint import Joint
 from robots.builder.number_text import number_text
 
 Value = str | float | Sequence["Value"] | Mapping[str, "Value"]
@@ -23,10 +24,11 @@ def yaml_text(drawing: Drawing) -> str:
     content: dict[str, Value] = {
         "extended_urdf": "2.0",
         "urdf": "robot.urdf",
+        "root": "" if drawing.root == "fixed" else drawing.root,
         "closures": [
             {"name": closure.name, "type": closure.type, "frames": closure.frames} for closure in drawing.closures
         ],
-        "joints": {joint.name: joint.type for joint in drawing.joints if joint.type != "revolute"},
+        "joints": {joint.name: _type_2(joint) for joint in _replaced(drawing)},
         "actuators": [joint.name for joint in drawing.joints if joint.motor],
         "configurations": {"assembled": {}},
         "metadata": drawing.metadata,
@@ -36,15 +38,30 @@ def yaml_text(drawing: Drawing) -> str:
 
 def version_1_text(drawing: Drawing) -> str:
     """The description in version 1, which can say the same mechanism, but neither configurations nor metadata."""
-    replaced = [joint for joint in drawing.joints if joint.type != "revolute"]
+    replaced = _replaced(drawing)
     content: dict[str, Value] = {
         "closed_loop": [closure.frames for closure in drawing.closures],
         "type": [closure.type for closure in drawing.closures],
         "name_mot": [joint.name for joint in drawing.joints if joint.motor],
         "joint_name": [joint.name for joint in replaced],
-        "joint_type": [joint.type.upper() for joint in replaced],
+        "joint_type": [_type_1(joint) for joint in replaced],
     }
     return _SCHEMA.format("1") + _HEAD + _text(content)
+
+
+def _replaced(drawing: Drawing) -> list[Joint]:
+    """The joints that URDF cannot say."""
+    return [joint for joint in drawing.joints if joint.type in ("spherical", "universal")]
+
+
+def _type_2(joint: Joint) -> Value:
+    """What a joint is in version 2.0; the axes of a universal one are x and y of its frame."""
+    return {"type": "universal", "axes": "xy"} if joint.type == "universal" else joint.type
+
+
+def _type_1(joint: Joint) -> str:
+    """The same in version 1."""
+    return "UJOINT_XY" if joint.type == "universal" else joint.type.upper()
 
 
 def _text(content: Mapping[str, Value]) -> str:
