@@ -73,7 +73,7 @@ def test_version_1_merges_revolutes_and_stands_on_a_fixed_root_beside_robot_urdf
 
 def test_any_other_key_is_kept_as_the_users_own() -> None:
     extension = sound("closed_loop: []\nnotes: {mass: [1, 2]}\nx-type: any\n")
-    assert extension.extensions == {"notes": {"mass": [1, 2]}, "x-type": "any"}
+    assert extension.own_data == {("notes",): {"mass": [1, 2]}, ("x-type",): "any"}
 
 
 def test_a_file_may_say_nothing_of_the_format() -> None:
@@ -97,7 +97,7 @@ def test_a_file_may_say_nothing_of_the_format() -> None:
 def test_a_near_miss_of_a_key_is_a_warning_and_is_kept(key: str, meant: str) -> None:
     extension, diagnostics = read(f"closed_loop: [[a, b]]\n{key}: [1]\n")
     assert extension is not None
-    assert extension.extensions == {key: [1]}
+    assert extension.own_data == {(key,): [1]}
     (warning,) = diagnostics
     assert (warning.code, warning.line, warning.column) == ("near-miss-key", 2, 1)
     assert warning.hint == f"did you mean '{meant}'?"
@@ -105,7 +105,7 @@ def test_a_near_miss_of_a_key_is_a_warning_and_is_kept(key: str, meant: str) -> 
 
 @pytest.mark.parametrize("key", ["name", "notes", "time", "joint", "loop", "metadata", "x-types", "mass"])
 def test_a_key_that_is_not_near_is_kept_without_a_word(key: str) -> None:
-    assert sound(f"closed_loop: []\n{key}: 1\n").extensions == {key: 1}
+    assert sound(f"closed_loop: []\n{key}: 1\n").own_data == {(key,): 1}
 
 
 def test_a_key_of_version_2_beside_one_of_version_1_is_warned_of() -> None:

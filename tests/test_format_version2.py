@@ -79,7 +79,7 @@ def test_the_top_of_the_file_is_read() -> None:
     extension = full()
     assert (extension.version, extension.urdf, extension.root) == ("2.0", "leg.urdf", "floating")
     assert extension.metadata == {"license": "BSD-3-Clause", "anything": [1, None]}
-    assert extension.extensions == {"x-note": "kept"}
+    assert extension.own_data[("x-note",)] == "kept"
     assert not extension.merges_revolutes
 
 
@@ -167,10 +167,21 @@ def test_the_users_own_keys_may_stand_in_every_mapping_and_change_nothing(path: 
         assert getattr(after, part) == getattr(before, part)
 
 
+def test_the_users_own_data_are_kept_at_every_level_and_nothing_is_sought_within_them() -> None:
+    text = "x-a: {x-b: 1}\nclosures: [{name: c, type: 3d, frames: [a, b], x-d: [1]}]\nmetadata: {x-e: 2}\n"
+    extension = sound(text)
+    assert extension.own_data == {("x-a",): {"x-b": 1}, ("closures", 0, "x-d"): [1]}
+    assert extension.metadata == {"x-e": 2}
+
+
 def test_own_keys_among_names_of_joints_are_remembered_for_linking() -> None:
     extension = sound("joints: {x-rail: fixed}\nconfigurations: {x-old: {x-a: 1}, ready: {x-rail: 1, hip: 2}}\n")
     assert extension.joints == ()
-    assert extension.own_keys == (("joints", "x-rail"), ("configurations", "ready", "x-rail"))
+    assert set(extension.own_data) == {
+        ("joints", "x-rail"),
+        ("configurations", "x-old"),
+        ("configurations", "ready", "x-rail"),
+    }
     (ready,) = extension.configurations
     assert ready.joints == {"hip": (2.0,)}
 

@@ -31,6 +31,7 @@ from eurdf.pinocchio.configuration import configuration_vector
 from eurdf.pinocchio.robot import Robot, build_robot
 from eurdf.reading.source import Source, read_source
 from eurdf.reading.xml_reader import read_xml
+from eurdf.reading.yaml_node import json_pointer
 from eurdf.reading.yaml_reader import read_yaml
 
 HERE = Path(__file__).parent
@@ -71,7 +72,7 @@ def linked(text: str) -> Mechanism:
 
 def but_for_the_version(mechanism: Mechanism) -> Mechanism:
     """Own keys have another name in version 2, which is tested apart."""
-    return replace(mechanism, version="", extensions={})
+    return replace(mechanism, version="", own_data={})
 
 
 def randomly_posed(before: Robot, after: Robot, seed: int) -> tuple[Any, Any]:
@@ -268,8 +269,10 @@ def test_any_document_is_the_same_model_in_version_2(data: st.DataObject) -> Non
     assert differences(before, after) == []
     if not any(body.virtual for body in before.bodies):
         assert but_for_the_version(after) == but_for_the_version(before)
-    expected = {name: before.extensions[key] for key, name in own_keys(before.extensions).items()}
-    assert repr(dict(after.extensions)) == repr(expected)
+    keys = {json_pointer([key]): key for key in document}
+    own = {keys[pointer]: value for pointer, value in before.own_data.items()}
+    expected = {json_pointer([name]): own[key] for key, name in own_keys(own).items()}
+    assert repr(dict(after.own_data)) == repr(expected)
 
 
 @settings(max_examples=25, deadline=None, derandomize=True)
@@ -382,8 +385,8 @@ def test_what_was_done_is_told() -> None:
 
 def test_own_data_with_an_alias_into_the_format_keep_their_values() -> None:
     migration = migrated("name_mot: &motors [motor]\nbackup: *motors\nalso: &a {k: [1]}\ntoo: *a\n")
-    values = {"x-backup": ["motor"], "x-also": {"k": [1]}, "x-too": {"k": [1]}}
-    assert migration.mechanism.extensions == values
+    values = {"/x-backup": ["motor"], "/x-also": {"k": [1]}, "/x-too": {"k": [1]}}
+    assert migration.mechanism.own_data == values
 
 
 def test_own_keys_never_meet() -> None:

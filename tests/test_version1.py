@@ -183,4 +183,4 @@ def test_the_root_is_fixed_unless_the_caller_floats_it() -> None:
 def test_a_description_that_says_nothing_leaves_the_plain_urdf() -> None:
     text: Any = _arm()
     assert load(text, "note: mine\n").model == pin.buildModelFromXML(text, mimic=True)
-    assert load(text, "note: mine\n").mechanism.extensions == {"note": "mine"}
+    assert load(text, "note: mine\n").mechanism.own_data == {"/note": "mine"}

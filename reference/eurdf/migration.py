@@ -9,6 +9,7 @@ from eurdf.format.migrate import NotMigratable, migrated, own_keys
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.same_model import differences, with_universal_joints
+from eurdf.reading.yaml_node import json_pointer
 from eurdf.rereading import reread
 
 
@@ -55,8 +56,9 @@ def migrate(description: Description, urdf_path: str = "robot.urdf") -> Migratio
     if after is None:
         raise NotMigratable(f"version 2 does not allow it: {diagnostics.errors[0].message}", ())
     found = differences(before, after)
-    expected = {name: extension.extensions[key] for key, name in own_keys(extension.extensions).items()}
-    if repr(expected) != repr(dict(after.extensions)):
+    own = {str(key): value for (key,), value in extension.own_data.items()}
+    expected = {json_pointer([name]): own[key] for key, name in own_keys(own).items()}
+    if repr(expected) != repr(dict(after.own_data)):
         found.append("your own data are others")
     if found:
         raise NotMigratable(f"version 2 would not be the same model: {'; '.join(found)}", ())

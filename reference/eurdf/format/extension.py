@@ -124,9 +124,8 @@ class Extension:
         closures: In file order; likewise the other lists.
         merges_revolutes: Whether three revolute joints whose axes meet become one spherical joint (version 1).
         metadata: What the file says of itself.
-        extensions: The user's own data at the top level.
-        own_keys: Where a key ``x-…`` stands among the names of joints. It is the user's own and no joint's name, so
-            that linking can refuse it where a joint has that name.
+        own_data: The user's own data, as plain values, by the pointer of their key: at any level of a version 2 file,
+            at the top of a version 1 file.
     """
 
     version: Literal["1", "2.0"]
@@ -139,8 +138,7 @@ class Extension:
     configurations: tuple[ConfigurationEntry, ...] = ()
     merges_revolutes: bool = False
     metadata: Mapping[str, object] = field(default_factory=dict)
-    extensions: Mapping[str, object] = field(default_factory=dict)
-    own_keys: tuple[Pointer, ...] = ()
+    own_data: Mapping[Pointer, object] = field(default_factory=dict)
 
 
 __all__ = [

@@ -51,7 +51,7 @@ def from_version1(model: Version1) -> Extension:
         joints=joints,
         actuators=tuple(ActuatorEntry(("name_mot", index), name) for index, name in enumerate(model.name_mot)),
         merges_revolutes=True,
-        extensions=model.model_extra or {},
+        own_data={(key,): value for key, value in (model.model_extra or {}).items()},
     )
 
 
@@ -90,8 +90,7 @@ def from_version2(model: Version2, data: Mapping[str, Any]) -> Extension:
             for name, joints in model.configurations.items()
         ),
         metadata=model.metadata,
-        extensions=model.model_extra or {},
-        own_keys=tuple(_own_keys(data)),
+        own_data=dict(_own_data({key: value for key, value in data.items() if key != "metadata"}, ())),
     )
 
 
@@ -156,9 +155,14 @@ def _numbers(value: float | list[float] | None) -> float | tuple[float, ...] | N
     return tuple(value) if isinstance(value, list) else value
 
 
-def _own_keys(data: Mapping[str, Any]) -> Iterator[Pointer]:
-    """Where an ``x-…`` key stands among names of joints."""
-    yield from (("joints", key) for key in data.get("joints", ()) if is_own_key(key))
-    for name, joints in data.get("configurations", {}).items():
-        if not is_own_key(name):
-            yield from (("configurations", name, key) for key in joints if is_own_key(key))
+def _own_data(value: object, pointer: Pointer) -> Iterator[tuple[Pointer, object]]:
+    """EU-EXT-002: what stands under a key ``x-…``, at any level; within it, nothing is looked for."""
+    if isinstance(value, Mapping):
+        for key, inner in value.items():
+            if is_own_key(key):
+                yield (*pointer, key), inner
+            else:
+                yield from _own_data(inner, (*pointer, key))
+    elif isinstance(value, list):
+        for index, inner in enumerate(value):
+            yield from _own_data(inner, (*pointer, index))

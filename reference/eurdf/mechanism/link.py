@@ -14,6 +14,7 @@ from eurdf.mechanism.frame_names import FrameNames
 from eurdf.mechanism.mechanism import ROOT_JOINT, Frame, Joint, Mechanism, Root
 from eurdf.mechanism.replacement import Joints, replace_joints
 from eurdf.mechanism.spanning_tree import bodies_of, depth_first, joint_of, rigid_roots
+from eurdf.reading.yaml_node import json_pointer
 from eurdf.reading.yaml_reader import YamlDocument
 
 #: Joints that a robot may have. The memory of a model grows with the square of the depth of its tree.
@@ -116,14 +117,15 @@ def _described(
         actuators,
         MappingProxyType({name: MappingProxyType(of) for name, of in configurations.items()}),
         MappingProxyType(dict(extension.metadata)),
-        MappingProxyType(dict(extension.extensions)),
+        MappingProxyType({json_pointer(pointer): value for pointer, value in extension.own_data.items()}),
     )
 
 
 def _own_keys(extension: Extension, urdf: Urdf, document: YamlDocument, diagnostics: Diagnostics) -> None:
     """EU-EXT-003: where joints are named, a key that begins with ``x-`` does not name one."""
-    for pointer in extension.own_keys:
-        if pointer[-1] in urdf.joints:
+    for pointer in extension.own_data:
+        among_joints = (pointer[0], len(pointer)) in (("joints", 2), ("configurations", 3))
+        if among_joints and pointer[-1] in urdf.joints:
             diagnostics.report(
                 "own-key-is-joint",
                 f"'{pointer[-1]}' is a joint, but as a key that begins with 'x-' it is the user's own, without effect",

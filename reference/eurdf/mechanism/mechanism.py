@@ -209,7 +209,7 @@ class Mechanism:
         actuators: Names of the actuated joints, in file order.
         configurations: By name; for each joint its coordinates. A joint left out stands at its neutral.
         metadata: What the file says of itself.
-        extensions: The user's own data at the top of the file, as plain values.
+        own_data: The user's own data in the file, as plain values, by the JSON pointer of their key.
     """
 
     name: str
@@ -222,7 +222,7 @@ class Mechanism:
     actuators: tuple[str, ...] = ()
     configurations: Mapping[str, Mapping[str, tuple[float, ...]]] = field(default_factory=lambda: MappingProxyType({}))
     metadata: Mapping[str, object] = field(default_factory=lambda: MappingProxyType({}))
-    extensions: Mapping[str, object] = field(default_factory=lambda: MappingProxyType({}))
+    own_data: Mapping[str, object] = field(default_factory=lambda: MappingProxyType({}))
 
     @property
     def nc(self) -> int:
