@@ -200,6 +200,15 @@ def test_the_configuration_given_is_where_the_search_starts() -> None:
         analyze(linkage, np.zeros(7))
 
 
+def test_a_closure_of_which_every_row_is_nothing_but_rounding_has_rank_0() -> None:
+    centre = np.array([0.3, 0.2, 0.1])
+    axes = [(1, 0.2, 0.3), (0.1, 1, 0.2), (0.3, 0.1, 1)]
+    points = [centre + distance * np.array(axis) for distance, axis in zip((0.7, 0.9, 1.1), axes, strict=True)]
+    linkage = loop([("R", point, axis) for point, axis in zip(points, axes, strict=True)], "3d", tuple(centre))
+    found = analyze(linkage)
+    assert (found.nv, found.nc, found.rank, found.mobility) == (3, 3, 0, 3)
+
+
 def test_small_levers_among_long_ones_count() -> None:
     # A crank of 2 mm on a linkage of 4 m.
     linkage = loop([("R", (0, 0, 0), Z), ("R", (0.002, 0, 0), Z), ("R", (2, 2, 0), Z), ("R", (4, 0, 0), Z)])

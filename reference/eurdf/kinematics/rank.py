@@ -9,6 +9,9 @@ from eurdf.kinematics.array import Vector
 #: Relative to the largest singular value, what is below this is rounding and never tells ranks apart.
 FLOOR = 1e-9
 
+#: A matrix scaled to one unit has entries about 1; where none of its singular values exceeds this, all are rounding.
+NOTHING = 1e-12
+
 
 def numerical_rank(singular_values: Vector, reference: float) -> int:
     """Number of singular values before the widest gap.
@@ -22,7 +25,7 @@ def numerical_rank(singular_values: Vector, reference: float) -> int:
         singular_values: In descending order, of a matrix scaled to one unit.
         reference: The largest singular value of that matrix, or of the one it is a part of.
     """
-    if not reference > 0.0 or not len(singular_values):
+    if not reference > NOTHING or not len(singular_values):
         return 0
     ladder = np.concatenate(([1.0], np.clip(singular_values / reference, FLOOR, 1.0), [FLOOR]))
     return int(np.argmax(ladder[:-1] / ladder[1:]))
