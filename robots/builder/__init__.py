@@ -5,22 +5,27 @@ pose; only those of a universal joint lie along its two axes. So the drawn pose 
 at zero, and every loop is closed there because both its sides are the same point of the drawing.
 """
 
-from robots.builder.drawing import Drawing
-from robots.builder.joint import Motor, ball, prismatic, revolute, universal
-from robots.builder.shape import Box, Cylinder, Sphere, Vector3, midpoint
+from robots.builder.drawing import Drawing, End
+from robots.builder.joint import Joint, Motor, ball, cross, prismatic, revolute, unit, universal
+from robots.builder.shape import Box, Cylinder, Shape, Sphere, Vector3, midpoint
 from robots.builder.write import write
 
 __all__ = [
     "Box",
     "Cylinder",
     "Drawing",
+    "End",
+    "Joint",
     "Motor",
+    "Shape",
     "Sphere",
     "Vector3",
     "ball",
+    "cross",
     "midpoint",
     "prismatic",
     "revolute",
+    "unit",
     "universal",
     "write",
 ]

@@ -1,5 +1,7 @@
 """Draws the left leg of Digit. Run as ``python -m robots.digit_leg.build [FOLDER]``.
 
+The other robots with legs of Digit are drawn by the same functions; there, what moves has a prefix to its name.
+
 World: origin at the base frame of the robot's published description, x forward, y to the left, z up; m, kg.
 """
 
@@ -8,8 +10,9 @@ from __future__ import annotations
 import math
 import sys
 from pathlib import Path
+from typing import Literal
 
-from robots.builder import Box, Cylinder, Drawing, Motor, Vector3, midpoint, revolute, write
+from robots.builder import Box, Cylinder, Drawing, End, Motor, Vector3, midpoint, revolute, write
 
 # Points of the published description, to 0.1 mm, where it stands with the knee at 0.3 rad, the springs at rest, the
 # yaw axis upright, the sole flat and the middle of the foot below the hip.
@@ -39,17 +42,25 @@ RIGHT = (0.0, -1.0, 0.0)
 #: The roll axis of the foot rises forward, 30 degrees from the sole.
 TOE_ROLL_AXIS = (math.cos(math.radians(30.0)), 0.0, 0.5)
 
-# Efforts, damping and friction as published; the velocities are estimates.
-ROLL_MOTOR = Motor(effort=112.0, velocity=5.0, damping=1.0, friction=1.0)
-YAW_MOTOR = Motor(effort=70.0, velocity=7.0, damping=1.0, friction=1.0)
-LEG_MOTOR = Motor(effort=200.0, velocity=9.0, damping=1.0, friction=0.5)
-TOE_MOTOR = Motor(effort=45.0, velocity=12.0, damping=1.0, friction=1.0)
+# Efforts, velocities, damping and friction as published.
+ROLL_MOTOR = Motor(effort=113.0, velocity=4.58, damping=1.0, friction=1.0)
+YAW_MOTOR = Motor(effort=79.2, velocity=7.33, damping=1.0, friction=1.0)
+PITCH_MOTOR = Motor(effort=216.9, velocity=8.51, damping=1.0, friction=0.5)
+KNEE_MOTOR = Motor(effort=231.3, velocity=8.51, damping=1.0, friction=0.5)
+TOE_MOTOR = Motor(effort=42.0, velocity=11.52, damping=1.0, friction=1.0)
 
 
 def draw() -> Drawing:
     """The leg as it stands when every joint is at zero."""
+    robot = draw_torso("digit_leg", "Left leg of Agility Robotics' Digit on a fixed torso, drawn from primitive shapes")
+    draw_leg(robot)
+    return robot
+
+
+def draw_torso(name: str, description: str, root: Literal["fixed", "floating"] = "fixed") -> Drawing:
+    """A robot that is nothing but the torso yet."""
     robot = Drawing(
-        "digit_leg",
+        name,
         materials={
             "shell": (0.85, 0.86, 0.88, 1.0),
             "leg": (0.2, 0.45, 0.55, 1.0),
@@ -57,32 +68,44 @@ def draw() -> Drawing:
             "rod": (0.85, 0.5, 0.15, 1.0),
         },
         metadata={
-            "description": "Left leg of Agility Robotics' Digit on a fixed torso, drawn from primitive shapes",
+            "description": description,
             "license": "BSD-3-Clause",
             "source": "Figures of Agility Robotics' MuJoCo description digit-v3.xml",
         },
+        root=root,
     )
-    draw_hip(robot)
-    draw_leg(robot)
-    draw_foot(robot)
-    draw_rods(robot)
+    torso = Box((0.008, 0.0, 0.21), (0.195, 0.174, 0.49), mass=15.028)
+    robot.body("torso", None, torso, material="shell", contacts=(torso,))
     return robot
 
 
-def draw_hip(robot: Drawing) -> None:
-    """The torso, and the hip from roll through yaw to pitch."""
-    torso = Box((0.008, 0.0, 0.21), (0.195, 0.174, 0.49), mass=15.028)
-    robot.body("torso", None, torso, material="shell", contacts=(torso,))
+def draw_leg(robot: Drawing, prefix: str = "", ends: tuple[End, End] = ("ball", "ball")) -> None:
+    """The left leg, from the hip to the foot.
+
+    Args:
+        robot: What it is drawn into: it has a torso.
+        prefix: Of all names.
+        ends: What the three rods have at their ends: at the thigh or the crank, and at the tarsus or the foot.
+    """
+    draw_hip(robot, prefix)
+    draw_shank(robot, prefix)
+    draw_foot(robot, prefix)
+    draw_rods(robot, prefix, ends)
+
+
+def draw_hip(robot: Drawing, prefix: str) -> None:
+    """The hip from roll through yaw to pitch, and the thigh."""
+    hip, yoke = f"{prefix}hip", f"{prefix}hip_yoke"
     robot.body(
-        "hip",
-        revolute("motor_hip_x", "torso", HIP_ROLL, BACK, degrees=(-60.0, 60.0), drawn=21.5, motor=ROLL_MOTOR),
+        hip,
+        revolute(f"{prefix}motor_hip_x", "torso", HIP_ROLL, BACK, degrees=(-60.0, 60.0), drawn=21.5, motor=ROLL_MOTOR),
         Cylinder((-0.045, 0.091, -0.04), (-0.045, 0.091, 0.04), radius=0.045, mass=0.665),
         Cylinder((-0.045, 0.091, 0.0), HIP_ROLL, radius=0.04, mass=0.25),
         material="motor",
     )
     robot.body(
-        "hip_yoke",
-        revolute("motor_hip_z", "hip", HIP_YAW, DOWN, degrees=(-40.0, 40.0), motor=YAW_MOTOR),
+        yoke,
+        revolute(f"{prefix}motor_hip_z", hip, HIP_YAW, DOWN, degrees=(-40.0, 40.0), motor=YAW_MOTOR),
         Box((-0.045, 0.089, -0.0925), (0.09, 0.06, 0.14), mass=0.819),
         material="leg",
     )
@@ -91,28 +114,29 @@ def draw_hip(robot: Drawing) -> None:
     slope = math.atan2(KNEE[0] - HIP_PITCH[0], KNEE[2] - HIP_PITCH[2])
     housing = Box(beside(midpoint(HIP_PITCH, KNEE), 0.1335), (0.08, 0.13, 0.12), mass=0.644, rpy=(0.0, slope, 0.0))
     robot.body(
-        "thigh",
-        revolute("motor_hip_y", "hip_yoke", HIP_PITCH, LEFT, degrees=(-60.0, 90.0), drawn=16.2, motor=LEG_MOTOR),
+        f"{prefix}thigh",
+        revolute(f"{prefix}motor_hip_y", yoke, HIP_PITCH, LEFT, degrees=(-60.0, 90.0), drawn=16.2, motor=PITCH_MOTOR),
         *(pitch_motor, knee_motor, housing),
         material="motor",
         contacts=(pitch_motor, knee_motor, housing),
     )
 
 
-def draw_leg(robot: Drawing) -> None:
+def draw_shank(robot: Drawing, prefix: str) -> None:
     """The shin, with the spring at its top at rest, and the tarsus, with the two motors of the foot."""
+    thigh, shin = f"{prefix}thigh", f"{prefix}shin"
     tube = Cylinder(SHIN_TOP, HOCK, radius=0.03, mass=0.896)
     robot.body(
-        "shin",
-        revolute("motor_knee", "thigh", KNEE, RIGHT, degrees=(-71.0, 50.0), drawn=17.2, motor=LEG_MOTOR),
+        shin,
+        revolute(f"{prefix}motor_knee", thigh, KNEE, RIGHT, degrees=(-71.0, 49.0), drawn=17.2, motor=KNEE_MOTOR),
         Cylinder(KNEE, (0.0100, 0.0905, -0.3480), radius=0.035, mass=1.227),
         tube,
         material="leg",
         contacts=(tube,),
     )
     robot.body(
-        "tarsus",
-        revolute("free_knee", "shin", HOCK, RIGHT, degrees=(-50.3, 71.6), drawn=-17.8),
+        f"{prefix}tarsus",
+        revolute(f"{prefix}free_knee", shin, HOCK, RIGHT, degrees=(-50.3, 71.6), drawn=-17.8),
         Cylinder(HOCK, ANKLE, radius=0.016, mass=0.603),
         Cylinder(HOCK, ACHILLES_TARSUS, radius=0.012, mass=0.23),
         Cylinder(beside(TOE_MOTOR_1, 0.0905), TOE_MOTOR_1, radius=0.028, mass=0.36),
@@ -121,18 +145,18 @@ def draw_leg(robot: Drawing) -> None:
     )
 
 
-def draw_foot(robot: Drawing) -> None:
+def draw_foot(robot: Drawing, prefix: str) -> None:
     """The ankle's cross, from pitch to roll, and the foot."""
     robot.body(
-        "ankle",
-        revolute("free_foot1", "tarsus", ANKLE, RIGHT, degrees=(-45.0, 45.0), drawn=10.4),
+        f"{prefix}ankle",
+        revolute(f"{prefix}free_foot1", f"{prefix}tarsus", ANKLE, RIGHT, degrees=(-44.0, 34.0), drawn=7.1),
         Cylinder(beside(ANKLE, 0.0705), beside(ANKLE, 0.1105), radius=0.012, mass=0.044),
         material="motor",
     )
     sole = Box(SOLE, (0.235, 0.08, 0.023), mass=0.431)
     robot.body(
-        "foot",
-        revolute("free_foot2", "ankle", ANKLE, TOE_ROLL_AXIS, degrees=(-35.0, 35.0)),
+        f"{prefix}foot",
+        revolute(f"{prefix}free_foot2", f"{prefix}ankle", ANKLE, TOE_ROLL_AXIS, degrees=(-37.0, 33.0)),
         sole,
         Cylinder(SOLE, ANKLE, radius=0.015, mass=0.1),
         material="leg",
@@ -140,24 +164,38 @@ def draw_foot(robot: Drawing) -> None:
     )
 
 
-def draw_rods(robot: Drawing) -> None:
+def draw_rods(robot: Drawing, prefix: str, ends: tuple[End, End]) -> None:
     """The achilles rod, and the two cranks that move the foot through a rod each."""
     robot.rod(
-        "achilles", ("thigh", ACHILLES_THIGH), ("tarsus", ACHILLES_TARSUS), radius=0.007, mass=0.178, material="rod"
+        f"{prefix}achilles",
+        (f"{prefix}thigh", ACHILLES_THIGH),
+        (f"{prefix}tarsus", ACHILLES_TARSUS),
+        radius=0.007,
+        mass=0.178,
+        material="rod",
+        ends=ends,
     )
-    for number, motor, axis, degrees, drawn, crank_ball, foot_ball, mass in (
-        (1, TOE_MOTOR_1, LEFT, (-55.4, 51.3), -10.0, ROD_1_CRANK, ROD_1_FOOT, 0.091),
-        (2, TOE_MOTOR_2, RIGHT, (-52.3, 72.45), 10.0, ROD_2_CRANK, ROD_2_FOOT, 0.080),
+    for number, at, axis, degrees, drawn, crank_ball, foot_ball, mass in (
+        (1, TOE_MOTOR_1, LEFT, (-46.3, 45.0), -7.0, ROD_1_CRANK, ROD_1_FOOT, 0.091),
+        (2, TOE_MOTOR_2, RIGHT, (-45.9, 45.5), 7.0, ROD_2_CRANK, ROD_2_FOOT, 0.080),
     ):
-        crank = f"crank{number}"
+        crank, motor = f"{prefix}crank{number}", f"{prefix}motor_shin{number}"
         robot.body(
             crank,
-            revolute(f"motor_shin{number}", "tarsus", motor, axis, degrees=degrees, drawn=drawn, motor=TOE_MOTOR),
-            Cylinder(beside(motor, motor[1] - 0.006), beside(motor, motor[1] + 0.006), radius=0.028, mass=0.11),
-            Cylinder(motor, crank_ball, radius=0.008, mass=0.03),
+            revolute(motor, f"{prefix}tarsus", at, axis, degrees=degrees, drawn=drawn, motor=TOE_MOTOR),
+            Cylinder(beside(at, at[1] - 0.006), beside(at, at[1] + 0.006), radius=0.028, mass=0.11),
+            Cylinder(at, crank_ball, radius=0.008, mass=0.03),
             material="rod",
         )
-        robot.rod(f"rod{number}", (crank, crank_ball), ("foot", foot_ball), radius=0.007, mass=mass, material="rod")
+        robot.rod(
+            f"{prefix}rod{number}",
+            (crank, crank_ball),
+            (f"{prefix}foot", foot_ball),
+            radius=0.007,
+            mass=mass,
+            material="rod",
+            ends=ends,
+        )
 
 
 def beside(point: Vector3, y: float) -> Vector3:

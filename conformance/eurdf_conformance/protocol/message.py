@@ -1,0 +1,270 @@
+"""Each message of the protocol as a frozen value, which has a JSON Schema of its own (`schema`).
+
+A conversation is `start`, then any number of `load` and `evaluate`, then `stop`; each request is one line of JSON, and
+each is answered by one line that repeats its id. The answer's ``outcome`` says what kind it is.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+
+from eurdf_conformance.level import Level, Version
+
+PROTOCOL: Literal["1.0"] = "1.0"
+
+Number = Annotated[float, Field(allow_inf_nan=False)]
+Numbers = list[Number]
+
+
+class Value(BaseModel):
+    """A part of a message."""
+
+    # Unknown members of an answer are an error: a misspelt one would be a part that nobody reads.
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+
+
+class Request(Value):
+    """What the runner asks."""
+
+    #: Kinds of answer beside `unsupported`, `skipped` and `errored`.
+    outcomes: ClassVar[tuple[str, ...]]
+
+    id: int = Field(description="Repeated by the answer.")
+
+
+class Start(Request):
+    """The first request."""
+
+    outcomes = ("started",)
+
+    command: Literal["start"] = "start"
+    protocol: str = Field(PROTOCOL, description="Version of the protocol spoken.")
+
+
+class Load(Request):
+    """Read a robot. It replaces the one read before."""
+
+    outcomes = ("accepted", "rejected")
+
+    command: Literal["load"] = "load"
+    description: str = Field(description="Absolute path of the YAML file.")
+    urdf: str = Field(description="Absolute path of the URDF that the description names, whether it exists or not.")
+
+
+Quantity = Literal["poses", "residuals", "jacobian", "mass_matrix", "mass", "center_of_mass"]
+
+
+class Evaluate(Request):
+    """Say where things are, of the robot accepted last."""
+
+    outcomes = ("evaluated",)
+
+    command: Literal["evaluate"] = "evaluate"
+    quantities: list[Quantity]
+    frames: list[str] = Field(description="Names of the frames of which poses are asked for.")
+    configurations: list[dict[str, Numbers]] = Field(
+        description="By joint, its coordinates as files have them; a floating root under root_joint."
+    )
+
+
+class Stop(Request):
+    """The last request; the process then ends by itself."""
+
+    outcomes = ("stopped",)
+
+    command: Literal["stop"] = "stop"
+
+
+class Answer(Value):
+    """What a reader answers."""
+
+    id: int = Field(description="That of the request.")
+
+
+class Reader(Value):
+    """Who answers."""
+
+    name: Annotated[str, Field(min_length=1)]
+    version: str
+    language: str
+
+
+class Started(Answer):
+    """To `start`."""
+
+    outcome: Literal["started"] = "started"
+    protocol: Literal["1.0"]
+    reader: Reader
+    claims: dict[Version, list[Level]] = Field(description="For each version of the format, the levels claimed.")
+
+
+class Issue(Value):
+    """Something wrong with the files."""
+
+    code: str | None = Field(None, description="Code of the diagnostic.")
+    severity: Literal["error", "warning"] = "error"
+    file: str | None = Field(None, description="Name of one of the two files, without its folder.")
+    line: Annotated[int, Field(ge=1)] | None = None
+    column: Annotated[int, Field(ge=1)] | None = Field(None, description="In characters.")
+    message: str
+
+
+class CanonicalMimic(Value):
+    """q = multiplier · q_joint + offset, rad or m."""
+
+    joint: str
+    multiplier: Number
+    offset: Number
+
+
+class CanonicalJoint(Value):
+    """A joint that moves."""
+
+    name: str
+    type: Literal[
+        "revolute",
+        "continuous",
+        "prismatic",
+        "planar",
+        "floating",
+        "spherical",
+        "universal",
+        "cylindrical",
+        "helical",
+    ]
+    parent: str = Field(description="A link of the body it hangs from.")
+    child: str = Field(description="A link of the body it carries.")
+    lower: list[Number | None] = Field(description="One a coordinate, rad or m; null where there is no limit.")
+    upper: list[Number | None]
+    velocity: list[Number | None] = Field(description="One a velocity, rad/s or m/s; null where there is no limit.")
+    effort: list[Number | None]
+    damping: Numbers
+    friction: Numbers
+    armature: Numbers
+    mimic: CanonicalMimic | None = None
+
+
+class CanonicalClosure(Value):
+    """Two frames held together."""
+
+    name: str
+    type: Literal["3d", "6d"]
+    a: str = Field(description="A link of the body that frame A is on.")
+    b: str = Field(description="A link of the body that frame B is on.")
+
+
+class CanonicalActuator(Value):
+    """A joint with a motor; ratio and inertia one a velocity."""
+
+    joint: str
+    gear_ratio: Numbers | None = None
+    rotor_inertia: Numbers | None = None
+
+
+class CanonicalRobot(Value):
+    """What a reader has read, without style: chapter The canonical description."""
+
+    name: str
+    version: Version
+    root: Literal["fixed", "floating"]
+    links: list[str]
+    frames: list[str]
+    joints: list[CanonicalJoint]
+    closures: list[CanonicalClosure]
+    actuators: list[CanonicalActuator]
+    configurations: dict[str, dict[str, Numbers]]
+    own: dict[str, Any] = Field(description="The user's own data, by the JSON pointer of their key.")
+
+
+class Accepted(Answer):
+    """To `load`: the robot is read."""
+
+    outcome: Literal["accepted"] = "accepted"
+    robot: CanonicalRobot | None = Field(description="null where the level structure is not claimed.")
+    issues: list[Issue] = []
+
+
+class Rejected(Answer):
+    """To `load`: the description is wrong."""
+
+    outcome: Literal["rejected"] = "rejected"
+    issues: list[Issue]
+
+
+Row3 = Annotated[Numbers, Field(min_length=3, max_length=3)]
+
+
+class Pose(Value):
+    """Of a frame in the world."""
+
+    rotation: Annotated[list[Row3], Field(min_length=3, max_length=3)]
+    translation: Row3 = Field(description="m")
+
+
+class Jacobian(Value):
+    """The constraint Jacobian K."""
+
+    columns: list[tuple[str, int]] = Field(description="For each column a joint and which of its velocities, from 0.")
+    rows: dict[str, list[Numbers]] = Field(description="For each closure its rows.")
+
+
+class MassMatrix(Value):
+    """The joint-space inertia M."""
+
+    columns: list[tuple[str, int]]
+    matrix: list[Numbers]
+
+
+class Values(Value):
+    """At one configuration, the quantities asked for."""
+
+    poses: dict[str, Pose] | None = None
+    residuals: dict[str, Numbers] | None = None
+    jacobian: Jacobian | None = None
+    mass_matrix: MassMatrix | None = None
+    mass: Number | None = None
+    center_of_mass: Row3 | None = None
+
+
+class Evaluated(Answer):
+    """To `evaluate`: one value a configuration, in their order."""
+
+    outcome: Literal["evaluated"] = "evaluated"
+    values: list[Values]
+
+
+class Stopped(Answer):
+    """To `stop`."""
+
+    outcome: Literal["stopped"] = "stopped"
+
+
+class Unsupported(Answer):
+    """To any request but `stop`: the reader lacks a feature."""
+
+    outcome: Literal["unsupported"] = "unsupported"
+    feature: str
+    reason: str = ""
+
+
+class Skipped(Answer):
+    """To any request but `stop`: the reader would rather not, for a reason."""
+
+    outcome: Literal["skipped"] = "skipped"
+    reason: str
+
+
+class Errored(Answer):
+    """To any request but `stop`: the reader failed, by its own word."""
+
+    outcome: Literal["errored"] = "errored"
+    message: str
+
+
+AnyRequest = Start | Load | Evaluate | Stop
+AnyAnswer = Started | Accepted | Rejected | Evaluated | Stopped | Unsupported | Skipped | Errored
+
+REQUEST: TypeAdapter[AnyRequest] = TypeAdapter(Annotated[AnyRequest, Field(discriminator="command")])
+ANSWER: TypeAdapter[AnyAnswer] = TypeAdapter(Annotated[AnyAnswer, Field(discriminator="outcome")])

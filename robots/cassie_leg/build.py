@@ -1,0 +1,158 @@
+"""Draws the left leg of Cassie. Run as ``python -m robots.cassie_leg.build [FOLDER]``.
+
+World: origin at the pelvis frame of the robot's published description, x forward, y to the left, z up; m, kg.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from pathlib import Path
+
+from robots.builder import Box, Cylinder, Drawing, Motor, Vector3, midpoint, revolute, write
+
+# Points of the published description, to 0.1 mm, where it stands with the knee at -68.7 degrees as in its keyframe,
+# roll and yaw at zero, the springs at rest, the sole flat and its middle below the hip.
+HIP_ROLL = (0.0210, 0.1350, 0.0000)
+HIP_YAW = (-0.0490, 0.1350, 0.0000)
+HIP_PITCH = (-0.0490, 0.1350, -0.0900)
+KNEE = (0.0023, 0.1305, -0.1985)
+KNEE_SPRING = (0.0206, 0.1305, -0.2992)
+KNEE_SPRING_END = (-0.0886, 0.1305, -0.4260)
+SHIN_TOP = (-0.0048, 0.1305, -0.2751)
+HOCK = (-0.2888, 0.1305, -0.6049)
+HEEL_SPRING = (-0.3207, 0.1296, -0.6138)
+TOE_MOTOR = (-0.2799, 0.1078, -0.6716)
+ANKLE = (-0.0690, 0.1305, -0.9510)
+SOLE = (-0.0490, 0.1305, -0.9980)
+
+# Centres of the balls at the ends of the two rods.
+ACHILLES_THIGH = (-0.0490, 0.0900, -0.0900)
+ACHILLES_TARSUS = (-0.3409, 0.1261, -0.4958)
+PLANTAR_CRANK = (-0.3179, 0.1157, -0.7113)
+PLANTAR_FOOT = (-0.1074, 0.1157, -0.9910)
+
+FORWARD = (1.0, 0.0, 0.0)
+UP = (0.0, 0.0, 1.0)
+RIGHT = (0.0, -1.0, 0.0)
+
+# As published: torques are gear ratio times the motor's own, velocities its speed without load over the gear ratio.
+ROLL_YAW_MOTOR = Motor(effort=112.5, velocity=12.15, damping=1.0)
+LEG_MOTOR = Motor(effort=195.2, velocity=8.51, damping=1.0)
+FOOT_MOTOR = Motor(effort=45.0, velocity=11.52, damping=1.0)
+
+
+def draw() -> Drawing:
+    """The leg as it stands when every joint is at zero."""
+    robot = Drawing(
+        "cassie_leg",
+        materials={
+            "shell": (0.9, 0.5, 0.1, 1.0),
+            "leg": (0.6, 0.62, 0.65, 1.0),
+            "motor": (0.22, 0.22, 0.25, 1.0),
+            "rod": (0.15, 0.4, 0.65, 1.0),
+        },
+        metadata={
+            "description": "Left leg of Agility Robotics' Cassie on a fixed pelvis, drawn from primitive shapes",
+            "license": "BSD-3-Clause",
+            "source": "Figures of Agility Robotics' MuJoCo description of Cassie, in MuJoCo Menagerie",
+        },
+    )
+    draw_hip(robot)
+    draw_shank(robot)
+    draw_foot(robot)
+    draw_rods(robot)
+    return robot
+
+
+def draw_hip(robot: Drawing) -> None:
+    """The pelvis, the hip from roll through yaw to pitch, and the thigh."""
+    pelvis = Cylinder((-0.075, 0.0, 0.04), (0.185, 0.0, 0.04), radius=0.12, mass=7.33)
+    roll_motors = [Cylinder((-0.015, y, 0.0), (0.095, y, 0.0), radius=0.06, mass=1.5) for y in (0.135, -0.135)]
+    robot.body("pelvis", None, pelvis, *roll_motors, material="shell", contacts=(pelvis, *roll_motors))
+    robot.body(
+        "hip",
+        revolute("motor_hip_x", "pelvis", HIP_ROLL, FORWARD, degrees=(-15.0, 22.5), motor=ROLL_YAW_MOTOR),
+        Cylinder(HIP_YAW, HIP_ROLL, radius=0.05, mass=0.72),
+        Cylinder((-0.049, 0.135, -0.02), (-0.049, 0.135, 0.07), radius=0.055, mass=1.1),
+        material="motor",
+    )
+    robot.body(
+        "hip_yoke",
+        revolute("motor_hip_z", "hip", HIP_YAW, UP, degrees=(-22.5, 22.5), motor=ROLL_YAW_MOTOR),
+        Box((-0.049, 0.135, -0.05), (0.08, 0.07, 0.1), mass=1.171),
+        material="leg",
+    )
+    pitch_motor = Cylinder(beside(HIP_PITCH, 0.121), beside(HIP_PITCH, 0.221), radius=0.06, mass=2.4)
+    knee_motor = Cylinder(beside(KNEE, 0.121), beside(KNEE, 0.221), radius=0.06, mass=2.4)
+    slope = math.atan2(KNEE[0] - HIP_PITCH[0], KNEE[2] - HIP_PITCH[2])
+    housing = Box(beside(midpoint(HIP_PITCH, KNEE), 0.171), (0.1, 0.09, 0.12), mass=0.72, rpy=(0.0, slope, 0.0))
+    robot.body(
+        "thigh",
+        revolute("motor_hip_y", "hip_yoke", HIP_PITCH, RIGHT, degrees=(-50.0, 80.0), drawn=25.3, motor=LEG_MOTOR),
+        *(pitch_motor, knee_motor, housing),
+        material="shell",
+        contacts=(pitch_motor, knee_motor, housing),
+    )
+
+
+def draw_shank(robot: Drawing) -> None:
+    """The shin and the tarsus, each with its leaf spring at rest; the tarsus carries the motor of the foot."""
+    bone = Cylinder(SHIN_TOP, HOCK, radius=0.027, mass=0.577)
+    robot.body(
+        "shin",
+        revolute("motor_knee", "thigh", KNEE, RIGHT, degrees=(-158.0, -37.0), drawn=-68.7, motor=LEG_MOTOR),
+        Cylinder(KNEE, KNEE_SPRING, radius=0.03, mass=0.758),
+        Cylinder(KNEE_SPRING, KNEE_SPRING_END, radius=0.01, mass=0.186),
+        bone,
+        material="leg",
+        contacts=(bone,),
+    )
+    bone = Cylinder(HEEL_SPRING, ANKLE, radius=0.018, mass=0.382)
+    robot.body(
+        "tarsus",
+        revolute("free_knee", "shin", HOCK, RIGHT, degrees=(50.0, 170.0), drawn=81.4),
+        bone,
+        Cylinder(beside(HOCK, 0.1), beside(HOCK, 0.161), radius=0.03, mass=0.1),
+        Cylinder(HEEL_SPRING, ACHILLES_TARSUS, radius=0.01, mass=0.126),
+        Cylinder(beside(TOE_MOTOR, 0.1505), TOE_MOTOR, radius=0.03, mass=0.3),
+        material="leg",
+        contacts=(bone,),
+    )
+
+
+def draw_foot(robot: Drawing) -> None:
+    """The foot, which only pitches."""
+    sole = Box(SOLE, (0.2, 0.04, 0.02), mass=0.1)
+    robot.body(
+        "foot",
+        revolute("free_ankle", "tarsus", ANKLE, RIGHT, degrees=(-140.0, -30.0), drawn=-88.0),
+        sole,
+        Cylinder(ANKLE, beside((-0.069, 0.0, -0.99), 0.1305), radius=0.012, mass=0.05),
+        material="motor",
+        contacts=(sole,),
+    )
+
+
+def draw_rods(robot: Drawing) -> None:
+    """The achilles rod, and the crank that moves the foot through the plantar rod."""
+    robot.rod(
+        "achilles", ("thigh", ACHILLES_THIGH), ("tarsus", ACHILLES_TARSUS), radius=0.007, mass=0.157, material="rod"
+    )
+    robot.body(
+        "crank",
+        revolute("motor_ankle", "tarsus", TOE_MOTOR, RIGHT, degrees=(-134.0, -30.0), drawn=-81.8, motor=FOOT_MOTOR),
+        Cylinder(beside(TOE_MOTOR, 0.1018), beside(TOE_MOTOR, 0.1138), radius=0.022, mass=0.096),
+        Cylinder(TOE_MOTOR, PLANTAR_CRANK, radius=0.008, mass=0.03),
+        material="rod",
+    )
+    robot.rod("plantar", ("crank", PLANTAR_CRANK), ("foot", PLANTAR_FOOT), radius=0.007, mass=0.119, material="rod")
+
+
+def beside(point: Vector3, y: float) -> Vector3:
+    """The point moved along y, to ``y`` (m)."""
+    return (point[0], y, point[2])
+
+
+if __name__ == "__main__":
+    write(draw(), Path(sys.argv[1]) if sys.argv[1:] else Path(__file__).parent)
