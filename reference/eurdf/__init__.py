@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from eurdf.kinematics.sensitivity import actuated_jacobian, dq_dq_actuated
     from eurdf.kinematics.simulation import Simulation, simulate
     from eurdf.kinematics.split import merge_configuration, merge_velocity, split_configuration, split_velocity
+    from eurdf.kinematics.sweep import Sweep, Way, sweep
     from eurdf.loading import load
     from eurdf.mechanism.mechanism import Mechanism
     from eurdf.pinocchio.robot import Robot
@@ -114,6 +115,7 @@ _NAMES = {
         "split_configuration",
         "split_velocity",
     ),
+    "eurdf.kinematics.sweep": ("Sweep", "Way", "sweep"),
     "eurdf.loading": ("load",),
     "eurdf.mechanism.mechanism": ("Mechanism",),
     "eurdf.pinocchio.robot": ("Robot",),
@@ -145,8 +147,10 @@ __all__ = [
     "RobotNotFound",
     "Simulation",
     "SimulationDiverged",
+    "Sweep",
     "UnderactuatedMotion",
     "UndeterminedMotion",
+    "Way",
     "__version__",
     "achievable_acceleration",
     "actuated_jacobian",
@@ -172,6 +176,7 @@ __all__ = [
     "simulate",
     "split_configuration",
     "split_velocity",
+    "sweep",
 ]
 
 

@@ -9,7 +9,7 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from eurdf.commands.cannot_run import CannotRun
-from eurdf.commands.output import has_boxes, write_json, write_lines, write_rendered
+from eurdf.commands.output import cell, new_table, write_json, write_lines, write_rendered
 from eurdf.commands.selection import select_one
 
 if TYPE_CHECKING:
@@ -106,7 +106,7 @@ def _heading(info: RobotInfo) -> Text:
 
 
 def _dimensions(info: RobotInfo) -> Table:
-    table = _table("", "", "")
+    table = new_table("", "", "")
     table.show_header = False
     table.columns[1].justify = "right"
     if not info.closures:
@@ -138,30 +138,30 @@ def _dimensions(info: RobotInfo) -> Table:
         rows.append(("", f"{info.actuation_singularity:.2g}", "the same with every actuator held"))
     for name, value, meaning in rows:
         style = "red" if value == "open" else "green" if value == "close" else "bold"
-        table.add_row(name, _text("-" if value is None else str(value), style), _text(meaning, "dim"))
+        table.add_row(name, cell("-" if value is None else str(value), style), cell(meaning, "dim"))
     return table
 
 
 def _closures(info: RobotInfo) -> Table:
-    table = _table("closure", "type", "frame A", "frame B", "residual")
+    table = new_table("closure", "type", "frame A", "frame B", "residual")
     table.columns[4].justify = "right"
     for closure in info.closure_list:
         frames = [
-            _text(frame) if frame is not None else _text(f"on {body}", "dim")
+            cell(frame) if frame is not None else cell(f"on {body}", "dim")
             for frame, body in zip(closure.frames, closure.bodies, strict=True)
         ]
-        table.add_row(_text(closure.name, "bold"), closure.type, *frames, _number(closure.residual))
+        table.add_row(cell(closure.name, "bold"), closure.type, *frames, _number(closure.residual))
     return table
 
 
 def _loops(info: RobotInfo) -> Table:
-    table = _table("loops of", "nv", "nc", "rank", "mobility", "redundant", "uncontrolled", "singularity")
+    table = new_table("loops of", "nv", "nc", "rank", "mobility", "redundant", "uncontrolled", "singularity")
     for column in table.columns[1:]:
         column.justify = "right"
     for loops in info.loop_list:
         counts = (loops.nv, loops.nc, loops.rank, loops.mobility, loops.redundant, loops.uncontrolled)
         table.add_row(
-            _text(", ".join(loops.closures), "bold"),
+            cell(", ".join(loops.closures), "bold"),
             *(str(count) for count in counts),
             "-" if loops.singularity is None else f"{loops.singularity:.2g}",
         )
@@ -169,73 +169,49 @@ def _loops(info: RobotInfo) -> Table:
 
 
 def _motions(info: RobotInfo) -> Table:
-    table = _table("uncontrolled motion of")
+    table = new_table("uncontrolled motion of")
     counts = Counter(motion.joints for motion in info.motion_list)
     for joints, count in counts.most_common(_MOST_MOTIONS):
-        table.add_row(_text(", ".join(joints) + (f"  ({count} motions)" if count > 1 else "")))
+        table.add_row(cell(", ".join(joints) + (f"  ({count} motions)" if count > 1 else "")))
     if len(counts) > _MOST_MOTIONS:
-        table.add_row(_text(f"and {len(counts) - _MOST_MOTIONS} more", "dim"))
+        table.add_row(cell(f"and {len(counts) - _MOST_MOTIONS} more", "dim"))
     return table
 
 
 def _fighting(info: RobotInfo) -> Table:
-    table = _table("actuators that fight through the closures")
+    table = new_table("actuators that fight through the closures")
     for joints in info.fighting_list:
-        table.add_row(_text(", ".join(joints), "yellow"))
+        table.add_row(cell(", ".join(joints), "yellow"))
     return table
 
 
 def _joints(info: RobotInfo) -> Table:
-    table = _table("joint", "type", "parent", "child", "nv", "")
+    table = new_table("joint", "type", "parent", "child", "nv", "")
     table.columns[4].justify = "right"
     for joint in info.joint_list:
         if joint.actuated:
-            note = _text("actuated", "cyan")
+            note = cell("actuated", "cyan")
         else:
-            note = _text(f"mimics {joint.mimics}" if joint.mimics else "", "dim")
+            note = cell(f"mimics {joint.mimics}" if joint.mimics else "", "dim")
         table.add_row(
-            _text(joint.name, "bold"), joint.type.value, _text(joint.parent), _text(joint.child), str(joint.nv), note
+            cell(joint.name, "bold"), joint.type.value, cell(joint.parent), cell(joint.child), str(joint.nv), note
         )
     return table
 
 
 def _frames(info: RobotInfo) -> Table:
-    table = _table("frame", "on")
+    table = new_table("frame", "on")
     for frame in info.frame_list:
-        table.add_row(_text(frame.name, "bold"), _text(frame.body))
+        table.add_row(cell(frame.name, "bold"), cell(frame.body))
     return table
 
 
 def _configurations(info: RobotInfo) -> Table:
-    table = _table("configuration", "residual")
+    table = new_table("configuration", "residual")
     table.columns[1].justify = "right"
     for configuration in info.configuration_list:
-        table.add_row(_text(configuration.name, "bold"), _number(configuration.residual))
+        table.add_row(cell(configuration.name, "bold"), _number(configuration.residual))
     return table
-
-
-def _table(*headings: str) -> Table:
-    from rich import box
-    from rich.table import Table
-
-    table = Table(
-        box=box.SIMPLE_HEAD if has_boxes(sys.stdout) else None,
-        border_style="dim",
-        header_style="dim",
-        show_edge=False,
-        pad_edge=False,
-    )
-    for heading in headings:
-        table.add_column(heading, overflow="fold")
-    return table
-
-
-def _text(text: str, style: str = "") -> Text:
-    from rich.text import Text
-
-    from eurdf.diagnostics.text import visible
-
-    return Text(visible(text), style=style)
 
 
 def _number(value: float | None) -> str:

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 if TYPE_CHECKING:
     from rich.console import Console, RenderableType
+    from rich.table import Table
+    from rich.text import Text
 
     from eurdf.diagnostics.text import Line
 
@@ -72,6 +74,32 @@ def write_rendered(*renderables: RenderableType) -> None:
             console.print()
             console.print(renderable)
     sys.stdout.write("".join(line.rstrip() + "\n" for line in captured.get().splitlines()))
+
+
+def new_table(*headings: str) -> Table:
+    """An empty table for the standard output, with lines where a person sees them."""
+    from rich import box
+    from rich.table import Table
+
+    table = Table(
+        box=box.SIMPLE_HEAD if has_boxes(sys.stdout) else None,
+        border_style="dim",
+        header_style="dim",
+        show_edge=False,
+        pad_edge=False,
+    )
+    for heading in headings:
+        table.add_column(heading, overflow="fold")
+    return table
+
+
+def cell(text: str, style: str = "") -> Text:
+    """What stands in a table: as it is, without markup, and with controls made visible."""
+    from rich.text import Text
+
+    from eurdf.diagnostics.text import visible
+
+    return Text(visible(text), style=style)
 
 
 def _console(stream: TextIO) -> Console:

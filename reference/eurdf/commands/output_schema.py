@@ -10,10 +10,15 @@ from typing import Any
 
 def output_schemas() -> dict[str, dict[str, Any]]:
     """JSON Schema (2020-12) of each command's JSON, by file name."""
+    from eurdf.commands.collection_info import collection_schema
     from eurdf.commands.robot_info import info_schema
     from eurdf.diagnostics.report import report_schema
 
-    return {"diagnostics-report.schema.json": report_schema(), "info.schema.json": info_schema()}
+    return {
+        "diagnostics-report.schema.json": report_schema(),
+        "info.schema.json": info_schema(),
+        "robots.schema.json": collection_schema(),
+    }
 
 
 def schema_text(schema: dict[str, Any]) -> str:

@@ -1,0 +1,130 @@
+"""``python -m robots.quality [NAME|FOLDER …] [--json]``: whether robots are good enough for the collection."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+# Before NumPy is loaded: the matrices are too small for a pool of threads to pay.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+from rich import box
+from rich.table import Table
+from rich.text import Text
+
+import eurdf
+from eurdf.commands.output import has_boxes, write_json, write_lines, write_rendered
+from eurdf.diagnostics.text import visible
+from eurdf.kinematics.sweep import Sweep, Way
+from robots.quality.candidate import Candidate
+from robots.quality.motion import is_angular, is_endless, shown
+from robots.quality.verdict import RULES, Verdict, judge
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Judge robots; 0 if all pass, 1 if some do not, 2 if one is not found."""
+    parser = argparse.ArgumentParser(
+        "python -m robots.quality",
+        description="Say of robots, rule by rule, whether they are good enough for the collection.",
+        epilog="Exit codes: 0 all pass, 1 faults found, 2 no such robot.",
+    )
+    parser.add_argument("robots", nargs="*", metavar="ROBOT", help="of the collection, or a folder; default: all of it")
+    parser.add_argument("--json", action="store_true", help="write one JSON object")
+    options = parser.parse_args(arguments)
+    try:
+        candidates = [Candidate.find(robot) for robot in options.robots or eurdf.collection_names()]
+    except eurdf.RobotNotFound as reason:
+        print(reason, file=sys.stderr)
+        return 2
+    verdicts = [judge(candidate) for candidate in candidates]
+    if options.json:
+        write_json({"robots": [_as_json(verdict) for verdict in verdicts]})
+    else:
+        _show(verdicts)
+    return 0 if all(verdict.passes for verdict in verdicts) else 1
+
+
+def _show(verdicts: Sequence[Verdict]) -> None:
+    table = _table("robot", *RULES)
+    marks = {None: Text("-", "dim"), True: Text("ok", "green"), False: Text("no", "bold red")}
+    for verdict in verdicts:
+        judged = (marks[None if faults is None else not faults] for faults in verdict.faults.values())
+        table.add_row(Text(verdict.candidate.folder.name, "bold"), *judged)
+    write_rendered(table)
+    if len(verdicts) == 1 and verdicts[0].faults["moves"] is not None:
+        write_lines([[]], sys.stdout)
+        write_rendered(_sweeps(verdicts[0].candidate))
+    for verdict in verdicts:
+        for rule, faults in verdict.faults.items():
+            where = [(f"{verdict.candidate.folder.name}: ", "bold"), (f"{rule}: ", "red")]
+            write_lines([[*where, (visible(fault), "")] for fault in faults or ()], sys.stdout)
+
+
+def _sweeps(candidate: Candidate) -> Table:
+    """The sweep of each actuator: its stops, what ends it on either side, its worst numbers."""
+    table = _table("actuator", "stops", "swept", "ends below", "and above", "residual", "correction", "singularity")
+    for actuator, found in candidate.sweeps.items():
+        if isinstance(found, str):
+            continue
+        angular, ways = is_angular(candidate.robot, actuator), (found.lower, found.upper)
+        table.add_row(
+            Text(actuator, "bold"),
+            "none" if is_endless(candidate.robot, actuator) else _range(found.stops, angular),
+            _range((way.reached for way in ways), angular),
+            *(way.joint or way.end for way in ways),
+            f"{max(way.residual for way in ways):.0e}",
+            f"{max(way.correction for way in ways):.1e}",
+            f"{min(way.singularity for way in ways):.2f}",
+        )
+    return table
+
+
+def _range(coordinates: Iterable[float], angular: bool) -> str:
+    return " … ".join(shown(coordinate, angular) for coordinate in coordinates)
+
+
+def _table(*headings: str) -> Table:
+    table = Table(box=box.SIMPLE_HEAD if has_boxes(sys.stdout) else None, show_edge=False, pad_edge=False)
+    for heading in headings:
+        table.add_column(heading)
+    return table
+
+
+def _as_json(verdict: Verdict) -> dict[str, Any]:
+    candidate = verdict.candidate
+    sweeps = candidate.sweeps if verdict.faults["moves"] is not None else {}
+    return {
+        "name": candidate.folder.name,
+        "folder": str(candidate.folder),
+        "passes": verdict.passes,
+        "rules": verdict.faults,
+        "sweeps": [_sweep_as_json(found) for found in sweeps.values() if isinstance(found, Sweep)],
+    }
+
+
+def _sweep_as_json(found: Sweep) -> dict[str, Any]:
+    return {
+        "actuator": found.actuator,
+        "stops": found.stops,
+        "lower": _way_as_json(found.lower),
+        "upper": _way_as_json(found.upper),
+        "comes_round": found.comes_round,
+    }
+
+
+def _way_as_json(way: Way) -> dict[str, Any]:
+    return {
+        "end": way.end,
+        "joint": way.joint,
+        "reached": way.reached,
+        "residual": way.residual,
+        "correction": way.correction,
+        "singularity": way.singularity,
+    }
+
+
+if __name__ == "__main__":
+    sys.exit(main())

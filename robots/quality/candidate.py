@@ -1,0 +1,71 @@
+"""A robot that is looked at, with what several rules ask of it, each found once."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import eurdf
+from eurdf.collection import find_robot
+from eurdf.kinematics.array import Vector
+from eurdf.kinematics.sweep import Sweep
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A robot in its folder.
+
+    Attributes:
+        path: Its description, or its URDF where it has no description.
+    """
+
+    path: Path
+
+    @classmethod
+    def find(cls, path: str | os.PathLike[str]) -> Candidate:
+        """The robot that a path or a name of the collection stands for.
+
+        Raises:
+            RobotNotFound: There is none.
+        """
+        files = find_robot(path)
+        found = files.description or files.urdf
+        assert found is not None
+        return cls(found.resolve())
+
+    @property
+    def folder(self) -> Path:
+        """The folder of its files."""
+        return self.path.parent
+
+    @cached_property
+    def robot(self) -> eurdf.Robot:
+        """It, loaded without geometry.
+
+        Raises:
+            InvalidRobot: It cannot be built.
+        """
+        return eurdf.load(self.path, geometry=False)
+
+    @property
+    def assembled(self) -> Vector | None:
+        """Its assembled configuration (nq,), if it has one."""
+        return self.robot.configurations.get("assembled")
+
+    @cached_property
+    def closes(self) -> bool:
+        """Whether a closed configuration is found from where it stands assembled."""
+        return eurdf.assemble(self.robot).closes
+
+    @cached_property
+    def sweeps(self) -> dict[str, Sweep | str]:
+        """By actuator its sweep, or why it has none; of a robot that closes."""
+        found: dict[str, Sweep | str] = {}
+        for actuator in self.robot.actuation.joints:
+            try:
+                found[actuator] = eurdf.sweep(self.robot, actuator, data=self.robot.data)
+            except ValueError as reason:
+                found[actuator] = str(reason)
+        return found

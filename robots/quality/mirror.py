@@ -1,0 +1,162 @@
+"""The rule on mirrored legs: what is named left and what is named right are exact mirror images in the plane y = 0.
+
+A joint and its image move as in a mirror where their coordinates are equal but for their signs. Which sign, the twists
+of their velocities say: with M = diag(1, -1, 1), the image of a twist (v, ω) is (M v, -M ω).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+
+import eurdf
+from eurdf.kinematics.array import Vector
+from eurdf.mechanism.mechanism import Joint, Mechanism
+from eurdf.pinocchio.coordinates import Slot, slots
+from eurdf.pinocchio.frames import body_frame_ids
+from robots.quality.candidate import Candidate
+
+_MIRROR = np.array((1.0, -1.0, 1.0))
+_OF_TWIST = np.array((1.0, -1.0, 1.0, -1.0, 1.0, -1.0))
+_LEFT = re.compile(r"(?<![a-z])left(?![a-z])")
+_RIGHT = re.compile(r"(?<![a-z])right(?![a-z])")
+
+_SAME_PLACE = 1e-12  # m
+_SAME_TWIST = 1e-9  # rad/s; m/s at the world's origin
+_SAME_INERTIA = 1e-9  # in parts of the mass, or of the largest moment: what the digits in files allow
+_POSES = 3  # looked at beside that of all zeros
+_REACH = 0.5  # how far joints go in them, rad or m
+
+
+def is_mirrored(candidate: Candidate) -> list[str] | None:
+    """Links, centres of mass, inertias, closures, limits of left and right are mirror images; None without such."""
+    mechanism = candidate.robot.mechanism
+    pairs, alone = _pairs(mechanism)
+    if not pairs:
+        return None
+    if alone:
+        return [f"'{name}' has no mirror image of its name" for name in alone]
+    # Followers too get coordinates of their own, since they have to be mirrored as well.
+    robot = eurdf.load(candidate.path, geometry=False, mimic=False)
+    at = slots(robot.mechanism, robot.model)
+    joints = [(at[left], at[right]) for left, right in pairs.items() if left in at and right in at]
+    signs = _signs(robot, joints)
+    for (left, right), sign in zip(joints, signs, strict=True):
+        if not sign.all():
+            return [f"joint '{left.joint.name}' does not move as the mirror image of '{right.joint.name}'"]
+    faults = [fault for joint, sign in zip(joints, signs, strict=True) for fault in _limits(*joint, sign)]
+    random = np.random.default_rng(0)
+    for pose in range(1 + _POSES):
+        v = np.zeros(robot.model.nv)
+        for (left, right), sign in zip(joints, signs, strict=True):
+            value = random.uniform(-_REACH, _REACH, left.nv) if pose else np.zeros(left.nv)
+            v[left.idx_v : left.idx_v + left.nv] = value
+            v[right.idx_v : right.idx_v + right.nv] = sign * value
+        found = _unlike(robot, pairs, np.asarray(pin.integrate(robot.model, pin.neutral(robot.model), v)))
+        if found:
+            where = "with mirrored coordinates" if pose else "with every joint at zero"
+            return faults + [f"{what}, {where}" for what in found]
+    return faults
+
+
+def _pairs(mechanism: Mechanism) -> tuple[dict[str, str], list[str]]:
+    """By name of a body, joint or closure on the left, that on the right; and the names without counterpart."""
+    bodies, joints, closures = mechanism.bodies, mechanism.joints, mechanism.closures
+    names = dict.fromkeys(
+        [*(body.name for body in bodies), *(joint.name for joint in joints), *(closure.name for closure in closures)]
+    )
+    pairs = {name: _LEFT.sub("right", name) for name in names if _LEFT.search(name)}
+    images = set(pairs.values())
+    alone = [name for name, image in pairs.items() if image not in names]
+    alone += [name for name in names if _RIGHT.search(name) and name not in images]
+    return {left: right for left, right in pairs.items() if right in names}, alone
+
+
+def _signs(robot: eurdf.Robot, joints: list[tuple[Slot, Slot]]) -> list[Vector]:
+    """For each pair of joints the signs (nv,) of the velocities that mirror one another; 0 where they do not."""
+    J = pin.computeJointJacobians(robot.model, robot.model.createData(), pin.neutral(robot.model)).reshape(6, -1)
+    signs = []
+    for left, right in joints:
+        sign = np.zeros(left.nv)
+        if right.nv == left.nv:
+            image = _OF_TWIST[:, None] * J[:, left.idx_v : left.idx_v + left.nv]
+            other = J[:, right.idx_v : right.idx_v + right.nv]
+            for candidate in (1.0, -1.0):
+                sign[np.abs(image - candidate * other).max(axis=0) <= _SAME_TWIST] = candidate
+        signs.append(sign)
+    return signs
+
+
+def _limits(left: Slot, right: Slot, sign: Vector) -> Iterator[str]:
+    """Limits, damping and friction that differ."""
+    one, other = left.joint, right.joint
+    stops = list(zip(one.lower, one.upper, strict=True))
+    if len(stops) == len(sign):  # a coordinate for each velocity: else there are no stops
+        kept = zip(stops, (sign > 0.0).tolist(), strict=True)
+        stops = [(low, high) if same else (-high, -low) for (low, high), same in kept]
+    if stops != list(zip(other.lower, other.upper, strict=True)):
+        yield f"'{one.name}' and '{other.name}' have other stops"
+    if _drive(one) != _drive(other):
+        yield f"'{one.name}' and '{other.name}' have other limits of velocity or effort, damping, friction or armature"
+
+
+def _drive(joint: Joint) -> tuple[tuple[float, ...], ...]:
+    return (joint.velocity, joint.effort, joint.damping, joint.friction, joint.armature)
+
+
+def _unlike(robot: eurdf.Robot, pairs: Mapping[str, str], q: Vector) -> list[str]:
+    """What is not mirrored at q (nq,): places of links, of centres of mass and of closures, inertias."""
+    model = robot.model
+    data = model.createData()
+    pin.framesForwardKinematics(model, data, q)
+    frames = body_frame_ids(robot.mechanism)
+    places = {name: data.oMf[frame].translation for name, frame in frames.items()}
+    faults = [
+        f"link '{left}' is {apart:.1e} m from the mirror image of '{right}'"
+        for left, right in pairs.items()
+        if left in places and (apart := _apart(places[left], places[right])) > _SAME_PLACE
+    ]
+    if faults:
+        return faults[:1]  # and what hangs from it
+    closures = {closure.name: closure for closure in robot.constraint_models}
+    masses = {name: _inertia(model, data, model.getJointId(name)) for name in pairs if model.existJointName(name)}
+    images = {name: _inertia(model, data, model.getJointId(pairs[name])) for name in masses}
+    for name, (mass, center, moments) in masses.items():
+        other_mass, other_center, other_moments = images[name]
+        image = _MIRROR[:, None] * moments * _MIRROR
+        if abs(mass - other_mass) > _SAME_INERTIA * mass:
+            faults.append(f"what '{name}' and '{pairs[name]}' carry differs in mass")
+        elif _apart(center, other_center) > _SAME_PLACE:
+            faults.append(f"the centres of mass of what '{name}' and '{pairs[name]}' carry are no mirror images")
+        elif np.abs(image - other_moments).max() > _SAME_INERTIA * np.abs(moments).max():
+            faults.append(f"the inertias of what '{name}' and '{pairs[name]}' carry are no mirror images")
+    for name in pairs:
+        if name in closures:
+            ends = _ends(data, closures[name]), _ends(data, closures[pairs[name]])
+            if closures[name].type != closures[pairs[name]].type or any(
+                _apart(one, other) > _SAME_PLACE for one, other in zip(*ends, strict=True)
+            ):
+                faults.append(f"closures '{name}' and '{pairs[name]}' are no mirror images")
+    return faults
+
+
+def _inertia(model: Any, data: Any, joint: int) -> tuple[float, Vector, Any]:
+    """Mass (kg), centre of mass (3,) in the world (m), and moments (3, 3) about it in the world (kg·m²), of a joint."""
+    carried, oMi = model.inertias[joint], data.oMi[joint]
+    R = oMi.rotation
+    return float(carried.mass), oMi.act(carried.lever), R @ carried.inertia @ R.T
+
+
+def _ends(data: Any, closure: Any) -> tuple[Vector, Vector]:
+    """Places (3,) of its two frames in the world, m."""
+    a = data.oMi[closure.joint1_id] * closure.joint1_placement
+    b = data.oMi[closure.joint2_id] * closure.joint2_placement
+    return a.translation, b.translation
+
+
+def _apart(left: Vector, right: Vector) -> float:
+    return float(np.abs(_MIRROR * left - right).max())
