@@ -278,7 +278,7 @@ FAULTS = [
     ("joints: {k: {type: universal, axes: [[1, 0], [0, 1, 0]]}}", "wrong-length", "/joints/k/axes/0", 38, "3 items"),
     ("joints: {k: {type: spherical, merges: [a, b]}}", "wrong-length", "/joints/k/merges", 39, "3 items, not 2"),
     ("joints: {k: {type: spherical, merges: [a, b, a]}}", "wrong-value", "/joints/k/merges", 39, "'a' stands twice"),
-    ("joints: {k: {type: helical, pitch: 1_000}}", "wrong-type", "/joints/k/pitch", 36, "write the number as 1000.0"),
+    ("joints: {k: {type: helical, pitch: 1_000}}", "wrong-type", "/joints/k/pitch", 36, "write the number as 1000"),
     ("joints: {k: {type: helical, pitch: '0,5'}}", "wrong-type", "/joints/k/pitch", 36, "write the number as 0.5"),
     ("joints: {k: {type: helical, pitch: true}}", "wrong-type", "/joints/k/pitch", 36, "must be a number, not true"),
     ("joints: {k: {armature: -1}}", "out-of-range", "/joints/k/armature", 24, "must be at least 0, not -1"),

@@ -340,7 +340,7 @@ def test_a_value_left_out_stands_after_its_colon() -> None:
     [
         ("1", "a number", 'quote it: "1"'),
         ("1.5", "a number", 'quote it: "1.5"'),
-        ("null", "empty", 'quote it: "null"'),
+        ("null", "a key is null", 'quote it: "null"'),
         ("true", "a boolean", 'quote it: "true"'),
         (".nan", "a number", 'quote it: ".nan"'),
         ("? [a]\n", "a list", None),
@@ -548,7 +548,7 @@ def test_any_text_gives_a_document_or_a_fault(text: str) -> None:
     ("text", "what"),
     [
         ("", "empty"),
-        ("# only a comment\n", "empty"),
+        ("# only a comment\n", "nothing but comments"),
         ("---\n...\n", "empty"),
         ("null\n", "empty"),
         ("[1, 2]\n", "a list"),

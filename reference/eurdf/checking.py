@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def check(path: str | os.PathLike[str], urdf: str | os.PathLike[str] | None = None) -> Report:
-    """Check a robot.
+    """Check a robot: EU-DIA-001, EU-DIA-003, each fault is told that no error hides.
 
     Args:
         path: A folder, a YAML file, a bare URDF, or the name of a robot of the collection.

@@ -70,6 +70,8 @@ def describe(
 ) -> Description:
     """Read and link the files of a robot, and check its inertias.
 
+    EU-DIA-002: what needs a file that has an error is not looked at, so that nothing is told that only follows from it.
+
     Args:
         path: A folder, a YAML file, a bare URDF, or the name of a robot of the collection.
         urdf: A URDF in place of the one that the description names.

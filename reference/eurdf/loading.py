@@ -26,8 +26,8 @@ def load(
 ) -> Robot:
     """Load a robot.
 
-    Errors that leave something to guess are refused. Unphysical inertias and loops that cannot close are not: real
-    files have them, and their kinematics are still of use; they are in ``robot.diagnostics``.
+    Errors that leave something to guess are refused (EU-CNF-001). Unphysical inertias and loops that cannot close are
+    not: real files have them, and their kinematics are still of use; they are in ``robot.diagnostics`` (EU-CNF-003).
 
     Args:
         path: A folder, a YAML file, a bare URDF, or the name of a robot of the collection.

@@ -31,11 +31,11 @@ Hint = str | None | Callable[[], str | None]
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A place in a file.
+    """A place in a file (EU-DIA-009).
 
     Attributes:
         file: Path as the user gave it.
-        line: Line, from 1; None for the file as a whole.
+        line: Line, from 1; None for the file as a whole (EU-DIA-010).
         column: Column, from 1, in characters; None where only the line is known.
         end_column: Column just after the last character meant, on the same line; None if not known.
         pointer: JSON pointer of the value in a YAML file, XPath of the element or attribute in a URDF.
@@ -49,7 +49,7 @@ class Place:
 
 
 class Diagnostic:
-    """One finding: a code of the registry, what is wrong, where, and what would be right.
+    """One finding: a code of the registry, what is wrong, where, and what would be right (EU-DIA-008).
 
     Attributes:
         code: Its code in the registry.
@@ -75,7 +75,7 @@ class Diagnostic:
 
     @property
     def severity(self) -> Severity:
-        """Error or warning, as the registry says."""
+        """Error or warning, as the registry says (EU-DIA-004)."""
         return REGISTRY[self.code].severity
 
     @property
@@ -135,7 +135,7 @@ class Fault(Exception):  # noqa: N818 - it carries one finding; whether that is 
 
 
 class Diagnostics:
-    """The findings on one robot, in the order found; of each code, as many as `LISTED`.
+    """The findings on one robot, in the order found; of each code, as many as `LISTED` (EU-DIA-007).
 
     A file can have a hundred thousand times the same fault: nobody reads them all, and telling them would take more
     time and memory than reading the file.
@@ -147,7 +147,7 @@ class Diagnostics:
         self._last: dict[str, int] = {}  # by code, the index in `_found` of the last one listed
 
     def report(self, code: str, message: str, place: Place | Callable[[], Place], hint: Hint = None) -> None:
-        """Add a finding; ``code`` must be in the registry. A hint that is to be found is so only if it is listed."""
+        """Add a finding; ``code`` is one of the registry (EU-DIA-005). A hint to be found is so only where listed."""
         if code not in REGISTRY:
             raise KeyError(code)
         if self._counts_in(code):

@@ -70,6 +70,7 @@ class _OwnKeysApart:
 
 
 def _without_own_keys(value: Any) -> Any:
+    """EU-EXT-004: the user's own keys are no names."""
     if isinstance(value, dict):
         return {key: item for key, item in value.items() if not is_own_key(key)}
     return value

@@ -27,8 +27,8 @@ _UNIT = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 def from_version1(model: Version1) -> Extension:
     """The description in a file of version 1, whose parallel lists are of equal length.
 
-    Closures are named ``closure_1``, ``closure_2``, … in file order (EU-ONE-005), and are 6d where the key ``type`` is
-    left out (EU-ONE-004).
+    Keys other than the five are kept (EU-ONE-008). Closures are named ``closure_1``, ``closure_2``, … in file order
+    (EU-ONE-005), and are 6d where the key ``type`` is left out (EU-ONE-004).
     """
     types = model.type if "type" in model.model_fields_set else ["6d"] * len(model.closed_loop)
     closures = tuple(

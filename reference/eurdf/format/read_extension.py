@@ -59,7 +59,7 @@ def read_extension(document: YamlDocument, diagnostics: Diagnostics) -> Extensio
 
 
 def _version(document: YamlDocument, diagnostics: Diagnostics) -> Literal["1", "2.0"] | None:
-    """The version whose rules a file is to be read by (EU-VER-002); None where it cannot be told."""
+    """The version whose rules a file is to be read by (EU-VER-002, EU-VER-003); None if unknown."""
     data = document.data
     if VERSION_KEY in data:
         return _written_version(document, diagnostics)

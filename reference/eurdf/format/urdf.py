@@ -63,6 +63,11 @@ _LIMIT = {"effort": None, "velocity": None, "lower": "0", "upper": "0"}
 _DYNAMICS = {"damping": "0", "friction": "0"}
 _MIMIC = {"multiplier": "1", "offset": "0"}
 
+# All attributes of elements that have some which may be left out.
+_ORIGIN = frozenset({"xyz", "rpy"})
+_MESH = frozenset({"filename", "scale"})
+_MIMIC_ATTRIBUTES = frozenset({"joint", *_MIMIC})
+
 _ZERO: Vector3 = (0.0, 0.0, 0.0)
 
 #: Of so many different elements that URDF lacks it is asked whether they are misspelt.
@@ -165,6 +170,15 @@ def read_urdf(document: XmlDocument, diagnostics: Diagnostics, *, geometry: bool
     return None if diagnostics.error_count > before else urdf
 
 
+def _named(element: Element) -> str:
+    """How a sentence names an element: a link or joint by its name, what is in it by tag and owner."""
+    tag, name = str(element.tag), element.get("name")
+    if tag in ("link", "joint") and name:
+        return f"{tag} '{name}'"
+    owner = next((above for above in element.iterancestors("link", "joint") if above.get("name")), None)
+    return f"<{tag}>" + ("" if owner is None else f" of {owner.tag!s} '{owner.get('name')}'")
+
+
 def _round(cycle: Sequence[str]) -> str:
     """How a sentence names the members of a cycle, a few at most."""
     shown = cycle if len(cycle) <= 6 else [*cycle[:5], "..."]
@@ -219,7 +233,7 @@ class _Reader:
         wanted = "one number" if count == 1 else f"{count} numbers separated by spaces"
         self.report(
             "urdf-bad-number",
-            f"'{attribute}' of <{element.tag}> has {len(values)} numbers; it must have {wanted}",
+            f"'{attribute}' of {_named(element)} has {len(values)} numbers; it must have {wanted}",
             element,
             attribute,
         )
@@ -235,7 +249,7 @@ class _Reader:
         shown = text if len(text) <= 40 else text[:37] + "..."
         self.report(
             "urdf-bad-number",
-            f"'{attribute}' of <{element.tag}> is '{shown}'; it must be {wanted}",
+            f"'{attribute}' of {_named(element)} is '{shown}'; it must be {wanted}",
             element,
             attribute,
             hint,
@@ -268,7 +282,7 @@ class _Reader:
     def _missing_attribute(self, element: Element, attribute: str) -> None:
         near = did_you_mean(attribute, [str(key) for key in element.keys()])  # noqa: SIM118 - an lxml element
         hint = near.replace("did you mean", "rename").replace("?", "") if near else None
-        self.report("urdf-missing-attribute", f"<{element.tag}> has no attribute '{attribute}'", element, None, hint)
+        self.report("urdf-missing-attribute", f"{_named(element)} has no attribute '{attribute}'", element, None, hint)
 
     def name(self, element: Element, attribute: str = "name") -> str | None:
         """EU-URD-005, EU-URD-008: what must have a name has one, and it is not empty."""
@@ -314,8 +328,16 @@ class _Reader:
             if near:
                 self.report("urdf-unknown-element", f"<{parent.tag}> has an unknown element <{tag}>", child, hint=near)
 
+    def attributes(self, element: Element, known: frozenset[str]) -> None:
+        """EU-URD-026: an attribute that may be left out is not misspelt, which would leave it out."""
+        for attribute in map(str, element.keys()):
+            near = None if attribute in known else self.near_miss(attribute, known)
+            if near:
+                message = f"{_named(element)} has an unknown attribute '{attribute}'"
+                self.report("urdf-unknown-element", message, element, attribute, near)
+
     def near_miss(self, tag: str, known: frozenset[str]) -> str | None:
-        """The hint for an element that URDF lacks; mostly the same few stand in every joint of a file."""
+        """The hint for an element or attribute that URDF lacks; mostly the same few stand in every joint of a file."""
         if (tag, known) not in self.strange:
             if len(self.strange) >= _MOST_STRANGE:
                 return None
@@ -326,15 +348,15 @@ class _Reader:
         """EU-URD-004: an element has the child elements that it must have."""
         element = found.get(tag)
         if element is None:
-            name = parent.get("name")
-            of = f" '{name}'" if name else ""
-            self.report("urdf-missing-element", f"<{parent.tag}>{of} has no <{tag}>", parent)
+            self.report("urdf-missing-element", f"{_named(parent)} has no <{tag}>", parent)
         return element
 
     def origin(self, element: Element | None) -> Pose:
         if element is None:
             return IDENTITY
         text = (element.get("xyz"), element.get("rpy"))
+        if len(element.keys()) > 2 - text.count(None):
+            self.attributes(element, _ORIGIN)
         pose = self.poses.get(text)
         if pose is None:
             xyz = _ZERO if text[0] is None else self.numbers(element, "xyz", text[0], 3)
@@ -458,6 +480,7 @@ class _Reader:
         if kind == "mesh":
             name = self.name(shape, "filename")
             scale = shape.get("scale")
+            self.attributes(shape, _MESH)
             size = (1.0, 1.0, 1.0) if scale is None else self.numbers(shape, "scale", scale, 3)
             if name is None or size is None:
                 return None
@@ -500,7 +523,7 @@ class _Reader:
                 self._missing_attribute(found["color"], "rgba")
             else:
                 rgba = self.numbers(found["color"], "rgba", text, 4)
-        texture = found["texture"].get("filename", "") if "texture" in found else ""
+        texture = self.name(found["texture"], "filename") or "" if "texture" in found else ""
         return rgba, texture  # type: ignore[return-value]
 
     def robot_material(self, element: Element) -> None:
@@ -513,9 +536,10 @@ class _Reader:
         name = element.get("name", "")
         if len(element) == 0:
             if name not in self.materials:
+                message = f"material '{name}' is not defined" if name else f"{_named(element)} has no name and no color"
                 self.report(
                     "urdf-unknown-material",
-                    f"material '{name}' is not defined",
+                    message,
                     element,
                     "name",
                     partial(did_you_mean, name, self.materials),
@@ -566,7 +590,7 @@ class _Reader:
         return kind
 
     def axis(self, name: str | None, kind: JointType, element: Element | None) -> Vector3 | None:
-        """EU-URD-013: the axis of a joint that turns about or slides along it has a direction."""
+        """EU-URD-013, EU-URD-035: the axis of a joint that turns about or slides along it is a direction, or else x."""
         if element is None or kind in _AXLESS:
             return (1.0, 0.0, 0.0)
         text = element.get("xyz")
@@ -603,6 +627,7 @@ class _Reader:
                     hint="use type 'continuous' for a joint that turns without limits" if kind == "revolute" else None,
                 )
             return None
+        self.attributes(element, frozenset(_LIMIT))
         values = self.several(element, _LIMIT)
         if values is None:
             return None
@@ -620,6 +645,7 @@ class _Reader:
         return Limit(lower, upper, velocity, effort)
 
     def dynamics(self, element: Element) -> tuple[float, ...]:
+        self.attributes(element, frozenset(_DYNAMICS))
         damping, friction = self.several(element, _DYNAMICS) or (0.0, 0.0)
         if damping < 0.0 or friction < 0.0:
             self.negative(element, damping=damping, friction=friction)
@@ -629,10 +655,12 @@ class _Reader:
         """EU-URD-020: what is a magnitude is not negative."""
         for attribute, value in values.items():
             if value < 0.0:
-                self.report("urdf-negative-limit", f"'{attribute}' of <{element.tag}> is negative", element, attribute)
+                message = f"'{attribute}' of {_named(element)} is negative"
+                self.report("urdf-negative-limit", message, element, attribute)
 
     def mimic(self, element: Element) -> Mimic | None:
         joint = self.name(element, "joint")
+        self.attributes(element, _MIMIC_ATTRIBUTES)
         values = self.several(element, _MIMIC)
         return None if joint is None or values is None else Mimic(joint, *values)
 
@@ -738,10 +766,12 @@ class _Reader:
                 path.append(name)
                 name = parent_joint[name].parent
             cycle = list(reversed(path[seen[name] :]))
+            # The last one in the file: whoever closed the cycle mostly wrote it last.
+            last = max((parent_joint[link] for link in cycle), key=[*urdf.joints.values()].index)
             self.report(
                 "urdf-cycle",
                 "links form a cycle: " + _round(cycle),
-                parent_joint[cycle[0]].element,
+                last.element,
                 hint="take one joint out of the cycle, and state it under 'closures' in the YAML file",
             )
             return False
@@ -765,14 +795,17 @@ class _Reader:
                     partial(did_you_mean, joint.mimic.joint, joints),
                 )
                 continue
-            for role, other in (("mimics another", joint), ("is mimicked", target)):
-                if other.type not in single:
-                    self.report(
-                        "urdf-mimic-kind",
-                        f"joint '{other.name}' {role}, but is {other.type}: only joints of one coordinate can",
-                        element,
-                        "joint",
-                    )
+            roles = {"mimics another": joint, "is mimicked": target}
+            wrong = next((role for role, other in roles.items() if other.type not in single), None)
+            if wrong:
+                other = roles[wrong]
+                self.report(
+                    "urdf-mimic-kind",
+                    f"joint '{other.name}' {wrong}, but is {other.type}: only joints of one coordinate can",
+                    element,
+                    "joint",
+                )
+                continue
             trail = dict.fromkeys([joint.name])
             at = target
             while at is not None and at.name not in trail and at.name not in done:

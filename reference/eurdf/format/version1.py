@@ -26,7 +26,7 @@ def _refuse_names(value: Any) -> Any:
 class Version1(BaseModel):
     """A robot's loop closures, actuators and joints beside its URDF, in the published dialect.
 
-    The file has no version key. Keys other than these five are the user's own.
+    The file has no version key. It has these five keys (EU-ONE-001); others are the user's own.
     """
 
     model_config = ConfigDict(

@@ -272,5 +272,5 @@ def _type_hint(must: str, pointer: Pointer, value: Any) -> str | None:
         except ValueError:
             return None
         if math.isfinite(number):
-            return f"write the number as {number!r}, without quotes"
+            return f"write the number as {repr(number).removesuffix('.0')}, without quotes"
     return None

@@ -64,7 +64,8 @@ def link_actuators(
         elif name in listed:
             diagnostics.report("actuator-duplicate", f"joint '{name}' is actuated twice", place, "remove one")
         elif joint.type is JointType.FIXED:
-            diagnostics.report("actuator-immobile", f"joint '{name}' is fixed and cannot be actuated", place)
+            hint = "actuate a joint that moves, or take it out"
+            diagnostics.report("actuator-immobile", f"joint '{name}' is fixed and cannot be actuated", place, hint)
         elif joint.mimic is not None:
             diagnostics.report(
                 "actuator-mimic",

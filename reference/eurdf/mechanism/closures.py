@@ -22,6 +22,8 @@ def link_closures(
 ) -> tuple[Closure, ...]:
     """Look the frames of every closure up and check what two frames can have wrong together.
 
+    A closure of a type that begins with ``x-`` is left out (EU-CLO-012).
+
     Args:
         entries: As written.
         names: Finds frames.
@@ -76,10 +78,12 @@ def _movable(
 ) -> bool:
     """EU-CLO-002, EU-CLO-003: the two frames are not one, and not fixed to one another."""
     if a.body == b.body and a.pose == b.pose:
-        what = f"'{a.frame}'" if a.frame and a.frame == b.frame else "one and the same frame"
+        same = not a.frame or not b.frame or a.frame == b.frame
+        what = f"a frame on '{a.body}'" if not a.frame else f"'{a.frame}'"
+        message = f"{what} to itself" if same else f"'{a.frame}' to '{b.frame}', which are one and the same frame"
         diagnostics.report(
             "closure-same-frame",
-            f"closure '{entry.name}' joins {what} to itself",
+            f"closure '{entry.name}' joins {message}",
             document.place(entry.b.pointer),
             "name the frame on the other side of the loop",
         )

@@ -22,15 +22,17 @@ LIMIT_TOLERANCE = 1e-9
 def link_configurations(
     entries: Iterable[ConfigurationEntry],
     joints: Mapping[str, Joint],
+    merged: Mapping[str, str],
     skip: Collection[str],
     document: YamlDocument,
     diagnostics: Diagnostics,
 ) -> dict[str, dict[str, tuple[float, ...]]]:
-    """Check every configuration against the joints of the mechanism; quaternions come back with unit length.
+    """Check every configuration against the joints of the mechanism; EU-CFG-006: quaternions come back of unit length.
 
     Args:
         entries: As written.
         joints: Joints of the mechanism.
+        merged: For each joint that was merged away, the joint it became part of.
         skip: Joints that are not looked at, since their own entry is at fault.
         document: To point into.
         diagnostics: Gets what is found.
@@ -42,7 +44,7 @@ def link_configurations(
             if name in skip:
                 continue
             pointer = (*entry.pointer, name)
-            joint = _joint(name, joints, pointer, entry, document, diagnostics)
+            joint = _joint(name, joints, merged, pointer, entry, document, diagnostics)
             if joint is not None:
                 checked = _coordinates(joint, values, pointer, entry, document, diagnostics)
                 if checked is not None:
@@ -54,6 +56,7 @@ def link_configurations(
 def _joint(
     name: str,
     joints: Mapping[str, Joint],
+    merged: Mapping[str, str],
     pointer: Pointer,
     entry: ConfigurationEntry,
     document: YamlDocument,
@@ -68,6 +71,9 @@ def _joint(
         why = "is no joint of the robot"
         free = (other.name for other in joints.values() if other.type is not JointType.FIXED and not other.mimic)
         hint = partial(did_you_mean, name, free)
+    elif name in merged:
+        why = f"was merged into the spherical joint '{merged[name]}'"
+        hint = f"give the coordinates of '{merged[name]}', a quaternion x, y, z, w"
     elif joint.mimic is not None:
         why = f"mimics '{joint.mimic.joint}' and has no coordinate of its own"
     else:

@@ -15,7 +15,7 @@ from eurdf.reading.yaml_reader import YamlDocument
 
 
 class FrameNames:
-    """Looks frames up: links, joints (their frame on the child's side), and the frames that the description adds."""
+    """Looks frames up: links, joints (EU-FRM-005: on the child's side), and the frames that the description adds."""
 
     def __init__(
         self,

@@ -14,7 +14,7 @@ _Z = (0.0, 0.0, 1.0)
 
 
 def joint_transform(joint: Joint, coordinates: Sequence[float]) -> Pose:
-    """Pose of a joint's moving frame in its frame at rest, jMj'(c).
+    """EU-JNT-015 to -018, EU-JNT-025: pose of a joint's moving frame in its frame at rest, jMj'(c).
 
     Its child body stands at ``joint.placement * joint_transform(joint, c) * joint.offset`` in its parent. With R(a, θ)
     the rotation about a by θ, a the unit vector of an axis, as (rotation, translation):

@@ -98,7 +98,9 @@ def _described(
     # What is said of a joint whose own entry is at fault would only repeat that fault.
     entries = [entry for entry in extension.actuators if entry.joint not in faulty]
     actuators = link_actuators(entries, urdf, joints.by_name, joints.merged, joints.split, document, diagnostics)
-    configurations = link_configurations(extension.configurations, joints.by_name, faulty, document, diagnostics)
+    configurations = link_configurations(
+        extension.configurations, joints.by_name, joints.merged, faulty, document, diagnostics
+    )
     for entry in entries:
         if entry.joint in actuators:
             joints.by_name[entry.joint] = with_motor(

@@ -91,7 +91,7 @@ def check_chain(
 
 
 def merge(chain: Chain, name: str) -> tuple[Joint, Joint, Joint]:
-    """The first two joints, fixed at their zero, and the spherical joint that the three become.
+    """EU-JNT-022 to -024: the first two joints, fixed at their zero, and the spherical joint that the three become.
 
     The links in between stay where they are at zero, fixed to the body before. The spherical joint turns about the
     point where the axes meet; its frame has the orientation of the last joint's at zero. Where the last joint's origin
@@ -132,7 +132,7 @@ def merge(chain: Chain, name: str) -> tuple[Joint, Joint, Joint]:
 
 
 def fixed(joint: Joint) -> Joint:
-    """The joint locked at its zero."""
+    """EU-JNT-019: the joint locked at its zero."""
     return Joint(joint.name, JointType.FIXED, joint.parent, joint.child, joint.placement, joint.offset)
 
 

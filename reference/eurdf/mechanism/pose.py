@@ -23,7 +23,7 @@ class Pose:
 
     @classmethod
     def from_xyz_rpy(cls, xyz: Vector3, rpy: Vector3) -> Pose:
-        """Pose of a URDF ``origin``: roll, pitch, yaw (rad) about the fixed axes x, y, z.
+        """EU-FRM-006: pose of a URDF ``origin``: roll, pitch, yaw (rad) about the fixed axes x, y, z.
 
         The operations and their order are those of urdfdom, so that results agree to the last bit.
         """

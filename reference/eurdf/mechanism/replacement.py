@@ -170,7 +170,10 @@ class _Replacement:
         else:
             return False
         self.diagnostics.report(
-            "joint-mimics", f"joint '{joint.name}' cannot be changed: {why}", self.document.place(pointer)
+            "joint-mimics",
+            f"joint '{joint.name}' cannot be changed: {why}",
+            self.document.place(pointer),
+            "take the <mimic> out of the URDF, or leave the joint as it is",
         )
         return True
 
@@ -242,7 +245,7 @@ class _Replacement:
         return self.helical(joint)
 
     def _spread(self, joint: Joint, kind: JointType) -> Joint:
-        """The joint with another type, its rates and dynamics given to each of the new velocities."""
+        """EU-JNT-020, -021: the joint with another type; its rates and dynamics are those of each of its velocities."""
         coordinates = COORDINATES[kind]
         n = coordinates.nv
         return Joint(
@@ -324,14 +327,14 @@ class _Replacement:
         )
 
     def cylindrical(self, joint: Joint) -> Joint:
-        """Limits of the URDF's joint stay with the coordinate of its kind; the other has none."""
+        """EU-JNT-027: limits of the URDF's joint stay with the coordinate of its kind; the other has none."""
         spread = self._spread(joint, JointType.CYLINDRICAL)
         if joint.type is JointType.PRISMATIC:
             return replace(spread, lower=(joint.lower[0], -math.inf), upper=(joint.upper[0], math.inf))
         return replace(spread, lower=(-math.inf, joint.lower[0]), upper=(math.inf, joint.upper[0]))
 
     def helical(self, joint: Joint) -> Joint | None:
-        """EU-JNT-008: a helix has a pitch. What bounds a sliding joint's length bounds the screw's angle."""
+        """EU-JNT-008, EU-JNT-027: a helix has a pitch; what bounds a slide bounds the screw's angle."""
         pitch = self.entry.pitch
         assert pitch is not None
         if pitch == 0.0:
@@ -380,10 +383,10 @@ class _Replacement:
             n = joint.coordinates.nv
             values = stated if isinstance(stated, tuple) else (stated,) * n
             if len(values) != n:
+                wanted = "be one number" if n == 1 else f"have {n}, or one for all"
                 self.report(
                     "joint-property",
-                    f"'{keys[-1]}' of {joint.type} joint '{joint.name}' has {len(values)} numbers; it must have {n}, "
-                    "or one for all",
+                    f"'{keys[-1]}' of {joint.type} joint '{joint.name}' has {len(values)} numbers; it must {wanted}",
                     *keys,
                 )
                 return None
@@ -396,11 +399,13 @@ class _Replacement:
         for lower, upper in zip(joint.lower, joint.upper, strict=True):
             if lower > upper:
                 key = "lower" if "lower" in changes else "upper"
+                left_out = {"lower", "upper"} - set(changes)
                 self.report(
                     "joint-limits-reversed",
                     f"joint '{joint.name}' has its lower limit {lower:g} above its upper limit {upper:g}",
                     "limits",
                     key,
+                    hint=f"the {left_out.pop()} limit is the URDF's; state it too" if left_out else "swap them",
                 )
                 return None
         return joint

@@ -73,7 +73,7 @@ def joint_of(joint: UrdfJoint) -> Joint:
 
 
 def depth_first(root: str, joints: Iterable[Joint]) -> list[Joint]:
-    """The joints depth first from the root body; the joints of one body in the byte order of their names."""
+    """EU-URD-031: the joints depth first from the root body; those of one body in the byte order of their names."""
     children: dict[str, list[Joint]] = {}
     for joint in joints:
         children.setdefault(joint.parent, []).append(joint)

@@ -15,7 +15,7 @@ from eurdf.pinocchio.coordinates import Slot, slots
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Actuation:
-    """The actuated joints, in file order, and where they stand in a model.
+    """The actuated joints, in file order, and where they stand in a model, along each of their velocities (EU-ACT-007).
 
     Attributes:
         joints: Their names.

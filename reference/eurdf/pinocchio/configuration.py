@@ -23,7 +23,7 @@ def configuration_vector(
     coordinates: Mapping[str, Sequence[float]],
     at: Mapping[str, Slot] | None = None,
 ) -> Vector:
-    """The configuration q in which joints have the given coordinates.
+    """The configuration q in which joints have the given coordinates, and all others their neutral (EU-CFG-005).
 
     Args:
         mechanism: The mechanism.

@@ -32,7 +32,7 @@ NONE = Following()
 
 
 def following(mechanism: Mechanism) -> Following:
-    """Which joint follows which."""
+    """EU-URD-032: which joint follows which, and by what law."""
     mimics = {
         joint.name: joint.mimic for joint in mechanism.joints if joint.mimic is not None and joint.type in _FOLLOWERS
     }

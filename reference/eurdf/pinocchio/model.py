@@ -41,6 +41,9 @@ def build_model(mechanism: Mechanism, mimic: bool = True) -> pin.Model:
     joint of its own, named ``<leader>/coordinate``, which moves nothing and which the leader follows as its followers
     do; chains are followed to their end; such a continuous joint is held as one angle with infinite limits.
 
+    Its velocities are those of EU-JNT-026; the inertias of links that fixed joints hold together are summed
+    (EU-INR-005), and armatures are part of the mass matrix (EU-INR-006).
+
     Args:
         mechanism: A sound mechanism.
         mimic: Whether joints that mimic follow their leaders; if not, they move by themselves.
@@ -110,7 +113,7 @@ def build_model(mechanism: Mechanism, mimic: bool = True) -> pin.Model:
 
 
 def _add_root(model: pin.Model, mechanism: Mechanism) -> tuple[int, int]:
-    """Add the root body; returns the joint that moves it, and its frame."""
+    """EU-VER-004: add the root body, fixed or floating; returns the joint that moves it, and its frame."""
     root = mechanism.bodies[0]
     inertia = _MASSLESS if root.inertia is None else inertia_of(root.inertia)
     if mechanism.root == "fixed":

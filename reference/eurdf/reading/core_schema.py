@@ -25,7 +25,7 @@ _NUMBER_BEGINS = frozenset("+-.0123456789")
 
 
 def resolve(text: str) -> Scalar:
-    """Value of a plain scalar without a tag; a number beyond the range of a double is an infinity."""
+    """EU-YML-011: value of a plain scalar without a tag; a number beyond the range of a double is an infinity."""
     if text in _WORDS:
         return _WORDS[text]
     if text[0] in _NUMBER_BEGINS:
@@ -37,7 +37,7 @@ def resolve(text: str) -> Scalar:
 
 
 def resolve_tagged(tag: str, text: str) -> Scalar:
-    """Value of a scalar, plain or quoted, with a tag of the core schema.
+    """EU-SEC-001: value of a scalar, plain or quoted, with a tag of the core schema, which are all that have a meaning.
 
     Raises:
         ValueError: The core schema has no such tag for scalars, or the text does not fit it.

@@ -9,7 +9,7 @@ from urllib.parse import unquote
 
 
 def resolve(uri: str, folder: Path, package_dirs: Sequence[str | os.PathLike[str]] = ()) -> str | None:
-    """The file that a mesh URI of a URDF means.
+    """The file that a mesh URI of a URDF means, on this machine (EU-SEC-003).
 
     ``package://name/rest`` is looked for as ``name/rest`` below the given package directories, below those of
     ``ROS_PACKAGE_PATH`` and ``AMENT_PREFIX_PATH``, and below the folder of the URDF and the folders that hold it,

@@ -37,7 +37,7 @@ class Source:
     _starts: list[int] = field(default_factory=list, init=False, repr=False, compare=False)
 
     def position(self, index: int) -> tuple[int, int]:
-        r"""Line and column, both from 1, of a character.
+        r"""Line and column, both from 1, of a character (EU-DIA-011, EU-DIA-012).
 
         A line ends at ``\n``, ``\r\n`` or ``\r``, as in YAML 1.2, XML and most editors; other Unicode breaks are text.
 

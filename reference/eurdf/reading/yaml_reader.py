@@ -131,7 +131,8 @@ class _Reader:
         """The top level, a mapping."""
         document = self._next_event()
         if type(document) is StreamEndEvent:
-            raise Fault("yaml-empty", "the file is empty; it must hold a mapping", Place(self._source.file))
+            what = "holds nothing but comments" if self._source.text.strip("\ufeff \t\r\n") else "is empty"
+            raise Fault("yaml-empty", f"the file {what}; it must hold a mapping", Place(self._source.file))
         if document.version is not None and document.version != (1, 2):
             version = ".".join(map(str, document.version))
             message = f"the %YAML directive asks for version {version}; it must be 1.2"
@@ -156,7 +157,9 @@ class _Reader:
         value = self._file.data[0]
         message = "the document is empty" if value is None else f"the top level is {_kind(value)}"
         span = top if isinstance(top, tuple) else top.span
-        raise Fault("yaml-empty", f"{message}; it must be a mapping", self._source.place(*span))
+        # Of a value that is left out, there is no place to point at.
+        place = Place(self._source.file) if span[0] == span[1] else self._source.place(*span)
+        raise Fault("yaml-empty", f"{message}; it must be a mapping", place)
 
     def _scalar(self, event: ScalarEvent) -> None:
         self._count += 1
@@ -241,8 +244,8 @@ class _Reader:
         """Take a value as the next key of the innermost mapping."""
         mapping = self._open[-1]
         if type(value) is not str:
-            what = "a key is empty" if value is None else f"a key is {_kind(value)}"
             text = event.value if isinstance(event, ScalarEvent) else ""
+            what = ("a key is null" if text else "a key is empty") if value is None else f"a key is {_kind(value)}"
             hint = f'quote it: "{text}"' if text == short(text) != "" else None
             raise self._fault("yaml-key-not-string", f"{what}; it must be a string", event, hint)
         if value in mapping.keys:
