@@ -1,0 +1,58 @@
+"""Build the site of the specification: ``python -m spec.site``."""
+
+from __future__ import annotations
+
+import argparse
+import shutil
+import sys
+from pathlib import Path
+
+from sphinx.cmd.build import main as sphinx_build
+
+from spec.site.clause import SPEC
+from spec.site.links import site_faults
+
+BUILD = SPEC / "_build"
+
+
+def build(output: Path, builder: str = "html", source: Path = SPEC) -> int:
+    """Build the site anew; a warning is an error, and so is a link that leads nowhere.
+
+    Args:
+        output: Folder that the site is written into.
+        builder: ``html``, or ``linkcheck`` to look the addresses of other sites up.
+        source: Folder of the text.
+
+    Returns:
+        0, or another number where something is wrong; what is, is printed.
+    """
+    if (output / ".buildinfo").exists():  # an earlier build: a page that is gone would still be there
+        shutil.rmtree(output)
+    doctrees = str(output.parent / f"{output.name}.doctrees")
+    failed = sphinx_build(["-b", builder, "-q", "-E", "-a", "-n", "-W", "-d", doctrees, str(source), str(output)])
+    if failed or builder != "html":
+        return failed
+    faults = site_faults(output)
+    for fault in faults:
+        print(fault, file=sys.stderr)
+    return 1 if faults else 0
+
+
+def main() -> int:
+    """Build what the command line asks for."""
+    parser = argparse.ArgumentParser(prog="python -m spec.site", description="Build the site of the specification.")
+    parser.add_argument(
+        "-o", "--output", type=Path, default=BUILD / "html", metavar="FOLDER", help="default: %(default)s"
+    )
+    parser.add_argument("--linkcheck", action="store_true", help="look up every address that the text links to")
+    args = parser.parse_args()
+    if args.linkcheck:
+        return build(BUILD / "linkcheck", "linkcheck")
+    failed = build(args.output)
+    if not failed:
+        print(f"the site is in {args.output / 'index.html'}")
+    return failed
+
+
+if __name__ == "__main__":
+    sys.exit(main())

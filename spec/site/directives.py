@@ -1,0 +1,380 @@
+"""The directives that the chapters are written with, and those that fill the pages made when the site is built."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, ClassVar, cast
+
+from docutils import nodes
+from docutils.nodes import Node
+from docutils.parsers.rst import directives
+from sphinx.util.docutils import SphinxDirective
+
+from eurdf.diagnostics import REGISTRY
+from spec.site.blocks import Directive
+from spec.site.clause import ROOT, without_code
+from spec.site.domain import NAME, SpecificationDomain, reference_to
+from spec.site.example import EXAMPLES, Edit, NotAnEdit, Outcome, ShownDiagnostic, diagnostic_of, example_of
+from spec.site.registry import current_registry
+from spec.site.schema_page import property_anchors, schema_sections
+
+_KEYWORD = re.compile(r"\b(?:MUST NOT|MUST|SHOULD NOT|SHOULD|MAY)\b")
+
+#: Lines of a file shown before and after those that an edit changes.
+_CONTEXT = 2
+
+_LANGUAGES = {".yaml": "yaml", ".urdf": "xml"}
+
+_SIDES = {"→": "eu-asked", "←": "eu-answered"}
+
+# Styles in which `eurdf check` prints, as classes of the site.
+_STYLES = {
+    "bold": "eu-bold",
+    "dim": "eu-dim",
+    "blue": "eu-gutter",
+    "red": "eu-error",
+    "yellow": "eu-warning",
+    "cyan": "eu-hint",
+}
+
+
+class SpecificationDirective(SphinxDirective):
+    """A directive of the specification."""
+
+    has_content = True
+    required_arguments = 1
+
+    @property
+    def domain(self) -> SpecificationDomain:
+        """What the site knows by name."""
+        return cast(SpecificationDomain, self.env.domains[NAME])
+
+    @property
+    def page(self) -> str:
+        """Name of the page being read."""
+        return self.env.current_document.docname
+
+    @property
+    def stated(self) -> Directive:
+        """The directive as the plain reader of the chapters has it."""
+        options = {name: value or "" for name, value in self.options.items()}
+        body = "\n".join(self.content)
+        return Directive(self.lineno, self.name, self.arguments[0], options, body, self.content_offset + 1)
+
+    def reference(self, what: str, name: str) -> Node:
+        """A link to a clause or a diagnostic."""
+        return reference_to(what, name, self.page)
+
+    def anchored(self, what: str, name: str, title: str, *children: Node) -> nodes.container:
+        """A block that has a name, and an anchor of that name."""
+        self.domain.note(what, name, title)
+        block = nodes.container("", *children, ids=[name], classes=[f"eu-{what}"])
+        self.set_source_info(block)
+        return block
+
+    def parsed(self, text: str) -> list[Node]:
+        """Markdown, as it is shown."""
+        return self.parse_text_to_nodes(text, offset=self.content_offset)
+
+
+class ClauseDirective(SpecificationDirective):
+    """``{clause}``: one requirement, with its anchor, and what says, enforces and tests it."""
+
+    option_spec: ClassVar = dict.fromkeys(
+        ("level", "version", "code", "untested", "unenforced"), directives.unchanged_required
+    )
+
+    def run(self) -> list[Node]:
+        """The clause as it is shown."""
+        name = self.arguments[0]
+        entry = _registry(self).get(name)
+        if entry is None:
+            raise self.error(f"'{name}' is no clause of the specification")
+        head = _line("eu-head", _permalink(name), *_badge(f"level {entry['level']}"))
+        if len(entry["versions"]) == 1:
+            head += _badge(f"version {entry['versions'][0]}")
+        body = nodes.container("", *self.parse_content_to_nodes(), classes=["eu-body"])
+        _embolden(body)
+        foot = nodes.container("", *self._facts(entry), classes=["eu-foot"])
+        return [self.anchored("clause", name, _plain(entry["text"]), head, body, foot)]
+
+    def _facts(self, entry: dict[str, Any]) -> Iterator[Node]:
+        if entry["codes"]:
+            yield _fact("Diagnostic", _spaced(self.reference("code", code) for code in entry["codes"]))
+        if entry["functions"]:
+            yield _fact("Enforced by", _spaced(nodes.literal(name, name) for name in entry["functions"]))
+        if entry["unenforced"]:
+            yield _fact("Not enforced", [nodes.Text(entry["unenforced"])])
+        if entry["cases"]:
+            yield _fact("Tested by", _spaced(nodes.literal(name, name) for name in entry["cases"]))
+        if entry["untested"]:
+            yield _fact("Not tested", [nodes.Text(entry["untested"])])
+
+
+class WithdrawnDirective(SpecificationDirective):
+    """``{withdrawn}``: an id that is no longer used, and what became of it."""
+
+    option_spec: ClassVar[dict[str, Callable[[str], Any]]] = {}
+
+    def run(self) -> list[Node]:
+        """The withdrawn id as it is shown."""
+        name = self.arguments[0]
+        head = _line("eu-head", _permalink(name), *_badge("withdrawn"))
+        block = self.anchored("clause", name, "Withdrawn", head, *self.parse_content_to_nodes())
+        block["classes"].append("eu-withdrawn")
+        return [block]
+
+
+class ExampleDirective(SpecificationDirective):
+    """``{example}``: a description or URDF, which the reference has checked."""
+
+    option_spec: ClassVar = {"file": directives.unchanged, "with": directives.unchanged, "part": directives.flag}
+
+    def run(self) -> list[Node]:
+        """The example as it is shown."""
+        example = example_of(self.stated, self.page)
+        caption = _line("eu-caption", nodes.literal("", example.file))
+        if example.part:
+            caption += nodes.Text(", in part")
+        block = nodes.container("", caption, classes=["eu-example"])
+        block += _code("\n".join(self.content), example.file)
+        if example.code is not None:
+            caption += [nodes.Text(" · wrong: "), self.reference("code", example.code)]
+            block["classes"].append("eu-wrong")
+            # The lines of a fragment have other numbers in the file that was checked.
+            block += _printed(example.shown().check(), with_source=not example.part)
+        return [block]
+
+
+class DiagnosticDirective(SpecificationDirective):
+    """``{diagnostic}``: one code, the edit that causes it, the message that it gives, and the repair."""
+
+    option_spec: ClassVar = {
+        "file": directives.unchanged,
+        "with": directives.unchanged,
+        "place": directives.unchanged_required,
+        "unshown": directives.unchanged_required,
+    }
+
+    def run(self) -> list[Node]:
+        """The diagnostic as it is shown."""
+        shown = diagnostic_of(self.stated, self.page)
+        if shown.code not in REGISTRY:
+            raise self.error(f"there is no diagnostic '{shown.code}'")
+        rule = REGISTRY[shown.code]
+        head = _line("eu-head", _permalink(shown.code), *_badge(rule.severity, f"eu-severity-{rule.severity}"))
+        head += _badge(f"phase {rule.phase}")
+        head += [nodes.Text(" "), self.reference("clause", rule.clause)]
+        block = self.anchored("code", shown.code, rule.title, head, _line("eu-title", nodes.Text(rule.title)))
+        block += _fact("Points at", self.parse_inline(shown.place)[0])
+        if shown.unshown is not None:
+            block += _fact("Not shown", [nodes.Text(shown.unshown)])
+        else:
+            try:
+                block += self._edit(shown)
+            except NotAnEdit as error:
+                raise self.error(f"'{shown.code}': {error}") from error
+        block += self.parsed(shown.text)
+        return [block]
+
+    def _edit(self, shown: ShownDiagnostic) -> list[Node]:
+        edit = shown.edit(EXAMPLES)
+        outcome = shown.faulty(EXAMPLES).check()
+        return [
+            _line("eu-caption eu-caption-wrong", nodes.Text("Wrong, in "), nodes.literal("", shown.file)),
+            _excerpt(edit, edit.after, edit.added, shown.file),
+            _printed(outcome),
+            _line("eu-caption eu-caption-right", nodes.Text("Right")),
+            _excerpt(edit, edit.before, edit.removed, shown.file),
+        ]
+
+
+class TranscriptDirective(SpecificationDirective):
+    """``{transcript}``: a conversation, in which → begins what is asked and ← what is answered."""
+
+    required_arguments = 0
+
+    def run(self) -> list[Node]:
+        """The conversation as it is shown."""
+        block = _styled("eu-transcript")
+        side = ""
+        for line in self.content:
+            side = _SIDES.get(line[:1], side)
+            block += [nodes.inline("", line, classes=["eu-line", "eu-said", side]), nodes.Text("\n")]
+        return [block]
+
+
+class AllClausesDirective(SpecificationDirective):
+    """``{all-clauses}``: a table of all clauses."""
+
+    required_arguments = 0
+
+    def run(self) -> list[Node]:
+        """The table."""
+        rows = []
+        for entry in _registry(self).values():
+            text = nodes.paragraph("", "", *self.parse_inline(_first_sentence(entry["text"]))[0])
+            codes = nodes.paragraph("", "", *_spaced(self.reference("code", code) for code in entry["codes"]))
+            clause = nodes.paragraph("", "", self.reference("clause", entry["id"]))
+            rows.append([clause, nodes.paragraph("", entry["level"]), text, codes])
+        return [_table("Clause", "Level", "Requirement", "Diagnostics", rows=rows)]
+
+
+class AllDiagnosticsDirective(SpecificationDirective):
+    """``{all-diagnostics}``: a table of all diagnostics."""
+
+    required_arguments = 0
+
+    def run(self) -> list[Node]:
+        """The table."""
+        rows = [
+            [
+                nodes.paragraph("", "", self.reference("code", rule.code)),
+                nodes.paragraph("", f"{rule.severity}, {rule.phase}"),
+                nodes.paragraph("", rule.title),
+                nodes.paragraph("", "", self.reference("clause", rule.clause)),
+            ]
+            for rule in sorted(REGISTRY.values(), key=lambda rule: rule.code)
+        ]
+        return [_table("Diagnostic", "Severity, phase", "What is wrong", "Clause", rows=rows)]
+
+
+class SchemaDirective(SpecificationDirective):
+    """``{schema} extended-urdf-2.0``: all that a JSON Schema says, property by property."""
+
+    def run(self) -> list[Node]:
+        """The sections of the page."""
+        path = ROOT / "schema" / f"{self.arguments[0]}.schema.json"
+        self.env.note_dependency(str(path))
+        schema = json.loads(path.read_text(encoding="utf-8"))
+        for anchor, title in property_anchors(schema):
+            self.domain.note("property", anchor, title)
+        sections: list[Node] = list(schema_sections(schema))
+        for section in sections:
+            self.state.document.note_implicit_target(cast(nodes.Element, section))
+        return sections
+
+
+def _registry(directive: SpecificationDirective) -> dict[str, dict[str, Any]]:
+    """The registry of clauses by id, drawn once a build."""
+    app = directive.env.app
+    if not hasattr(app, "eurdf_clauses"):
+        app.eurdf_clauses = {entry["id"]: entry for entry in current_registry()["clauses"]}  # type: ignore[attr-defined]
+    clauses: dict[str, dict[str, Any]] = app.eurdf_clauses  # type: ignore[attr-defined]
+    return clauses
+
+
+def _permalink(name: str) -> nodes.reference:
+    return nodes.reference("", "", nodes.literal("", name), refid=name, classes=["eu-name"])
+
+
+def _badge(text: str, *classes: str) -> list[Node]:
+    return [nodes.Text(" "), nodes.inline("", text, classes=["eu-badge", *classes])]
+
+
+def _line(classes: str, *children: Node) -> nodes.paragraph:
+    return nodes.paragraph("", "", *children, classes=classes.split())
+
+
+def _fact(label: str, said: Iterable[Node]) -> nodes.paragraph:
+    return _line("eu-fact", nodes.inline("", label, classes=["eu-label"]), nodes.Text(" "), *said)
+
+
+def _spaced(values: Iterable[Node]) -> Iterator[Node]:
+    for index, value in enumerate(values):
+        if index:
+            yield nodes.Text(" ")
+        yield value
+
+
+def _code(text: str, file: str, first_line: int | None = None, marked: Iterable[int] = ()) -> nodes.literal_block:
+    """Lines of a file; whatever is wrong with them is meant, so that no lexer need understand them."""
+    block = nodes.literal_block(text, text, language=_LANGUAGES[file[file.rindex(".") :]], force=True)
+    block["highlight_args"] = {"hl_lines": list(marked)}
+    if first_line is not None:
+        block["linenos"] = True
+        block["highlight_args"]["linenostart"] = first_line
+    return block
+
+
+def _excerpt(edit: Edit, text: str, changed: int, file: str) -> nodes.literal_block:
+    """The lines of a file about those that an edit changes, which are marked."""
+    lines = text.rstrip("\n").split("\n")
+    start = max(0, edit.start - _CONTEXT)
+    end = min(len(lines), edit.start + changed + _CONTEXT)
+    marked = range(edit.start - start + 1, edit.start - start + changed + 1)
+    return _code("\n".join(lines[start:end]), file, start + 1, marked)
+
+
+def _printed(outcome: Outcome, with_source: bool = True) -> nodes.literal_block:
+    """What `eurdf check` prints, in its colours."""
+    block = _styled("eu-printed")
+    for line in outcome.lines:
+        is_source = any("|" in text for text, style in line if style == "blue")
+        pieces = list(line)
+        if not with_source:
+            if is_source:
+                continue
+            if pieces[0][1] == "bold":  # file, line and column
+                del pieces[0]
+        shown = nodes.inline("", "", classes=["eu-line", "eu-source" if is_source else "eu-said"])
+        for text, style in pieces:
+            shown += nodes.inline("", text, classes=[_STYLES[word] for word in style.split()])
+        block += [shown, nodes.Text("\n")]
+    return block
+
+
+def _styled(name: str) -> nodes.literal_block:
+    """A block of lines that have styles of their own, as one says by a source that is not what is shown."""
+    return nodes.literal_block("styled", "", classes=[name])
+
+
+def _embolden(body: nodes.Element) -> None:
+    """Set the normative word of a clause apart."""
+    for text in list(body.findall(nodes.Text)):
+        parent = text.parent
+        if isinstance(parent, nodes.literal | nodes.math | nodes.math_block | nodes.literal_block):
+            continue
+        pieces: list[Node] = []
+        at = 0
+        for match in _KEYWORD.finditer(text):
+            pieces += [nodes.Text(text[at : match.start()]), nodes.strong("", match[0], classes=["eu-keyword"])]
+            at = match.end()
+        if pieces:
+            parent.replace(text, [*pieces, nodes.Text(text[at:])])
+
+
+def _plain(text: str) -> str:
+    """Markdown without its marks, on one line, for where a pointer rests on a link."""
+    text = re.sub(r"\{\w+\}`([^`]*)`|`([^`]*)`", lambda span: span[1] or span[2], text)
+    return " ".join(text.split())
+
+
+def _first_sentence(text: str) -> str:
+    """The sentence that a clause begins with, or what leads to its list or equation."""
+    paragraph = " ".join(text.split("\n\n")[0].split("\n- ")[0].split("\n* ")[0].split("$$")[0].split())
+    end = re.search(r"(?<=[.;:])\s", without_code(paragraph))
+    return paragraph if end is None or end.start() < 40 else paragraph[: end.start()].rstrip(";:")
+
+
+def _table(*heads: str, rows: Iterable[Iterable[Node]]) -> nodes.container:
+    group = nodes.tgroup("", *(nodes.colspec(colwidth=1) for _ in heads), cols=len(heads))
+    group += nodes.thead("", nodes.row("", *(nodes.entry("", nodes.paragraph("", head)) for head in heads)))
+    group += nodes.tbody("", *(nodes.row("", *(nodes.entry("", cell) for cell in row)) for row in rows))
+    # Furo lets a table scroll by itself on a narrow screen where it stands in a block of its own.
+    return nodes.container("", nodes.table("", group, classes=["eu-table"]), classes=["table-wrapper"])
+
+
+#: Every directive, by the name that the chapters use.
+DIRECTIVES: dict[str, type[SpecificationDirective]] = {
+    "clause": ClauseDirective,
+    "withdrawn": WithdrawnDirective,
+    "example": ExampleDirective,
+    "diagnostic": DiagnosticDirective,
+    "transcript": TranscriptDirective,
+    "all-clauses": AllClausesDirective,
+    "all-diagnostics": AllDiagnosticsDirective,
+    "schema": SchemaDirective,
+}

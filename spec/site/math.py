@@ -1,0 +1,61 @@
+"""Equations as MathML, made when the site is built: browsers show it by themselves, and nothing is loaded."""
+
+from __future__ import annotations
+
+import re
+from html import escape
+
+from docutils import nodes
+from latex2mathml.converter import convert
+from sphinx.application import Sphinx
+from sphinx.util import logging
+from sphinx.writers.html5 import HTML5Translator
+
+_LOGGER = logging.getLogger(__name__)
+
+# What a command becomes that the converter does not know.
+_UNKNOWN = re.compile(r"<m(?:i|text|o)[^>]*>\\[A-Za-z]+")
+
+
+def mathml(latex: str, display: bool) -> str:
+    """An equation as MathML, with its source for who copies it or cannot see it.
+
+    Args:
+        latex: The equation in LaTeX.
+        display: Whether it stands on a line of its own.
+
+    Raises:
+        ValueError: Where it cannot be converted.
+    """
+    try:
+        converted: str = convert(latex.strip(), display="block" if display else "inline")
+    except Exception as error:  # the converter raises whatever it stumbles over
+        raise ValueError(f"'{latex}' is no equation: {error!r}") from error
+    if unknown := _UNKNOWN.search(converted):
+        raise ValueError(f"'{latex}' has a command that is not known: {unknown[0].rpartition('>')[2]}")
+    return converted.replace("<math ", f'<math alttext="{escape(latex.strip())}" ', 1)
+
+
+def _visit_math(self: HTML5Translator, node: nodes.math) -> None:
+    self.body.append(_shown(node, display=False))
+    raise nodes.SkipNode
+
+
+def _visit_math_block(self: HTML5Translator, node: nodes.math_block) -> None:
+    anchor = f' id="{escape(node["ids"][0])}"' if node["ids"] else ""
+    number = f'<span class="eqno">({escape(str(node["number"]))})</span>' if node.get("number") else ""
+    self.body.append(f'<div class="eu-equation"{anchor}>{_shown(node, display=True)}{number}</div>\n')
+    raise nodes.SkipNode
+
+
+def _shown(node: nodes.math | nodes.math_block, display: bool) -> str:
+    try:
+        return mathml(node.astext(), display)
+    except ValueError as error:
+        _LOGGER.warning(str(error), location=node)
+        return f"<code>{escape(node.astext())}</code>"
+
+
+def setup(app: Sphinx) -> None:
+    """Make equations so, where ``html_math_renderer`` asks for it."""
+    app.add_html_math_renderer("mathml", (_visit_math, None), (_visit_math_block, None))

@@ -1,0 +1,136 @@
+"""The specification as a whole: its chapters, and all that they must agree with."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+from eurdf.diagnostics import REGISTRY, Rule, registry
+from spec.site.blocks import Directive, Heading, Prose, read_blocks
+from spec.site.citation import Citation, case_citations, function_citations
+from spec.site.clause import SPEC, Chapter, Clause, Withdrawn, read_chapters, read_clauses, read_withdrawn
+from spec.site.example import EXAMPLES
+from spec.site.registry import IDS, read_ids
+
+#: The section that names it says what the normative words mean.
+SOURCE_OF_WORDS = "RFC 2119"
+
+_COMMENT = re.compile(r"<!--.*?-->|^%.*$", re.S | re.M)
+
+
+@dataclass(frozen=True)
+class Specification:
+    """The text, and all that it must agree with.
+
+    Attributes:
+        chapters: The text.
+        codes: The diagnostics there are, by code.
+        codes_path: File that lists them.
+        ids: Every id that was ever given.
+        ids_path: File that lists them.
+        functions: What the functions of the reference cite.
+        cases: What the cases of the suite cite; None where there is no suite.
+        examples: Folder of the robots that examples and diagnostics are shown on.
+    """
+
+    chapters: Sequence[Chapter]
+    codes: Mapping[str, Rule]
+    codes_path: Path
+    ids: Sequence[str]
+    ids_path: Path
+    functions: Sequence[Citation]
+    cases: Sequence[Citation] | None
+    examples: Path = field(default=EXAMPLES)
+
+    @cached_property
+    def clauses(self) -> list[Clause]:
+        """The clauses of the text."""
+        return read_clauses(self.chapters)
+
+    @cached_property
+    def withdrawn(self) -> list[Withdrawn]:
+        """The ids that the text withdraws."""
+        return read_withdrawn(self.chapters)
+
+    @cached_property
+    def by_id(self) -> dict[str, Clause]:
+        """The clauses, by id."""
+        return {clause.id: clause for clause in self.clauses}
+
+    @cached_property
+    def paths(self) -> dict[str, Path]:
+        """The files of the chapters, by name."""
+        return {chapter.name: chapter.path for chapter in self.chapters}
+
+    def texts(self) -> Iterator[Text]:
+        """All that is written for people, paragraph by paragraph, code left out."""
+        for chapter in self.chapters:
+            yield from _texts(chapter, chapter.text, 1, (), _defining_lines(chapter))
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """A paragraph, or a heading.
+
+    Attributes:
+        chapter: Chapter that it stands in.
+        line: Its first line there.
+        text: What it says; comments are blank.
+        inside: Names of the directives that it stands in, the outermost first.
+        is_heading: Whether it is a heading.
+        defines_words: Whether it stands in the section that says what the normative words mean.
+    """
+
+    chapter: Chapter
+    line: int
+    text: str
+    inside: tuple[str, ...] = ()
+    is_heading: bool = False
+    defines_words: bool = False
+
+    def line_of(self, offset: int) -> int:
+        """The line on which a character of it stands."""
+        return self.line + self.text.count("\n", 0, offset)
+
+
+def current_specification(folder: Path = SPEC) -> Specification:
+    """The specification as it now stands."""
+    return Specification(
+        chapters=read_chapters(folder),
+        codes=REGISTRY,
+        codes_path=Path(registry.__file__),
+        ids=read_ids(),
+        ids_path=IDS,
+        functions=function_citations(),
+        cases=case_citations(),
+    )
+
+
+def _texts(chapter: Chapter, text: str, line: int, inside: tuple[str, ...], defining: frozenset[int]) -> Iterator[Text]:
+    for block in read_blocks(text, line):
+        if isinstance(block, Directive) and not block.is_code:
+            yield from _texts(chapter, block.body, block.body_line, (*inside, block.name), defining)
+        elif isinstance(block, Prose | Heading):
+            shown = _COMMENT.sub(lambda comment: re.sub(r"[^\n]", " ", comment[0]), block.text)
+            yield Text(chapter, block.line, shown, inside, isinstance(block, Heading), block.line in defining)
+
+
+def _defining_lines(chapter: Chapter) -> frozenset[int]:
+    """Lines at which the blocks begin of the section that says what the normative words mean."""
+    if chapter.is_informative:
+        return frozenset()
+    sections: list[list[Heading | Prose]] = [[]]
+    for block in read_blocks(chapter.text):
+        if isinstance(block, Heading):
+            sections.append([])
+        if isinstance(block, Heading | Prose):
+            sections[-1].append(block)
+    return frozenset(
+        block.line
+        for section in sections
+        if any(SOURCE_OF_WORDS in block.text for block in section)
+        for block in section
+    )

@@ -1,0 +1,23 @@
+"""The Sphinx extension that shows the specification as a site."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sphinx.application import Sphinx
+
+from spec.site import figures, math
+from spec.site.directives import DIRECTIVES
+from spec.site.domain import NameRole, SpecificationDomain
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Add the directives, the roles, and how equations and drawings are shown."""
+    app.add_domain(SpecificationDomain)
+    for name, directive in DIRECTIVES.items():
+        app.add_directive(name, directive)
+    for what in ("clause", "code"):
+        app.add_role(what, NameRole(what), override=True)
+    math.setup(app)
+    figures.setup(app)
+    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

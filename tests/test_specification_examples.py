@@ -1,0 +1,150 @@
+"""Every example in the specification is what it says it is, and every diagnostic is given by the edit that shows it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from eurdf.diagnostics import REGISTRY
+from spec.site.blocks import Directive
+from spec.site.clause import read_chapters
+from spec.site.example import (
+    EXAMPLES,
+    Example,
+    NotAnEdit,
+    ShownDiagnostic,
+    diagnostic_of,
+    example_of,
+    read_diagnostics,
+    read_examples,
+    with_elements,
+    with_keys,
+)
+
+CHAPTERS = read_chapters()
+SHOWN = read_diagnostics(CHAPTERS)
+BY_EDIT = [shown for shown in SHOWN if shown.diff is not None]
+
+
+def _where(shown: Example | ShownDiagnostic) -> str:
+    return f"{shown.chapter}:{shown.line}-{shown.code or 'valid'}"
+
+
+@pytest.mark.parametrize("example", read_examples(CHAPTERS), ids=_where)
+def test_an_example_gives_exactly_what_it_illustrates(example: Example) -> None:
+    outcome = example.shown().check()
+    assert outcome.codes == example.expected, outcome.text
+
+
+@pytest.mark.parametrize("shown", BY_EDIT, ids=_where)
+def test_the_edit_that_shows_a_diagnostic_gives_it_and_nothing_else(shown: ShownDiagnostic) -> None:
+    outcome = shown.faulty().check()
+    assert outcome.codes == (shown.code,), outcome.text
+
+
+@pytest.mark.parametrize("shown", BY_EDIT, ids=_where)
+def test_without_the_edit_nothing_is_wrong(shown: ShownDiagnostic) -> None:
+    outcome = shown.sound().check()
+    assert outcome.codes == (), outcome.text
+
+
+def test_every_diagnostic_is_shown() -> None:
+    shown = [one.code for one in SHOWN]
+    assert [code for code in REGISTRY if code not in shown] == []
+
+
+@pytest.mark.parametrize("folder", sorted(EXAMPLES.iterdir()), ids=lambda folder: folder.name)
+def test_every_robot_that_examples_are_shown_on_is_used(folder: Path) -> None:
+    used = {shown.robot for shown in SHOWN} | {example.robot for example in read_examples(CHAPTERS)}
+    assert folder.name in used
+
+
+BASE = """\
+# a robot
+extended_urdf: "2.0"
+closures:
+- name: pin
+  type: 3d
+
+"joints": {}
+"""
+
+
+def test_a_fragment_takes_the_place_of_the_keys_that_it_has() -> None:
+    fragment = "actuators: [motor]\nclosures: []\n"
+    assert with_keys(BASE, fragment) == (
+        '# a robot\nextended_urdf: "2.0"\nclosures: []\n"joints": {}\nactuators: [motor]\n'
+    )
+
+
+def test_a_fragment_need_not_be_well_formed() -> None:
+    assert with_keys(BASE, "joints: {ball: [\n").endswith("joints: {ball: [\n")
+
+
+def test_elements_are_added_at_the_end_of_a_urdf() -> None:
+    assert with_elements('<robot name="a">\n</robot>\n', "<link/>\n") == '<robot name="a">\n<link/>\n</robot>\n'
+
+
+def _directive(name: str, argument: str, body: str, **options: str) -> Directive:
+    return Directive(1, name, argument, options, body, 2)
+
+
+def test_an_example_that_is_wrong_in_another_way_is_noticed() -> None:
+    example = example_of(_directive("example", "unknown-frame", "actuators: [moter]", part=""), "here")
+    assert example.shown().check().codes == ("unknown-actuator",)
+    assert example.expected == ("unknown-frame",)
+
+
+def test_a_urdf_that_is_shown_whole_is_checked_by_itself() -> None:
+    example = example_of(
+        _directive("example", "valid", '<robot name="a"><link name="b"/></robot>', file="robot.urdf"), ""
+    )
+    assert list(example.shown().files) == ["robot.urdf"]
+    assert example.shown().check().codes == ()
+
+
+DIFF = """\
+```diff
+     type: 3d
+-    frames: [coupler_tip, rocker_tip]
++    frames: [coupler_tpi, rocker_tip]
+```
+A name is misspelt.
+
+Twice.
+"""
+
+
+def test_what_is_said_of_a_diagnostic_is_all_but_its_diff() -> None:
+    shown = diagnostic_of(_directive("diagnostic", "unknown-frame", DIFF), "here")
+    assert shown.text == "A name is misspelt.\n\nTwice."
+
+
+def test_an_edit_knows_the_lines_that_it_changes() -> None:
+    edit = diagnostic_of(_directive("diagnostic", "unknown-frame", DIFF), "here").edit()
+    before, after = edit.before.split("\n"), edit.after.split("\n")
+    assert (edit.removed, edit.added) == (1, 1)
+    assert before[edit.start] == "    frames: [coupler_tip, rocker_tip]"
+    assert after[edit.start] == "    frames: [coupler_tpi, rocker_tip]"
+    assert before[: edit.start] == after[: edit.start]
+
+
+def test_a_message_tells_of_files_that_stand_nowhere_in_particular() -> None:
+    shown = diagnostic_of(_directive("diagnostic", "unknown-frame", DIFF), "here")
+    assert shown.faulty().check().text.startswith("my_robot/robot.yaml:6:14: error: ")
+
+
+@pytest.mark.parametrize(
+    ("diff", "why"),
+    [
+        ("-nothing like it\n+something", "stand 0 times"),
+        ('-    <axis xyz="0 0 1"/>\n+    <axis xyz="0 0 2"/>', "not once"),
+        ("+something", "a line to replace"),
+        ("@@ -1 +1 @@\n-a\n+b", "begins with"),
+    ],
+)
+def test_a_diff_that_cannot_be_made_is_no_edit(diff: str, why: str) -> None:
+    shown = diagnostic_of(_directive("diagnostic", "xml-syntax", f"```diff\n{diff}\n```", file="robot.urdf"), "here")
+    with pytest.raises(NotAnEdit, match=why):
+        shown.edit()
