@@ -11,7 +11,7 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parent.parent))
 
 import eurdf
-from robots import picture
+from robots import picture, sheet
 
 ROOT = Path(__file__).parent.parent
 
@@ -47,3 +47,20 @@ def test_the_views_of_a_robot_fill_the_picture_but_for_a_margin():
 def test_a_picture_is_drawn_beside_the_robot_and_is_small():
     for file in ROOT.glob("robots/*/picture.png"):
         assert file.stat().st_size <= 150_000, file
+
+
+def test_the_sheet_shows_each_robot_with_its_name():
+    pytest.importorskip("pyvista")
+    one, two = sheet.sheet(["four_bar"]), sheet.sheet(["four_bar", "bennett"])
+    width, height = 170, 190
+    assert one.shape == two.shape
+    assert (one[:, width:] == 255).all()
+    assert (two[:, :width] == one[:, :width]).all()
+    for part in (two[: height - 22, width : 2 * width], two[height - 22 :, width : 2 * width]):
+        assert (part < 128).any()
+
+
+def test_without_a_renderer_the_sheet_says_what_to_install(monkeypatch, capsys, tmp_path):
+    monkeypatch.setitem(sys.modules, "pyvista", None)
+    assert sheet.main(["-o", str(tmp_path / "sheet.png")]) == 2
+    assert 'pip install -e ".[pictures]"' in capsys.readouterr().err

@@ -1,0 +1,56 @@
+"""Draws the collection on one sheet, each robot once: ``python -m robots.sheet [-o FILE]``."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+import eurdf
+from robots.picture import VIEWS, Image, picture, save
+
+_COLUMNS = 7
+_CELL = 170, 190  # width and height of a robot and its name, pixels
+_NAME = 22  # height of a name, pixels
+
+
+def sheet(robots: Sequence[str]) -> Image:
+    """Robots, seen from the front right above, each with its name below: pixels (height, width, 3)."""
+    from PIL import Image as Pillow
+    from PIL import ImageDraw
+
+    width, height = _CELL
+    whole = Pillow.new("RGB", (_COLUMNS * width, -(-len(robots) // _COLUMNS) * height), "white")
+    pen = ImageDraw.Draw(whole)
+    for index, name in enumerate(robots):
+        left, top = index % _COLUMNS * width, index // _COLUMNS * height
+        seen = Pillow.fromarray(picture(eurdf.load(name), VIEWS[1:2]))
+        seen.thumbnail((width - 10, height - _NAME), Pillow.Resampling.LANCZOS)
+        whole.paste(seen, (left + (width - seen.width) // 2, top + (height - _NAME - seen.height) // 2))
+        pen.text((left + width / 2, top + height - _NAME / 2), name, fill="black", anchor="mm", font_size=12)
+    return np.asarray(whole)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Draws the sheet; 0 if it is drawn, 2 if it cannot be."""
+    parser = argparse.ArgumentParser("python -m robots.sheet", description="Draw the collection on one sheet.")
+    default = Path(__file__).parent / "collection.png"
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE", default=default, help="default: collection.png")
+    options = parser.parse_args(arguments)
+    if not os.environ.get("DISPLAY"):
+        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+    try:
+        import pyvista  # noqa: F401
+    except ImportError as missing:
+        print(f'{missing}: pictures need pyvista; pip install -e ".[pictures]"', file=sys.stderr)
+        return 2
+    save(sheet(eurdf.collection_names()), options.output)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
