@@ -17,7 +17,7 @@ _TOGETHER = ("joint_name", "joint_type")
 
 
 def _refuse_names(value: Any) -> Any:
-    """Pass on what is not a list of names: of a pair that lacks its brackets, one fault is told and not two."""
+    """EU-ONE-001: pass on what is not a list of names: of a pair that lacks its brackets, one fault is told and not two."""
     if isinstance(value, list) and value and all(isinstance(item, str) for item in value):
         raise PydanticCustomError("wrong-type", "must be a list of pairs: [[A, B], …]")
     return value
@@ -26,7 +26,7 @@ def _refuse_names(value: Any) -> Any:
 class Version1(BaseModel):
     """A robot's loop closures, actuators and joints beside its URDF, in the published dialect.
 
-    The file has no version key. It has these five keys (EU-ONE-001); others are the user's own.
+    The file has no version key. Keys other than these five are the user's own.
     """
 
     model_config = ConfigDict(
