@@ -6,7 +6,7 @@ import argparse
 import sys
 from collections.abc import Callable
 
-from benchmarks import assembly, check, growth, load, loops
+from benchmarks import assembly, check, conformance, growth, load, loops
 
 MEASUREMENTS: dict[str, Callable[[], None]] = {
     "load": load.main,
@@ -14,6 +14,7 @@ MEASUREMENTS: dict[str, Callable[[], None]] = {
     "check": check.main,
     "assembly": assembly.main,
     "loops": loops.main,
+    "conformance": conformance.main,
 }
 
 
@@ -27,7 +28,7 @@ def main() -> int:
         prog="python -m benchmarks",
         description="Measure, as ratios to a named peer in the same run.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog="\n".join(f"{name:8} {_first_line(run)}" for name, run in MEASUREMENTS.items()),
+        epilog="\n".join(f"{name:12}{_first_line(run)}" for name, run in MEASUREMENTS.items()),
     )
     parser.add_argument("names", nargs="*", choices=[*MEASUREMENTS, []], help="which to run; all by default")
     for name in parser.parse_args().names or MEASUREMENTS:

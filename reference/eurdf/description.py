@@ -92,7 +92,7 @@ def describe(
     document = _read_yaml(files.description, diagnostics)
     extension = None if document is None else read_extension(document, diagnostics)
     urdf_path = files.urdf or _named_urdf(files.description, extension, document)
-    if files.urdf is None and not os.path.isfile(urdf_path):
+    if files.urdf is None and not os.path.lexists(urdf_path):
         # Where the description could not be read, which URDF it means is a guess that deserves no second error.
         if extension is not None and document is not None:
             _urdf_not_found(urdf_path, extension, document, diagnostics)
@@ -147,13 +147,8 @@ def _urdf_not_found(path: Path, extension: Extension, document: YamlDocument, di
     hint = "name it by the key 'urdf', or by the option --urdf"
     if near:
         hint = f"there is '{near[0]}': " + hint
-    exists = os.path.exists(path)
-    diagnostics.report(
-        "urdf-not-found",
-        f"'{extension.urdf}' is not a file" if exists else f"the URDF '{extension.urdf}' does not exist",
-        document.place(("urdf",)),
-        hint,
-    )
+    message = f"the URDF '{extension.urdf}' does not exist"
+    diagnostics.report("urdf-not-found", message, document.place(("urdf",)), hint)
 
 
 def find_meshes(

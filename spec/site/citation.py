@@ -11,6 +11,7 @@ from pathlib import Path
 import yaml
 
 from eurdf.diagnostics import REGISTRY
+from eurdf_conformance.corpus import protocol_rule
 from spec.site.clause import ROOT
 
 #: Folders that hold an import package whose functions enforce clauses.
@@ -85,6 +86,24 @@ def case_citations(corpus: Path = CORPUS) -> list[Citation] | None:
         name = str(case.get("id", path.parent.name))
         citations += [Citation(clause, name, path, 1) for clause in case.get("clauses", [])]
     return citations
+
+
+def suite_citations() -> list[Citation] | None:
+    """The clauses that the conformance suite cites; None where there is none.
+
+    What it asks of a reader without files, rules of the protocol, counts as cases: ``protocol/`` and the rule's name.
+    """
+    cases = case_citations()
+    path = Path(protocol_rule.__file__)
+    return cases and [
+        *cases,
+        *(
+            Citation(clause, f"protocol/{rule.name}", path, 1)
+            for rule in vars(protocol_rule).values()
+            if isinstance(rule, protocol_rule.ProtocolRule)
+            for clause in rule.clauses
+        ),
+    ]
 
 
 def citations_in(path: Path, package: Path) -> list[Citation]:

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from spec.site.citation import Citation, case_citations, function_citations
+from spec.site.citation import Citation, function_citations, suite_citations
 from spec.site.clause import SPEC, Clause, Withdrawn, read_chapters, read_clauses, read_withdrawn
 
 CLAUSES = SPEC / "clauses.json"
@@ -63,7 +63,7 @@ def registry(
 def current_registry(folder: Path = SPEC) -> dict[str, Any]:
     """The registry as the text and the code now stand."""
     chapters = read_chapters(folder)
-    return registry(read_clauses(chapters), read_withdrawn(chapters), function_citations(), case_citations())
+    return registry(read_clauses(chapters), read_withdrawn(chapters), function_citations(), suite_citations())
 
 
 def registry_text(content: dict[str, Any]) -> str:

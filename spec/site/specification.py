@@ -10,7 +10,7 @@ from pathlib import Path
 
 from eurdf.diagnostics import REGISTRY, Rule, registry
 from spec.site.blocks import Directive, Heading, Prose, read_blocks
-from spec.site.citation import Citation, case_citations, function_citations
+from spec.site.citation import Citation, function_citations, suite_citations
 from spec.site.clause import SPEC, Chapter, Clause, Withdrawn, read_chapters, read_clauses, read_withdrawn
 from spec.site.example import EXAMPLES
 from spec.site.registry import IDS, read_ids
@@ -105,7 +105,7 @@ def current_specification(folder: Path = SPEC) -> Specification:
         ids=read_ids(),
         ids_path=IDS,
         functions=function_citations(),
-        cases=case_citations(),
+        cases=suite_citations(),
     )
 
 

@@ -40,7 +40,7 @@ class Start(Request):
     outcomes = ("started",)
 
     command: Literal["start"] = "start"
-    protocol: str = Field(PROTOCOL, description="Version of the protocol spoken.")
+    protocol: str = Field(default=PROTOCOL, description="Version of the protocol spoken.")
 
 
 class Load(Request):
@@ -103,11 +103,11 @@ class Started(Answer):
 class Issue(Value):
     """Something wrong with the files."""
 
-    code: str | None = Field(None, description="Code of the diagnostic.")
+    code: str | None = Field(default=None, description="Code of the diagnostic.")
     severity: Literal["error", "warning"] = "error"
-    file: str | None = Field(None, description="Name of one of the two files, without its folder.")
+    file: str | None = Field(default=None, description="Name of one of the two files, without its folder.")
     line: Annotated[int, Field(ge=1)] | None = None
-    column: Annotated[int, Field(ge=1)] | None = Field(None, description="In characters.")
+    column: Annotated[int, Field(ge=1)] | None = Field(default=None, description="In characters.")
     message: str
 
 

@@ -15,11 +15,11 @@ from collections.abc import Sequence
 from typing import TextIO
 
 from eurdf import __version__
-from eurdf.commands import check, generate, info, migrate, robots, schema
+from eurdf.commands import certify, check, generate, info, migrate, robots, schema
 from eurdf.commands.cannot_run import CannotRun
 
 #: The commands, in the order in which the help shows them.
-COMMANDS = (check, info, robots, migrate, generate, schema)
+COMMANDS = (check, info, robots, migrate, generate, schema, certify)
 
 # What a shell reports of a program that a signal ended: 128 and the signal's number.
 _INTERRUPTED = 130

@@ -90,7 +90,7 @@ def from_version2(model: Version2, data: Mapping[str, Any]) -> Extension:
             for name, joints in model.configurations.items()
         ),
         metadata=model.metadata,
-        own_data=dict(_own_data({key: value for key, value in data.items() if key != "metadata"}, ())),
+        own_data=dict(_own_data(data, ())),
     )
 
 

@@ -24,7 +24,7 @@ VERSION_KEY = "extended_urdf"
 
 _VERSION1_KEYS = tuple(Version1.model_fields)
 
-#: Keys that make a file one of version 2.0; ``metadata`` might be the user's own in any file.
+#: Keys of version 2.0; ``metadata`` may well be the user's own in a file of version 1.
 _VERSION2_KEYS = tuple(key for key in Version2.model_fields if key not in (VERSION_KEY, "metadata"))
 
 
@@ -74,7 +74,7 @@ def _version(document: YamlDocument, diagnostics: Diagnostics) -> Literal["1", "
             f"did you mean '{VERSION_KEY}'?",
         )
         return None
-    version2_key = next((key for key in _VERSION2_KEYS if key in data), None)
+    version2_key = next((key for key in (*_VERSION2_KEYS, "metadata") if key in data), None)
     if version2_key is not None:
         diagnostics.report(
             "missing-key",

@@ -209,6 +209,7 @@ class _Reader:
         self.poses: dict[tuple[str | None, str | None], Pose] = {}
         self.strange: dict[tuple[str, frozenset[str]], str | None] = {}
         self.materials: dict[str, tuple[tuple[float, float, float, float] | None, str]] = {}
+        self.nameless = False  # whether a material of the robot has no name
 
     # -- reporting ------------------------------------------------------------------------------------------------
 
@@ -334,7 +335,7 @@ class _Reader:
             near = None if attribute in known else self.near_miss(attribute, known)
             if near:
                 message = f"{_named(element)} has an unknown attribute '{attribute}'"
-                self.report("urdf-unknown-element", message, element, attribute, near)
+                self.report("urdf-unknown-element", message, element, hint=near)
 
     def near_miss(self, tag: str, known: frozenset[str]) -> str | None:
         """The hint for an element or attribute that URDF lacks; mostly the same few stand in every joint of a file."""
@@ -528,14 +529,19 @@ class _Reader:
 
     def robot_material(self, element: Element) -> None:
         name = self.name(element)
-        if name is not None:
-            self.materials.setdefault(name, self.color(element))
+        color = self.color(element)
+        if name is None:
+            self.nameless = True
+        else:
+            self.materials.setdefault(name, color)
 
     def material(self, element: Element) -> tuple[tuple[float, float, float, float] | None, str]:
         """EU-URD-029: a material is defined where it is used, in the robot, or at an earlier use."""
         name = element.get("name", "")
         if len(element) == 0:
             if name not in self.materials:
+                if self.nameless:  # it may be the one that lacks its name
+                    return None, ""
                 message = f"material '{name}' is not defined" if name else f"{_named(element)} has no name and no color"
                 self.report(
                     "urdf-unknown-material",
@@ -610,7 +616,7 @@ class _Reader:
                     "xyz",
                     "turn the joint's origin so that its z is the normal of the plane, and write the axis 0 0 1",
                 )
-        elif x * x + y * y + z * z < 1e-18:
+        elif x == y == z == 0.0:
             self.report("urdf-zero-axis", f"the axis of joint '{name}' has no direction", element, "xyz")
             return None
         return (x, y, z)

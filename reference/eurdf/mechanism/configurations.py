@@ -31,7 +31,7 @@ def link_configurations(
 
     Args:
         entries: As written.
-        joints: Joints of the mechanism.
+        joints: Joints of the mechanism, and that of a floating root.
         merged: For each joint that was merged away, the joint it became part of.
         skip: Joints that are not looked at, since their own entry is at fault.
         document: To point into.

@@ -11,6 +11,7 @@ from eurdf.mechanism.actuators import link_actuators, with_motor
 from eurdf.mechanism.closures import link_closures
 from eurdf.mechanism.configurations import link_configurations
 from eurdf.mechanism.frame_names import FrameNames
+from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Frame, Joint, Mechanism, Root
 from eurdf.mechanism.replacement import Joints, replace_joints
 from eurdf.mechanism.spanning_tree import bodies_of, depth_first, joint_of, rigid_roots
@@ -98,9 +99,13 @@ def _described(
     # What is said of a joint whose own entry is at fault would only repeat that fault.
     entries = [entry for entry in extension.actuators if entry.joint not in faulty]
     actuators = link_actuators(entries, urdf, joints.by_name, joints.merged, joints.split, document, diagnostics)
-    configurations = link_configurations(
-        extension.configurations, joints.by_name, joints.merged, faulty, document, diagnostics
-    )
+    named = joints.by_name
+    if extension.root == "floating":
+        named = {**named, ROOT_JOINT: Joint(ROOT_JOINT, JointType.FLOATING, "", urdf.root)}
+    configurations = link_configurations(extension.configurations, named, joints.merged, faulty, document, diagnostics)
+    if root == "fixed":  # whatever the description says: then there is nothing that the root could stand on
+        for coordinates in configurations.values():
+            coordinates.pop(ROOT_JOINT, None)
     for entry in entries:
         if entry.joint in actuators:
             joints.by_name[entry.joint] = with_motor(

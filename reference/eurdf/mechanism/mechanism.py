@@ -207,7 +207,8 @@ class Mechanism:
         frames: Frames beside those of bodies and joints, in file order.
         closures: In file order.
         actuators: Names of the actuated joints, in file order.
-        configurations: By name; for each joint its coordinates. A joint left out stands at its neutral.
+        configurations: By name; for each joint its coordinates, for a floating root those of `ROOT_JOINT`. A joint left
+            out stands at its neutral.
         metadata: What the file says of itself.
         own_data: The user's own data in the file, as plain values, by the JSON pointer of their key.
     """

@@ -272,17 +272,17 @@ class _Replacement:
             return self.split(joint)
         axes = self.entry.axes
         for index, axis in enumerate(axes):
-            if math.hypot(*axis) < 1e-9:
+            if not any(axis):
                 message = f"an axis of universal joint '{joint.name}' has no direction"
                 self.report("joint-axis-zero", message, "axes", index)
                 return None
-        first, second = axes
+        first, second = (tuple(part / math.hypot(*axis) for part in axis) for axis in axes)
         cross = (
             first[1] * second[2] - first[2] * second[1],
             first[2] * second[0] - first[0] * second[2],
             first[0] * second[1] - first[1] * second[0],
         )
-        if math.hypot(*cross) < PARALLEL * math.hypot(*first) * math.hypot(*second):
+        if math.hypot(*cross) < PARALLEL:
             self.report("joint-axes-parallel", f"the two axes of universal joint '{joint.name}' are parallel", "axes")
             return None
         spread = self._spread(joint, JointType.UNIVERSAL)

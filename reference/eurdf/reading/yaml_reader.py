@@ -88,7 +88,7 @@ def read_yaml(source: Source) -> YamlDocument:
     if len(source.data) > YAML_LIMIT:
         raise too_large(source.file, f"{YAML_LIMIT:,} bytes")
     data, original = _without_other_breaks(source)
-    if data.count(b"\n%TAG") + data.count(b"\r%TAG") > DIRECTIVE_LIMIT:
+    if data.count(b"\n%TAG") + data.count(b"\r%TAG") + data.startswith(b"%TAG") > DIRECTIVE_LIMIT:
         raise too_large(source.file, f"{DIRECTIVE_LIMIT} %TAG directives")
     try:
         return YamlDocument(source, _Reader(source, CSafeLoader(data).get_event, original).read())

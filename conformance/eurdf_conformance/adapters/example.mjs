@@ -1,0 +1,85 @@
+// A complete adapter in JavaScript, of a toy reader of version 1: --parser="cmd:node example.mjs"
+// Two libraries read the files: npm install yaml @xmldom/xmldom
+
+import { readFileSync } from "node:fs";
+import { createInterface } from "node:readline";
+import { DOMParser, onErrorStopParsing as onError } from "@xmldom/xmldom";
+import { parse as parseYaml } from "yaml";
+
+class Wrong extends Error {} // what the reader throws for wrong files, ...
+class Lacking extends Error {} // ... and for a feature that it lacks
+
+// The adapter: what it answers to each command.
+const reader = { name: "example", version: "0.1", language: "JavaScript" };
+const answers = {
+  start: () => ({ outcome: "started", protocol: "1.0", reader, claims: { 1: ["accept", "structure"] } }),
+  load: (request) => ({ outcome: "accepted", robot: read(request.description, request.urdf), issues: [] }),
+  evaluate: () => ({ outcome: "unsupported", feature: "evaluate" }),
+  stop: () => ({ outcome: "stopped" }),
+};
+
+function answer(request) {
+  try {
+    return answers[request.command](request);
+  } catch (error) {
+    if (error instanceof Wrong) return { outcome: "rejected", issues: [{ message: error.message }] };
+    if (error instanceof Lacking) return { outcome: "unsupported", feature: error.message };
+    return { outcome: "errored", message: error.stack };
+  }
+}
+
+for await (const line of createInterface({ input: process.stdin })) {
+  const request = JSON.parse(line);
+  process.stdout.write(JSON.stringify({ id: request.id, ...answer(request) }) + "\n");
+  if (request.command === "stop") process.exit();
+}
+
+// The reader: the robot as a canonical description.
+function read(description, urdf) {
+  const { closed_loop = [], type, name_mot = [], ...rest } = parsed(description, parseYaml) ?? {};
+  if ("extended_urdf" in rest || "joint_name" in rest) throw new Lacking("version 2, and joints that URDF lacks");
+  const types = (type ?? closed_loop.map(() => "6d")).map((each) => String(each).toLowerCase());
+  if (types.some((each) => each !== "3d" && each !== "6d")) throw new Wrong("a closure is 3d or 6d");
+  if (types.length !== closed_loop.length) throw new Wrong("there is not one type for each closure");
+  const tree = parsed(urdf, (text) => new DOMParser({ onError }).parseFromString(text, "text/xml").documentElement);
+  const links = children(tree, "link").map((link) => link.getAttribute("name"));
+  const joints = children(tree, "joint").map(jointOf);
+  const bodies = new Map([...links.map((link) => [link, link]), ...joints.map((joint) => [joint.name, joint.child])]);
+  const closures = closed_loop.map((pair, i) => {
+    if (!pair.every((frame) => bodies.has(frame))) throw new Wrong(`there is no such frame among ${pair}`);
+    return { name: `closure_${i + 1}`, type: types[i], a: bodies.get(pair[0]), b: bodies.get(pair[1]) };
+  });
+  const robot = { name: tree.getAttribute("name"), version: "1", root: "fixed", links, frames: [], closures };
+  robot.joints = joints.filter((joint) => joint.type !== "fixed");
+  robot.actuators = name_mot.map((joint) => ({ joint }));
+  robot.own = Object.fromEntries(Object.entries(rest).map(([key, value]) => [`/${key}`, value]));
+  return { ...robot, configurations: {} };
+}
+
+function jointOf(joint) {
+  const said = (tag, key, absent) => children(joint, tag)[0]?.getAttribute(key) ?? absent;
+  const type = joint.getAttribute("type");
+  if (["planar", "floating"].includes(type) || said("mimic", "joint")) throw new Lacking(`${type} joints, or mimics`);
+  const read = { name: joint.getAttribute("name"), type, parent: said("parent", "link"), child: said("child", "link") };
+  for (const key of ["lower", "upper"]) read[key] = [type === "continuous" ? null : number(said("limit", key, "0"))];
+  for (const key of ["velocity", "effort"]) read[key] = [said("limit", key) ? number(said("limit", key)) : null];
+  for (const key of ["damping", "friction"]) read[key] = [number(said("dynamics", key, "0"))];
+  return { ...read, armature: [0] };
+}
+
+function children(element, tag) {
+  return Array.from(element.childNodes).filter((child) => child.nodeName === tag);
+}
+
+function number(text) {
+  if (!Number.isFinite(Number(text))) throw new Wrong(`'${text}' is no number`); // which JSON would make null
+  return Number(text);
+}
+
+function parsed(path, parse) {
+  try {
+    return parse(new TextDecoder("utf-8", { fatal: true }).decode(readFileSync(path)));
+  } catch (error) {
+    throw new Wrong(`${path}: ${error.message}`);
+  }
+}

@@ -1,0 +1,65 @@
+"""A complete adapter, of a toy reader of version 1: ``--parser=eurdf_conformance.adapters.example:Example``."""
+
+from pathlib import Path
+from typing import Any, ClassVar
+from xml.etree import ElementTree
+
+import yaml
+
+from eurdf_conformance.level import Level
+from eurdf_conformance.protocol.message import Accepted, Rejected, Unsupported
+from eurdf_conformance.protocol.reply import accepted, rejected, unsupported
+
+WRONG = (yaml.YAMLError, ElementTree.ParseError, KeyError, ValueError)  # what the reader raises for wrong files
+
+
+class Example:
+    """The adapter: who the reader is, what it claims, and its word on two files."""
+
+    name, version, language = "example", "0.1", "Python"
+    claims: ClassVar = {"1": [Level.ACCEPT, Level.STRUCTURE]}
+
+    def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported:
+        """Let the reader read, and say what came of it."""
+        try:
+            robot = read(yaml.safe_load(description.read_bytes()), ElementTree.parse(urdf).getroot())
+        except NotImplementedError as feature:
+            return unsupported(str(feature))
+        except WRONG as why:
+            return rejected(f"{type(why).__name__}: {why}")
+        return accepted(robot)
+
+
+def read(said: Any, robot: ElementTree.Element) -> dict[str, Any]:
+    """The reader: the robot as a canonical description."""
+    if not isinstance(said, dict):
+        raise ValueError("the description is no mapping")
+    if said.keys() & {"extended_urdf", "joint_name"}:
+        raise NotImplementedError("version 2, and joints that URDF lacks")
+    closed, motors = said.pop("closed_loop", []), said.pop("name_mot", [])
+    types = [str(kind).lower() for kind in said.pop("type", ["6d"] * len(closed))]
+    if not {"3d", "6d"}.issuperset(types):
+        raise ValueError("a closure is 3d or 6d")
+    canonical: dict[str, Any] = {"version": "1", "root": "fixed", "frames": [], "configurations": {}}
+    canonical["name"], canonical["own"] = robot.attrib["name"], {f"/{key}": value for key, value in said.items()}
+    canonical["links"] = [link.attrib["name"] for link in robot.findall("link")]
+    joints = [joint_of(element) for element in robot.findall("joint")]
+    canonical["joints"] = [joint for joint in joints if joint["type"] != "fixed"]
+    canonical["actuators"] = [{"joint": name} for name in motors]
+    body = {link: link for link in canonical["links"]} | {joint["name"]: joint["child"] for joint in joints}
+    closures = [{"type": kind, "a": body[a], "b": body[b]} for (a, b), kind in zip(closed, types, strict=True)]
+    canonical["closures"] = [{"name": f"closure_{1 + i}"} | closure for i, closure in enumerate(closures)]
+    return canonical
+
+
+def joint_of(joint: ElementTree.Element) -> dict[str, Any]:
+    """One joint of the URDF, with its limits."""
+    kind, (parent,), (child,) = joint.attrib["type"], joint.findall("parent"), joint.findall("child")
+    if kind in ("planar", "floating") or joint.find("mimic") is not None:
+        raise NotImplementedError("planar and floating joints, and mimics")
+    limit, dynamics = ({} if (found := joint.find(tag)) is None else found.attrib for tag in ("limit", "dynamics"))
+    read: dict[str, Any] = {"name": joint.attrib["name"], "type": kind, "armature": [0.0]}
+    read |= {"parent": parent.attrib["link"], "child": child.attrib["link"]}
+    read |= {key: [None if kind == "continuous" else float(limit.get(key, 0))] for key in ("lower", "upper")}
+    read |= {key: [float(limit[key]) if limit else None] for key in ("velocity", "effort")}
+    return read | {key: [float(dynamics.get(key, 0))] for key in ("damping", "friction")}

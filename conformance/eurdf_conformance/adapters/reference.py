@@ -1,0 +1,98 @@
+"""The reference reader, `eurdf`, behind the protocol: ``--parser=eurdf_conformance.adapters.reference:READER``."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+
+import eurdf
+from eurdf.checking import closure_diagnostics
+from eurdf.description import Description, describe, find_meshes
+from eurdf.diagnostics import Diagnostic
+from eurdf.diagnostics.report import encodable
+from eurdf.exceptions import RobotNotFound
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.pinocchio.robot import Robot, build_robot
+from eurdf_conformance.adapters.reference_canonical import canonical_robot
+from eurdf_conformance.adapters.reference_values import Quantities
+from eurdf_conformance.level import VERSIONS, Level, Version
+from eurdf_conformance.protocol.message import Accepted, CanonicalRobot, Issue, Quantity, Rejected, Values
+from eurdf_conformance.protocol.reply import accepted, rejected
+
+
+class Reference:
+    """`eurdf` as a reader. What it makes of a robot can be changed one method at a time."""
+
+    name = "eurdf"
+    version = eurdf.__version__
+    language = "Python"
+    claims: Mapping[Version, Sequence[Level]] = dict.fromkeys(VERSIONS, tuple(Level))
+
+    def __init__(self) -> None:
+        self._robot: Robot | None = None
+
+    def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
+        """EU-PRO-004: read a robot; it is rejected for what leaves only a guess of what it stands for (EU-CNF-001).
+
+        Errors of inertia and of closures are told beside the robot (EU-CNF-003).
+        """
+        try:
+            read = self.describe(description, urdf)
+        except RobotNotFound as none:
+            code = "file-unreadable"
+            return rejected(Issue(code=code, file=description.name, line=None, column=None, message=str(none)))
+        found = list(read.diagnostics)
+        if read.urdf is not None:
+            found += find_meshes(read)[1]
+        if read.diagnostics.refused or read.mechanism is None:
+            return rejected(*self.issues(found))
+        self._robot = build_robot(read.mechanism, geometry=False)
+        found += closure_diagnostics(read, self._robot)
+        return accepted(self.canonical(read.mechanism), self.issues(found))
+
+    def evaluate(
+        self,
+        configurations: Sequence[Mapping[str, Sequence[float]]],
+        frames: Sequence[str],
+        quantities: Sequence[Quantity],
+    ) -> list[Values]:
+        """Where things are, of the robot accepted last."""
+        if self._robot is None:
+            raise ValueError("no robot was accepted")
+        return [self.values(self._robot, each, frames, quantities) for each in configurations]
+
+    def describe(self, description: Path, urdf: Path) -> Description:
+        """The robot as read; that the URDF exists which the description names is for the reader to see."""
+        return describe(description, urdf if os.path.lexists(urdf) else None)
+
+    def issues(self, found: Iterable[Diagnostic]) -> list[Issue]:
+        """Diagnostics as the protocol has them."""
+        return [
+            Issue(
+                code=each.code,
+                severity=each.severity.value,
+                file=encodable(Path(each.file).name),
+                line=each.line,
+                column=each.column,
+                message=encodable(each.message + (f" ({each.hint})" if each.hint else "")),
+            )
+            for each in found
+        ]
+
+    def canonical(self, mechanism: Mechanism) -> CanonicalRobot:
+        """The canonical description."""
+        return canonical_robot(mechanism)
+
+    def values(
+        self,
+        robot: Robot,
+        configuration: Mapping[str, Sequence[float]],
+        frames: Sequence[str],
+        quantities: Sequence[Quantity],
+    ) -> Values:
+        """The quantities asked for, at one configuration."""
+        return Quantities(robot, configuration, frames).values(quantities)
+
+
+READER = Reference()

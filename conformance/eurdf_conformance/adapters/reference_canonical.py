@@ -1,0 +1,79 @@
+"""What `eurdf` has read, as a canonical description."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Any
+
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mechanism import Joint, Mechanism
+from eurdf_conformance.protocol.message import (
+    CanonicalActuator,
+    CanonicalClosure,
+    CanonicalJoint,
+    CanonicalMimic,
+    CanonicalRobot,
+)
+
+# Nothing can bound their coordinates.
+_UNBOUNDED = frozenset({JointType.SPHERICAL, JointType.PLANAR, JointType.FLOATING})
+
+
+def canonical_robot(mechanism: Mechanism) -> CanonicalRobot:
+    """EU-CAN-001 to -004: the mechanism without style.
+
+    Args:
+        mechanism: Read from a description, of either version.
+    """
+    joints = {joint.name: joint for joint in mechanism.joints}
+    return CanonicalRobot(
+        name=mechanism.name,
+        version="1" if mechanism.version == "1" else "2",
+        root=mechanism.root,
+        links=[body.name for body in mechanism.bodies if not body.virtual],
+        frames=[frame.name for frame in mechanism.frames if frame.kind == "frame"],
+        joints=[_joint(joint) for joint in mechanism.joints if joint.type is not JointType.FIXED],
+        closures=[
+            CanonicalClosure(name=closure.name, type=closure.type, a=closure.a.body, b=closure.b.body)
+            for closure in mechanism.closures
+        ],
+        actuators=[
+            CanonicalActuator(
+                joint=name, gear_ratio=list(joints[name].gear_ratio), rotor_inertia=list(joints[name].rotor_inertia)
+            )
+            for name in mechanism.actuators
+        ],
+        configurations={
+            name: {joint: list(coordinates) for joint, coordinates in configuration.items()}
+            for name, configuration in mechanism.configurations.items()
+        },
+        own=dict(mechanism.own_data),
+    )
+
+
+def _joint(joint: Joint) -> CanonicalJoint:
+    bounded = joint.type not in _UNBOUNDED
+    mimic = joint.mimic
+    kind: Any = joint.type.value  # any of the types but fixed
+    return CanonicalJoint(
+        name=joint.name,
+        type=kind,
+        parent=joint.parent,
+        child=joint.child,
+        lower=_limits(joint.lower) if bounded else [],
+        upper=_limits(joint.upper) if bounded else [],
+        velocity=_limits(joint.velocity),
+        effort=_limits(joint.effort),
+        damping=list(joint.damping),
+        friction=list(joint.friction),
+        armature=list(joint.armature),
+        mimic=None
+        if mimic is None
+        else CanonicalMimic(joint=mimic.joint, multiplier=mimic.multiplier, offset=mimic.offset),
+    )
+
+
+def _limits(values: Iterable[float]) -> list[float | None]:
+    """None where there is no limit."""
+    return [None if math.isinf(value) else value for value in values]

@@ -1,0 +1,170 @@
+"""The certificate: what a reader has come to, as one JSON value, which has a JSON Schema.
+
+Two runs of one suite on one reader give the same bytes: it holds no time but the date, and that only where it is given.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from eurdf_conformance.level import Level, Version
+from eurdf_conformance.verdict.verdict import Verdict
+
+#: Name of its file in a folder.
+FILE = "certificate.json"
+
+Count = Annotated[int, Field(ge=0)]
+Hash = Annotated[str, Field(pattern="^sha256:[0-9a-f]{64}$")]
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+
+class Suite(_Part):
+    """The suite that was run."""
+
+    version: str
+    """Version of the package."""
+    protocol: str
+    """Version of the protocol spoken."""
+    clauses: Hash
+    """Hash of the clauses of the specification: ids, texts, levels and versions."""
+    corpus: Hash
+    """Hash of the cases, whatever the order of their files."""
+
+
+class ReaderInfo(_Part):
+    """What a reader says of itself."""
+
+    name: str
+    version: str
+    language: str
+
+
+class Scope(_Part):
+    """What the user asked to be tested."""
+
+    levels: tuple[Level, ...]
+    versions: tuple[Version, ...]
+    smoke: bool
+    """Whether it was three cases only, which certify nothing."""
+    explore: Count
+    """Number of further random mechanisms for each property."""
+
+
+class LevelResult(_Part):
+    """What a reader has come to at one level for one version."""
+
+    version: Version
+    level: Level
+    claimed: bool
+    """Whether the reader claims it. If not, nothing was tested."""
+    asked: bool
+    """Whether the user asked for it. If not, nothing was tested."""
+    items: Count
+    """Number of cases and properties that the suite has there."""
+    counts: dict[Verdict, Count]
+    """How many of them came to which verdict."""
+    known_failures: Count
+    """How many of those that did not pass were expected not to."""
+    certified: bool
+    """Whether it is claimed and every item has passed."""
+
+
+class ClauseResult(_Part):
+    """How many of the items that test a clause have passed, of those that were asked."""
+
+    id: str
+    items: Count
+    passed: Count
+
+
+class Failure(_Part):
+    """An item that has not passed."""
+
+    id: str
+    """Topic and id of a case, or name of a property."""
+    level: Level
+    version: Version
+    title: str
+    clauses: tuple[str, ...]
+    verdict: Verdict
+    known: bool
+    """Whether it was expected."""
+    difference: str | None
+    """What is wrong, and the first of what differs from the expected answer."""
+    reproduce: str
+    """Command line that runs this item alone."""
+
+
+class Certificate(_Part):
+    """What a reader of Extended URDF has come to in the conformance suite."""
+
+    certificate: Literal["1.0"] = "1.0"
+    """Version of this form."""
+    suite: Suite
+    parser: str
+    """How the suite reached the reader: 'package.module:object', or 'cmd:' and a command line."""
+    reader: ReaderInfo | None
+    """null where it could not be started."""
+    scope: Scope
+    date: Annotated[str, Field(pattern=r"^\d{4}-\d{2}-\d{2}$")] | None
+    """Day of the run, where it is given."""
+    certified: bool
+    """Whether every level claimed and asked for is certified."""
+    levels: tuple[LevelResult, ...]
+    """By version and level: all of them."""
+    clauses: tuple[ClauseResult, ...]
+    """By id: those of which an item was asked."""
+    failures: tuple[Failure, ...]
+    """By id and level."""
+    unexpected: tuple[str, ...]
+    """What the file of known failures says and the run does not show."""
+
+    def at(self, version: Version, level: Level) -> LevelResult | None:
+        """What it says of one level."""
+        return next((each for each in self.levels if (each.version, each.level) == (version, level)), None)
+
+    def to_text(self) -> str:
+        """The text of its file."""
+        return json.dumps(self.model_dump(mode="json"), indent=2, ensure_ascii=False) + "\n"
+
+
+class NoCertificate(Exception):  # noqa: N818 - said to the user as it stands
+    """There is no certificate there; its text says why."""
+
+
+def read_certificate(path: Path) -> Certificate:
+    """Read a certificate: the file itself, or the folder that it is in.
+
+    Raises:
+        NoCertificate: There is none, or it does not fit the schema.
+    """
+    file = path / FILE if path.is_dir() else path
+    try:
+        return Certificate.model_validate_json(file.read_bytes())
+    except OSError as error:
+        raise NoCertificate(f"cannot read '{file}': {error.strerror or error}") from error
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = "".join(f"/{part}" for part in first["loc"])
+        raise NoCertificate(f"'{file}' is no certificate: {f'{where}: ' if where else ''}{first['msg']}") from error
+
+
+def certificate_schema() -> dict[str, Any]:
+    """The JSON Schema (2020-12) of a certificate."""
+    head = {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "$id": "urn:extended-urdf:schema:certificate",
+    }
+    return head | Certificate.model_json_schema(mode="serialization")
+
+
+if __name__ == "__main__":
+    sys.stdout.write(json.dumps(certificate_schema(), indent=2) + "\n")

@@ -1,0 +1,84 @@
+"""Several certificates on one page: levels by reader, then the clauses on which the readers differ."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from eurdf_conformance.certificate.certificate import Certificate, ClauseResult
+from eurdf_conformance.certificate.page import Element, element, marked_up, page, table
+from eurdf_conformance.certificate.report import level_cell
+from eurdf_conformance.certificate.summary import level_count, reader_title
+from eurdf_conformance.corpus.clause import read_clauses
+from eurdf_conformance.level import VERSIONS, Level
+
+
+def comparison_page(certificates: Sequence[Certificate]) -> str:
+    """The page as the text of its file; readers stand in the order given."""
+    title = "Readers of Extended URDF compared"
+    parts = _readers, _levels, _clauses
+    content = [content for part in parts for content in part(certificates)]
+    return page(title, [element("h1", title), *content], "comparison")
+
+
+def _readers(certificates: Sequence[Certificate]) -> Iterator[Element]:
+    yield element(
+        "p", "Items passed, of those that the suite has. ✓ certified, ✗ claimed and not certified.", class_="soft"
+    )
+    yield element("h2", "Readers")
+    dated = any(each.date for each in certificates)
+    rows = (
+        (
+            element("th", reader_title(each), scope="row"),
+            element("td", each.reader.language if each.reader else "could not be started"),
+            element("td", each.suite.version),
+            *([element("td", each.date or "not said")] if dated else []),
+        )
+        for each in certificates
+    )
+    yield table("Readers", ("reader", "language", "suite", *(["date"] if dated else [])), rows)
+    if len({(each.suite.clauses, each.suite.corpus) for each in certificates}) > 1:
+        said = "These certificates are of different suites: what one of them tests, another may not."
+        yield element("p", said, class_="headline bad")
+
+
+def _levels(certificates: Sequence[Certificate]) -> Iterator[Element]:
+    for version in VERSIONS:
+        title = f"Version {version}"
+        yield element("h2", title)
+        rows = (
+            (
+                element("th", level.value, scope="row"),
+                *(level_cell(each.at(version, level), level_count, each.scope.smoke) for each in certificates),
+            )
+            for level in Level
+        )
+        yield table(title, ("level", *map(reader_title, certificates)), rows)
+
+
+def _clauses(certificates: Sequence[Certificate]) -> Iterator[Element]:
+    results = [{each.id: each for each in certificate.clauses} for certificate in certificates]
+    texts = {id_: clause.text for id_, clause in read_clauses().items()}
+    ids = sorted({id_ for of_one in results for id_ in of_one})
+    differing = [id_ for id_ in ids if len({_is_met(of_one.get(id_)) for of_one in results}) > 1]
+    title = "Clauses on which they differ"
+    yield element("h2", f"{title} ({len(differing)} of {len(ids)})")
+    if differing:
+        rows = (
+            (
+                element("th", id_, element("div", *marked_up(texts.get(id_, "")), class_="says"), scope="row"),
+                *(_clause_cell(of_one.get(id_)) for of_one in results),
+            )
+            for id_ in differing
+        )
+        yield table(title, ("clause", *map(reader_title, certificates)), rows)
+
+
+def _is_met(result: ClauseResult | None) -> bool | None:
+    return None if result is None else result.passed == result.items
+
+
+def _clause_cell(result: ClauseResult | None) -> Element:
+    if result is None:
+        return element("td", "not asked", class_="none")
+    met = _is_met(result)
+    return element("td", f"{'✓' if met else '✗'} {result.passed} of {result.items}", class_="good" if met else "bad")

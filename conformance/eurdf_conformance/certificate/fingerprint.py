@@ -1,0 +1,50 @@
+"""Hashes that say whether two runs were of the same suite."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+
+from eurdf_conformance.corpus.clause import Clause, read_clauses
+from eurdf_conformance.corpus.read import CorpusCase, read_cases
+
+
+def clauses_hash(clauses: Iterable[Clause] | None = None) -> str:
+    """Hash of what clauses demand, whoever enforces and tests them; those of this edition if left out."""
+    values = [
+        [clause.id, clause.keyword, clause.text, clause.level, clause.versions, sorted(clause.codes)]
+        for clause in sorted(clauses or read_clauses().values(), key=lambda clause: clause.id)
+    ]
+    return _hash(json.dumps(values, ensure_ascii=False).encode())
+
+
+def corpus_hash(cases: Iterable[CorpusCase] | None = None) -> str:
+    """Hash of all files of cases, in whatever order these come; of all cases if left out."""
+    files = {
+        name: path.read_bytes() for case in (read_cases() if cases is None else cases) for name, path in _files(case)
+    }
+    return files_hash(files)
+
+
+def files_hash(files: Mapping[str, bytes]) -> str:
+    """Hash of files by name: that of the sorted lines that hold their hashes and names."""
+    lines = sorted(f"{_hash(content)}  {name}\n" for name, content in files.items())
+    return _hash("".join(lines).encode())
+
+
+def _files(case: CorpusCase) -> Iterator[tuple[str, Path]]:
+    own = case.folder.rglob("*")
+    # Of a robot of the collection the two files are the case; its README and its pictures are not.
+    shared = (case.description, case.urdf) if case.files != case.folder else ()
+    for path in own:
+        if path.is_file():
+            yield f"{case.path}/{path.relative_to(case.folder).as_posix()}", path
+    for path in shared:
+        if path.is_file():
+            yield f"{case.path}/{path.name}", path
+
+
+def _hash(content: bytes) -> str:
+    return f"sha256:{hashlib.sha256(content).hexdigest()}"

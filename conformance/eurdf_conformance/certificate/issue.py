@@ -1,0 +1,106 @@
+"""A certificate, drawn from a run of the suite."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections import Counter, defaultdict
+from collections.abc import Iterable
+from datetime import UTC, datetime
+from importlib.metadata import version
+
+from eurdf_conformance.certificate.certificate import (
+    Certificate,
+    ClauseResult,
+    Failure,
+    LevelResult,
+    ReaderInfo,
+    Scope,
+    Suite,
+)
+from eurdf_conformance.certificate.fingerprint import clauses_hash, corpus_hash
+from eurdf_conformance.protocol.message import PROTOCOL
+from eurdf_conformance.verdict.result import Result
+from eurdf_conformance.verdict.run import Run
+from eurdf_conformance.verdict.standing import Standing, is_certified, standings
+from eurdf_conformance.verdict.verdict import Verdict
+
+#: The distribution that the suite is installed with.
+_DISTRIBUTION = "eurdf"
+
+# Which number a request has depends on what the process was asked before it, and that on how a run is spread over
+# processes. So does when a reader is given up.
+_ID = re.compile(r'("id"\s*:\s*)-?\d+')
+_UNSTABLE = (Verdict.MISPLACED, Verdict.NOT_STARTED)
+
+
+def installed_suite() -> Suite:
+    """What the suite that is installed here is."""
+    return Suite(version=version(_DISTRIBUTION), protocol=PROTOCOL, clauses=clauses_hash(), corpus=corpus_hash())
+
+
+def issue(run: Run) -> Certificate:
+    """What a run comes to. The date is that of the environment variable SOURCE_DATE_EPOCH; without it there is none."""
+    results = list(run.accounted())
+    return Certificate(
+        suite=installed_suite(),
+        parser=run.parser,
+        reader=ReaderInfo(**run.started.reader.model_dump()) if run.started else None,
+        scope=Scope(levels=run.levels, versions=run.versions, smoke=run.smoke, explore=run.explore),
+        date=_date(os.environ.get("SOURCE_DATE_EPOCH")),
+        certified=is_certified(run),
+        levels=tuple(map(_level_result, standings(run))),
+        clauses=tuple(_clause_results(results)),
+        failures=tuple(_failure(result, run) for result in results if result.verdict != Verdict.PASSED),
+        unexpected=tuple(run.known_failures.unexpected(results, run.planned)),
+    )
+
+
+def _date(epoch: str | None) -> str | None:
+    if epoch is None or not epoch.isdecimal():
+        return None
+    return datetime.fromtimestamp(int(epoch), UTC).date().isoformat()
+
+
+def _level_result(standing: Standing) -> LevelResult:
+    return LevelResult(
+        version=standing.version,
+        level=standing.level,
+        claimed=standing.claimed,
+        asked=standing.asked,
+        items=standing.items,
+        counts={verdict: standing.counts[verdict] for verdict in Verdict if standing.counts.get(verdict)},
+        known_failures=standing.known_failures,
+        certified=standing.certified,
+    )
+
+
+def _clause_results(results: Iterable[Result]) -> Iterable[ClauseResult]:
+    verdicts: defaultdict[str, Counter[bool]] = defaultdict(Counter)
+    for result in results:
+        for clause in result.item.clauses:
+            verdicts[clause][result.verdict == Verdict.PASSED] += 1
+    for clause, counts in sorted(verdicts.items()):
+        yield ClauseResult(id=clause, items=counts.total(), passed=counts[True])
+
+
+def _failure(result: Result, run: Run) -> Failure:
+    return Failure(
+        id=result.item.id,
+        level=result.item.level,
+        version=result.item.version,
+        title=result.item.title,
+        clauses=result.item.clauses,
+        verdict=result.verdict,
+        known=run.known_failures.expects(result),
+        difference=_difference(result, run),
+        reproduce=result.reproduce,
+    )
+
+
+def _difference(result: Result, run: Run) -> str | None:
+    if run.started is not None and result.verdict in _UNSTABLE:
+        return None
+    reason, first, *_ = (*result.differences, "", "")
+    lines = [first] if reason in first else [reason, first]
+    return _ID.sub(r"\1…", "\n".join(filter(None, lines))) or None

@@ -1,0 +1,100 @@
+"""Whether a second run came to what a certificate says."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict
+
+from eurdf_conformance.certificate.certificate import Certificate, Failure
+from eurdf_conformance.certificate.issue import installed_suite
+from eurdf_conformance.certificate.summary import level_words
+from eurdf_conformance.level import VERSIONS, Level
+from eurdf_conformance.verdict.result import Key
+
+
+class Replay(BaseModel):
+    """What came of running a certificate again."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    same: bool
+    """Whether it came to the same."""
+    differences: tuple[str, ...]
+    """In what it did not, a sentence each."""
+
+
+def suite_differences(certificate: Certificate) -> list[str]:
+    """In what the suite of a certificate is not the one installed here, one line each."""
+    before, now = certificate.suite.model_dump(), installed_suite().model_dump()
+    return [
+        f"suite, {part}: {before[part]} in the certificate, {now[part]} here"
+        for part in before
+        if before[part] != now[part]
+    ]
+
+
+def replay_differences(certificate: Certificate, again: Certificate) -> list[str]:
+    """In what a second run is not what a certificate says, one line each.
+
+    Neither the date nor the command that reached the reader matters, nor which failures were expected.
+    """
+    return [*_reader(certificate, again), *_levels(certificate, again), *_failures(certificate, again)]
+
+
+def _reader(before: Certificate, now: Certificate) -> Iterator[str]:
+    if before.reader is None or now.reader is None:
+        if before.reader != now.reader:
+            yield "reader: started then, not now" if before.reader else "reader: started now, not then"
+        return
+    for part, was in before.reader.model_dump().items():
+        if (given := getattr(now.reader, part)) != was:
+            yield f"reader, {part}: '{was}' then, '{given}' now"
+
+
+def _levels(before: Certificate, now: Certificate) -> Iterator[str]:
+    for version in VERSIONS:
+        for level in Level:
+            was, given = before.at(version, level), now.at(version, level)
+            then = level_words(was.model_copy(update={"known_failures": 0})) if was else "not in it"
+            here = level_words(given.model_copy(update={"known_failures": 0})) if given else "not in it"
+            if then != here:
+                yield f"version {version}, {level}: {then} then, {here} now"
+
+
+def _failures(before: Certificate, now: Certificate) -> Iterator[str]:
+    was, given = _by_key(before), _by_key(now)
+    for key in sorted(was.keys() | given.keys()):
+        name = "/".join(key)
+        if key not in given:
+            yield f"{name}: {was[key].verdict} then, not now"
+        elif key not in was:
+            yield f"{name}: {given[key].verdict} now, not then"
+        elif was[key].verdict != given[key].verdict:
+            yield f"{name}: {was[key].verdict} then, {given[key].verdict} now"
+        elif was[key].difference != given[key].difference:
+            yield f"{name}: fails otherwise: {_line(was[key])} then, {_line(given[key])} now"
+
+
+def _line(failure: Failure) -> str:
+    return "; ".join((failure.difference or "nothing said").splitlines())
+
+
+def _by_key(certificate: Certificate) -> dict[Key, Failure]:
+    return {(failure.id, failure.level): failure for failure in certificate.failures}
+
+
+def replay_schema() -> dict[str, Any]:
+    """The JSON Schema (2020-12) of a `Replay`."""
+    head = {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "$id": "urn:extended-urdf:schema:replay",
+    }
+    return head | Replay.model_json_schema(mode="serialization")
+
+
+if __name__ == "__main__":
+    sys.stdout.write(json.dumps(replay_schema(), indent=2) + "\n")

@@ -1,0 +1,165 @@
+"""The suite, run from within a program: one certificate comes out.
+
+It is the suite that ``pytest conformance/`` runs, whether this package lies in a checkout or in a wheel. Neither a
+configuration of pytest that lies about, nor what the environment says to it, has a part in it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from datetime import UTC, date, datetime, time
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from eurdf_conformance.certificate.certificate import Certificate, read_certificate
+from eurdf_conformance.level import Level, Version
+from eurdf_conformance.runner.session import NotStarted, Session
+
+if TYPE_CHECKING:
+    import pytest
+
+#: What the suite needs beside the package itself, which the extra ``conformance`` installs.
+REQUIRED = ("pytest", "hypothesis")
+
+_SUITE = "eurdf_conformance.suite"
+
+#: Told how many items are done, and of how many.
+Progress = Callable[[int, int], None]
+
+
+class CannotRunSuite(Exception):  # noqa: N818 - said to the user as it stands
+    """The suite has come to no result; its text says why.
+
+    Attributes:
+        log: What pytest wrote, where that may help.
+    """
+
+    def __init__(self, why: str, log: str = "") -> None:
+        self.log = log
+        super().__init__(why)
+
+
+@dataclass(frozen=True)
+class SuiteRun:
+    """What to run."""
+
+    #: ``package.module:object``, or ``cmd:`` and a command line.
+    parser: str
+    levels: Sequence[Level] = ()
+    version: Version | None = None
+    #: Time allowed for an answer, and for starting, s; that of the suite where it is None.
+    timeout: float | None = None
+    start_timeout: float | None = None
+    known_failures: Path | None = None
+    smoke: bool = False
+    explore: int = 0
+    #: The day that the certificate shows; None for that of SOURCE_DATE_EPOCH, or none.
+    date: date | None = None
+    #: Number of processes; None for as many as there are cores. Where pytest-xdist is missing there is one.
+    jobs: int | None = None
+
+
+def run_suite(run: SuiteRun, progress: Progress | None = None) -> Certificate:
+    """Run the suite on a parser.
+
+    Args:
+        run: What to run.
+        progress: Called after each item.
+
+    Raises:
+        CannotRunSuite: A part of it is not installed, the reader does not start, or the suite broke off.
+        KeyboardInterrupt: The user ended it.
+    """
+    missing = [name for name in REQUIRED if find_spec(name) is None]
+    if missing:
+        raise CannotRunSuite(f"the suite needs {' and '.join(missing)}: pip install 'eurdf[conformance]'")
+    import pytest
+
+    _greet(run)
+    with tempfile.TemporaryDirectory(prefix="eurdf-certify-") as scratch:
+        written = io.StringIO()
+        with _environment(run), contextlib.redirect_stdout(written):
+            code = pytest.main(_arguments(run, scratch), plugins=[_Listener(progress)] if progress else [])
+        if code == pytest.ExitCode.INTERRUPTED and "KeyboardInterrupt" in written.getvalue():
+            raise KeyboardInterrupt
+        if code == pytest.ExitCode.NO_TESTS_COLLECTED:
+            raise CannotRunSuite("the suite tests nothing at that level of that version")
+        if code not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED):
+            raise CannotRunSuite(f"the suite broke off (pytest exit code {int(code)})", written.getvalue())
+        return read_certificate(Path(scratch))
+
+
+def _greet(run: SuiteRun) -> None:
+    """See whether the reader starts, before everything is asked of what does not."""
+    session = Session(run.parser) if run.start_timeout is None else Session(run.parser, start_timeout=run.start_timeout)
+    with session:
+        try:
+            _ = session.started
+        except NotStarted as refusal:
+            why, _, log = str(refusal).partition("\n")
+            raise CannotRunSuite(f"'{run.parser}' could not be started: {why}", f"{log}\n" if log else "") from None
+
+
+def _arguments(run: SuiteRun, folder: str) -> list[str]:
+    jobs = "auto" if run.jobs is None else str(run.jobs)
+    is_spread = find_spec("xdist") is not None and not run.smoke
+    package = Path(__file__).parents[1]
+    return [
+        *("--pyargs", _SUITE, "-p", f"{_SUITE}.plugin", "--noconftest"),
+        *("-c", os.devnull, "--rootdir", str(package), "-p", "no:cacheprovider", "-q", "--tb=no"),
+        *(("-p", "xdist.plugin", "-n", jobs, "--dist", "loadgroup") if is_spread else ()),
+        *(f"--parser={run.parser}", f"--certificate={folder}"),
+        *(f"--level={level}" for level in run.levels),
+        *(f"--{name}={value}" for name, value in _options(run) if value not in (None, 0)),
+        *(["--smoke"] if run.smoke else []),
+    ]
+
+
+def _options(run: SuiteRun) -> Iterator[tuple[str, Any]]:
+    yield "format-version", run.version
+    yield "parser-timeout", run.timeout
+    yield "parser-start-timeout", run.start_timeout
+    yield "known-failures", run.known_failures
+    yield "explore", run.explore
+
+
+@contextlib.contextmanager
+def _environment(run: SuiteRun) -> Iterator[None]:
+    """Let no plug-in and no option of pytest have a part in it that somebody has for their own tests."""
+    before = dict(os.environ)
+    for name in before:
+        if name.startswith("PYTEST_"):
+            del os.environ[name]
+    os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
+    if run.date is not None:
+        os.environ["SOURCE_DATE_EPOCH"] = f"{datetime.combine(run.date, time(), UTC).timestamp():.0f}"
+    try:
+        yield
+    finally:
+        os.environ.clear()
+        os.environ.update(before)
+
+
+class _Listener:
+    """Counts the items of pytest as they are done, in this process or in those of pytest-xdist."""
+
+    def __init__(self, progress: Progress) -> None:
+        self._progress = progress
+        self._done = 0
+        self._all = 0
+
+    def pytest_collection_finish(self, session: pytest.Session) -> None:
+        self._all = max(self._all, len(session.items))
+
+    def pytest_xdist_node_collection_finished(self, node: object, ids: Sequence[str]) -> None:
+        self._all = max(self._all, len(ids))
+
+    def pytest_runtest_logfinish(self, nodeid: str) -> None:
+        self._done += 1
+        self._progress(self._done, max(self._all, self._done))

@@ -1,0 +1,80 @@
+"""What a certificate says, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from eurdf_conformance.certificate.certificate import Certificate, LevelResult
+from eurdf_conformance.level import VERSIONS, Level, Version
+from eurdf_conformance.verdict.verdict import Verdict
+
+
+def certified_levels(certificate: Certificate, version: Version) -> tuple[Level, ...]:
+    """The levels certified for a version."""
+    return tuple(each.level for each in certificate.levels if each.version == version and each.certified)
+
+
+def reader_title(certificate: Certificate) -> str:
+    """Name and version of the reader, or the parser where it could not be started."""
+    reader = certificate.reader
+    return certificate.parser if reader is None else f"{reader.name} {reader.version}".strip()
+
+
+def headline(certificate: Certificate) -> str:
+    """What the reader is certified for, and what it claims beside that, in a sentence or two."""
+    if certificate.reader is None:
+        return "The reader could not be started"
+    if certificate.scope.smoke:
+        return "A first try on three cases, which certifies nothing"
+    certified = _by_version(certificate, True)
+    missing = _by_version(certificate, False)
+    if not certified:
+        return "Not certified at any level"
+    return f"Certified for {certified}" + (f". Not for {missing}" if missing else "")
+
+
+def level_words(result: LevelResult, smoke: bool = False) -> str:
+    """What became of a level, in a few words."""
+    if not result.claimed:
+        return "not claimed"
+    if not result.asked:
+        return "not asked"
+    if smoke:
+        return f"tried: {', '.join(_counts(result))}" if result.counts else "not tried"
+    if not result.items:
+        return "nothing tests it"
+    if result.certified:
+        return f"certified: {result.items} passed"
+    known = [f"known failures: {result.known_failures}"] if result.known_failures else []
+    return f"not certified: {', '.join([*_counts(result), *known])}"
+
+
+def level_count(result: LevelResult) -> str:
+    """The same where there is room for two numbers."""
+    if not (result.claimed and result.asked):
+        return level_words(result)
+    return f"{result.counts.get(Verdict.PASSED, 0)} of {result.items}"
+
+
+def _by_version(certificate: Certificate, certified: bool) -> str:
+    """The levels that were tested and are certified, or are not."""
+    levels = {
+        version: [
+            each.level
+            for each in certificate.levels
+            if each.version == version and each.claimed and each.asked and each.certified == certified
+        ]
+        for version in VERSIONS
+    }
+    return "; ".join(f"version {version}: {levels_text(these, ', ')}" for version, these in levels.items() if these)
+
+
+def levels_text(levels: Sequence[Level], separator: str) -> str:
+    """The names of levels; of all of them, that they are all."""
+    return "all levels" if len(levels) == len(Level) else separator.join(levels)
+
+
+def _counts(result: LevelResult) -> list[str]:
+    failed = [verdict for verdict in Verdict if verdict != Verdict.PASSED and result.counts.get(verdict)]
+    passed = f"{result.counts.get(Verdict.PASSED, 0)} of {result.items} passed"
+    return [*(f"{result.counts[verdict]} {verdict}" for verdict in failed), passed]

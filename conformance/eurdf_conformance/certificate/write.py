@@ -1,0 +1,46 @@
+"""A certificate as files: whole or not at all."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+
+from eurdf_conformance.certificate.badge import badge
+from eurdf_conformance.certificate.certificate import FILE, Certificate
+from eurdf_conformance.certificate.report import report
+
+
+def write_certificate(folder: Path, certificate: Certificate) -> None:
+    """Write ``certificate.json``, ``report.html`` and ``badge.svg`` into a folder, which is made where it is not there.
+
+    Raises:
+        OSError: It cannot be written; what was there before is still there.
+    """
+    files = {
+        "report.html": report(certificate),
+        "badge.svg": badge(certificate),
+        # Last: where it is, the others are.
+        FILE: certificate.to_text(),
+    }
+    folder.mkdir(parents=True, exist_ok=True)
+    write_together({folder / name: text for name, text in files.items()})
+
+
+def write_together(files: Mapping[Path, str]) -> None:
+    """Write text files, in UTF-8, all or none: each takes its name only when all are on the disk.
+
+    Raises:
+        OSError: One cannot be written.
+    """
+    scratch = {path: path.with_name(f".{path.name}.{os.getpid()}.tmp") for path in files}
+    try:
+        for path, text in files.items():
+            if path.is_dir():
+                raise IsADirectoryError(21, "it is a folder", str(path))
+            scratch[path].write_text(text, encoding="utf-8", newline="")
+        for path in files:
+            scratch[path].replace(path)
+    finally:
+        for path in scratch.values():
+            path.unlink(missing_ok=True)

@@ -1,0 +1,89 @@
+"""Two canonical descriptions, compared as EU-CAN-005 says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from eurdf_conformance.comparison.coordinates import neutral, same_coordinates
+from eurdf_conformance.comparison.difference import ABSENT, Difference, step
+from eurdf_conformance.comparison.json_value import value_differences
+from eurdf_conformance.comparison.plain_robot import Part, Placed, PlainRobot, plain_robot
+from eurdf_conformance.protocol.message import CanonicalRobot
+
+
+def canonical_differences(
+    expected: CanonicalRobot, given: CanonicalRobot, bodies: Iterable[Iterable[str]]
+) -> list[Difference]:
+    """EU-CAN-005: where a canonical description is not equal to the expected one; pointers lead into the one given.
+
+    Args:
+        expected: What was to be read.
+        given: What was read.
+        bodies: For each body of the robot, the links that fixed or locked joints hold together.
+    """
+    bodies = [list(body) for body in bodies]
+    one = plain_robot(expected, bodies, expected.links)
+    # What is a link of the URDF is not for the reader to say.
+    other = plain_robot(given, bodies, expected.links)
+    return [
+        *value_differences(expected.name, given.name, "/name", "name of the robot"),
+        *value_differences(expected.version, given.version, "/version", "version of the description"),
+        *value_differences(expected.root, given.root, "/root", "root"),
+        *_set_differences(one.links, other.links, "/links", "link", given.links),
+        *_set_differences(one.frames, other.frames, "/frames", "frame", given.frames),
+        *other.repeated,
+        *_part_differences(one.joints, other.joints, "/joints", "joint"),
+        *_part_differences(one.closures, other.closures, "/closures", "closure"),
+        *_part_differences(one.actuators, other.actuators, "/actuators", "actuator of joint"),
+        *_configuration_differences(one, other, expected.root),
+        *value_differences(expected.own, given.own, "/own", "the user's own data"),
+    ]
+
+
+def _set_differences(
+    expected: frozenset[str], given: frozenset[str], pointer: str, kind: str, as_given: list[str]
+) -> Iterator[Difference]:
+    for name in sorted(expected - given):
+        yield Difference(pointer, name, ABSENT, f"{kind} '{name}' is missing")
+    for name in sorted(given - expected):
+        yield Difference(pointer + step(as_given.index(name)), ABSENT, name, f"there is no {kind} '{name}'")
+
+
+def _part_differences(
+    expected: Mapping[str, Placed[Part]], given: Mapping[str, Placed[Part]], pointer: str, kind: str
+) -> Iterator[Difference]:
+    for name, placed in expected.items():
+        if name not in given:
+            yield Difference(pointer, placed.part, ABSENT, f"{kind} '{name}' is missing")
+            continue
+        found = given[name]
+        for member in type(placed.part).model_fields:
+            one, other = getattr(placed.part, member), getattr(found.part, member)
+            if one != other:
+                pointer = found.pointer + step(member)
+                yield from value_differences(one, other, pointer, f"{kind} '{name}', {member}")
+    for name, found in given.items():
+        if name not in expected:
+            yield Difference(found.pointer, ABSENT, found.part, f"there is no {kind} '{name}'")
+
+
+def _configuration_differences(expected: PlainRobot, given: PlainRobot, root: str) -> Iterator[Difference]:
+    """EU-CAN-004, and EU-CAN-005, step 5: a joint left out stands at its neutral."""
+    names = dict.fromkeys((*expected.configurations, *given.configurations))
+    for name in names:
+        pointer = "/configurations" + step(name)
+        one, other = expected.configurations.get(name), given.configurations.get(name)
+        if one is None or other is None:
+            why = f"configuration '{name}' is missing" if other is None else f"there is no configuration '{name}'"
+            yield Difference(pointer, ABSENT if one is None else one, ABSENT if other is None else other, why)
+            continue
+        for joint in dict.fromkeys((*one, *other)):
+            kind = expected.type_of(joint, root)
+            if kind is None:
+                coordinates = one.get(joint, ABSENT), other.get(joint, ABSENT)
+                yield Difference(pointer + step(joint), *coordinates, f"there is no joint '{joint}' that moves")
+                continue
+            there, here = one.get(joint, neutral(kind)), other.get(joint, neutral(kind))
+            if not same_coordinates(kind, there, here):
+                why = f"coordinates of joint '{joint}' in configuration '{name}'"
+                yield Difference(pointer + step(joint), there, other.get(joint, ABSENT), why)

@@ -1,0 +1,104 @@
+"""K and M, whose columns stand in any order."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+
+from eurdf_conformance.comparison.array import TOLERANCE, agree, both, name_differences, worst
+from eurdf_conformance.comparison.difference import ABSENT, Difference, step
+from eurdf_conformance.comparison.half_turn import Matrix, twin_rows
+from eurdf_conformance.protocol.message import Jacobian, MassMatrix
+
+Column = tuple[str, int]
+
+
+def jacobian_differences(
+    expected: Jacobian, given: Jacobian, near: float, pointer: str, twins: Mapping[str, Sequence[float]]
+) -> Iterator[Difference]:
+    """EU-PRO-007, EU-PRO-008: where K differs.
+
+    Args:
+        expected: What it should be.
+        given: What it is.
+        near: By how much an entry may be off.
+        pointer: Where it stands in the answer.
+        twins: The expected residual of the closures of which the other one of two was given.
+    """
+    yield from column_differences(expected.columns, given.columns, pointer + "/columns")
+    yield from name_differences(expected.rows, given.rows, pointer + "/rows", "closure")
+    order, width = _order(expected.columns, given.columns), len(given.columns)
+    for name in both(expected.rows, given.rows):
+        where, what = pointer + "/rows" + step(name), f"rows of K of closure '{name}'"
+        if any(len(row) != width for row in given.rows[name]):
+            yield Difference(where, width, [len(row) for row in given.rows[name]], f"{what}: how long each is")
+            continue
+        if order is None:
+            continue
+        one, other = _matrix(expected.rows[name], width), _matrix(given.rows[name], width)[:, order]
+        if one.shape != other.shape:
+            yield Difference(where, len(one), len(other), f"{what}: how many")
+            continue
+        if name in twins:
+            one = twin_rows(np.array(twins[name]), one)
+        yield from _entry_differences(one, other, near, where, what, range(len(one)), order, given.columns)
+
+
+def mass_matrix_differences(expected: MassMatrix, given: MassMatrix, pointer: str) -> Iterator[Difference]:
+    """EU-PRO-007, EU-PRO-009: where M differs, by more than 1e-8 of its largest entry."""
+    yield from column_differences(expected.columns, given.columns, pointer + "/columns")
+    order, width = _order(expected.columns, given.columns), len(given.columns)
+    where, lengths = pointer + "/matrix", [len(row) for row in given.matrix]
+    if lengths != [width] * width:
+        yield Difference(where, [width] * width, lengths, "how long each row of M is")
+    elif order is not None:
+        one, other = _matrix(expected.matrix, width), _matrix(given.matrix, width)[np.ix_(order, order)]
+        near = TOLERANCE * float(np.abs(one).max(initial=0.0))
+        yield from _entry_differences(one, other, near, where, "M", order, order, given.columns)
+
+
+def column_differences(expected: Sequence[Column], given: Sequence[Column], pointer: str) -> Iterator[Difference]:
+    """EU-PRO-007: every velocity is named once."""
+    for column in dict.fromkeys(expected):
+        if (count := given.count(column)) != 1:
+            why = f"velocity {column[1]} of joint '{column[0]}' is named {count} times"
+            yield Difference(pointer, column, [column] * count if count else ABSENT, why)
+    for index, column in enumerate(given):
+        if column not in expected:
+            yield Difference(
+                pointer + step(index), ABSENT, column, f"there is no velocity {column[1]} of '{column[0]}'"
+            )
+
+
+def _order(expected: Sequence[Column], given: Sequence[Column]) -> list[int] | None:
+    """Where each expected column stands among those given; None where they are not the same."""
+    return [given.index(column) for column in expected] if sorted(expected) == sorted(given) else None
+
+
+def _entry_differences(
+    expected: Matrix,
+    given: Matrix,
+    near: float,
+    pointer: str,
+    why: str,
+    rows: Sequence[int],
+    columns: Sequence[int],
+    names: Sequence[Column],
+) -> Iterator[Difference]:
+    """One difference for a matrix, its worst entry; ``rows`` and ``columns`` say where those stand in the answer."""
+    if agree(expected, given, near):
+        return
+    row, column = divmod(int(np.argmax(np.abs(expected - given))), expected.shape[1])
+    joint, index = names[columns[column]]
+    off = f"off by {worst(expected, given):.3g}, allowed {near:.1e}"
+    yield Difference(
+        pointer + step(rows[row]) + step(columns[column]),
+        float(expected[row, column]),
+        float(given[row, column]),
+        f"{why}, row {rows[row]}, velocity {index} of joint '{joint}', {off}",
+    )
+
+
+def _matrix(rows: Sequence[Sequence[float]], width: int) -> Matrix:
+    return np.array(rows, dtype=float).reshape(len(rows), width)

@@ -1,0 +1,72 @@
+"""One way in which an answer differs from what is expected."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any, Final
+
+from pydantic import BaseModel
+
+#: Longest text of a value that is shown in one line.
+_WIDTH = 200
+
+
+class Absent(Enum):
+    """In place of a value where there is none; null is a value."""
+
+    ABSENT = "nothing"
+
+
+ABSENT: Final = Absent.ABSENT
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """One way in which an answer differs from what is expected.
+
+    Attributes:
+        pointer: JSON pointer (RFC 6901) into the answer, of the value given, or of where it should stand.
+        expected: A JSON value, or `ABSENT`.
+        given: A JSON value, or `ABSENT`.
+        why: What is wrong, in words.
+    """
+
+    pointer: str
+    expected: Any
+    given: Any
+    why: str
+
+    def __str__(self) -> str:
+        where = self.pointer or "(the answer)"
+        return f"{where}: {self.why}: expected {shown(self.expected)}, given {shown(self.given)}"
+
+    def within(self, pointer: str) -> Difference:
+        """The same difference, of an answer that holds this one at a pointer."""
+        return Difference(pointer + self.pointer, self.expected, self.given, self.why)
+
+
+def shown(value: Any) -> str:
+    """A value in one line, cut where it is long."""
+    if value is ABSENT:
+        return "nothing"
+    text = json.dumps(plain(value), ensure_ascii=False)
+    return text if len(text) <= _WIDTH else text[: _WIDTH - 4] + " ..."
+
+
+def plain(value: Any) -> Any:
+    """A part of a message, or a list or mapping of such, as a JSON value."""
+    if isinstance(value, BaseModel):
+        return value.model_dump(mode="json")
+    if isinstance(value, dict):
+        return {key: plain(each) for key, each in value.items()}
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return [plain(each) for each in value]
+    return value
+
+
+def step(key: str | int) -> str:
+    """A key, or an index, as one step of a JSON pointer."""
+    return "/" + str(key).replace("~", "~0").replace("/", "~1")

@@ -1,0 +1,94 @@
+"""The issues that a reader tells, against the one fault of a case, or its warnings: the level diagnose."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Literal, Protocol
+
+from eurdf_conformance.comparison.difference import ABSENT, Difference, step
+from eurdf_conformance.protocol.message import Issue
+
+#: EU-DIA-013: where a text stops being YAML, or XML, each parser has its own opinion.
+_ANYWHERE = frozenset({"yaml-syntax", "xml-syntax"})
+
+Severity = Literal["error", "warning"]
+
+
+class Spot(Protocol):
+    """Where a diagnostic is expected; without line and column it is the file as a whole."""
+
+    @property
+    def file(self) -> str:
+        """Name of the file, without its folder."""
+
+    @property
+    def line(self) -> int | None:
+        """From 1."""
+
+    @property
+    def column(self) -> int | None:
+        """From 1, in characters."""
+
+
+class Finding(Protocol):
+    """A diagnostic that is expected."""
+
+    @property
+    def code(self) -> str:
+        """Its code."""
+
+    @property
+    def place(self) -> Spot:
+        """Where it is."""
+
+
+def fault_differences(fault: Finding, issues: Sequence[Issue]) -> list[Difference]:
+    """EU-DIA-001, EU-DIA-002: where issues are not the one error of a case, at its place, and nothing else."""
+    return _differences([fault], issues, "error")
+
+
+def warning_differences(warnings: Iterable[Finding], issues: Sequence[Issue]) -> list[Difference]:
+    """EU-DIA-001: where issues are not the warnings of a valid case, each at its place, and nothing else."""
+    return _differences(list(warnings), issues, "warning")
+
+
+def _differences(expected: Sequence[Finding], issues: Sequence[Issue], severity: Severity) -> list[Difference]:
+    found = []
+    rest = [(index, issue) for index, issue in enumerate(issues) if not _is_own(issue)]
+    codes = [issue.code for _, issue in rest]
+    for finding in expected:
+        matching = [numbered for numbered in rest if numbered[1].code == finding.code]
+        if not matching:
+            found.append(Difference("/issues", finding.code, codes, f"codes of what is told, {severity}"))
+            continue
+        # Several may have one code, at different places.
+        best = min(matching, key=lambda numbered: len(_misplaced(finding, severity, *numbered)))
+        found += _misplaced(finding, severity, *best)
+        rest.remove(best)
+    if not any(difference.pointer == "/issues" for difference in found):  # else it is told, by another code
+        found += [Difference("/issues" + step(index), ABSENT, issue, "told beside it") for index, issue in rest]
+    return found
+
+
+def _is_own(issue: Issue) -> bool:
+    """EU-DIA-006: a reader may warn of what is its own matter."""
+    return issue.severity == "warning" and issue.code is not None and issue.code.startswith("x-")
+
+
+def _misplaced(finding: Finding, severity: Severity, index: int, issue: Issue) -> list[Difference]:
+    """EU-DIA-004, EU-DIA-009 to -013."""
+    pointer, place = "/issues" + step(index), finding.place
+    members: list[tuple[str, object, object]] = [("severity", severity, issue.severity)]
+    if finding.code not in _ANYWHERE:
+        members += [
+            ("file", place.file, issue.file),
+            ("line", place.line, issue.line),
+            ("column", place.column, issue.column),
+        ]
+    elif issue.file is not None:
+        members.append(("file", place.file, issue.file))
+    return [
+        Difference(pointer + step(member), one, other, f"{finding.code}, {member}")
+        for member, one, other in members
+        if one != other
+    ]

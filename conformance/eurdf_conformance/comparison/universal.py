@@ -1,0 +1,100 @@
+"""EU-CAN-005, step 3: two revolutes with nothing of the URDF between them are one universal joint."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+
+from eurdf_conformance.comparison.coordinates import VELOCITIES, neutral
+from eurdf_conformance.protocol.message import CanonicalActuator, CanonicalJoint
+
+_TURNING = frozenset({"revolute", "continuous"})
+_LISTS = ("lower", "upper", "velocity", "effort", "damping", "friction", "armature")
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """Two joints that are one universal joint."""
+
+    name: str
+    first: CanonicalJoint
+    second: CanonicalJoint
+
+    def joint(self) -> CanonicalJoint:
+        """The one joint, between the outer two bodies; its lists are those of the two in a row."""
+        lists = {key: [*getattr(self.first, key), *getattr(self.second, key)] for key in _LISTS}
+        return self.first.model_copy(
+            update={"name": self.name, "type": "universal", "child": self.second.child, **lists}
+        )
+
+    def actuator(self, actuators: Mapping[str, CanonicalActuator]) -> CanonicalActuator | None:
+        """The one actuator where both joints have one; a motor on one of the two axes stays that joint's."""
+        if self.first.name not in actuators or self.second.name not in actuators:
+            return None
+        one, two = with_defaults(actuators[self.first.name], 1), with_defaults(actuators[self.second.name], 1)
+        return CanonicalActuator(
+            joint=self.name,
+            gear_ratio=[*(one.gear_ratio or ()), *(two.gear_ratio or ())],
+            rotor_inertia=[*(one.rotor_inertia or ()), *(two.rotor_inertia or ())],
+        )
+
+    def coordinates(self, configuration: Mapping[str, Sequence[float]]) -> list[float] | None:
+        """The two angles in a configuration that names one of the joints, or both; None where it names none."""
+        if self.first.name not in configuration and self.second.name not in configuration:
+            return None
+        return [
+            angle for joint in (self.first, self.second) for angle in configuration.get(joint.name, neutral("revolute"))
+        ]
+
+
+def universal_pairs(joints: Sequence[CanonicalJoint], links: Collection[str]) -> list[Pair]:
+    """The pairs of joints that are one universal joint.
+
+    Args:
+        joints: Joints of a canonical description.
+        links: Links of the URDF: a body that is named by no link of them is none of its bodies.
+    """
+    pairs: list[Pair] = []
+    for first in joints:
+        carried = [joint for joint in joints if joint.parent == first.child]
+        if first.child in links or len(carried) != 1:
+            continue
+        second = carried[0]
+        paired = {joint.name for pair in pairs for joint in (pair.first, pair.second)}
+        if first is second or {first.name, second.name} & paired or first.mimic or second.mimic:
+            continue
+        if first.type in _TURNING and _kind(first) == _kind(second):
+            pairs.append(Pair(_name(first.name, second.name), first, second))
+    return pairs
+
+
+def with_defaults(actuator: CanonicalActuator, velocities: int) -> CanonicalActuator:
+    """EU-CAN-005, step 6: `gear_ratio` and `rotor_inertia` left out are 1 and 0."""
+    return CanonicalActuator(
+        joint=actuator.joint,
+        gear_ratio=[1.0] * velocities if actuator.gear_ratio is None else actuator.gear_ratio,
+        rotor_inertia=[0.0] * velocities if actuator.rotor_inertia is None else actuator.rotor_inertia,
+    )
+
+
+def with_limits(joint: CanonicalJoint) -> CanonicalJoint:
+    """EU-CAN-005, step 4: a revolute joint without limits is continuous, a continuous one has the limits null."""
+    unlimited = all(limit is None for limit in (*joint.lower, *joint.upper))
+    if joint.type == "continuous" or (joint.type == "revolute" and unlimited):
+        return joint.model_copy(update={"type": "continuous", "lower": [None], "upper": [None]})
+    return joint
+
+
+def velocities(joint: CanonicalJoint | None) -> int:
+    """Number of velocities of a joint; 1 for one that is not known."""
+    return 1 if joint is None else VELOCITIES[joint.type]
+
+
+def _kind(joint: CanonicalJoint) -> str:
+    return with_limits(joint).type
+
+
+def _name(first: str, second: str) -> str:
+    head, mark, _ = first.rpartition("_")
+    other, other_mark, _ = second.rpartition("_")
+    return head if mark and other_mark and head == other and head else first

@@ -1,0 +1,138 @@
+"""What `case.yaml` says of a case. ``python -m eurdf_conformance.corpus.case`` writes its JSON Schema."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, model_validator
+
+from eurdf_conformance.level import Version
+
+#: The folders of cases, in the order in which cases are run.
+TOPICS = (
+    "yaml",
+    "schema",
+    "names",
+    "urdf",
+    "frames",
+    "joints",
+    "merging",
+    "closures",
+    "actuation",
+    "configurations",
+    "inertia",
+    "extensions",
+    "version1",
+    "robots",
+)
+
+SCHEMA_FILE = Path(__file__).with_name("case.schema.json")
+
+CaseId = Annotated[str, Field(pattern=r"^[a-z0-9]{6}$", description="Opaque and permanent; the name of the folder.")]
+ClauseId = Annotated[str, Field(pattern=r"^EU-[A-Z]{3}-[0-9]{3}$", examples=["EU-FRM-001"])]
+Code = Annotated[str, Field(pattern=r"^[a-z0-9]+(-[a-z0-9]+)*$", examples=["unknown-frame"])]
+Sentence = Annotated[str, Field(pattern=r"^[^\n]+\.$")]
+FileName = Annotated[str, Field(pattern=r"^[^/\\]+$")]
+Coordinates = Annotated[list[Annotated[float, Field(allow_inf_nan=False)]], Field(min_length=1)]
+
+
+class Part(BaseModel):
+    """A part of a case."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+
+
+class CasePlace(Part):
+    """Where a diagnostic is; without line and column it is the file as a whole."""
+
+    file: FileName = Field(description="Name of one of the two files.")
+    line: Annotated[int, Field(ge=1)] | None = None
+    column: Annotated[int, Field(ge=1)] | None = Field(None, description="In characters.")
+
+    @model_validator(mode="after")
+    def _both_or_neither(self) -> Self:
+        if (self.column is None) != (self.line is None):
+            raise ValueError("line and column stand together, or neither of them for the file as a whole")
+        return self
+
+
+class ExpectedWarning(Part):
+    """A warning that a valid case deserves."""
+
+    code: Code
+    place: CasePlace
+
+
+class Provenance(Part):
+    """Where the expectation comes from; never from a reader."""
+
+    expectation: Literal["hand", "oracle"] = Field(
+        description="hand: follows from the clauses, or is computed as the note says; oracle: written by the oracle."
+    )
+    note: str = Field("", description="For values by hand: how they were found.")
+
+
+class BaseCase(Part):
+    """What every case says."""
+
+    id: CaseId
+    title: Sentence = Field(description="What the case is about, as a sentence.")
+    version: Version = Field(description="Version of the format.")
+    clauses: list[ClauseId] = Field(min_length=1, description="The clauses that it tests, the main one first.")
+    features: list[str] = Field([], description="What of the format it uses that readers often lack.")
+    provenance: Provenance
+    robot: str | None = Field(None, description="A robot of the collection, in place of files beside this one.")
+    description: FileName = Field("robot.yaml", description="Name of the YAML file.")
+    urdf: str = Field("robot.urdf", description="Path of the URDF that it names, from its folder, existing or not.")
+
+
+class ValidCase(BaseCase):
+    """Two files that are right."""
+
+    valid: Literal[True]
+    warnings: list[ExpectedWarning] = Field([], description="All warnings that the files deserve.")
+    configurations: list[dict[str, Coordinates]] = Field(
+        [],
+        description="Where the robot is evaluated: by joint its coordinates; a joint left out stands at its neutral.",
+    )
+    frames: list[str] = Field([], description="Frames of which poses are asked for.")
+
+
+class InvalidCase(BaseCase):
+    """Two files with one fault."""
+
+    valid: Literal[False]
+    code: Code = Field(description="The one error.")
+    place: CasePlace
+    twin: CaseId = Field(description="The valid case that differs from this one by one edit.")
+    repair: Sentence = Field(description="What to do about it, as a sentence.")
+    either: bool = Field(
+        False,
+        description="Whether the fault, of inertia or closure, leaves a robot that a reader may accept or reject.",
+    )
+
+
+Case = ValidCase | InvalidCase
+
+CASE: TypeAdapter[Case] = TypeAdapter(Annotated[Case, Field(discriminator="valid")])
+
+
+def case_schema() -> dict[str, Any]:
+    """JSON Schema (2020-12) of `case.yaml`."""
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "$id": "urn:extended-urdf:schema:conformance-case",
+        "title": "A case of the conformance suite of Extended URDF",
+        **CASE.json_schema(),
+    }
+
+
+def schema_text() -> str:
+    """The schema as its file holds it."""
+    return json.dumps(case_schema(), indent=2, ensure_ascii=False) + "\n"
+
+
+if __name__ == "__main__":
+    SCHEMA_FILE.write_text(schema_text(), encoding="utf-8")

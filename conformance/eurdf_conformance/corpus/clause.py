@@ -1,0 +1,70 @@
+"""The clauses of the specification, from the registry that is drawn from its text."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from eurdf_conformance.level import VERSIONS, Version
+
+#: In an installed package, and in a checkout.
+_REGISTRIES = (
+    Path(__file__).parents[1] / "spec" / "clauses.json",
+    Path(__file__).parents[3] / "spec" / "clauses.json",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Clause:
+    """One requirement.
+
+    Attributes:
+        id: Permanent id.
+        keyword: MUST, MUST NOT, SHOULD, SHOULD NOT or MAY.
+        text: What it says.
+        level: Level at which it is tested; ``reader`` where no suite sees it.
+        versions: Versions of the format that it is of.
+        codes: Diagnostics that say that it is not met.
+        testable: Whether a suite can test it.
+    """
+
+    id: str
+    keyword: str
+    text: str
+    level: str
+    versions: tuple[Version, ...]
+    codes: frozenset[str]
+    testable: bool
+
+    @property
+    def must(self) -> bool:
+        """Whether breaking it is an error."""
+        return self.keyword.startswith("MUST")
+
+
+def read_clauses(path: Path | None = None) -> Mapping[str, Clause]:
+    """The clauses by id.
+
+    Args:
+        path: A registry; that of this edition if left out.
+    """
+    path = path or next(path for path in _REGISTRIES if path.is_file())
+    return {
+        entry["id"]: Clause(
+            entry["id"],
+            entry["keyword"],
+            entry["text"],
+            entry["level"],
+            tuple(version for version in VERSIONS if int(version) in entry["versions"]),
+            frozenset(entry["codes"]),
+            entry["untested"] is None and entry["level"] != "reader",
+        )
+        for entry in json.loads(path.read_text(encoding="utf-8"))["clauses"]
+    }
+
+
+def all_codes(clauses: Mapping[str, Clause]) -> frozenset[str]:
+    """The codes of all diagnostics."""
+    return frozenset(code for clause in clauses.values() for code in clause.codes)

@@ -1,0 +1,147 @@
+"""What is expected of the valid cases, by the oracle.
+
+``python -m eurdf_conformance.corpus.expect [ID…]`` writes the `expected.json` of all valid cases, or of those named;
+``--check`` writes nothing and says which differ. One that is written by hand is never overwritten.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from pydantic import ValidationError
+
+from eurdf_conformance.comparison.canonical import canonical_differences
+from eurdf_conformance.comparison.values import values_differences
+from eurdf_conformance.corpus.case import ValidCase
+from eurdf_conformance.corpus.expected import EXPECTED_FILE, Expected, expected_text
+from eurdf_conformance.corpus.read import CorpusCase, read_cases
+from eurdf_conformance.oracle import NotRead, OracleRobot, read
+from eurdf_conformance.protocol.message import Quantity, Values
+
+#: What a level asks for at each configuration.
+KINEMATICS: tuple[Quantity, ...] = ("poses", "residuals", "jacobian")
+DYNAMICS: tuple[Quantity, ...] = ("mass_matrix", "mass", "center_of_mass")
+
+#: Digits kept of a number, relative to the largest of its kind: what is below is rounding of the machine.
+_DIGITS = 13
+
+
+def expect(case: CorpusCase) -> Expected:
+    """What the oracle expects of a valid case.
+
+    Raises:
+        NotRead: The oracle is not sure of the files.
+    """
+    assert isinstance(case.case, ValidCase)
+    robot = read(case.description, case.urdf, case.case.version)
+    configurations = case.case.configurations
+    return Expected(
+        bodies=_bodies(robot),
+        robot=robot.canonical(),
+        values=[
+            _rounded(robot.evaluate(configuration, case.case.frames, (*KINEMATICS, *DYNAMICS)))
+            for configuration in configurations
+        ],
+        sizes=[_round(robot.size(configuration)) for configuration in configurations],
+    )
+
+
+def stale(case: CorpusCase) -> Iterator[str]:
+    """Why an `expected.json` is not what the oracle expects: numbers may differ by as much as two readers may."""
+    assert isinstance(case.case, ValidCase)
+    try:
+        found, now = case.expected, expect(case)
+    except (OSError, ValidationError, NotRead) as error:
+        yield f"{type(error).__name__}: {error}"
+        return
+    if sorted(map(sorted, found.bodies)) != sorted(map(sorted, now.bodies)):
+        yield f"bodies: expected {now.bodies}, given {found.bodies}"
+    yield from map(str, canonical_differences(now.robot, found.robot, now.bodies))
+    if len(found.values) != len(now.values) or len(found.sizes) != len(now.sizes):
+        yield f"values: {len(found.values)}, sizes: {len(found.sizes)}, configurations: {len(now.values)}"
+        return
+    by_hand = case.case.provenance.expectation == "hand"
+    for index, (one, other, size) in enumerate(zip(now.values, found.values, now.sizes, strict=True)):
+        if by_hand:  # values by hand may be some of all
+            one = one.model_copy(update={name: None for name in Values.model_fields if getattr(other, name) is None})
+        yield from (str(each.within(f"/values/{index}")) for each in values_differences(one, other, size))
+    for index, (now_size, size) in enumerate(zip(now.sizes, found.sizes, strict=True)):
+        if not math.isclose(now_size, size, rel_tol=1e-6, abs_tol=1e-9):
+            yield f"/sizes/{index}: expected {now_size}, given {size}"
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Write, or check, what is expected of valid cases.
+
+    Returns:
+        0 where all is well, 1 where an expectation is not, or could not be written.
+    """
+    parser = argparse.ArgumentParser(prog="python -m eurdf_conformance.corpus.expect", description=__doc__)
+    parser.add_argument("ids", nargs="*", metavar="ID", help="of a valid case; all of them if left out")
+    parser.add_argument("--check", action="store_true", help="write nothing, say which differ")
+    options = parser.parse_args(arguments)
+    cases = [case for case in read_cases() if isinstance(case.case, ValidCase)]
+    if unknown := set(options.ids) - {case.id for case in cases}:
+        parser.error(f"there is no valid case {', '.join(sorted(unknown))}")
+    failed = False
+    for case in cases:
+        if options.ids and case.id not in options.ids:
+            continue
+        path, by_hand = case.folder / EXPECTED_FILE, case.case.provenance.expectation == "hand"
+        if options.check or (by_hand and path.exists()):
+            faults = list(stale(case))
+            failed |= bool(faults)
+            sys.stdout.writelines(f"{path}: {fault}\n" for fault in faults)
+            continue
+        try:
+            text = expected_text(expect(case))
+        except NotRead as error:
+            failed = True
+            sys.stdout.write(f"{path}: the oracle does not read the files: {error}\n")
+            continue
+        # An expectation that says the same is left as it is, whatever the last digit of this machine.
+        if not path.exists() or any(stale(case)):
+            path.write_text(text, encoding="utf-8")
+            sys.stdout.write(f"{path}: written\n")
+    return int(failed)
+
+
+def _bodies(robot: OracleRobot) -> list[list[str]]:
+    """For each body its links; a body without a link of the URDF is left out."""
+    bodies: defaultdict[int, list[str]] = defaultdict(list)
+    for link, placed in robot.tree.links.items():
+        bodies[placed.body].append(link)
+    return sorted(sorted(body, key=str.encode) for body in bodies.values())
+
+
+def _rounded(values: Values) -> Values:
+    return Values.model_validate(_round(values.model_dump(mode="python", exclude_none=True)), strict=False)
+
+
+def _round(value: Any, scale: float | None = None) -> Any:
+    """Numbers without their last digits; those of one list or mapping of numbers are of one kind."""
+    if isinstance(value, dict):
+        return {key: _round(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        scale = scale or _largest(value)
+        return [_round(each, scale) for each in value]
+    if isinstance(value, float):
+        scale = scale or abs(value)
+        digits = _DIGITS - (math.ceil(math.log10(scale)) if scale else 0)
+        return round(value, digits) + 0.0
+    return value
+
+
+def _largest(value: Any) -> float:
+    if isinstance(value, list | tuple):
+        return max((_largest(each) for each in value), default=0.0)
+    return abs(value) if isinstance(value, float) else 0.0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

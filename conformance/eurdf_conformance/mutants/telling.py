@@ -1,0 +1,158 @@
+"""What is wrong is told with another code or severity, twice, or not at all; or it is made no difference of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from eurdf import description
+from eurdf.diagnostics.registry import REGISTRY, Phase
+from eurdf_conformance.adapters.reference import Reference
+from eurdf_conformance.mutants.deviation import Deviation, around, instead, result
+from eurdf_conformance.mutants.mutant import mutant
+from eurdf_conformance.mutants.of_the_reference import each_issue, issues, refused
+from eurdf_conformance.protocol.message import Accepted, Issue, Rejected
+from eurdf_conformance.protocol.reply import accepted, rejected
+from eurdf_conformance.verdict.verdict import Verdict
+
+_Answer = Accepted | Rejected
+_LATE = (Phase.INERTIA, Phase.CLOSURE)
+
+
+def _answers(change: Callable[[_Answer], _Answer]) -> Deviation:
+    return result(Reference, "load", change)
+
+
+def _phases(answer: _Answer) -> set[Phase]:
+    return {REGISTRY[issue.code or ""].phase for issue in answer.issues if issue.severity == "error"}
+
+
+@mutant("EU-CNF-001")
+def everything_accepted() -> Deviation:
+    """Whatever is wrong, the answer is accepted, with the errors beside it."""
+    return _answers(lambda answer: accepted(None, answer.issues) if isinstance(answer, Rejected) else answer)
+
+
+@mutant("EU-CNF-001")
+def semantic_errors_accepted() -> Deviation:
+    """Errors of phase semantic are told beside a robot, as those of inertia may be."""
+
+    def built(answer: _Answer) -> _Answer:
+        return accepted(None, answer.issues) if _phases(answer) == {Phase.SEMANTIC} else answer
+
+    return _answers(built)
+
+
+@mutant("EU-CNF-002")
+def warnings_reject() -> Deviation:
+    """A description that deserves a warning is rejected."""
+    return _answers(lambda answer: rejected(*answer.issues) if answer.issues else answer)
+
+
+@mutant("EU-CNF-003")
+def late_errors_are_not_told() -> Deviation:
+    """A robot with an error of inertia or closure is accepted without a word."""
+    return issues(lambda found: [issue for issue in found if REGISTRY[issue.code or ""].phase not in _LATE])
+
+
+@mutant("EU-PRO-004")
+def fault_is_a_failure() -> Deviation:
+    """Where the description is wrong, the reader says that it failed, as what raises an exception does."""
+
+    def failed(answer: _Answer) -> _Answer:
+        if isinstance(answer, Rejected):
+            raise ValueError(answer.issues[0].message)
+        return answer
+
+    return _answers(failed)
+
+
+fault_is_a_failure.caught_by = frozenset({Verdict.ERRORED})
+
+
+@mutant("EU-SEC-005", caught_by=frozenset({Verdict.ERRORED}))
+def fault_of_a_file_is_not_caught() -> Deviation:
+    """What the parser of a file raises is caught by nobody."""
+    return instead(description, "Fault", KeyboardInterrupt)
+
+
+@mutant("EU-PRO-005", caught_by=frozenset({Verdict.ERRORED}))
+def gone_after_a_rejection() -> Deviation:
+    """After it has rejected a description, the reader reads nothing."""
+
+    def load(original: Any, self: Any, description: Path, urdf: Path) -> _Answer:
+        if vars(self).get("rejects"):
+            raise RuntimeError("the parser is not in a state to read")
+        answer: _Answer = original(self, description, urdf)
+        self.rejects = isinstance(answer, Rejected)
+        return answer
+
+    return around(Reference, "load", load)
+
+
+@mutant("EU-DIA-001")
+def one_code_for_all() -> Deviation:
+    """Whatever is wrong has one code."""
+    return each_issue(lambda issue: {"code": "wrong-value"})
+
+
+@mutant("EU-DIA-001")
+def told_twice() -> Deviation:
+    """What is wrong is told twice."""
+    return issues(lambda found: [*found, *found])
+
+
+@mutant("EU-DIA-001")
+def no_codes() -> Deviation:
+    """What is wrong has no code, only a sentence."""
+    return each_issue(lambda issue: {"code": None})
+
+
+@mutant("EU-DIA-002")
+def what_follows_is_told() -> Deviation:
+    """Beside a fault of a name it is told that no configuration closes the loops."""
+
+    def more(found: list[Issue]) -> list[Issue]:
+        if not any(issue.severity == "error" for issue in found):
+            return found
+        return [*found, found[0].model_copy(update={"code": "closure-cannot-close"})]
+
+    return issues(more)
+
+
+@mutant("EU-DIA-002")
+def frame_at_fault_is_unknown() -> Deviation:
+    """Where a frame of the description is at fault, each closure that uses it is told to use an unknown one."""
+    from eurdf.mechanism.frame_names import FrameNames
+
+    def by_name(original: Any, self: Any, reference: Any) -> Any:
+        if reference.name in self._frames and self._frames[reference.name] is None:
+            self._diagnostics.report("unknown-frame", "it is unknown", self._document.place(reference.pointer))
+        return original(self, reference)
+
+    return around(FrameNames, "_by_name", by_name)
+
+
+@mutant("EU-DIA-004")
+def warnings_are_errors() -> Deviation:
+    """Whatever is told is an error."""
+    return each_issue(lambda issue: {"severity": "error"})
+
+
+@mutant("EU-DIA-004")
+def errors_are_warnings() -> Deviation:
+    """Whatever is told is a warning."""
+    return each_issue(lambda issue: {"severity": "warning"})
+
+
+@mutant("EU-DIA-005")
+def code_of_its_own() -> Deviation:
+    """Codes are those of the reader's own, which do not begin with x-."""
+    return each_issue(lambda issue: {"code": f"{issue.code}-error"})
+
+
+@mutant("EU-CNF-004")
+def what_is_lacked_is_wrong() -> Deviation:
+    """A reader that lacks helical joints says that they are wrong."""
+    return refused(lambda read: any(joint.type == "helical" for joint in read.mechanism.joints if read.mechanism))

@@ -1,0 +1,88 @@
+"""The canonical description, EU-CAN-001."""
+
+from __future__ import annotations
+
+from typing import Any, cast
+
+from eurdf_conformance.oracle.configuration import stated
+from eurdf_conformance.oracle.description import Actuator, Description
+from eurdf_conformance.oracle.joint_property import properties
+from eurdf_conformance.oracle.not_read import NotRead
+from eurdf_conformance.oracle.tree import Joint, Tree
+from eurdf_conformance.oracle.urdf import Urdf
+from eurdf_conformance.protocol.message import (
+    CanonicalActuator,
+    CanonicalClosure,
+    CanonicalJoint,
+    CanonicalMimic,
+    CanonicalRobot,
+)
+
+
+def canonical(urdf: Urdf, description: Description, tree: Tree) -> CanonicalRobot:
+    """What was read, without style."""
+    joints = {joint.name: joint for joint in tree.joints}
+    link = links_of_bodies(tree)
+    motors = {actuator.joint: actuator for actuator in description.actuators}
+    return CanonicalRobot(
+        name=urdf.name,
+        version=description.version,
+        root=description.root,
+        links=list(urdf.links),
+        frames=list(description.frames),
+        joints=[
+            canonical_joint(joint, link[joint.parent], link[i], motors.get(joint.name))
+            for i, joint in enumerate(tree.joints)
+            if i > 0
+        ],
+        closures=[
+            CanonicalClosure(
+                name=closure.name,
+                type=closure.type,
+                a=link[tree.refer(closure.a).body],
+                b=link[tree.refer(closure.b).body],
+            )
+            for closure in description.closures
+        ],
+        actuators=[canonical_actuator(actuator, joints) for actuator in description.actuators],
+        configurations={
+            name: {joint: q.tolist() for joint, q in stated(tree, configuration).items()}
+            for name, configuration in description.configurations.items()
+        },
+        own=description.own,
+    )
+
+
+def links_of_bodies(tree: Tree) -> list[str]:
+    """A link of each body. That between the two joints that version 1 makes of one has none, but a name of its own."""
+    found: dict[int, str] = {}
+    for name, placed in tree.links.items():
+        found.setdefault(placed.body, name)
+    for i, joint in enumerate(tree.joints):
+        name = joint.name
+        while i not in found and name in tree.links:
+            name += "'"
+        found.setdefault(i, name)
+    return [found[i] for i in range(len(tree.joints))]
+
+
+def canonical_joint(joint: Joint, parent: str, child: str, motor: Actuator | None) -> CanonicalJoint:
+    """A joint that moves."""
+    mimic = joint.mimic
+    return CanonicalJoint(
+        name=joint.name,
+        type=cast(Any, joint.type),
+        parent=parent,
+        child=child,
+        mimic=CanonicalMimic(**vars(mimic)) if mimic else None,
+        **vars(properties(joint, motor)),
+    )
+
+
+def canonical_actuator(actuator: Actuator, joints: dict[str, Joint]) -> CanonicalActuator:
+    """A joint with a motor, along each of its velocities, EU-ACT-007."""
+    if actuator.joint not in joints or not (nv := joints[actuator.joint].kind.nv) or joints[actuator.joint].mimic:
+        raise NotRead(f"the actuator {actuator.joint!r}")
+    return CanonicalActuator(
+        joint=actuator.joint, gear_ratio=[actuator.gear_ratio] * nv, rotor_inertia=[actuator.rotor_inertia] * nv
+    )

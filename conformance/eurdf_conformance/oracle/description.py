@@ -1,0 +1,77 @@
+"""What a description says, whatever its version: the input of `tree`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from eurdf_conformance.level import Version
+from eurdf_conformance.oracle.spatial import Array
+
+#: A number for all coordinates or velocities of a joint, or one each.
+PerNumber = list[float]
+
+
+@dataclass(frozen=True)
+class FrameReference:
+    """A frame, as chapter Frames lets one say it: by a name, or at a pose on a link or a joint."""
+
+    on: Literal["name", "link", "joint"]
+    name: str
+    #: In the frame of that name, link or joint.
+    pose: Array
+
+
+@dataclass(frozen=True)
+class Closure:
+    """Frames A and B, held together."""
+
+    name: str
+    type: Literal["3d", "6d"]
+    a: FrameReference
+    b: FrameReference
+
+
+@dataclass(frozen=True)
+class Change:
+    """What a joint becomes, and what is stated of it; what is not stated stays the URDF's."""
+
+    #: None: as it is. "pair": the two revolutes that version 1 makes, EU-ONE-006.
+    type: str | None = None
+    #: Unit vectors in the joint's frame, of a universal joint or a pair.
+    axes: tuple[Array, ...] = ()
+    #: Letters of the names of a pair.
+    letters: str = ""
+    #: m a revolution.
+    pitch: float = 0.0
+    merges: tuple[str, ...] = ()
+    #: lower, upper, velocity, effort, damping, friction, armature.
+    stated: dict[str, PerNumber] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Actuator:
+    """A joint with a motor."""
+
+    joint: str
+    gear_ratio: float = 1.0
+    #: kg·m²
+    rotor_inertia: float = 0.0
+
+
+@dataclass(frozen=True)
+class Description:
+    """One YAML file."""
+
+    version: Version = "2"
+    root: Literal["fixed", "floating"] = "fixed"
+    closures: tuple[Closure, ...] = ()
+    #: By name; with `merges` that of the joint made, which need be none of the URDF's.
+    changes: dict[str, Change] = field(default_factory=dict)
+    actuators: tuple[Actuator, ...] = ()
+    #: Frames that it adds, by name.
+    frames: dict[str, FrameReference] = field(default_factory=dict)
+    #: By name, for each joint its coordinates.
+    configurations: dict[str, dict[str, list[float]]] = field(default_factory=dict)
+    #: The user's own data, by JSON pointer.
+    own: dict[str, Any] = field(default_factory=dict)

@@ -1,0 +1,56 @@
+"""Rank of K and the words of dimension: chapter Scope and terms."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from eurdf_conformance.oracle.spatial import Array
+
+#: Singular values of K, made free of units, below which there is nothing but rounding.
+ROUNDING = 1e-9
+
+#: Where the loops are open by more, they are not closed, and the rank is that of the open ones.
+CLOSED = 1e-6
+
+
+@dataclass(frozen=True)
+class Dimensions:
+    """Of a mechanism at one configuration."""
+
+    nv: int
+    nc: int
+    rank: int
+    mobility: int
+    uncontrolled: int
+
+
+def dimensions(K: Array, S: Array, open_by: float, rows: Array, columns: Array) -> Dimensions:
+    """Of a mechanism whose loops are open by no more than `open_by`.
+
+    Units are taken out first: a row in metres is divided by the size of the robot, a column of a joint that slides is
+    multiplied by it. A loop that is left open by rounded numbers makes redundant rows independent by about as much, so
+    what is no larger than that does not count.
+
+    Args:
+        K: The constraint Jacobian.
+        S: The selection of the actuated velocities.
+        open_by: Largest residual, by the size of the robot.
+        rows: The divisor of each row.
+        columns: The factor of each column.
+    """
+    nc, nv = K.shape
+    scaled = K / rows[:, None] * columns
+    least = ROUNDING + 10.0 * min(open_by, CLOSED)
+    found = rank(scaled, least)
+    held = rank(np.vstack([scaled, S]), least)
+    return Dimensions(nv, nc, found, nv - found, nv - held)
+
+
+def rank(A: Array, least: float) -> int:
+    """Number of singular values above `least`, or above `least` times the largest where that is more than 1."""
+    if not A.size:
+        return 0
+    values = np.linalg.svd(A, compute_uv=False)
+    return int(np.sum(values > least * max(1.0, values[0])))

@@ -1,0 +1,23 @@
+"""The user's own data, by JSON pointer (RFC 6901): chapter Extensions, clauses EU-CAN-002 and 003."""
+
+from __future__ import annotations
+
+from typing import Any
+
+
+def escaped(key: str) -> str:
+    """A key as a part of a pointer."""
+    return key.replace("~", "~0").replace("/", "~1")
+
+
+def own_data(value: Any, pointer: str = "") -> dict[str, Any]:
+    """Every key that begins with `x-`, at any level. What stands under one is a part of its value."""
+    found: dict[str, Any] = {}
+    if isinstance(value, list):
+        for i, item in enumerate(value):
+            found |= own_data(item, f"{pointer}/{i}")
+    elif isinstance(value, dict):
+        for key, member in value.items():
+            inner = f"{pointer}/{escaped(key)}"
+            found |= {inner: member} if key.startswith("x-") else own_data(member, inner)
+    return found

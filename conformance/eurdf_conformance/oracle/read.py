@@ -1,0 +1,66 @@
+"""Reading a robot from its two files."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+from eurdf_conformance.level import Version
+from eurdf_conformance.oracle.description import Description
+from eurdf_conformance.oracle.merging import with_merges_found
+from eurdf_conformance.oracle.not_read import NotRead
+from eurdf_conformance.oracle.plain_value import text
+from eurdf_conformance.oracle.robot import OracleRobot
+from eurdf_conformance.oracle.tree import build
+from eurdf_conformance.oracle.urdf import read_urdf
+from eurdf_conformance.oracle.version1 import KEYS as KEYS_1
+from eurdf_conformance.oracle.version1 import version1
+from eurdf_conformance.oracle.version2 import KEYS as KEYS_2
+from eurdf_conformance.oracle.version2 import version2
+from eurdf_conformance.oracle.yaml_text import value_of
+
+
+def read(description: Path | None, urdf: Path, version: Version | None = None) -> OracleRobot:
+    """The robot of two files that are valid.
+
+    Args:
+        description: The YAML file; None: there is none, and the URDF is all.
+        urdf: The URDF that it names; what it says itself of where that is does not count here.
+        version: The version that the description must be of; of a bare URDF, that which it is read as (2 if left out).
+
+    Raises:
+        NotRead: The oracle is not sure what they say.
+    """
+    found = described(description) if description else Description(version=version or "2")
+    if version not in (None, found.version):
+        raise NotRead(f"the description is of version {found.version}")
+    for names in (closure.name for closure in found.closures), (actuator.joint for actuator in found.actuators):
+        if any(count > 1 for count in Counter(names).values()):
+            raise NotRead("a closure or an actuator that stands twice")
+    source = read_urdf(urdf)
+    if found.version == "1":
+        found = with_merges_found(found, source)
+    robot = OracleRobot(source, found, build(source, found))
+    robot.canonical()  # so that every name in the description is looked up
+    return robot
+
+
+def described(path: Path) -> Description:
+    """The description in a file, of the version that it says, EU-VER-001 to 003."""
+    document = value_of(text_of(path))
+    if not isinstance(document, dict):
+        raise NotRead("the description is no mapping")
+    if "extended_urdf" in document:
+        text(document["extended_urdf"])
+        return version2(document)
+    if document.keys() & set(KEYS_2) and not document.keys() & set(KEYS_1):
+        raise NotRead("keys of version 2 without its first")
+    return version1(document)
+
+
+def text_of(path: Path) -> str:
+    """UTF-8 text, with or without a byte order mark, EU-FIL-003."""
+    try:
+        return path.read_bytes().decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise NotRead(f"{path.name} is not UTF-8") from error

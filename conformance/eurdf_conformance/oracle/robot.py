@@ -1,0 +1,162 @@
+"""A robot of the oracle: everything that the protocol asks for."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from eurdf_conformance.oracle import canonical, configuration, mass_matrix
+from eurdf_conformance.oracle.closing import closed
+from eurdf_conformance.oracle.configuration import Configuration
+from eurdf_conformance.oracle.description import Description
+from eurdf_conformance.oracle.dimensions import Dimensions, dimensions
+from eurdf_conformance.oracle.jacobian import jacobian
+from eurdf_conformance.oracle.joint_property import properties
+from eurdf_conformance.oracle.kinematics import Kinematics, kinematics
+from eurdf_conformance.oracle.residual import residual
+from eurdf_conformance.oracle.spatial import Array
+from eurdf_conformance.oracle.tree import Placed, Tree
+from eurdf_conformance.oracle.urdf import Inertia, Urdf
+from eurdf_conformance.protocol.message import CanonicalRobot, Jacobian, MassMatrix, Pose, Quantity, Values
+
+
+@dataclass(frozen=True)
+class OracleRobot:
+    """What two files say. Configurations are by joint, in the coordinates of files; one left out is at its neutral."""
+
+    urdf: Urdf
+    description: Description
+    tree: Tree
+
+    def canonical(self) -> CanonicalRobot:
+        """What was read, without style."""
+        return canonical.canonical(self.urdf, self.description, self.tree)
+
+    def neutral(self) -> dict[str, list[float]]:
+        """The configuration at which every joint stands at its neutral."""
+        return {name: list(q) for name, q in configuration.neutral(self.tree).items()}
+
+    def moved(self, q: Configuration, v: Array) -> dict[str, list[float]]:
+        """The configuration q ⊕ v, after 1 s of a constant velocity; v in the order of `velocities`."""
+        return configuration.moved(self.tree, q, v)
+
+    @cached_property
+    def velocities(self) -> list[tuple[str, int]]:
+        """The columns of K and M: a joint, and which of its velocities."""
+        return configuration.velocities(self.tree)
+
+    @cached_property
+    def closures(self) -> dict[str, tuple[str, Placed, Placed]]:
+        """By name, their types and their frames A and B."""
+        refer = self.tree.refer
+        return {
+            closure.name: (closure.type, refer(closure.a), refer(closure.b)) for closure in self.description.closures
+        }
+
+    @cached_property
+    def masses(self) -> list[tuple[Inertia, Placed]]:
+        """The inertias of links, and where the links are."""
+        places = self.tree.links
+        return [(link.inertia, places[name]) for name, link in self.urdf.links.items() if link.inertia]
+
+    @cached_property
+    def _sharing(self) -> Array:
+        return configuration.sharing(self.tree)
+
+    @cached_property
+    def armature(self) -> Array:
+        """One a velocity, kg·m² or kg."""
+        motors = {actuator.joint: actuator for actuator in self.description.actuators}
+        found = [properties(joint, motors.get(joint.name)).armature for joint in self.tree.joints if not joint.mimic]
+        return np.array([each for joint in found for each in joint])
+
+    def kinematics(self, q: Configuration) -> Kinematics:
+        """Where the bodies are, and how they can move."""
+        return kinematics(self.tree, configuration.coordinates(self.tree, q))
+
+    @cached_property
+    def bodies(self) -> list[list[str]]:
+        """For each body of the URDF its links: those that fixed or locked joints hold together."""
+        found: dict[int, list[str]] = {}
+        for name, place in self.tree.links.items():
+            found.setdefault(place.body, []).append(name)
+        return list(found.values())
+
+    def residuals(self, q: Configuration) -> dict[str, Array]:
+        """The rows of r of each closure; m, rad."""
+        at = self.kinematics(q)
+        return {name: residual(at, *closure) for name, closure in self.closures.items()}
+
+    def jacobians(self, q: Configuration) -> dict[str, Array]:
+        """The rows of K of each closure."""
+        at = self.kinematics(q)
+        return {name: jacobian(at, self._sharing, *closure) for name, closure in self.closures.items()}
+
+    def residual(self, q: Configuration) -> Array:
+        """The rows of r of all closures, in their order."""
+        return np.concatenate([np.zeros(0), *self.residuals(q).values()])
+
+    def jacobian(self, q: Configuration) -> Array:
+        """All rows of K."""
+        return np.vstack([np.zeros((0, len(self.velocities))), *self.jacobians(q).values()])
+
+    def closed(self, q: Configuration) -> Configuration:
+        """A configuration near q at which all closures are closed, or if there is none as nearly as can be."""
+        return closed(q, self.residual, self.jacobian, self.moved)
+
+    def mass_matrix(self, q: Configuration) -> Array:
+        """M, with armatures."""
+        return mass_matrix.mass_matrix(self.kinematics(q), self._sharing, self.armature, self.masses)
+
+    def size(self, q: Configuration) -> float:
+        """L: the largest distance of two frames, m, EU-PRO-008."""
+        at = self.kinematics(q)
+        frames = [*self.tree.links.values(), *self.tree.joint_frames.values(), *self.tree.added.values()]
+        frames += [frame for _, *pair in self.closures.values() for frame in pair]
+        points = np.array([at.pose(frame)[:3, 3] for frame in frames])
+        return float(max(np.max(np.linalg.norm(points - point, axis=1)) for point in points))
+
+    def dimensions(self, q: Configuration) -> Dimensions:
+        """Rank, mobility and the other words of dimension, which are meant at a closed configuration."""
+        L = self.size(q) or 1.0
+        rows = np.concatenate([[], *([L] * 3 + [1.0] * (len(r) - 3) for r in self.residuals(q).values())])
+        columns = np.array([L if kind == "l" else 1.0 for kind in configuration.kinds(self.tree)])
+        driven = {actuator.joint for actuator in self.description.actuators}
+        S = np.eye(len(columns))[[name in driven for name, _ in self.velocities]]
+        open_by = float(np.max(np.abs(self.residual(q) / rows), initial=0.0))
+        return dimensions(self.jacobian(q), S, open_by, rows, columns)
+
+    def evaluate(self, q: Configuration, frames: Sequence[str], quantities: Sequence[Quantity]) -> Values:
+        """The answer to `evaluate` at one configuration: chapter The parser protocol, Values."""
+        at = self.kinematics(q)
+        values = Values()
+        columns = self.velocities
+        for quantity in quantities:
+            found: object
+            match quantity:
+                case "poses":
+                    found = {name: world_pose(at, self.tree.frame(name)) for name in frames}
+                case "residuals":
+                    found = {name: rows.tolist() for name, rows in self.residuals(q).items()}
+                case "jacobian":
+                    found = Jacobian(
+                        columns=columns, rows={name: rows.tolist() for name, rows in self.jacobians(q).items()}
+                    )
+                case "mass_matrix":
+                    found = MassMatrix(columns=columns, matrix=self.mass_matrix(q).tolist())
+                case "mass":
+                    found = mass_matrix.mass(self.masses)
+                case "center_of_mass":
+                    center = mass_matrix.center_of_mass(at, self.masses)
+                    found = None if center is None else center.tolist()
+            values = values.model_copy(update={quantity: found})
+        return values
+
+
+def world_pose(at: Kinematics, frame: Placed) -> Pose:
+    """Of a frame in the world."""
+    wMf = at.root @ at.pose(frame)
+    return Pose(rotation=wMf[:3, :3].tolist(), translation=wMf[:3, 3].tolist())

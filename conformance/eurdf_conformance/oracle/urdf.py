@@ -1,0 +1,228 @@
+"""The URDF as it is written: links, joints and inertias, chapter The URDF. Shapes are not read."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from xml.parsers import expat
+
+import numpy as np
+
+from eurdf_conformance.oracle.not_read import NotRead
+from eurdf_conformance.oracle.spatial import Array, from_rpy, pose, unit
+
+_NUMBER = re.compile(r"[-+]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][-+]?[0-9]+)?")
+_TYPES = ("revolute", "continuous", "prismatic", "planar", "floating", "fixed")
+
+
+@dataclass(frozen=True)
+class Inertia:
+    """Of a link, in its frame."""
+
+    #: kg
+    mass: float
+    #: Centre of mass, m.
+    center: Array
+    #: About the centre of mass, along the axes of the link, kg·m².
+    moments: Array
+
+
+@dataclass(frozen=True)
+class Link:
+    """A link; one without `inertial` weighs nothing."""
+
+    name: str
+    inertia: Inertia | None
+
+
+@dataclass(frozen=True)
+class Mimic:
+    """q = multiplier · q_joint + offset, rad or m, EU-URD-032."""
+
+    joint: str
+    multiplier: float
+    offset: float
+
+
+@dataclass(frozen=True)
+class UrdfJoint:
+    """A joint; a limit is None where there is none. Units m, rad, N, s."""
+
+    name: str
+    type: str
+    parent: str
+    child: str
+    #: pMj, the pose of its frame in its parent's.
+    origin: Array
+    #: Unit vector in the joint's frame, EU-URD-035.
+    axis: Array
+    lower: float | None
+    upper: float | None
+    velocity: float | None
+    effort: float | None
+    damping: float
+    friction: float
+    mimic: Mimic | None
+
+
+@dataclass(frozen=True)
+class Urdf:
+    """A tree of links, by name."""
+
+    name: str
+    links: dict[str, Link]
+    joints: dict[str, UrdfJoint]
+
+    @property
+    def root(self) -> str:
+        """The one link without a parent, EU-URD-018."""
+        carried = {joint.child for joint in self.joints.values()}
+        (root,) = (name for name in self.links if name not in carried)
+        return root
+
+    def below(self, link: str) -> list[UrdfJoint]:
+        """The joints on a link, in the order of the file."""
+        return [joint for joint in self.joints.values() if joint.parent == link]
+
+
+@dataclass(frozen=True)
+class Element:
+    """An element of the file. Names are as written: a prefix is a part of the name, and needs no definition."""
+
+    name: str
+    attributes: dict[str, str]
+    children: list[Element]
+
+    def all(self, name: str) -> list[Element]:
+        """The elements of a name in this one."""
+        return [child for child in self.children if child.name == name]
+
+    def one(self, name: str) -> Element:
+        """The element of a name in this one; an empty one where there is none."""
+        found = self.all(name)
+        if len(found) > 1:
+            raise NotRead(f"{len(found)} elements {name!r} in one {self.name!r}")
+        return found[0] if found else Element(name, {}, [])
+
+    def text(self, name: str) -> str:
+        """An attribute that must be there."""
+        if not self.attributes.get(name, "").strip():
+            raise NotRead(f"an element {self.name!r} without {name!r}")
+        return self.attributes[name]
+
+    def number(self, name: str, default: float | None = None) -> float:
+        """An attribute of one number."""
+        return float(self.numbers(name, None if default is None else [default])[0])
+
+    def numbers(self, name: str, default: list[float] | None = None) -> Array:
+        """An attribute of one number, or of as many as its default has, EU-URD-007."""
+        if default is not None and name not in self.attributes:
+            return np.array(default)
+        words = re.split(r"[ \t\r\n]+", self.text(name).strip(" \t\r\n"))
+        if len(words) != len(default or [0.0]) or not all(_NUMBER.fullmatch(word) for word in words):
+            raise NotRead(f"{name}={self.attributes[name]!r}")
+        found = np.array([float(word) for word in words])
+        if not np.all(np.isfinite(found)):
+            raise NotRead(f"{name}={self.attributes[name]!r} is not finite")
+        return found
+
+
+def parse(source: bytes) -> Element:
+    """The root element of an XML document, EU-URD-001 and 002. No entity is resolved but the five of XML itself."""
+    top: list[Element] = []
+    stack: list[Element] = []
+
+    def start(name: str, attributes: dict[str, str]) -> None:
+        element = Element(name, attributes, [])
+        (stack[-1].children if stack else top).append(element)
+        stack.append(element)
+
+    def doctype(*_: object) -> None:
+        raise NotRead("a document type declaration")
+
+    parser = expat.ParserCreate("utf-8")
+    parser.StartElementHandler = start
+    parser.EndElementHandler = lambda _: stack.pop()
+    parser.StartDoctypeDeclHandler = doctype
+    try:
+        parser.Parse(source, True)
+    except expat.ExpatError as error:
+        raise NotRead(str(error)) from error
+    return top[0]
+
+
+def read_urdf(path: Path) -> Urdf:
+    """The URDF of a file."""
+    robot = parse(path.read_bytes())
+    if robot.name != "robot":
+        raise NotRead(f"the root element is {robot.name!r}")
+    links = [Link(element.text("name"), inertia(element)) for element in robot.all("link")]
+    joints = [joint(element) for element in robot.all("joint")]
+    urdf = Urdf(robot.text("name"), {link.name: link for link in links}, {found.name: found for found in joints})
+    carried = {found.child for found in joints}
+    known = carried | {found.parent for found in joints} <= urdf.links.keys()
+    once = len(links) == len(urdf.links) and len(joints) == len(urdf.joints) == len(carried)
+    if not known or not once or len(links) != len(joints) + 1:
+        raise NotRead("the links and joints are no tree with unique names")
+    return urdf
+
+
+def origin(element: Element) -> Array:
+    """The pose that the `origin` in an element states, or the identity."""
+    found = element.one("origin")
+    return pose(from_rpy(found.numbers("rpy", [0.0] * 3)), found.numbers("xyz", [0.0] * 3))
+
+
+def inertia(link: Element) -> Inertia | None:
+    """The inertia of a link, turned into the link's frame: R I Rᵀ, chapter Inertia."""
+    if not link.all("inertial"):
+        return None
+    inertial = link.one("inertial")
+    M, moments = origin(inertial), inertial.one("inertia")
+    xx, xy, xz, yy, yz, zz = (moments.number(name) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
+    R = M[:3, :3]
+    return Inertia(
+        inertial.one("mass").number("value"),
+        M[:3, 3],
+        R @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ R.T,
+    )
+
+
+def joint(element: Element) -> UrdfJoint:
+    """A joint, with what the table of chapter The URDF says of what is left out."""
+    kind = element.text("type")
+    if kind not in _TYPES:
+        raise NotRead(f"a joint of type {kind!r}")
+    axis = element.one("axis").numbers("xyz", [1.0, 0.0, 0.0])
+    if not np.any(axis):
+        if kind in ("revolute", "continuous", "prismatic"):
+            raise NotRead("an axis of zero")
+        axis = np.array([1.0, 0.0, 0.0])  # of a joint that has none
+    # One number cannot be for lengths and for angles.
+    spoken_of = kind not in ("planar", "floating")
+    limited = bool(element.all("limit")) and spoken_of
+    ranged = kind in ("revolute", "prismatic")
+    if ranged and not limited:
+        raise NotRead("a joint without the limit that it must have")
+    limit, dynamics = element.one("limit"), element.one("dynamics")
+    return UrdfJoint(
+        name=element.text("name"),
+        type=kind,
+        parent=element.one("parent").text("link"),
+        child=element.one("child").text("link"),
+        origin=origin(element),
+        axis=unit(axis),
+        lower=limit.number("lower", 0.0) if ranged else None,
+        upper=limit.number("upper", 0.0) if ranged else None,
+        velocity=limit.number("velocity") if limited else None,
+        effort=limit.number("effort") if limited else None,
+        damping=dynamics.number("damping", 0.0) if spoken_of else 0.0,
+        friction=dynamics.number("friction", 0.0) if spoken_of else 0.0,
+        mimic=mimic(element.one("mimic")) if element.all("mimic") else None,
+    )
+
+
+def mimic(element: Element) -> Mimic:
+    """What a joint follows."""
+    return Mimic(element.text("joint"), element.number("multiplier", 1.0), element.number("offset", 0.0))

@@ -1,0 +1,127 @@
+"""A description of version 2: chapters The description, Frames, Closures, Joints, Actuation, Configurations."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import numpy as np
+
+from eurdf_conformance.oracle.description import Actuator, Change, Closure, Description, FrameReference
+from eurdf_conformance.oracle.not_read import NotRead
+from eurdf_conformance.oracle.own import own_data
+from eurdf_conformance.oracle.plain_value import mapping, number, numbers, sequence, text, vector
+from eurdf_conformance.oracle.spatial import Array, from_rpy, pose, unit
+
+KEYS = (
+    "extended_urdf",
+    "urdf",
+    "root",
+    "closures",
+    "joints",
+    "actuators",
+    "frames",
+    "configurations",
+    "metadata",
+)
+PROPERTIES = ("limits", "damping", "friction", "armature")
+LIMITS = ("lower", "upper", "velocity", "effort")
+
+#: For each type that a joint can become, the keys that go with it.
+CHANGES = {"spherical": ("merges",), "universal": ("axes",), "cylindrical": (), "helical": ("pitch",), "fixed": ()}
+
+
+def version2(document: dict[str, Any]) -> Description:
+    """Read a description whose `extended_urdf` is "2.0"."""
+    members = mapping(document, KEYS)
+    if members["extended_urdf"] != "2.0":
+        raise NotRead(f"version {members['extended_urdf']!r}")
+    roots: dict[str, Literal["fixed", "floating"]] = {"fixed": "fixed", "floating": "floating"}
+    root = text(members.get("root", "fixed"))
+    if root not in roots:
+        raise NotRead(f"the root {root!r}")
+    text(members.get("urdf", "robot.urdf"))
+    mapping(members.get("metadata", {}))
+    closures = [closure(value) for value in sequence(members.get("closures", []))]
+    frames = [frame(value) for value in sequence(members.get("frames", []))]
+    if len({name for name, _ in frames}) != len(frames):
+        raise NotRead("two frames of one name")
+    return Description(
+        version="2",
+        root=roots[root],
+        closures=tuple(found for found in closures if found is not None),
+        changes={name: change(value) for name, value in mapping(members.get("joints", {})).items()},
+        actuators=tuple(actuator(value) for value in sequence(members.get("actuators", []))),
+        frames=dict(frames),
+        configurations={
+            name: {joint: numbers(value) for joint, value in mapping(configuration).items()}
+            for name, configuration in mapping(members.get("configurations", {})).items()
+        },
+        own=own_data(document),
+    )
+
+
+def closure(value: Any) -> Closure | None:
+    """A closure; one of a type of the user's own is left out, EU-CLO-012."""
+    members = mapping(value, ("name", "type", "frames"))
+    types: dict[str, Literal["3d", "6d"]] = {"3d": "3d", "6d": "6d"}
+    kind = text(members.get("type"))
+    if kind.startswith("x-"):
+        return None
+    if kind not in types or len(sequence(members.get("frames"))) != 2:
+        raise NotRead(f"the closure {value!r}")
+    a, b = (reference(item) for item in members["frames"])
+    return Closure(text(members.get("name")), types[kind], a, b)
+
+
+def reference(value: Any) -> FrameReference:
+    """A frame by its name, or a mapping with `link` or `joint` and a pose."""
+    if isinstance(value, str):
+        return FrameReference("name", value, np.eye(4))
+    members = mapping(value, ("link", "joint", "xyz", "rpy"))
+    if ("link" in members) == ("joint" in members):
+        raise NotRead(f"the frame {value!r}")
+    M = pose(from_rpy(vector(members.get("rpy", [0, 0, 0]))), vector(members.get("xyz", [0, 0, 0])))
+    if "link" in members:
+        return FrameReference("link", text(members["link"]), M)
+    return FrameReference("joint", text(members["joint"]), M)
+
+
+def frame(value: Any) -> tuple[str, FrameReference]:
+    """A frame that the description adds, and its name."""
+    members = mapping(value)
+    return text(members.pop("name", None)), reference(members)
+
+
+def actuator(value: Any) -> Actuator:
+    """A joint by its name, or with its gear."""
+    if isinstance(value, str):
+        return Actuator(value)
+    members = mapping(value, ("joint", "gear_ratio", "rotor_inertia"))
+    gear, rotor = number(members.get("gear_ratio", 1)), number(members.get("rotor_inertia", 0))
+    return Actuator(text(members.get("joint")), gear, rotor)
+
+
+def change(value: Any) -> Change:
+    """A type alone, or a mapping with a type, properties, or both."""
+    members = {"type": value} if isinstance(value, str) else mapping(value)
+    kind = members.get("type")
+    if kind is not None and text(kind) not in CHANGES:
+        raise NotRead(f"the type {kind!r}")
+    members = mapping(members, ("type", *PROPERTIES, *CHANGES.get(kind or "", ())))
+    stated = members | mapping(members.get("limits", {}), LIMITS)
+    return Change(
+        type=kind,
+        axes=axes(members.get("axes")) if kind == "universal" else (),
+        pitch=number(members.get("pitch")) if kind == "helical" else 0.0,
+        merges=tuple(text(name) for name in sequence(members.get("merges", []))),
+        stated={name: numbers(stated[name]) for name in (*LIMITS, *PROPERTIES[1:]) if name in stated},
+    )
+
+
+def axes(value: Any) -> tuple[Array, Array]:
+    """The first and the second axis of a universal joint: two letters, or two vectors."""
+    letters = dict(zip("xyz", np.eye(3), strict=True))
+    if len(axes := list(value) if isinstance(value, str) else sequence(value)) != 2:
+        raise NotRead(f"the axes {value!r}")
+    first, second = (letters[axis] if axis in ("x", "y", "z") else unit(vector(axis)) for axis in axes)
+    return first, second

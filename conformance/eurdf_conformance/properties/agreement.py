@@ -1,0 +1,123 @@
+"""Agreement with the oracle, and what follows from the files alone."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eurdf_conformance.comparison.array import TOLERANCE, array_differences
+from eurdf_conformance.comparison.canonical import canonical_differences
+from eurdf_conformance.comparison.difference import ABSENT, Difference
+from eurdf_conformance.comparison.values import values_differences
+from eurdf_conformance.level import Level, Version
+from eurdf_conformance.properties.asked import ask
+from eurdf_conformance.properties.bench import QUANTITIES, Bench
+from eurdf_conformance.properties.example import Example
+from eurdf_conformance.properties.law import Law
+from eurdf_conformance.properties.truth import truth
+from eurdf_conformance.protocol.message import Quantity
+
+
+def accepted(bench: Bench, example: Example, version: Version, level: Level) -> list[Difference]:
+    """EU-CNF-002."""
+    bench.load(ask(example.mechanism, version))
+    return []
+
+
+def agreement(bench: Bench, example: Example, version: Version, level: Level) -> list[Difference]:
+    """What the oracle says is what the reader says."""
+    asked, robot = ask(example.mechanism, version), truth(example.mechanism, version)
+    if level is Level.STRUCTURE:
+        read = bench.read(asked)
+        if read is None:
+            return [Difference("/robot", "what it has read", ABSENT, "the level structure asks for it")]
+        return [each.within("/robot") for each in canonical_differences(robot.canonical(), read, robot.bodies)]
+    quantities, found = QUANTITIES[level], []
+    for index, (q, given) in enumerate(zip(asked.configurations, bench.evaluate(asked, quantities), strict=True)):
+        expected = robot.evaluate(q, asked.frames, quantities)
+        found += [each.within(f"/values/{index}") for each in values_differences(expected, given, robot.size(q))]
+    return found
+
+
+def columns(bench: Bench, example: Example, version: Version, level: Level) -> list[Difference]:
+    """EU-PRO-007. That every velocity is named once is seen as the answer is read."""
+    quantity: Quantity = "jacobian" if level is Level.KINEMATICS else "mass_matrix"
+    bench.evaluate(ask(example.mechanism, version), (quantity,))
+    return []
+
+
+def inertia(bench: Bench, example: Example, version: Version, level: Level) -> list[Difference]:
+    """EU-INR-005, EU-INR-006: the mass is that of all links, and no motion is without kinetic energy.
+
+    The examples are such that rounding cannot decide.
+    """
+    asked = ask(example.mechanism, version)
+    found: list[Difference] = []
+    mass = sum(link.inertia.mass for link in example.mechanism.links if link.inertia)
+    for index, values in enumerate(bench.evaluate(asked, ("mass_matrix", "mass"))):
+        pointer = f"/values/{index}"
+        why = "mass of all links of the file, kg"
+        found += array_differences(mass, values.mass, TOLERANCE * mass, f"{pointer}/mass", why)
+        assert values.mass_matrix is not None
+        M = np.array(values.mass_matrix.matrix)
+        if not M.size:
+            continue
+        where, largest = f"{pointer}/mass_matrix/matrix", float(np.abs(M).max())
+        found += array_differences(M.T.tolist(), M.tolist(), 2.0 * TOLERANCE * largest, where, "M and its transpose")
+        least = float(np.linalg.eigvalsh((M + M.T) / 2.0)[0])
+        if least <= 0.0:
+            found.append(Difference(where, "more than 0", least, "the smallest eigenvalue of M"))
+    return found
+
+
+LAWS = (
+    Law(
+        "accepted",
+        "A mechanism that is right is accepted.",
+        ("EU-CNF-002", "EU-URD-011", "EU-CLO-011"),
+        (Level.ACCEPT,),
+        accepted,
+    ),
+    Law(
+        "structure-agreement",
+        "What is read of a mechanism is what it was written from.",
+        (
+            *("EU-CAN-001", "EU-CAN-002", "EU-JNT-020", "EU-JNT-021", "EU-JNT-024", "EU-JNT-027", "EU-ACT-006"),
+            *("EU-ACT-007", "EU-CFG-005", "EU-EXT-002", "EU-VER-004"),
+            *("EU-ONE-004", "EU-ONE-005", "EU-ONE-006", "EU-ONE-007"),
+        ),
+        (Level.STRUCTURE,),
+        agreement,
+    ),
+    Law(
+        "agreement",
+        "Poses, residuals and K are those that a second implementation of the specification finds.",
+        (
+            *("EU-PRO-008", "EU-JNT-025", "EU-JNT-026", "EU-FRM-004", "EU-FRM-005", "EU-FRM-006"),
+            *("EU-CLO-008", "EU-CLO-009", "EU-CLO-010", "EU-URD-032", "EU-URD-035", "EU-JNT-015"),
+            *("EU-JNT-016", "EU-JNT-017", "EU-JNT-018", "EU-JNT-019", "EU-JNT-022", "EU-JNT-023"),
+        ),
+        (Level.KINEMATICS,),
+        agreement,
+    ),
+    Law(
+        "inertia-agreement",
+        "M, mass and centre of mass are those that a second implementation of the specification finds.",
+        ("EU-INR-006", "EU-INR-005", "EU-PRO-009", "EU-JNT-026"),
+        (Level.DYNAMICS,),
+        agreement,
+    ),
+    Law(
+        "columns",
+        "Every velocity of the mechanism is a column, once.",
+        ("EU-PRO-007",),
+        (Level.KINEMATICS, Level.DYNAMICS),
+        columns,
+    ),
+    Law(
+        "inertia",
+        "The mass is that of all links, and M is symmetric and positive definite.",
+        ("EU-INR-005", "EU-INR-006"),
+        (Level.DYNAMICS,),
+        inertia,
+    ),
+)

@@ -1,0 +1,118 @@
+"""A search beyond the frozen examples: more mechanisms, and for what is wrong with one the smallest that shows it."""
+
+from __future__ import annotations
+
+import random
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import hypothesis
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
+from hypothesis.errors import Flaky, FlakyFailure, Unsatisfiable
+from hypothesis.strategies import SearchStrategy
+
+from eurdf_conformance.level import Level, Version
+from eurdf_conformance.properties.bench import Bench
+from eurdf_conformance.properties.example import Example
+from eurdf_conformance.properties.found_case import write_case
+from eurdf_conformance.properties.law import LARGEST, Law
+from eurdf_conformance.properties.strategies.mechanisms import mechanisms
+from eurdf_conformance.properties.trying import try_example
+from eurdf_conformance.suite.judge import PASSED, Judgement
+from eurdf_conformance.suite.property import Trial
+from eurdf_conformance.verdict.verdict import Verdict
+
+#: Where cases are written that were found, from where the suite is run.
+EXPLORED = Path("explored")
+
+#: s, after which what was found is taken as it is.
+_SHRINKING = 60.0
+
+
+class _Wrong(Exception):  # noqa: N818 - it says what the reader is
+    """The reader departs from the law."""
+
+
+def explore(law: Law, level: Level, trial: Trial, bench: Bench, folder: Path = EXPLORED) -> Judgement:
+    """Try a law on mechanisms that are drawn at random.
+
+    What it fails on is made as small as it can be while it fails in the same way, and written as a case.
+
+    Args:
+        law: The law.
+        level: The level at which it is asked.
+        trial: How many mechanisms, and for which version.
+        bench: The reader.
+        folder: Where to write the case.
+    """
+    seed = random.SystemRandom().randrange(10**9)
+    found = search(law, level, trial.version, bench, trial.explore, seed)
+    if found is None:
+        return PASSED
+    example, judgement = found
+    # Once more, so that the bench knows what was asked last, and the answer is of this very example.
+    judgement = try_example(law, level, trial.version, bench, example)
+    case = write_case(law, bench, folder) if bench.asked is not None else None
+    log = [judgement.log, f"seed {seed}", f"written as a case: {case}"]
+    reason = f"on a mechanism found by exploring: {judgement.reason}"
+    return replace(judgement, reason=reason, log="\n".join(line for line in log if line))
+
+
+def search(
+    law: Law, level: Level, version: Version, bench: Bench, count: int, seed: int
+) -> tuple[Example, Judgement] | None:
+    """The smallest example found on which a reader departs from a law, and how; None where it does not.
+
+    Args:
+        law: The law.
+        level: The level at which it is asked.
+        version: Version of the format.
+        bench: The reader.
+        count: So many examples are drawn.
+        seed: What they are drawn from.
+    """
+    best: list[tuple[Example, Judgement]] = []
+    since = 0.0
+
+    @hypothesis.seed(seed)
+    @settings(
+        max_examples=count,
+        database=None,
+        deadline=None,
+        derandomize=False,
+        print_blob=False,
+        report_multiple_bugs=False,
+        phases=[Phase.generate, Phase.shrink],
+        suppress_health_check=list(HealthCheck),
+    )
+    @given(drawn(law, version))
+    def attempt(example: Example) -> None:
+        nonlocal since
+        if best and example != best[-1][0] and time.monotonic() - since > _SHRINKING:
+            return
+        judgement = try_example(law, level, version, bench, example)
+        if judgement.verdict == Verdict.PASSED or (best and judgement.verdict != best[0][1].verdict):
+            return
+        since = since or time.monotonic()
+        best.append((example, judgement))
+        raise _Wrong
+
+    try:
+        attempt()
+    except (_Wrong, Flaky, FlakyFailure):
+        # Flaky: the time for making it smaller was over, or the reader does not answer alike when asked again.
+        return best[-1] if best else None
+    except Unsatisfiable:
+        return None
+    return None
+
+
+def drawn(law: Law, version: Version) -> SearchStrategy[Example]:
+    """What a law is tried with."""
+    if law.family is not None:
+        sizes = [int(size) for size in range(law.smallest, LARGEST + 1)]
+        return st.sampled_from(sizes).map(law.family)
+    examples = st.builds(Example, mechanism=mechanisms(version, law.closures), seed=st.integers(0, 10**6))
+    return examples.filter(lambda example: law.applies(example.mechanism))

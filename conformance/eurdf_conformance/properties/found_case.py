@@ -1,0 +1,66 @@
+"""What was found by exploring, as a case that is ready to commit."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+import yaml
+
+from eurdf_conformance.corpus.case import CASE
+from eurdf_conformance.corpus.clause import read_clauses
+from eurdf_conformance.corpus.expect import expect
+from eurdf_conformance.corpus.expected import EXPECTED_FILE, expected_text
+from eurdf_conformance.corpus.read import CASE_FILE, CorpusCase, case_folders
+from eurdf_conformance.properties.asked import Asked
+from eurdf_conformance.properties.bench import Bench
+from eurdf_conformance.properties.law import Law
+
+_ALPHABET = "abcdefghijklmnopqrstuvwxyz0123456789"
+
+
+def write_case(law: Law, bench: Bench, folder: Path) -> Path:
+    """Write the robot that a reader was asked about last into a folder of its own, with what the oracle expects.
+
+    Args:
+        law: The law that it shows the reader to depart from.
+        bench: The reader.
+        folder: Where; the case goes into the folder of its topic there.
+
+    Returns:
+        The folder of the case.
+    """
+    asked = bench.asked
+    assert asked is not None
+    topic = "closures" if asked.mechanism.closures else "joints"
+    name = fresh_id(asked, {path.name for path in case_folders()})
+    home = folder / topic / name
+    home.mkdir(parents=True, exist_ok=True)
+    asked.files.write(home)
+    clauses = read_clauses()
+    said = {
+        "id": name,
+        "title": f"{law.title.removesuffix('.')}: a mechanism on which a reader was found to depart from that.",
+        "version": asked.version,
+        "clauses": [clause for clause in law.clauses if asked.version in clauses[clause].versions],
+        "valid": True,
+        "provenance": {"expectation": "oracle", "note": f"found by exploring the property {law.name}"},
+        "configurations": [{joint: list(q) for joint, q in each.items()} for each in asked.configurations],
+        "frames": list(asked.frames),
+    }
+    case = CASE.validate_python(said)
+    text = yaml.safe_dump(said, sort_keys=False, allow_unicode=True, width=120, default_flow_style=None)
+    (home / CASE_FILE).write_text(text, encoding="utf-8")
+    expected = expect(CorpusCase(case, topic, home, home))
+    (home / EXPECTED_FILE).write_text(expected_text(expected), encoding="utf-8")
+    return home
+
+
+def fresh_id(asked: Asked, taken: set[str]) -> str:
+    """An id that no case has: made of the files, so that what is found again is written to the same place."""
+    digest = int.from_bytes(hashlib.sha256(asked.files.description + asked.files.urdf).digest(), "big")
+    while True:
+        digest, number = divmod(digest, len(_ALPHABET) ** 6)
+        name = "".join(_ALPHABET[number // len(_ALPHABET) ** i % len(_ALPHABET)] for i in range(6))
+        if name not in taken or not digest:
+            return name

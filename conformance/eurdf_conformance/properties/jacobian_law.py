@@ -1,0 +1,58 @@
+"""K against finite differences of the reader's own residuals."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from eurdf_conformance.comparison.array import TOLERANCE, array_differences
+from eurdf_conformance.comparison.difference import Difference, step
+from eurdf_conformance.level import Level, Version
+from eurdf_conformance.properties.asked import ask
+from eurdf_conformance.properties.bench import Bench
+from eurdf_conformance.properties.example import Example
+from eurdf_conformance.properties.law import Law, closed
+from eurdf_conformance.properties.truth import truth
+
+#: rad or m.
+_STEP = 1e-2
+
+#: Weights of r(q ⊕ k h v) in h dr/dt; what is left out is of the order h⁷.
+_WEIGHTS = {-3: -1 / 60, -2: 9 / 60, -1: -45 / 60, 1: 45 / 60, 2: -9 / 60, 3: 1 / 60}
+
+
+def derivative(bench: Bench, example: Example, version: Version, level: Level) -> list[Difference]:
+    """EU-CLO-010: K v = d/dt r(q ⊕ t v) at t = 0, for each velocity, at each configuration."""
+    asked, robot = ask(example.mechanism, version, frames=[]), truth(example.mechanism, version)
+    found: list[Difference] = []
+    for index, values in enumerate(bench.evaluate(asked, ("jacobian",))):
+        q = asked.configurations[index]
+        nv = len(robot.velocities)
+        moved = [robot.moved(q, steps * _STEP * v) for v in np.eye(nv) for steps in _WEIGHTS]
+        around = bench.evaluate(replace(asked, configurations=moved), ("residuals",))
+        size = max(1.0, robot.size(q))
+        # The residuals may each be off by EU-PRO-008; the weights of all come to less than 2.
+        near = size * (2.0 * TOLERANCE / _STEP + 1e-7)
+        assert values.jacobian is not None
+        for name, rows in values.jacobian.rows.items():
+            r = np.array([each.residuals[name] for each in around if each.residuals is not None])
+            r = r.reshape(nv, len(_WEIGHTS), -1)
+            expected = np.einsum("vsr,s->rv", r, np.array(list(_WEIGHTS.values()))) / _STEP
+            where = f"/values/{index}/jacobian/rows{step(name)}"
+            why = f"rows of K of closure '{name}', and differences of its residual"
+            found += array_differences(expected.tolist(), rows, near, where, why)
+    return found
+
+
+LAWS = (
+    Law(
+        "derivative",
+        "K is the derivative of the residuals along each velocity.",
+        ("EU-CLO-010", "EU-JNT-026"),
+        (Level.KINEMATICS,),
+        derivative,
+        applies=closed,
+        closures=1,
+    ),
+)

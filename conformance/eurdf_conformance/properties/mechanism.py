@@ -1,0 +1,173 @@
+"""A mechanism as a plain value: what the two files of a robot say, before any spelling of it.
+
+`urdf` and `document` write it down; relations change it. It is as free as the files are: nothing here checks it.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict
+
+Vector = tuple[float, float, float]
+Coordinates = tuple[float, ...]
+Configuration = dict[str, Coordinates]
+
+#: A number for all coordinates or velocities of a joint, or one each.
+PerNumber = float | tuple[float, ...]
+
+ZERO: Vector = (0.0, 0.0, 0.0)
+
+
+class Part(BaseModel):
+    """A part of a mechanism."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+
+class Pose(Part):
+    """Origin, m, and roll, pitch, yaw, rad, as EU-FRM-006 has them."""
+
+    xyz: Vector = ZERO
+    rpy: Vector = ZERO
+
+
+class Inertia(Part):
+    """Mass, kg; centre of mass and axes; ixx, ixy, ixz, iyy, iyz, izz about that centre along those axes, kg·m²."""
+
+    mass: float
+    pose: Pose = Pose()
+    moments: tuple[float, float, float, float, float, float]
+
+
+class Link(Part):
+    """A link of the URDF; without inertia it weighs nothing."""
+
+    name: str
+    inertia: Inertia | None = None
+
+
+class Limit(Part):
+    """Limits as a URDF has them; `lower` and `upper` of revolute and prismatic joints."""
+
+    effort: float
+    velocity: float
+    lower: float | None = None
+    upper: float | None = None
+
+
+class Mimic(Part):
+    """q = multiplier · q_joint + offset, rad or m."""
+
+    joint: str
+    multiplier: float = 1.0
+    offset: float = 0.0
+
+
+class Joint(Part):
+    """A joint as the URDF has it."""
+
+    name: str
+    type: Literal["revolute", "continuous", "prismatic", "planar", "floating", "fixed"]
+    parent: str
+    child: str
+    origin: Pose = Pose()
+    axis: Vector | None = None
+    limit: Limit | None = None
+    damping: float | None = None
+    friction: float | None = None
+    mimic: Mimic | None = None
+
+
+class Change(Part):
+    """What the description says of a joint: what it becomes, its properties, or both."""
+
+    type: Literal["spherical", "universal", "cylindrical", "helical", "fixed"] | None = None
+    #: Of a universal joint: two letters, or two vectors in the joint's frame.
+    axes: str | tuple[Vector, Vector] | None = None
+    #: Of a helical joint, m a revolution.
+    pitch: float | None = None
+    #: Joints of the URDF that are one spherical joint.
+    merges: tuple[str, ...] = ()
+    lower: PerNumber | None = None
+    upper: PerNumber | None = None
+    velocity: PerNumber | None = None
+    effort: PerNumber | None = None
+    damping: PerNumber | None = None
+    friction: PerNumber | None = None
+    armature: PerNumber | None = None
+    #: The user's own data, under keys that begin with `x-`.
+    own: dict[str, Any] = {}
+
+
+class Spot(Part):
+    """A frame at a pose in that of a link or a joint."""
+
+    on: Literal["link", "joint"]
+    of: str
+    pose: Pose = Pose()
+
+
+class Frame(Part):
+    """A frame that the description adds."""
+
+    name: str
+    spot: Spot
+
+
+class Closure(Part):
+    """Frames A and B, held together; each is a name, or a pose written in place."""
+
+    name: str
+    type: Literal["3d", "6d"]
+    a: str | Spot
+    b: str | Spot
+
+
+class Actuator(Part):
+    """A joint with a motor."""
+
+    joint: str
+    gear_ratio: float | None = None
+    rotor_inertia: float | None = None
+
+
+class Mechanism(Part):
+    """What the two files of a robot say."""
+
+    name: str = "robot"
+    root: Literal["fixed", "floating"] = "fixed"
+    links: tuple[Link, ...]
+    joints: tuple[Joint, ...] = ()
+    #: By the name of the joint that is changed, or made.
+    changes: dict[str, Change] = {}
+    frames: tuple[Frame, ...] = ()
+    closures: tuple[Closure, ...] = ()
+    actuators: tuple[Actuator, ...] = ()
+    #: At `assembled` every closure is closed. Those of version 1, whose files have none, are asked for all the same.
+    configurations: dict[str, Configuration] = {}
+    #: The user's own data, under keys that begin with `x-`.
+    own: dict[str, Any] = {}
+
+    @property
+    def merged(self) -> dict[str, str]:
+        """Of each joint that is merged into another, the name of that."""
+        return {joint: name for name, change in self.changes.items() for joint in change.merges}
+
+    def type_of(self, joint: Joint) -> str:
+        """What a joint of the URDF is in the mechanism: a joint that is merged into another is `merged`."""
+        if joint.name in self.merged:
+            return "merged"
+        return (self.changes[joint.name].type if joint.name in self.changes else None) or joint.type
+
+    def types(self) -> dict[str, str]:
+        """Of every joint that moves its type: those made by merging too, those that mimic too."""
+        found = {joint.name: self.type_of(joint) for joint in self.joints}
+        found |= {name: "spherical" for name, change in self.changes.items() if change.merges}
+        if self.root == "floating":
+            found["root_joint"] = "floating"
+        return {name: kind for name, kind in found.items() if kind not in ("fixed", "merged")}
+
+    def replace(self, **parts: Any) -> Mechanism:
+        """The same mechanism but for some parts."""
+        return self.model_copy(update=parts)

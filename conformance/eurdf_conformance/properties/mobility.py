@@ -1,0 +1,79 @@
+"""Laws on counts: nv, nc, rank and mobility, of random mechanisms and of families where they are known beforehand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from eurdf_conformance.comparison.difference import Difference
+from eurdf_conformance.level import Level, Version
+from eurdf_conformance.properties.asked import ask
+from eurdf_conformance.properties.bench import Bench
+from eurdf_conformance.properties.counts import Counts, count_differences, counts_of
+from eurdf_conformance.properties.document import configuration
+from eurdf_conformance.properties.example import Example
+from eurdf_conformance.properties.families import paradoxical, planar, platforms, spherical
+from eurdf_conformance.properties.law import Law
+from eurdf_conformance.properties.truth import truth
+
+_CLAUSES = ("EU-CLO-010", "EU-CLO-011", "EU-PRO-007", "EU-CLO-008", "EU-CLO-009")
+
+
+def mobility(bench: Bench, example: Example, version: Version, level: Level) -> list[Difference]:
+    """The counts at the closed configuration, of which the examples leave no doubt."""
+    robot = truth(example.mechanism, version)
+    assembled = example.mechanism.configurations["assembled"]
+    q = configuration(example.mechanism, assembled, version)
+    (values,) = bench.evaluate(ask(example.mechanism, version, at={"assembled": assembled}, frames=[]), ("jacobian",))
+    assert values.jacobian is not None
+    rows = [np.array(rows).reshape(-1, len(robot.velocities)) for rows in values.jacobian.rows.values()]
+    given = counts_of(np.vstack([np.zeros((0, len(robot.velocities))), *rows]), robot, q)
+    expected = Counts(*example.known) if example.known else counts_of(robot.jacobian(q), robot, q)
+    return count_differences(expected, given, "/values/0/jacobian")
+
+
+def family(name: str, title: str, member: Callable[[int], Example], sizes: Sequence[int]) -> Law:
+    """The law on one family."""
+    return Law(
+        name,
+        title,
+        _CLAUSES,
+        (Level.KINEMATICS,),
+        mobility,
+        versions=("2",),
+        examples=lambda version: [member(size) for size in sizes],
+        family=member,
+        smallest=sizes[0],
+    )
+
+
+LAWS = (
+    Law(
+        "mobility",
+        "nv, nc, rank, mobility, redundant rows and uncontrolled mobility are those of the mechanism.",
+        _CLAUSES,
+        (Level.KINEMATICS,),
+        mobility,
+    ),
+    family("planar-polygon", "A planar ring of n hinges has mobility n − 3.", planar.polygon, range(4, 9)),
+    family(
+        "planar-polygon-6d",
+        "A planar ring of n hinges that is closed in 6d has three redundant rows.",
+        planar.spatial_polygon,
+        range(4, 9),
+    ),
+    family("parallelograms", "Parallel cranks have mobility 1, however many.", planar.parallelograms, range(1, 6)),
+    family(
+        "spherical-polygon",
+        "A ring of n hinges through one point has mobility n − 3.",
+        spherical.polygon,
+        range(4, 9),
+    ),
+    family("ball-ring", "A ring of n balls has mobility 3 n − 6.", spherical.balls, range(3, 8)),
+    family("ball-chain", "A chain of n balls has mobility 3 n.", spherical.ball_chain, range(1, 6)),
+    family("platform-ups", "A platform on legs UPS has mobility 6.", platforms.with_universals, range(3, 8)),
+    family("platform-sps", "A platform on n legs SPS has mobility 6 + n.", platforms.with_balls, range(3, 8)),
+    family("sarrus", "A Sarrus linkage has a redundant row, and moves.", paradoxical.sarrus, range(2, 5)),
+    family("bennett", "A Bennett linkage has three redundant rows, and moves.", paradoxical.bennett, range(2, 6)),
+)

@@ -1,0 +1,76 @@
+"""A relation: two robots of which what a reader says of one follows from what it says of the other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from eurdf_conformance.comparison.canonical import canonical_differences
+from eurdf_conformance.comparison.difference import ABSENT, Difference
+from eurdf_conformance.level import Level, Version
+from eurdf_conformance.properties.asked import Asked
+from eurdf_conformance.properties.bench import QUANTITIES, Bench
+from eurdf_conformance.properties.example import Example
+from eurdf_conformance.properties.law import Check
+from eurdf_conformance.properties.same_values import same_values
+from eurdf_conformance.properties.truth import truth
+from eurdf_conformance.protocol.message import CanonicalRobot, Values
+
+
+def unchanged(values: Values, index: int) -> Values:
+    """What is said of one is said of the other."""
+    return values
+
+
+def unchanged_robot(robot: CanonicalRobot) -> CanonicalRobot:
+    """What was read of one is what was read of the other."""
+    return robot
+
+
+@dataclass(frozen=True)
+class Pair:
+    """Two robots.
+
+    Attributes:
+        one: The first.
+        other: The second, evaluated at as many configurations.
+        carry: From the values of the first, at a configuration of some index, to what follows for the second.
+        seen: From the values of the second to the part of them that follows.
+        carry_robot: From what was read of the first to what is to be read of the second.
+    """
+
+    one: Asked
+    other: Asked
+    carry: Callable[[Values, int], Values] = unchanged
+    seen: Callable[[Values], Values] = lambda values: values
+    carry_robot: Callable[[CanonicalRobot], CanonicalRobot] = unchanged_robot
+
+
+def related(pair_of: Callable[[Example, Version], Pair]) -> Check:
+    """The check of a relation."""
+
+    def check(bench: Bench, example: Example, version: Version, level: Level) -> list[Difference]:
+        pair = pair_of(example, version)
+        if level is Level.STRUCTURE:
+            return _read_differences(bench, pair)
+        return _value_differences(bench, pair, level)
+
+    return check
+
+
+def _read_differences(bench: Bench, pair: Pair) -> list[Difference]:
+    one, other = bench.read(pair.one), bench.read(pair.other)
+    if one is None or other is None:
+        return [Difference("/robot", "what it has read", ABSENT, "the level structure asks for it")]
+    bodies = truth(pair.other.mechanism, pair.other.version).bodies
+    return [each.within("/robot") for each in canonical_differences(pair.carry_robot(one), other, bodies)]
+
+
+def _value_differences(bench: Bench, pair: Pair, level: Level) -> list[Difference]:
+    before = bench.evaluate(pair.one, QUANTITIES[level])
+    after = bench.evaluate(pair.other, QUANTITIES[level])
+    robot = truth(pair.one.mechanism, pair.one.version)
+    found = []
+    for index, (one, other, q) in enumerate(zip(before, after, pair.one.configurations, strict=True)):
+        found += same_values(pair.carry(one, index), pair.seen(other), robot.size(q), f"/values/{index}")
+    return found

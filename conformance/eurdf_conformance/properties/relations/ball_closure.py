@@ -1,0 +1,108 @@
+"""A 3d closure is a ball between its frames: a 6d one on a spherical joint more lets the mechanism move as much."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eurdf_conformance.comparison.difference import Difference
+from eurdf_conformance.level import Level, Version
+from eurdf_conformance.properties.asked import ask
+from eurdf_conformance.properties.bench import Bench
+from eurdf_conformance.properties.conditioning import Matrix, scaled
+from eurdf_conformance.properties.document import configuration
+from eurdf_conformance.properties.example import Example
+from eurdf_conformance.properties.law import Law
+from eurdf_conformance.properties.mechanism import Change, Inertia, Joint, Link, Mechanism
+from eurdf_conformance.properties.placement import pose_of, quaternion_of
+from eurdf_conformance.properties.relations.saying import with_inline_frames
+from eurdf_conformance.properties.truth import truth
+from eurdf_conformance.protocol.message import Values
+
+#: Of an orthonormal basis; what is more is no rounding.
+_NEAR = 1e-5
+
+_BALL = Inertia(mass=0.5, moments=(0.01, 0.0, 0.0, 0.01, 0.0, 0.01))
+
+
+def ball_closure(bench: Bench, example: Example, version: Version, level: Level) -> list[Difference]:
+    """The null space of K, and that of the K of the twin without the balls' own motions, are one space."""
+    one, other = example.mechanism, with_balls(example.mechanism)
+    before, after = (motions(bench, mechanism, version) for mechanism in (one, other))
+    robot = truth(one, version)
+    kept = [truth(other, version).velocities.index(column) for column in robot.velocities]
+    projected = after[kept]
+    wrong = []
+    if after.shape[1] != before.shape[1]:
+        why = "mobility of the mechanism whose 3d closures are 6d ones on balls"
+        wrong.append(Difference("/values/0/jacobian", before.shape[1], after.shape[1], why))
+    elif before.size:
+        basis = np.linalg.qr(projected)[0]
+        off = float(np.abs(basis - before @ (before.T @ basis)).max())
+        if off > _NEAR:
+            why = "how far motions of that mechanism are from those of the one with 3d closures"
+            wrong.append(Difference("/values/0/jacobian", 0.0, off, why))
+    return wrong
+
+
+def motions(bench: Bench, mechanism: Mechanism, version: Version) -> Matrix:
+    """An orthonormal basis of the null space of K at the closed configuration, in velocities free of units."""
+    at = {"assembled": mechanism.configurations["assembled"]}
+    robot, q = truth(mechanism, version), configuration(mechanism, at["assembled"], version)
+    (values,) = bench.evaluate(ask(mechanism, version, at=at, frames=[]), ("jacobian",))
+    _, sizes, Vt = np.linalg.svd(scaled(stacked(values), robot, q))
+    rank = int(np.sum(sizes > 1e-5 * max(1.0, sizes[0])))
+    return np.asarray(Vt[rank:].T)
+
+
+def stacked(values: Values) -> Matrix:
+    """All rows of K."""
+    assert values.jacobian is not None
+    return np.vstack([np.array(rows) for rows in values.jacobian.rows.values()])
+
+
+def with_balls(mechanism: Mechanism) -> Mechanism:
+    """Every 3d closure as a 6d one, of frame A and a link that hangs from frame B by a spherical joint."""
+    mechanism = with_inline_frames(mechanism)
+    robot, q = truth(mechanism, "2"), dict(mechanism.configurations["assembled"])
+    at = robot.kinematics(q)
+    links, joints, changes = list(mechanism.links), list(mechanism.joints), dict(mechanism.changes)
+    closures = []
+    for closure in mechanism.closures:
+        if closure.type == "6d":
+            closures.append(closure)
+            continue
+        name = f"ball of {closure.name}"
+        _, a, b = robot.closures[closure.name]
+        carrier = next(link for link, place in robot.tree.links.items() if place.body == b.body)
+        origin = pose_of(np.linalg.inv(robot.tree.links[carrier].pose) @ b.pose)
+        links.append(Link(name=name, inertia=_BALL))
+        joints.append(Joint(name=f"{name}, joint", type="continuous", parent=carrier, child=name, origin=origin))
+        changes[f"{name}, joint"] = Change(type="spherical")
+        q[f"{name}, joint"] = quaternion_of(at.pose(b)[:3, :3].T @ at.pose(a)[:3, :3])
+        closures.append(closure.model_copy(update={"type": "6d", "b": name}))
+    return mechanism.replace(
+        links=tuple(links),
+        joints=tuple(joints),
+        changes=changes,
+        closures=tuple(closures),
+        configurations={"assembled": q},
+    )
+
+
+def has_3d(mechanism: Mechanism) -> bool:
+    """Whether a closure is a ball."""
+    return any(closure.type == "3d" for closure in mechanism.closures)
+
+
+LAWS = (
+    Law(
+        "ball-closure",
+        "A 3d closure lets a mechanism move as a 6d one on a spherical joint does.",
+        ("EU-CLO-009", "EU-CLO-008", "EU-CLO-010", "EU-JNT-015"),
+        (Level.KINEMATICS,),
+        ball_closure,
+        versions=("2",),
+        applies=has_3d,
+        closures=1,
+    ),
+)

@@ -1,0 +1,70 @@
+"""One configuration in other numbers: what is left out, −q for q, and a turn more."""
+
+from __future__ import annotations
+
+import math
+
+from eurdf_conformance.level import Level, Version
+from eurdf_conformance.properties.asked import ask
+from eurdf_conformance.properties.example import Example
+from eurdf_conformance.properties.law import Law
+from eurdf_conformance.properties.mechanism import Configuration, Coordinates, Mechanism
+from eurdf_conformance.properties.pair import Pair, related
+from eurdf_conformance.properties.truth import truth
+
+
+def leaving_out(example: Example, version: Version) -> Pair:
+    """A robot at configurations that name every joint, and where those that stand at their neutral are left out."""
+    mechanism = example.mechanism
+    neutral = {name: tuple(q) for name, q in truth(mechanism, "2").neutral().items()}
+    whole = {name: {**neutral, **q} for name, q in mechanism.configurations.items()}
+    return Pair(ask(mechanism, version, at=whole), ask(mechanism, version))
+
+
+def turning(example: Example, version: Version) -> Pair:
+    """A robot, and the same one with −q for every quaternion q and another turn of every continuous joint."""
+    mechanism = example.mechanism
+    types = mechanism.types()
+    at: dict[str, Configuration] = {
+        name: {joint: _turned(types[joint], q) for joint, q in configuration.items() if not _leads(mechanism, joint)}
+        | {joint: q for joint, q in configuration.items() if _leads(mechanism, joint)}
+        for name, configuration in mechanism.configurations.items()
+    }
+    return Pair(ask(mechanism, version), ask(mechanism, version, at=at))
+
+
+def _turned(kind: str, q: Coordinates) -> Coordinates:
+    if kind == "continuous":
+        return (q[0] + math.tau,)
+    if kind in ("spherical", "floating"):
+        return (*q[:-4], *(-x for x in q[-4:]))
+    return q
+
+
+def _leads(mechanism: Mechanism, joint: str) -> bool:
+    """Whether another joint follows this one: then a turn more is not the same."""
+    return any(each.mimic is not None and each.mimic.joint == joint for each in mechanism.joints)
+
+
+def has_turns(mechanism: Mechanism) -> bool:
+    """Whether a joint has coordinates of which others are the same."""
+    return bool({"continuous", "spherical", "floating"} & set(mechanism.types().values()))
+
+
+LAWS = (
+    Law(
+        "leaving-out",
+        "A joint that a configuration leaves out stands at its neutral.",
+        ("EU-JNT-025", "EU-CFG-005"),
+        (Level.KINEMATICS, Level.DYNAMICS),
+        related(leaving_out),
+    ),
+    Law(
+        "turning",
+        "q and −q are one rotation, and a turn more of a continuous joint is none.",
+        ("EU-JNT-025", "EU-JNT-015"),
+        (Level.KINEMATICS, Level.DYNAMICS),
+        related(turning),
+        applies=has_turns,
+    ),
+)

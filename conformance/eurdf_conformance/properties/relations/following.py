@@ -1,0 +1,80 @@
+"""A joint that mimics moves as one that does not, held to its law."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eurdf_conformance.level import Level, Version
+from eurdf_conformance.properties.asked import ask
+from eurdf_conformance.properties.example import Example
+from eurdf_conformance.properties.law import Law
+from eurdf_conformance.properties.mechanism import Configuration, Limit, Mechanism
+from eurdf_conformance.properties.pair import Pair, related
+from eurdf_conformance.properties.relations.changing import in_velocities
+from eurdf_conformance.properties.truth import truth
+from eurdf_conformance.protocol.message import Values
+
+_WIDE = Limit(effort=1.0, velocity=1.0, lower=-100.0, upper=100.0)
+
+
+def following(example: Example, version: Version) -> Pair:
+    """A mechanism none of whose joints mimics, at coordinates that keep the laws, and the one in which they do.
+
+    With q = m q_leader + o, the column of the leader is its own and m times that of who follows it.
+    """
+    mechanism = example.mechanism
+    laws = {joint.name: law for joint in mechanism.joints if (law := leader(mechanism, joint.name))[0] != joint.name}
+    free = freed(mechanism)
+    at: dict[str, Configuration] = {}
+    for name, q in mechanism.configurations.items():
+        followed = {
+            joint: (multiplier * q.get(driver, (0.0,))[0] + offset,)
+            for joint, (driver, multiplier, offset) in laws.items()
+        }
+        at[name] = {**q, **followed}
+    before, columns = truth(free, version).velocities, truth(mechanism, version).velocities
+    J = np.zeros((len(before), len(columns)))
+    for i, (name, number) in enumerate(before):
+        driver, multiplier, _ = laws.get(name, (name, 1.0, 0.0))
+        J[i, columns.index((driver, number))] = multiplier
+
+    def carry(values: Values, index: int) -> Values:
+        return in_velocities(values, J, columns)
+
+    return Pair(ask(free, version, at=at), ask(mechanism, version), carry)
+
+
+def leader(mechanism: Mechanism, joint: str) -> tuple[str, float, float]:
+    """Whom a joint follows in the end, with the multiplier and the offset of the whole chain."""
+    laws = {each.name: each.mimic for each in mechanism.joints}
+    multiplier, offset = 1.0, 0.0
+    while (mimic := laws.get(joint)) is not None:
+        multiplier, offset, joint = multiplier * mimic.multiplier, multiplier * mimic.offset + offset, mimic.joint
+    return joint, multiplier, offset
+
+
+def freed(mechanism: Mechanism) -> Mechanism:
+    """Without mimics, and with room for those that were."""
+    return mechanism.replace(
+        joints=tuple(
+            joint.model_copy(update={"mimic": None, "limit": _WIDE}) if joint.mimic else joint
+            for joint in mechanism.joints
+        )
+    )
+
+
+def has_mimic(mechanism: Mechanism) -> bool:
+    """Whether a joint follows another."""
+    return any(joint.mimic for joint in mechanism.joints)
+
+
+LAWS = (
+    Law(
+        "following",
+        "A joint that mimics moves as one that does not, held to its law.",
+        ("EU-URD-032", "EU-CLO-010", "EU-INR-006"),
+        (Level.KINEMATICS, Level.DYNAMICS),
+        related(following),
+        applies=has_mimic,
+    ),
+)

@@ -1,0 +1,69 @@
+"""What is fixed to a link weighs as if it were a part of it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eurdf_conformance.level import Level, Version
+from eurdf_conformance.properties.asked import ask
+from eurdf_conformance.properties.example import Example
+from eurdf_conformance.properties.law import Law
+from eurdf_conformance.properties.mechanism import Inertia, Link, Mechanism, Pose
+from eurdf_conformance.properties.pair import Pair, related
+from eurdf_conformance.properties.placement import Matrix, matrix_of, vector
+
+
+def lumping(example: Example, version: Version) -> Pair:
+    """A mechanism, and one in which links on fixed joints weigh nothing, and what carries them weighs more."""
+    return Pair(ask(example.mechanism, version), ask(lumped(example.mechanism), version))
+
+
+def lumped(mechanism: Mechanism) -> Mechanism:
+    """Every inertia behind a fixed joint, on the link before it; from the leaves on."""
+    inertias = {link.name: link.inertia for link in mechanism.links}
+    for joint in reversed(mechanism.joints):  # a joint stands behind the one that it hangs from
+        if mechanism.type_of(joint) == "fixed" and (carried := inertias[joint.child]) is not None:
+            inertias[joint.parent] = together(inertias[joint.parent], carried, matrix_of(joint.origin))
+            inertias[joint.child] = None
+    return mechanism.replace(links=tuple(Link(name=link.name, inertia=inertias[link.name]) for link in mechanism.links))
+
+
+def together(one: Inertia | None, other: Inertia, M: Matrix) -> Inertia:
+    """Of two bodies, the second of which stands at a pose in the frame of the first.
+
+    m = m₁ + m₂, c = (m₁ c₁ + m₂ c₂) / m, and with d from the common centre, I = Σ R I Rᵀ + m (d·d − d dᵀ).
+    """
+    parts = [(np.eye(4), one)] if one is not None else []
+    placed = [(place @ matrix_of(each.pose), each) for place, each in [*parts, (M, other)]]
+    mass = sum(each.mass for _, each in placed)
+    center = sum((each.mass * place[:3, 3] for place, each in placed), np.zeros(3)) / mass
+    total = np.zeros((3, 3))
+    for place, each in placed:
+        R, d = place[:3, :3], place[:3, 3] - center
+        total += R @ _symmetric(each) @ R.T + each.mass * (d @ d * np.eye(3) - np.outer(d, d))
+    xx, xy, xz, yy, yz, zz = total[np.triu_indices(3)].tolist()
+    return Inertia(mass=mass, pose=Pose(xyz=vector(center)), moments=(xx, xy, xz, yy, yz, zz))
+
+
+def _symmetric(inertia: Inertia) -> Matrix:
+    moments = np.zeros((3, 3))
+    moments[np.triu_indices(3)] = inertia.moments
+    return np.asarray(moments + np.triu(moments, 1).T)
+
+
+def has_fixed_mass(mechanism: Mechanism) -> bool:
+    """Whether a link behind a fixed joint weighs something."""
+    weighs = {link.name: link.inertia is not None for link in mechanism.links}
+    return any(mechanism.type_of(joint) == "fixed" and weighs[joint.child] for joint in mechanism.joints)
+
+
+LAWS = (
+    Law(
+        "lumping",
+        "What is fixed to a link weighs as if it were a part of it.",
+        ("EU-INR-005", "EU-INR-006", "EU-JNT-019"),
+        (Level.DYNAMICS,),
+        related(lumping),
+        applies=has_fixed_mass,
+    ),
+)

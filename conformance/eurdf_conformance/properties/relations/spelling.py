@@ -1,0 +1,72 @@
+"""Another order, and another style of YAML, change nothing."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from eurdf_conformance.level import Level, Version
+from eurdf_conformance.properties.asked import ask
+from eurdf_conformance.properties.chance import Chance
+from eurdf_conformance.properties.document import document
+from eurdf_conformance.properties.example import Example
+from eurdf_conformance.properties.files import Files
+from eurdf_conformance.properties.law import Law
+from eurdf_conformance.properties.mechanism import Mechanism
+from eurdf_conformance.properties.pair import Pair, related
+from eurdf_conformance.properties.urdf import urdf_text
+from eurdf_conformance.properties.yaml_text import yaml_text
+
+
+def reordering(example: Example, version: Version) -> Pair:
+    """A mechanism, and the same one with its links, joints, keys and elements in another order."""
+    mechanism, chance = example.mechanism, example.chance
+    other = reordered(mechanism, chance, version)
+    keys = shuffled_keys(document(other, version), chance)
+    files = Files(yaml_text(keys), urdf_text(other, backwards=True).encode())
+    at, frames = mechanism.configurations, None
+    return Pair(ask(mechanism, version, frames=frames), ask(other, version, files=files, at=at))
+
+
+def restyling(example: Example, version: Version) -> Pair:
+    """A mechanism, and the same files in another spelling."""
+    asked = ask(example.mechanism, version)
+    text = yaml_text(document(example.mechanism, version), example.chance)
+    return Pair(asked, ask(example.mechanism, version, files=Files(text, asked.files.urdf)))
+
+
+def reordered(mechanism: Mechanism, chance: Chance, version: Version) -> Mechanism:
+    """The order of closures is their name in version 1, so there it is kept."""
+    closures = mechanism.closures if version == "1" else tuple(chance.shuffled(mechanism.closures))
+    return mechanism.replace(
+        links=tuple(chance.shuffled(mechanism.links)),
+        joints=tuple(chance.shuffled(mechanism.joints)),
+        changes=dict(chance.shuffled(mechanism.changes.items())),
+        frames=tuple(chance.shuffled(mechanism.frames)),
+        closures=closures,
+        actuators=tuple(chance.shuffled(mechanism.actuators)),
+    )
+
+
+def shuffled_keys(value: Any, chance: Chance) -> Any:
+    """A value whose mappings, at every level, have their keys in another order."""
+    if isinstance(value, dict):
+        return {key: shuffled_keys(item, chance) for key, item in chance.shuffled(value.items())}
+    return [shuffled_keys(item, chance) for item in value] if isinstance(value, list) else value
+
+
+LAWS = (
+    Law(
+        "reordering",
+        "Another order of links, joints, keys and elements changes nothing.",
+        ("EU-CAN-005", "EU-URD-004", "EU-URD-018", "EU-JNT-025"),
+        (Level.STRUCTURE, Level.KINEMATICS, Level.DYNAMICS),
+        related(reordering),
+    ),
+    Law(
+        "yaml-style",
+        "Another style of YAML, with the same meaning under the core schema, changes nothing.",
+        ("EU-YML-011", "EU-YML-001", "EU-YML-005", "EU-YML-006", "EU-YML-010", "EU-FIL-003", "EU-SCH-002"),
+        (Level.STRUCTURE, Level.KINEMATICS),
+        related(restyling),
+    ),
+)

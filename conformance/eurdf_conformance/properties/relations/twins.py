@@ -1,0 +1,88 @@
+"""What both versions can say, in either."""
+
+from __future__ import annotations
+
+from eurdf_conformance.comparison.canonical import canonical_differences
+from eurdf_conformance.comparison.difference import ABSENT, Difference
+from eurdf_conformance.level import Level, Version
+from eurdf_conformance.properties.asked import Asked, ask
+from eurdf_conformance.properties.bench import QUANTITIES, Bench, NotAnswered
+from eurdf_conformance.properties.document import names1
+from eurdf_conformance.properties.example import Example
+from eurdf_conformance.properties.law import Law
+from eurdf_conformance.properties.mechanism import Mechanism
+from eurdf_conformance.properties.same_values import same_values
+from eurdf_conformance.properties.truth import truth
+from eurdf_conformance.protocol.message import CanonicalRobot, Jacobian, MassMatrix, Values
+
+
+def twins(bench: Bench, example: Example, version: Version, level: Level) -> list[Difference]:
+    """What is said of a description of version 2 is said of that of version 1.
+
+    Who does not read version 2 is compared with the oracle's reading of it.
+    """
+    mechanism = example.mechanism
+    one, other = ask(mechanism, "2"), ask(mechanism, "1")
+    robot = truth(mechanism, "2")
+    if level is Level.STRUCTURE:
+        expected, given = read2(bench, one), bench.read(other)
+        if given is None:
+            return [Difference("/robot", "what it has read", ABSENT, "the level structure asks for it")]
+        differences = canonical_differences(robot_of_version1(expected), given, robot.bodies)
+        return [each.within("/robot") for each in differences]
+    before, after = evaluate2(bench, one, level), bench.evaluate(other, QUANTITIES[level])
+    found = []
+    for index, (values, given_values, q) in enumerate(zip(before, after, one.configurations, strict=True)):
+        carried = values_of_version1(values, mechanism)
+        found += same_values(carried, given_values, robot.size(q), f"/values/{index}")
+    return found
+
+
+def read2(bench: Bench, asked: Asked) -> CanonicalRobot:
+    """What the reader reads of the description of version 2."""
+    try:
+        read = bench.read(asked)
+    except NotAnswered:
+        read = None
+    return read or truth(asked.mechanism, "2").canonical()
+
+
+def evaluate2(bench: Bench, asked: Asked, level: Level) -> list[Values]:
+    """What the reader says of the description of version 2."""
+    try:
+        return bench.evaluate(asked, QUANTITIES[level])
+    except NotAnswered:
+        robot = truth(asked.mechanism, "2")
+        return [robot.evaluate(q, asked.frames, QUANTITIES[level]) for q in asked.configurations]
+
+
+def robot_of_version1(robot: CanonicalRobot) -> CanonicalRobot:
+    """The same, but for what version 1 cannot say: its files have no configurations."""
+    return robot.model_copy(update={"version": "1", "configurations": {}})
+
+
+def values_of_version1(values: Values, mechanism: Mechanism) -> Values:
+    """The same, with the two joints that version 1 makes of a universal one."""
+
+    def column(name: str, i: int) -> tuple[str, int]:
+        names = names1(mechanism, name)
+        return (names[i], 0) if len(names) == 2 else (name, i)
+
+    changed: dict[str, object] = {}
+    if (K := values.jacobian) is not None:
+        changed["jacobian"] = Jacobian(columns=[column(*each) for each in K.columns], rows=K.rows)
+    if (M := values.mass_matrix) is not None:
+        changed["mass_matrix"] = MassMatrix(columns=[column(*each) for each in M.columns], matrix=M.matrix)
+    return values.model_copy(update=changed)
+
+
+LAWS = (
+    Law(
+        "versions",
+        "What both versions can say, they say alike.",
+        ("EU-ONE-001", "EU-ONE-004", "EU-ONE-005", "EU-ONE-006", "EU-ONE-007", "EU-VER-002"),
+        (Level.STRUCTURE, Level.KINEMATICS, Level.DYNAMICS),
+        twins,
+        versions=("1",),
+    ),
+)

@@ -1,0 +1,36 @@
+"""Values of a reader against other values of the same reader: both may be off by what is allowed."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eurdf_conformance.comparison.array import TOLERANCE, array_differences
+from eurdf_conformance.comparison.difference import Difference
+from eurdf_conformance.comparison.values import values_differences
+from eurdf_conformance.protocol.message import Values
+
+#: How far apart two answers may be, of which each may be off by EU-PRO-008 or 009 and what is made of it by more.
+SLACK = 100.0
+
+
+def same_values(expected: Values, given: Values, size: float, pointer: str) -> list[Difference]:
+    """Where values differ by more than two right answers may.
+
+    Args:
+        expected: What follows from another answer; what is None is not compared.
+        given: Values.
+        size: Of the robot, m.
+        pointer: Where they stand in the answer.
+    """
+    inert = {"mass_matrix": None, "mass": None}
+    found = values_differences(expected.model_copy(update=inert), given, SLACK * max(1.0, size))
+    if expected.mass is not None:
+        one = expected.mass
+        found += array_differences(one, given.mass, SLACK * TOLERANCE * abs(one), "/mass", "mass, kg")
+    if expected.mass_matrix is not None and given.mass_matrix is not None:
+        M, other = np.array(expected.mass_matrix.matrix), np.array(given.mass_matrix.matrix)
+        order = [given.mass_matrix.columns.index(column) for column in expected.mass_matrix.columns]
+        near = SLACK * TOLERANCE * float(np.abs(M).max(initial=0.0))
+        other = other[np.ix_(order, order)] if order else other
+        found += array_differences(M.tolist(), other.tolist(), near, "/mass_matrix/matrix", "M")
+    return [each.within(pointer) for each in found]

@@ -1,0 +1,1 @@
+"""How random mechanisms are drawn: well-conditioned, of text that reads back exactly, and small once shrunk."""

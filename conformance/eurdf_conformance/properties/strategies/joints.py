@@ -1,0 +1,119 @@
+"""Joints of every type: as the URDF has them, and as the description changes them."""
+
+from __future__ import annotations
+
+from functools import cache, partial
+from typing import Any, Literal, get_args
+
+from hypothesis import strategies as st
+from hypothesis.strategies import DrawFn, SearchStrategy
+
+from eurdf_conformance.comparison.coordinates import COORDINATES, VELOCITIES
+from eurdf_conformance.properties.mechanism import Change, Joint, Limit, Mimic, PerNumber, Pose, Vector
+from eurdf_conformance.properties.strategies.numbers import axes, axis_pairs, decimals, poses
+
+Plain = Literal["revolute", "continuous", "prismatic", "planar", "floating", "fixed"]
+PLAIN: tuple[Plain, ...] = get_args(Plain)
+
+#: What becomes of a joint, and what it may be in the URDF, EU-JNT-005.
+BECOMES: dict[str, tuple[Plain, ...]] = {
+    "spherical": ("revolute", "continuous"),
+    "universal": ("revolute", "continuous"),
+    "fixed": ("revolute", "continuous", "prismatic", "planar", "floating"),
+    "cylindrical": ("revolute", "continuous", "prismatic"),
+    "helical": ("revolute", "continuous", "prismatic"),
+}
+LETTERS = ("xy", "xz", "yx", "yz", "zx", "zy")
+
+#: Types that mimic and are mimicked, EU-URD-023, and those whose coordinates limits bound, EU-JNT-009.
+FOLLOWING = ("revolute", "continuous", "prismatic")
+_BOUNDED = ("revolute", "prismatic", "universal", "cylindrical", "helical")
+
+#: Coordinates are drawn within these, m and rad, and limits beyond.
+LENGTH, ANGLE = 0.5, 1.6
+
+
+@cache
+def urdf_joints(kind: Plain) -> SearchStrategy[Joint]:
+    """A joint of the URDF, from link to link."""
+    if kind in ("planar", "floating", "fixed"):
+        # What one limit, or one damping, of a joint that slides and turns is of, no clause says.
+        axis = (0.0, 0.0, 1.0) if kind == "planar" else None
+        return st.builds(lambda origin: _joint(kind, origin, axis, None, None, None), poses())
+    ranged = kind in ("revolute", "prismatic")
+    limits = st.builds(
+        Limit,
+        effort=decimals(0, 50, 1),
+        velocity=decimals(0, 10, 1),
+        lower=decimals(-4, -2, 1) if ranged else st.none(),
+        upper=decimals(2, 4, 1) if ranged else st.none(),
+    )
+    some = st.none() | decimals(0, 1)
+    limit = limits if ranged else st.none() | limits
+    return st.builds(partial(_joint, kind), poses(), st.none() | axes(), limit, some, some)
+
+
+def _joint(
+    kind: Plain, origin: Pose, axis: Vector | None, limit: Limit | None, damping: float | None, friction: float | None
+) -> Joint:
+    return Joint(
+        name="",
+        type=kind,
+        parent="",
+        child="",
+        origin=origin,
+        axis=axis,
+        limit=limit,
+        damping=damping,
+        friction=friction,
+    )
+
+
+@cache
+def mimics(leader: str) -> SearchStrategy[Mimic]:
+    """Following a joint, forwards or backwards."""
+    return st.builds(
+        Mimic, joint=st.just(leader), multiplier=decimals(-2, 2, 1).filter(bool), offset=decimals(-0.5, 0.5)
+    )
+
+
+@st.composite
+def changes(draw: DrawFn, kind: Any, was: Plain, *, plain: bool = False) -> Change:
+    """What the description says of a joint.
+
+    Args:
+        draw: Of Hypothesis.
+        kind: What it becomes, or None.
+        was: Its type in the URDF.
+        plain: Whether only what version 1 can say.
+    """
+    said: dict[str, Any] = {"type": kind}
+    if kind == "universal":
+        letters = st.sampled_from(LETTERS)
+        said["axes"] = draw(letters if plain else letters | axis_pairs())
+    if kind == "helical":
+        said["pitch"] = draw(decimals(-0.5, 0.5).filter(bool))
+    if plain or kind == "fixed":
+        return Change(**said)
+    return Change(**said, **draw(stated(kind or was)))
+
+
+@st.composite
+def stated(draw: DrawFn, kind: str) -> dict[str, Any]:
+    """Properties that the description states, in place of the URDF's, and the user's own data."""
+    nq, nv = COORDINATES[kind], VELOCITIES[kind]
+    ranges = {"armature": (0, 0.5), "damping": (0, 2), "friction": (0, 2), "velocity": (0, 9), "effort": (0, 9)}
+    ranges |= {"lower": (-4, -2), "upper": (2, 4)} if kind in _BOUNDED else {}
+    names: list[str] = draw(st.lists(st.sampled_from(sorted(ranges)), unique=True, max_size=3))
+    said: dict[str, Any] = {}
+    for name in names:
+        count = nq if name in ("lower", "upper") else nv
+        said[name] = draw(_per_number(*ranges[name], count))
+    own = {"x-bearing": {"series": draw(st.integers(600, 700)), "play": [2e-05, None, True, "no"]}}
+    return said | {"own": own} if said and draw(st.booleans()) else said
+
+
+@cache
+def _per_number(low: float, high: float, count: int) -> SearchStrategy[PerNumber]:
+    numbers = decimals(low, high)
+    return numbers | st.tuples(*[numbers] * count)

@@ -1,0 +1,29 @@
+"""Random mechanisms: trees, and closed ones."""
+
+from __future__ import annotations
+
+from hypothesis import assume
+from hypothesis import strategies as st
+from hypothesis.strategies import DrawFn
+
+from eurdf_conformance.level import Version
+from eurdf_conformance.properties.conditioning import is_well_conditioned
+from eurdf_conformance.properties.mechanism import Mechanism
+from eurdf_conformance.properties.strategies.loops import with_closures
+from eurdf_conformance.properties.strategies.trees import trees
+
+
+@st.composite
+def mechanisms(draw: DrawFn, version: Version = "2", closures: int = 0) -> Mechanism:
+    """A mechanism that version 2 can say, or, where that is asked for, version 1 too.
+
+    Args:
+        draw: Of Hypothesis.
+        version: 1 where both versions are to say it.
+        closures: So many closures at least.
+    """
+    tree = draw(trees(version))
+    mechanism = draw(with_closures(tree, version, closures))
+    assume(len(mechanism.closures) >= closures)
+    assume(is_well_conditioned(mechanism, version))
+    return mechanism

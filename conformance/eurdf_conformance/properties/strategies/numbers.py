@@ -1,0 +1,65 @@
+"""Numbers of few digits, and what is made of them.
+
+A strategy is made once: to make one takes longer than to draw from it.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+from hypothesis import strategies as st
+from hypothesis.strategies import SearchStrategy
+
+from eurdf_conformance.properties.mechanism import Pose, Vector
+
+#: Sine of the angle between two axes that are not to be parallel.
+_APART = 0.3
+
+
+@cache
+def decimals(low: float, high: float, digits: int = 2) -> SearchStrategy[float]:
+    """Numbers of so many digits behind the point."""
+    scale = 10**digits
+    return st.integers(round(low * scale), round(high * scale)).map(lambda number: number / scale)
+
+
+@cache
+def vectors(limit: float) -> SearchStrategy[Vector]:
+    """Three numbers of no more than a limit."""
+    return st.tuples(*[decimals(-limit, limit)] * 3)
+
+
+@cache
+def poses() -> SearchStrategy[Pose]:
+    """Any pose within half a metre, those along the axes often."""
+    zero = st.just((0.0, 0.0, 0.0))
+    return st.builds(Pose, xyz=vectors(0.5), rpy=st.one_of(zero, vectors(3.1)))
+
+
+@cache
+def axes() -> SearchStrategy[Vector]:
+    """Directions of any length but zero."""
+    return st.tuples(*[st.integers(-3, 3).map(float)] * 3).filter(any)
+
+
+@cache
+def axis_pairs() -> SearchStrategy[tuple[Vector, Vector]]:
+    """Two directions that are far from parallel."""
+    return st.tuples(axes(), axes()).filter(_are_apart)
+
+
+@cache
+def quaternions() -> SearchStrategy[tuple[float, float, float, float]]:
+    """Unit quaternions x, y, z, w."""
+    return st.tuples(*[st.integers(-4, 4)] * 3, st.integers(-4, 4).map(lambda w: w or 5)).map(_unit)
+
+
+def _unit(numbers: tuple[float, ...]) -> tuple[float, float, float, float]:
+    x, y, z, w = (np.array(numbers) / np.linalg.norm(numbers)).tolist()
+    return x, y, z, w
+
+
+def _are_apart(pair: tuple[Vector, Vector]) -> bool:
+    a, b = (np.array(axis) / np.linalg.norm(axis) for axis in pair)
+    return float(np.linalg.norm(np.cross(a, b))) > _APART

@@ -1,0 +1,162 @@
+"""Spanning trees: links and joints, what the description makes of the joints, and configurations."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cache
+from typing import Any
+
+from hypothesis import strategies as st
+from hypothesis.strategies import DrawFn, SearchStrategy
+
+from eurdf_conformance.level import Version
+from eurdf_conformance.properties.mechanism import (
+    Actuator,
+    Change,
+    Configuration,
+    Coordinates,
+    Joint,
+    Link,
+    Mechanism,
+)
+from eurdf_conformance.properties.strategies.inertias import inertias
+from eurdf_conformance.properties.strategies.joints import (
+    ANGLE,
+    BECOMES,
+    FOLLOWING,
+    LENGTH,
+    PLAIN,
+    Plain,
+    changes,
+    mimics,
+    urdf_joints,
+)
+from eurdf_conformance.properties.strategies.merges import chains
+from eurdf_conformance.properties.strategies.numbers import decimals, quaternions
+
+#: What version 1 cannot say.
+_VERSION_2 = ("cylindrical", "helical")
+
+
+@dataclass
+class Growth:
+    """A tree that grows."""
+
+    version: Version
+    links: list[Link] = field(default_factory=list)
+    joints: list[Joint] = field(default_factory=list)
+    changes: dict[str, Change] = field(default_factory=dict)
+    #: Links that can carry another joint.
+    free: list[str] = field(default_factory=list)
+    #: Joints that can be mimicked.
+    leaders: list[str] = field(default_factory=list)
+
+    def new_links(self, count: int) -> list[str]:
+        """Names of the next links."""
+        return [f"link{len(self.links) + i}" for i in range(count)]
+
+
+@st.composite
+def trees(draw: DrawFn, version: Version, most: int = 6) -> Mechanism:
+    """A tree that version 2 can say, or both versions, with the configurations `assembled` and `open`."""
+    growth = Growth(version)
+    growth.links.append(Link(name="link0", inertia=draw(st.none() | inertias())))
+    growth.free.append("link0")
+    kinds = [*PLAIN, "mimic", "merged", *(kind for kind in BECOMES if version == "2" or kind not in _VERSION_2)]
+    for kind in draw(st.lists(st.sampled_from(kinds), min_size=1, max_size=most)):
+        if kind == "merged":
+            grow_ball(draw, growth)
+        else:
+            grow_joint(draw, growth, kind)
+    mechanism = Mechanism(
+        root=draw(st.sampled_from(["fixed", "floating"])) if version == "2" else "fixed",
+        links=tuple(growth.links),
+        joints=tuple(growth.joints),
+        changes=growth.changes,
+    )
+    movers = {name: kind for name, kind in mechanism.types().items() if name not in _mimics(mechanism)}
+    names = st.lists(st.sampled_from(sorted(movers)), unique=True, max_size=3) if movers else st.just([])
+    driven = [name for name in draw(names) if name != "root_joint"]
+    return mechanism.replace(
+        actuators=tuple(draw(actuators(name, version)) for name in driven),
+        configurations={
+            "assembled": draw(configurations(movers, every=True)),
+            "open": draw(configurations(movers, every=False)),
+        },
+        own={"x-note": draw(st.sampled_from(["no", 12, {"012": [1.5, "1e-3"]}]))} if version == "2" else {},
+    )
+
+
+def grow_joint(draw: DrawFn, growth: Growth, kind: Any) -> None:
+    """Add a joint and the link that it carries."""
+    name, (child,) = f"joint{len(growth.joints)}", growth.new_links(1)
+    parent = draw(st.sampled_from(growth.free))
+    was: Plain = kind
+    if kind in BECOMES and (kind != "fixed" or draw(st.booleans())):
+        was = draw(st.sampled_from(BECOMES[kind]))
+        growth.changes[name] = draw(changes(kind, was, plain=growth.version == "1"))
+    elif kind == "mimic" and not growth.leaders:
+        was = kind = "revolute"
+    elif kind == "mimic":
+        was = draw(st.sampled_from(FOLLOWING))
+    elif growth.version == "2" and kind != "fixed" and draw(st.booleans()):
+        growth.changes[name] = draw(changes(None, was))
+        if growth.changes[name] == Change():
+            del growth.changes[name]
+    mimic = draw(mimics(draw(st.sampled_from(growth.leaders)))) if kind == "mimic" else None
+    ends = {"name": name, "parent": parent, "child": child, "mimic": mimic}
+    if kind in (*FOLLOWING, "mimic"):
+        growth.leaders.append(name)
+    growth.joints.append(draw(urdf_joints(was)).model_copy(update=ends))
+    # What does not move may weigh nothing.
+    growth.links.append(Link(name=child, inertia=draw(st.none() | inertias() if kind == "fixed" else inertias())))
+    growth.free.append(child)
+
+
+def grow_ball(draw: DrawFn, growth: Growth) -> None:
+    """Add three joints that are one, and the link that they carry."""
+    joints = [f"joint{len(growth.joints) + i}" for i in range(3)]
+    links = growth.new_links(3)
+    found, between = draw(chains(joints, [draw(st.sampled_from(growth.free)), *links]))
+    name = joints[-1] if growth.version == "1" or draw(st.booleans()) else f"ball{len(growth.joints)}"
+    growth.changes[name] = Change(type="spherical", merges=tuple(joints))
+    growth.joints += found
+    growth.links += [*between, Link(name=links[-1], inertia=draw(inertias()))]
+    growth.free.append(links[-1])
+
+
+@cache
+def actuators(joint: str, version: Version) -> SearchStrategy[Actuator]:
+    """A joint with a motor."""
+    plain = st.just(Actuator(joint=joint))
+    if version == "1":
+        return plain
+    gear = st.none() | decimals(-20, 20, 1).filter(bool)
+    return plain | st.builds(
+        Actuator, joint=st.just(joint), gear_ratio=gear, rotor_inertia=st.none() | decimals(0, 0.01, 4)
+    )
+
+
+@st.composite
+def configurations(draw: DrawFn, types: dict[str, str], *, every: bool) -> Configuration:
+    """Coordinates of all joints, or of some: the others stand at their neutral."""
+    return {name: draw(coordinates(kind)) for name, kind in types.items() if every or draw(st.booleans())}
+
+
+@cache
+def coordinates(kind: str) -> SearchStrategy[Coordinates]:
+    """Those of a joint of a type, in the order of files."""
+    length, angle = decimals(-LENGTH, LENGTH), decimals(-ANGLE, ANGLE)
+    ways: dict[str, SearchStrategy[Coordinates]] = {
+        "prismatic": st.tuples(length),
+        "cylindrical": st.tuples(length, angle),
+        "universal": st.tuples(angle, angle),
+        "planar": st.tuples(length, length, angle),
+        "spherical": quaternions(),
+        "floating": st.builds(lambda p, q: (*p, *q), st.tuples(length, length, length), quaternions()),
+    }
+    return ways.get(kind, st.tuples(angle))
+
+
+def _mimics(mechanism: Mechanism) -> set[str]:
+    return {joint.name for joint in mechanism.joints if joint.mimic}

@@ -1,0 +1,123 @@
+"""What a line of standard output is: the answer to the request, or why it is not."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import Any
+
+from pydantic import ValidationError
+
+from eurdf_conformance.protocol.message import ANSWER, AnyAnswer, AnyRequest, Evaluate, Evaluated, Stop
+from eurdf_conformance.runner.outcome import Malformed, Misplaced
+
+#: Characters that are kept of a line that is no answer.
+SHOWN = 2000
+
+_ANY_TIME = ("unsupported", "skipped", "errored")
+
+
+def read_answer(line: bytes, request: AnyRequest) -> AnyAnswer | Malformed | Misplaced:
+    """The answer that a line is, to one request.
+
+    Args:
+        line: Without the line feed that ends it.
+        request: What was asked.
+    """
+    try:
+        answer = ANSWER.validate_json(line)
+    except ValidationError as error:
+        return _unfit(line, request, error)
+    if b"NaN" in line or b"Infinity" in line:  # pydantic takes them where any value may stand
+        _, constants = _parsed(line)
+        if constants:
+            return Malformed(shown(line), f"{constants[0]} is no JSON", placed=answer.id == request.id)
+    return _placed(answer, line, request)
+
+
+def shown(line: bytes) -> str:
+    """The beginning of a line, as text."""
+    text = line[: 4 * SHOWN].decode("utf-8", "backslashreplace")
+    return text if len(text) <= SHOWN and len(line) <= 4 * SHOWN else f"{text[:SHOWN]}… ({len(line):,} bytes)"
+
+
+def _placed(answer: AnyAnswer, line: bytes, request: AnyRequest) -> AnyAnswer | Malformed | Misplaced:
+    """A sound answer, if it is one to the request."""
+    if answer.id != request.id:
+        return Misplaced(shown(line), request.id, answer.id)
+    allowed = request.outcomes if isinstance(request, Stop) else (*request.outcomes, *_ANY_TIME)
+    if answer.outcome not in allowed:
+        return Malformed(shown(line), f"'{answer.outcome}' is no answer to '{request.command}'", placed=True)
+    if isinstance(answer, Evaluated) and isinstance(request, Evaluate):
+        given, asked = len(answer.values), len(request.configurations)
+        if given != asked:
+            return Malformed(shown(line), f"values at {given} configurations; {asked} were asked for", placed=True)
+    return answer
+
+
+def _unfit(line: bytes, request: AnyRequest, error: ValidationError) -> AnyAnswer | Malformed | Misplaced:
+    """Why a line does not fit the schema of any answer, or the answer that it is after all."""
+    try:
+        value, constants = _parsed(line)
+    except (ValueError, RecursionError) as why:
+        return Malformed(shown(line), _reason(why))
+    if not isinstance(value, dict):
+        return Malformed(shown(line), "a JSON value, but no object")
+    given_id = value.get("id")
+    if isinstance(given_id, float) and given_id.is_integer():
+        given_id = int(given_id)
+    if not isinstance(given_id, int) or isinstance(given_id, bool):
+        return Malformed(shown(line), "an answer without the 'id' of its request, which is a whole number")
+    if given_id != request.id:
+        return Misplaced(shown(line), request.id, given_id)
+    if constants:
+        return Malformed(shown(line), f"{constants[0]} is no JSON", placed=True)
+    # 2.0 is a whole number in JSON Schema, and some libraries have no others.
+    try:
+        return _placed(ANSWER.validate_json(json.dumps(_whole(value))), line, request)
+    except (ValidationError, RecursionError):
+        return Malformed(shown(line), _faults(error), placed=True)
+
+
+def _parsed(line: bytes) -> tuple[Any, list[str]]:
+    """The value of a JSON text, and the constants in it that Python takes and JSON has not: NaN and Infinity."""
+    constants: list[str] = []
+    return json.loads(line.decode("utf-8"), parse_constant=constants.append), constants
+
+
+def _whole(value: Any) -> Any:
+    if isinstance(value, float) and abs(value) < 2**53 and value.is_integer():
+        return int(value)
+    if isinstance(value, list):
+        return [_whole(item) for item in value]
+    if isinstance(value, dict):
+        return {key: _whole(item) for key, item in value.items()}
+    return value
+
+
+def _reason(why: Exception) -> str:
+    match why:
+        case UnicodeDecodeError():
+            return f"not UTF-8, from byte {why.start + 1} on"
+        case json.JSONDecodeError():
+            if why.doc.startswith("\ufeff"):
+                return "it begins with a byte order mark, which JSON has none of"
+            return f"not JSON: {why.msg} at character {why.pos + 1}"
+        case RecursionError():
+            return "not JSON of a sensible depth"
+        case _:
+            return str(why)
+
+
+def _faults(error: ValidationError) -> str:
+    """What is wrong, at which JSON pointer; the first few."""
+    faults = error.errors(include_url=False, include_input=False)
+    told = [f"{_pointer(fault['loc'])}: {fault['msg']}" for fault in faults[:3]]
+    more = f"; and {len(faults) - 3} more" if len(faults) > 3 else ""
+    return "it breaks the schema: " + "; ".join(told) + more
+
+
+def _pointer(location: Sequence[int | str]) -> str:
+    """Without the first part, which is the kind of answer."""
+    parts = (str(part).replace("~", "~0").replace("/", "~1") for part in location[1:])
+    return "".join(f"/{part}" for part in parts) or "the answer"

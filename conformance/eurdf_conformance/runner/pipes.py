@@ -1,0 +1,249 @@
+"""A process and its three pipes: whole lines out of its standard output, with a deadline and a bound on memory.
+
+One selector waits for all of them, and for the end of the process, so that a reader that fills one pipe while another
+is waited for can neither hang nor hang up. The process leads a group of its own, which ends with it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import selectors
+import signal
+import subprocess
+import threading
+import time
+from collections.abc import Callable, Sequence
+from enum import Enum, auto
+
+#: Bytes that a line may have. The mass matrix of a robot of 1000 velocities takes 20 MB.
+LINE_LIMIT = 64 * 2**20
+
+#: Bytes that are kept of standard error, the last ones.
+LOG_LIMIT = 2**14
+
+_CHUNK = 2**16
+
+# How long a process that has closed its standard output may take to end, s; and one that was killed.
+_LAST_BREATH = 1.0
+_DEATH = 5.0
+
+
+class Silence(Enum):
+    """Why there is no line."""
+
+    TIME_OUT = auto()
+    ENDED = auto()
+    TOO_LONG = auto()
+
+
+class Pipes:
+    """A running process. It is not thread-safe.
+
+    Attributes:
+        exit_code: Of the process as `subprocess` has it, negative for a signal; None while it runs, and where it was
+            ended from here.
+    """
+
+    def __init__(self, command: Sequence[str], line_limit: int = LINE_LIMIT) -> None:
+        """Start the process.
+
+        Args:
+            command: Program and arguments.
+            line_limit: Bytes that a line may have.
+
+        Raises:
+            OSError: It cannot be started.
+        """
+        self.exit_code: int | None = None
+        self._line_limit = line_limit
+        self._received = bytearray()
+        self._searched = 0  # so many of the bytes received hold no line feed
+        self._log = bytearray()
+        self._unsent = bytearray()
+        self._output_closed: float | None = None  # when
+        self._log_open, self._ended, self._closed = True, False, False
+        self._process = subprocess.Popen(
+            command,
+            bufsize=0,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            start_new_session=True,
+        )
+        streams = self._process.stdin, self._process.stdout, self._process.stderr
+        self._stdin, self._stdout, self._stderr = (stream.fileno() for stream in streams if stream is not None)
+        self._exit_seen, self._exit_told = os.pipe()
+        self._selector = selectors.DefaultSelector()
+        for fd, handle in (
+            (self._stdout, self._receive),
+            (self._stderr, self._take_log),
+            (self._exit_seen, self._notice_exit),
+        ):
+            os.set_blocking(fd, False)
+            self._selector.register(fd, selectors.EVENT_READ, handle)
+        os.set_blocking(self._stdin, False)
+        self._watcher = threading.Thread(target=self._watch, name=f"wait for {command[0]}", daemon=True)
+        self._watcher.start()
+
+    @property
+    def log(self) -> str:
+        """The end of what it wrote to standard error since the last `send`."""
+        return self._log.decode("utf-8", "replace")
+
+    @property
+    def unfinished(self) -> bytes:
+        """What it wrote of a line that has not ended."""
+        return bytes(self._received)
+
+    def send(self, line: bytes) -> None:
+        """Write a line to its standard input; what does not fit into the pipe goes out while `line` waits."""
+        self._log.clear()
+        self._unsent += line + b"\n"
+        self._write()
+        if self._unsent and self._stdin not in self._selector.get_map():
+            self._selector.register(self._stdin, selectors.EVENT_WRITE, self._write)
+
+    def close_input(self) -> None:
+        """Let it see the end of its standard input."""
+        assert self._process.stdin is not None
+        if self._stdin in self._selector.get_map():
+            self._selector.unregister(self._stdin)
+        self._unsent.clear()
+        self._process.stdin.close()
+
+    def line(self, deadline: float) -> bytes | Silence:
+        """The next line of its standard output, without its line feed.
+
+        Args:
+            deadline: Time of `time.monotonic`; one that has passed gives a line only if it is there.
+        """
+        looked = False
+        while True:
+            line = self._next_line()
+            if line is not None:
+                return line
+            if self._ended:
+                return Silence.ENDED
+            # Nothing more can come of a closed output; but how the process ends is worth a moment.
+            closed = self._output_closed
+            until = deadline if closed is None else closed + _LAST_BREATH
+            if looked and time.monotonic() >= until:
+                return Silence.TIME_OUT if closed is None else Silence.ENDED
+            self._handle(until)
+            looked = True
+
+    def await_exit(self, deadline: float) -> bool:
+        """Whether the process ends by itself before the deadline, a time of `time.monotonic`."""
+        while not self._ended and time.monotonic() < deadline:
+            self._handle(deadline)
+            self._received.clear()
+            self._searched = 0
+        return self._ended
+
+    def close(self) -> None:
+        """End the process and its group, whatever they do, and free what they took."""
+        if self._closed:
+            return
+        self._closed = True
+        # Its leader is dead or alive, but not reaped: the id of the group is still its own.
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            os.killpg(self._process.pid, signal.SIGKILL)
+        self._watcher.join(_DEATH)
+        if not self._watcher.is_alive():
+            code = self._process.wait()
+            self.exit_code = code if self._ended else None
+            os.close(self._exit_told)
+        self._selector.close()
+        os.close(self._exit_seen)
+        for stream in (self._process.stdin, self._process.stdout, self._process.stderr):
+            assert stream is not None
+            stream.close()
+
+    def _watch(self) -> None:
+        """Tell when the process ends. A child that it leaves behind may hold its pipes open, so they do not tell."""
+        with contextlib.suppress(ChildProcessError):
+            if hasattr(os, "waitid"):
+                os.waitid(os.P_PID, self._process.pid, os.WEXITED | os.WNOWAIT)
+            else:  # macOS before Python 3.13
+                self._process.wait()
+        with contextlib.suppress(OSError):
+            os.write(self._exit_told, b".")
+
+    def _handle(self, deadline: float) -> None:
+        """Wait for something to happen, and do what is to be done then."""
+        for key, _ in self._selector.select(max(deadline - time.monotonic(), 0.0)):
+            key.data()
+
+    def _next_feed(self) -> int:
+        feed = self._received.find(b"\n", self._searched)
+        if feed < 0:
+            self._searched = len(self._received)
+        return feed
+
+    def _next_line(self) -> bytes | Silence | None:
+        feed = self._next_feed()
+        if feed > self._line_limit or (feed < 0 and len(self._received) > self._line_limit):
+            return Silence.TOO_LONG
+        if feed < 0:
+            return None
+        line = bytes(self._received[:feed])
+        del self._received[: feed + 1]
+        self._searched = 0
+        return line
+
+    def _receive(self) -> bool:
+        """Read what standard output holds; whether there was anything."""
+        if self._output_closed is not None:
+            return False
+        chunk = _read(self._stdout)
+        if chunk == b"":
+            self._selector.unregister(self._stdout)
+            self._output_closed = time.monotonic()
+        self._received += chunk or b""
+        return bool(chunk)
+
+    def _take_log(self) -> bool:
+        """The same of standard error."""
+        if not self._log_open:
+            return False
+        chunk = _read(self._stderr)
+        if chunk == b"":
+            self._selector.unregister(self._stderr)
+            self._log_open = False
+        self._log += chunk or b""
+        del self._log[:-LOG_LIMIT]
+        return bool(chunk)
+
+    def _notice_exit(self) -> None:
+        """The process has ended: what it wrote last is in the pipes, and what more comes is of others."""
+        self._selector.unregister(self._exit_seen)
+        _empty(self._receive, self._line_limit)
+        _empty(self._take_log, self._line_limit)
+        self._ended = True
+
+    def _write(self) -> None:
+        try:
+            while self._unsent:
+                del self._unsent[: os.write(self._stdin, self._unsent[:_CHUNK])]
+        except BlockingIOError:
+            return
+        except BrokenPipeError:
+            self._unsent.clear()  # it ends, or does not listen: what it does next tells
+        if self._stdin in self._selector.get_map():
+            self._selector.unregister(self._stdin)
+
+
+def _read(fd: int) -> bytes | None:
+    """What there is to read; nothing at the end, None where there is nothing now."""
+    try:
+        return os.read(fd, _CHUNK)
+    except BlockingIOError:
+        return None
+
+
+def _empty(read: Callable[[], bool], limit: int) -> None:
+    """Read until there is nothing now, but no more than about ``limit`` bytes: others may go on writing."""
+    for _ in range(limit // _CHUNK + 1):
+        if not read():
+            return

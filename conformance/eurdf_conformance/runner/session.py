@@ -1,0 +1,222 @@
+"""A conversation with a reader, over as many processes as it takes, within a bound."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+
+from eurdf_conformance.protocol.message import (
+    PROTOCOL,
+    Accepted,
+    AnyRequest,
+    Evaluate,
+    Load,
+    Quantity,
+    Start,
+    Started,
+    Stop,
+)
+from eurdf_conformance.runner.command import command_of
+from eurdf_conformance.runner.outcome import Answered, CannotStart, Outcome
+from eurdf_conformance.runner.pipes import LINE_LIMIT
+from eurdf_conformance.runner.process import ReaderProcess
+
+
+class NotStarted(Exception):  # noqa: N818 - it says what the reader is
+    """A reader that did not answer `start` with `started`.
+
+    Attributes:
+        outcome: What came of it instead.
+    """
+
+    def __init__(self, outcome: Outcome) -> None:
+        self.outcome = outcome
+        super().__init__(str(outcome))
+
+
+class Session:
+    """A reader to ask; as a context manager it starts the reader, and ends it whatever happens.
+
+    After an outcome that breaks the process, another one is started when the reader is next asked. A reader that does
+    not start the first time, or was started too often, is given up: whatever it is asked, the outcome is `CannotStart`.
+
+    Attributes:
+        seconds_in_reader: Time spent waiting for the reader, its starts included, s.
+        restarts: How often it was started again.
+        ended: What came of `stop`, once the session is over; None where there was no process to stop.
+    """
+
+    def __init__(
+        self,
+        parser: str,
+        *,
+        timeout: float = 10.0,
+        start_timeout: float = 30.0,
+        stop_timeout: float = 5.0,
+        restarts: int = 20,
+        line_limit: int = LINE_LIMIT,
+    ) -> None:
+        """Nothing is started yet.
+
+        Args:
+            parser: ``package.module:object`` or ``cmd:`` and a command line, see `command_of`.
+            timeout: Time allowed for an answer, s.
+            start_timeout: Time allowed for starting the process and the answer to `start`, s.
+            stop_timeout: Time allowed from `stop` to the end of the process, s.
+            restarts: How often the reader may be started again.
+            line_limit: Bytes that a line may have.
+        """
+        self.parser = parser
+        self.seconds_in_reader = 0.0
+        self.restarts = 0
+        self.ended: Outcome | None = None
+        self._timeout, self._start_timeout, self._stop_timeout = timeout, start_timeout, stop_timeout
+        self._most_restarts, self._line_limit = restarts, line_limit
+        self._process: ReaderProcess | None = None
+        self._asked = 0
+        self._first: Outcome | None = None  # what came of the first start
+        self._last = ""  # what broke the last process
+        self._accepted: Load | None = None  # the robot that `evaluate` is of
+
+    def __enter__(self) -> Session:
+        self.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        if error is None:
+            self.stop()
+        elif self._process is not None:
+            self._process.end()
+
+    @property
+    def started(self) -> Started:
+        """Who the reader is, and what it claims.
+
+        Raises:
+            NotStarted: It did not say.
+        """
+        outcome = self.start()
+        if isinstance(outcome, Answered) and isinstance(outcome.answer, Started):
+            return outcome.answer
+        raise NotStarted(outcome)
+
+    def start(self) -> Outcome:
+        """Start the reader, if that was not done; what came of the first start."""
+        if self._first is None:
+            self._first = self._begin()
+            self._last = str(self._first)
+        return self._first
+
+    def load(self, description: Path, urdf: Path, *, timeout: float | None = None) -> Outcome:
+        """Let it read a robot.
+
+        Args:
+            description: The YAML file.
+            urdf: The URDF that it names.
+            timeout: Time allowed, s, in place of that of the session.
+        """
+        request = Load(id=0, description=str(description.absolute()), urdf=str(urdf.absolute()))
+        return self.ask(request, timeout=timeout)
+
+    def evaluate(
+        self,
+        configurations: Sequence[Mapping[str, Sequence[float]]],
+        frames: Sequence[str],
+        quantities: Sequence[Quantity],
+        *,
+        timeout: float | None = None,
+    ) -> Outcome:
+        """Let it say where things are, of the robot accepted last.
+
+        Args:
+            configurations: For each, by joint its coordinates as files have them.
+            frames: Names of the frames of which poses are asked for.
+            quantities: What to say.
+            timeout: Time allowed, s, in place of that of the session.
+        """
+        given = [{joint: list(map(float, values)) for joint, values in each.items()} for each in configurations]
+        request = Evaluate(id=0, quantities=list(quantities), frames=list(frames), configurations=given)
+        return self.ask(request, timeout=timeout)
+
+    def ask(self, request: AnyRequest, *, timeout: float | None = None) -> Outcome:
+        """Ask it anything but `start` and `stop`.
+
+        EU-PRO-006: only an answer that says so is a rejection; each other outcome is one of its own.
+
+        Where a process broke after it had accepted a robot, the next one is given that robot before it is asked to
+        evaluate.
+
+        Args:
+            request: Its id is replaced by one that was not used in this session.
+            timeout: Time allowed, s, in place of that of the session.
+        """
+        cannot = self._ready(request)
+        if cannot is not None:
+            return cannot
+        if isinstance(request, Load):
+            self._accepted = None
+        outcome = self._put(request, self._timeout if timeout is None else timeout)
+        if isinstance(request, Load) and isinstance(outcome, Answered) and isinstance(outcome.answer, Accepted):
+            self._accepted = request
+        return outcome
+
+    def stop(self) -> Outcome | None:
+        """End the conversation; what came of it, or None where no process was running."""
+        process = self._process
+        if process is not None and process.alive:
+            self.ended = process.stop(Stop(id=self._next_id()), self._stop_timeout)
+        return self.ended
+
+    def _ready(self, request: AnyRequest) -> CannotStart | None:
+        """See to it that there is a process to ask; why there is none."""
+        first = self.start()
+        if not _is_started(first):
+            return CannotStart(f"given up, for it did not start: {first}")
+        if self._process is not None and self._process.alive:
+            return None
+        if self.restarts >= self._most_restarts:
+            return CannotStart(f"given up after {self.restarts} restarts, the last after: {self._last}")
+        self.restarts += 1
+        again = self._begin()
+        if not _is_started(again):
+            self._last = str(again)
+            return CannotStart(f"it did not start again: {again}")
+        if isinstance(request, Evaluate) and self._accepted is not None:
+            loaded = self._put(self._accepted, self._timeout)
+            if not (isinstance(loaded, Answered) and isinstance(loaded.answer, Accepted)):
+                return CannotStart(f"started again, it did not accept the robot that it had accepted: {loaded}")
+        return None
+
+    def _begin(self) -> Outcome:
+        """Start a process and greet it."""
+        try:
+            self._process = ReaderProcess(command_of(self.parser), self._line_limit)
+        except (OSError, ValueError) as why:
+            return CannotStart(str(why))
+        outcome = self._put(Start(id=0, protocol=PROTOCOL), self._start_timeout)
+        if not _is_started(outcome):
+            self._process.end()
+        return outcome
+
+    def _put(self, request: AnyRequest, timeout: float) -> Outcome:
+        """Ask the process that runs."""
+        assert self._process is not None
+        begin = time.perf_counter()
+        outcome = self._process.ask(request.model_copy(update={"id": self._next_id()}), timeout)
+        # What was answered says itself how long the reader took; the rest is ours.
+        self.seconds_in_reader += outcome.seconds if isinstance(outcome, Answered) else time.perf_counter() - begin
+        if not self._process.alive:
+            self._last = str(outcome)
+        return outcome
+
+    def _next_id(self) -> int:
+        self._asked += 1
+        return self._asked
+
+
+def _is_started(outcome: Outcome) -> bool:
+    return isinstance(outcome, Answered) and isinstance(outcome.answer, Started)

@@ -1,0 +1,106 @@
+"""One reader, asked on item after item; what becomes of each is told to pytest, and kept for the certificate."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from functools import cache
+
+import pytest
+
+from eurdf_conformance.corpus.read import CorpusCase, read_cases
+from eurdf_conformance.protocol.message import Started
+from eurdf_conformance.runner.session import NotStarted, Session
+from eurdf_conformance.suite.conversation import Conversation
+from eurdf_conformance.suite.failure_text import failure_text
+from eurdf_conformance.suite.judge import Judgement
+from eurdf_conformance.suite.options import Options
+from eurdf_conformance.verdict.result import RESULT, Item, Result
+from eurdf_conformance.verdict.verdict import Verdict
+
+#: Name under which what the reader said of itself stands among the user properties of a pytest report.
+STARTED = "eurdf_conformance.started"
+
+#: So many differences of one item are kept for the certificate.
+_KEPT = 20
+
+
+@cache
+def all_cases() -> tuple[CorpusCase, ...]:
+    """The cases, read once a process."""
+    return tuple(read_cases())
+
+
+class Asking:
+    """One reader, asked on item after item.
+
+    Attributes:
+        options: What the user asks for.
+        conversation: With the reader, on cases.
+        node: The test that runs.
+    """
+
+    def __init__(self, options: Options, session: Session) -> None:
+        self.options = options
+        self.conversation = Conversation(session)
+        self.node: pytest.Item | None = None
+        self._session = session
+
+    @property
+    def session(self) -> Session:
+        """The reader, to be asked for something else than cases."""
+        self.conversation.forget()
+        return self._session
+
+    def new_session(self) -> Session:
+        """A further session with the reader."""
+        return new_session(self.options)
+
+    def settle(self, item: Item, ask: Callable[[], Judgement], case: CorpusCase | None = None) -> None:
+        """Ask, keep what becomes of it, and fail the test that runs if it is no pass.
+
+        An item of a level that the reader does not claim is skipped.
+
+        Args:
+            item: What is asked.
+            ask: Asks it.
+            case: The case that it is about, if it is.
+        """
+        started = self._started()
+        if started is not None and item.level not in started.claims.get(item.version, ()):
+            pytest.skip(f"{started.reader.name} does not claim level {item.level} for version {item.version}")
+        begin, before = time.perf_counter(), self._session.seconds_in_reader
+        judgement = ask()
+        seconds, in_reader = time.perf_counter() - begin, self._session.seconds_in_reader - before
+        reproduce = self.options.reproduce(item)
+        told = [judgement.reason, *map(str, judgement.differences[:_KEPT])] if judgement.reason else []
+        result = Result(item, judgement.verdict, tuple(told), reproduce, seconds, in_reader)
+        self._keep(RESULT, result.to_json())
+        self._tell(result, failure_text(item, judgement, reproduce, case))
+
+    def _tell(self, result: Result, text: str) -> None:
+        known = self.options.known.of(result.item)
+        if known is not None and known == result.verdict:
+            pytest.xfail(f"known as '{known}'")
+        if known is not None and result.verdict == Verdict.PASSED:
+            pytest.fail(f"known as '{known}', but it passes now: take it out of the file", pytrace=False)
+        if result.verdict != Verdict.PASSED:
+            pytest.fail(text + (f"\n  it is known as '{known}'" if known else ""), pytrace=False)
+
+    def _started(self) -> Started | None:
+        """What the reader says of itself; None where it does not start, which every item then tells."""
+        try:
+            started = self._session.started
+        except NotStarted:
+            return None
+        self._keep(STARTED, started.model_dump(mode="json"))
+        return started
+
+    def _keep(self, name: str, value: object) -> None:
+        assert self.node is not None
+        self.node.user_properties.append((name, value))
+
+
+def new_session(options: Options) -> Session:
+    """A session with the reader that is tested."""
+    return Session(options.parser, timeout=options.timeout, start_timeout=options.start_timeout)

@@ -1,0 +1,98 @@
+"""What is printed of an item that did not pass: all that is needed to mend the reader."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from eurdf_conformance.comparison.difference import Difference
+from eurdf_conformance.corpus.case import CasePlace, InvalidCase, ValidCase
+from eurdf_conformance.corpus.clause import read_clauses
+from eurdf_conformance.corpus.lines import lines_of
+from eurdf_conformance.corpus.read import CorpusCase
+from eurdf_conformance.level import Level
+from eurdf_conformance.protocol.message import Issue
+from eurdf_conformance.suite.judge import Judgement
+from eurdf_conformance.verdict.result import Item
+from eurdf_conformance.verdict.verdict import Verdict
+
+#: So many differences, and issues, of one item are shown.
+_MOST = 12
+
+#: So many characters of a line of a file are shown.
+_WIDTH = 100
+
+
+def failure_text(item: Item, judgement: Judgement, reproduce: str, case: CorpusCase | None) -> str:
+    """What is printed of an item that did not pass.
+
+    Args:
+        item: The item.
+        judgement: What became of it.
+        reproduce: The command line that runs it alone.
+        case: The case that it asks about, if it does.
+    """
+    return "\n".join(_lines(item, judgement, reproduce, case))
+
+
+def _lines(item: Item, judgement: Judgement, reproduce: str, case: CorpusCase | None) -> Iterator[str]:
+    yield f"{item.id}/{item.level}: {judgement.verdict}: {judgement.reason}"
+    yield f"  {reproduce}"
+    if judgement.verdict == Verdict.NOT_STARTED:  # of which all items tell alike
+        yield from (f"  {line}" for line in judgement.log.splitlines())
+        return
+    yield f"  {item.title}"
+    clauses = read_clauses()
+    for name in item.clauses:
+        yield f"  {name}: {clauses[name].text}" if name in clauses else f"  {name}"
+    yield from _cut([_difference(each) for each in judgement.differences], "differences")
+    if judgement.issues:
+        yield "  the reader tells of:"
+        yield from _cut([_issue(issue) for issue in judgement.issues], "issues")
+    if case is not None:
+        yield from _files(case, item.level, judgement)
+        if isinstance(case.case, InvalidCase):
+            yield f"  what would mend the file: {case.case.repair}"
+    yield from (f"  {line}" for line in judgement.log.splitlines())
+
+
+def _difference(difference: Difference) -> str:
+    return f"  {difference}"
+
+
+def _issue(issue: Issue) -> str:
+    place = ":".join(str(part) for part in (issue.file, issue.line, issue.column) if part is not None)
+    return f"    {issue.severity} {issue.code or ''} {place}: {issue.message}"
+
+
+def _cut(lines: Sequence[str], what: str) -> Iterator[str]:
+    yield from lines[:_MOST]
+    if len(lines) > _MOST:
+        yield f"    ... and {len(lines) - _MOST} more {what}"
+
+
+def _files(case: CorpusCase, level: Level, judgement: Judgement) -> Iterator[str]:
+    """The two files, and their lines that matter."""
+    places: list[CasePlace | Issue] = []
+    if isinstance(case.case, InvalidCase):
+        places.append(case.case.place)
+    elif isinstance(case.case, ValidCase) and level == Level.DIAGNOSE:
+        places += [warning.place for warning in case.case.warnings]
+    if judgement.verdict == Verdict.FAILED:
+        places += judgement.issues
+    for path in (case.description, case.urdf):
+        yield f"  {path}" + ("" if path.is_file() else " (there is no such file)")
+        here = {(place.line, place.column) for place in places if place.file == path.name and place.line is not None}
+        for line, column in sorted(here, key=lambda place: (place[0] or 0, place[1] or 0)):
+            yield from _excerpt(path, line or 0, column)
+
+
+def _excerpt(path: Path, line: int, column: int | None) -> Iterator[str]:
+    lines = lines_of(path)
+    if line > len(lines):
+        return
+    text = "".join(character if character.isprintable() else " " for character in lines[line - 1])
+    start = max(0, (column or 0) - _WIDTH // 2) if len(text) > _WIDTH else 0
+    yield f"    {line:5} | {text[start : start + _WIDTH]}"
+    if column is not None and column <= len(text) + 1:
+        yield f"          | {' ' * (column - start - 1)}^"

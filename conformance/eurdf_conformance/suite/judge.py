@@ -1,0 +1,191 @@
+"""What the answers of a reader on one case come to, at one level."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass
+
+from eurdf_conformance.comparison.canonical import canonical_differences
+from eurdf_conformance.comparison.difference import Difference
+from eurdf_conformance.comparison.issues import fault_differences, warning_differences
+from eurdf_conformance.comparison.values import values_differences
+from eurdf_conformance.corpus.case import InvalidCase, ValidCase
+from eurdf_conformance.corpus.expect import DYNAMICS, KINEMATICS
+from eurdf_conformance.corpus.read import CorpusCase
+from eurdf_conformance.level import Level
+from eurdf_conformance.protocol.message import (
+    Accepted,
+    AnyAnswer,
+    Errored,
+    Evaluated,
+    Issue,
+    Quantity,
+    Rejected,
+    Skipped,
+    Unsupported,
+    Values,
+)
+from eurdf_conformance.runner.outcome import (
+    Answered,
+    CannotStart,
+    Chatter,
+    Crashed,
+    Malformed,
+    Misplaced,
+    Outcome,
+    TimedOut,
+)
+from eurdf_conformance.suite.conversation import Conversation
+from eurdf_conformance.verdict.verdict import Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class Judgement:
+    """What the answers come to.
+
+    Attributes:
+        verdict: The word for it.
+        reason: What is wrong, in a sentence; empty where nothing is.
+        differences: Of answers that are not the expected ones.
+        issues: What the reader said that is wrong with the files.
+        log: What there is to know beside, which may differ from run to run.
+    """
+
+    verdict: Verdict
+    reason: str = ""
+    differences: tuple[Difference, ...] = ()
+    issues: tuple[Issue, ...] = ()
+    log: str = ""
+
+
+PASSED = Judgement(Verdict.PASSED)
+
+#: Characters shown of a line that is no answer.
+_WIDTH = 200
+
+
+def judge(case: CorpusCase, level: Level, conversation: Conversation) -> Judgement:
+    """Ask a reader on a case, and say what its answers come to.
+
+    Args:
+        case: The case.
+        level: One of its levels.
+        conversation: With the reader.
+    """
+    return _LEVELS[level](case, conversation)
+
+
+def judge_outcome(outcome: Outcome) -> Judgement:
+    """EU-PRO-006: what becomes of an item whose outcome is none of the answers that it was asked for."""
+    match outcome:
+        case Answered(answer=answer):
+            return _judge_answer(answer)
+        case Crashed(code=code, signal=signal):
+            verdict, how = Verdict.CRASHED, f"by {signal}" if signal else f"with exit code {code}"
+            why = f"the process ended {how}, without an answer"
+        case TimedOut():
+            verdict, why = Verdict.TIMED_OUT, "there was no answer in the time allowed"
+        case Malformed(line=line, why=what):
+            verdict, why = Verdict.MALFORMED, f"a line is no answer: {what}: {line[:_WIDTH]!r}"
+        case Misplaced():
+            verdict, why = Verdict.MISPLACED, "the answer is to another request"
+        case Chatter(lines=lines):
+            verdict, why = Verdict.CHATTER, f"a line that nobody asked for stands on its output: {lines[0][:_WIDTH]!r}"
+        case CannotStart(why=what):
+            verdict, why = Verdict.NOT_STARTED, what.splitlines()[0]
+    return Judgement(verdict, why, log=str(outcome))
+
+
+def _judge_answer(answer: AnyAnswer) -> Judgement:
+    match answer:
+        case Unsupported(feature=feature, reason=reason):
+            return Judgement(Verdict.UNSUPPORTED, f"{feature}: {reason}" if reason else feature)
+        case Skipped(reason=reason):
+            return Judgement(Verdict.SKIPPED, reason)
+        case Errored(message=message):
+            return Judgement(Verdict.ERRORED, message)
+        case Rejected(issues=issues):
+            return Judgement(Verdict.FAILED, "it rejects what is right", issues=tuple(issues))
+        case _:
+            return Judgement(Verdict.FAILED, f"the answer is '{answer.outcome}'")
+
+
+def _judge_accept(case: CorpusCase, conversation: Conversation) -> Judgement:
+    """EU-CNF-001, EU-CNF-002: valid in, invalid out; a fault of inertia or closure may be either."""
+    outcome = conversation.load(case)
+    match outcome, case.case:
+        case Answered(answer=Accepted()), ValidCase():
+            return PASSED
+        case Answered(answer=Accepted() | Rejected()), InvalidCase(either=True):
+            return PASSED
+        case Answered(answer=Rejected()), InvalidCase():
+            return PASSED
+        case Answered(answer=Accepted(issues=issues)), InvalidCase(code=code):
+            why = f"it accepts what is wrong: {code}"
+            wrong = Difference("/outcome", "rejected", "accepted", why)
+            return Judgement(Verdict.FAILED, why, (wrong,), tuple(issues))
+    return judge_outcome(outcome)
+
+
+def _judge_structure(case: CorpusCase, conversation: Conversation) -> Judgement:
+    outcome = conversation.load(case)
+    match outcome:
+        case Answered(answer=Accepted(robot=None)):
+            wrong = Difference("/robot", case.expected.robot, None, "the level structure asks for what was read")
+            return Judgement(Verdict.FAILED, "it does not say what it has read", (wrong,))
+        case Answered(answer=Accepted(robot=robot)) if robot is not None:
+            found = canonical_differences(case.expected.robot, robot, case.expected.bodies)
+            return _unless(found, "it has read another robot", "/robot")
+    return judge_outcome(outcome)
+
+
+def _judge_values(quantities: Sequence[Quantity]) -> Callable[[CorpusCase, Conversation], Judgement]:
+    def judge_values(case: CorpusCase, conversation: Conversation) -> Judgement:
+        outcome = conversation.evaluate(case, quantities)
+        match outcome:
+            case Answered(answer=Evaluated(values=values)):
+                expected = case.expected
+                if len(values) != len(expected.values):
+                    wrong = Difference("/values", len(expected.values), len(values), "how many configurations")
+                    return _unless([wrong], "one value a configuration", "")
+                found = []
+                for index, (one, other, size) in enumerate(zip(expected.values, values, expected.sizes, strict=True)):
+                    pointer = f"/values/{index}"
+                    found += [each.within(pointer) for each in values_differences(_only(one, quantities), other, size)]
+                return _unless(found, "its values are others", "")
+        return judge_outcome(outcome)
+
+    return judge_values
+
+
+def _judge_diagnose(case: CorpusCase, conversation: Conversation) -> Judgement:
+    """EU-CNF-003, and that what is said to be wrong, and where, is what is wrong."""
+    outcome = conversation.load(case)
+    match outcome, case.case:
+        case Answered(answer=Accepted(issues=issues)), ValidCase(warnings=warnings):
+            found = warning_differences(warnings, issues)
+            return _unless(found, "it tells of other warnings", "", issues)
+        case Answered(answer=Accepted()), InvalidCase(either=False):
+            return _judge_accept(case, conversation)
+        case Answered(answer=Accepted(issues=issues) | Rejected(issues=issues)), InvalidCase() as fault:
+            return _unless(fault_differences(fault, issues), "it tells of another fault", "", issues)
+    return judge_outcome(outcome)
+
+
+def _unless(found: Sequence[Difference], reason: str, pointer: str, issues: Sequence[Issue] = ()) -> Judgement:
+    if not found:
+        return PASSED
+    return Judgement(Verdict.FAILED, reason, tuple(each.within(pointer) for each in found), tuple(issues))
+
+
+def _only(values: Values, quantities: Collection[Quantity]) -> Values:
+    return values.model_copy(update={name: None for name in Values.model_fields if name not in quantities})
+
+
+_LEVELS: Mapping[Level, Callable[[CorpusCase, Conversation], Judgement]] = {
+    Level.ACCEPT: _judge_accept,
+    Level.STRUCTURE: _judge_structure,
+    Level.KINEMATICS: _judge_values(KINEMATICS),
+    Level.DYNAMICS: _judge_values(DYNAMICS),
+    Level.DIAGNOSE: _judge_diagnose,
+}

@@ -1,0 +1,140 @@
+"""What the user of the suite asks for."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from eurdf_conformance.level import VERSIONS, Level, Version
+from eurdf_conformance.verdict.known_failures import (
+    NONE_KNOWN,
+    KnownFailures,
+    WrongKnownFailures,
+    read_known_failures,
+)
+from eurdf_conformance.verdict.result import Item
+
+#: Where the options of a run of pytest are kept.
+OPTIONS: pytest.StashKey[Options] = pytest.StashKey()
+
+#: The parser that is tested where none is named.
+REFERENCE = "eurdf_conformance.adapters.reference:READER"
+
+_TIMEOUT = 10.0
+_START_TIMEOUT = 30.0
+
+
+@dataclass(frozen=True)
+class Options:
+    """What the user of the suite asks for.
+
+    Attributes:
+        parser: ``package.module:object`` or ``cmd:…``.
+        timeout: Time allowed for an answer, s.
+        start_timeout: Time allowed for a start, s.
+        levels: Those to test.
+        versions: Those to test.
+        known: Failures that are known.
+        certificate: Folder to write a certificate into.
+        explore: Further random mechanisms to try for each property.
+        smoke: Whether to try three cases only.
+    """
+
+    parser: str = REFERENCE
+    timeout: float = _TIMEOUT
+    start_timeout: float = _START_TIMEOUT
+    levels: tuple[Level, ...] = tuple(Level)
+    versions: tuple[Version, ...] = VERSIONS
+    known: KnownFailures = NONE_KNOWN
+    certificate: Path | None = None
+    explore: int = 0
+    smoke: bool = False
+
+    def wants(self, item: Item) -> bool:
+        """Whether an item is of a level and a version asked for."""
+        return item.level in self.levels and item.version in self.versions
+
+    def reproduce(self, item: Item) -> str:
+        """The command line that runs one item alone."""
+        name = item.id.split("/", 1)[-1]
+        settings = [f"--parser={self.parser}"]
+        settings += [f"--parser-timeout={self.timeout:g}"] * (self.timeout != _TIMEOUT)
+        settings += [f"--parser-start-timeout={self.start_timeout:g}"] * (self.start_timeout != _START_TIMEOUT)
+        settings += [f"--explore={self.explore}"] * bool(self.explore)
+        return shlex.join(["pytest", *_suite(), *settings, "-k", f"{name}/{item.level}"])
+
+
+def add_options(parser: pytest.Parser) -> None:
+    """The options of the suite."""
+    group = parser.getgroup("eurdf", "conformance suite of Extended URDF")
+    group.addoption("--parser", metavar="PARSER", help="package.module:object, or 'cmd:./my_parser --flag'")
+    group.addoption(
+        "--parser-timeout", type=float, default=_TIMEOUT, metavar="S", help=f"for an answer (default: {_TIMEOUT:g} s)"
+    )
+    group.addoption(
+        "--parser-start-timeout",
+        type=float,
+        default=_START_TIMEOUT,
+        metavar="S",
+        help=f"for a start (default: {_START_TIMEOUT:g} s)",
+    )
+    group.addoption(
+        "--level", action="append", choices=[level.value for level in Level], help="to test, may be repeated"
+    )
+    group.addoption("--format-version", choices=VERSIONS, help="version of the format to test (default: both)")
+    group.addoption("--known-failures", type=Path, metavar="FILE", help="YAML list of {id, level, verdict, reason}")
+    group.addoption("--certificate", type=Path, metavar="DIR", help="write a certificate into this folder")
+    group.addoption("--explore", type=int, default=0, metavar="N", help="further random mechanisms for each property")
+    group.addoption("--smoke", action="store_true", help="three cases only, to see whether the parser is plugged in")
+
+
+def read_options(config: pytest.Config) -> Options:
+    """What the command line says.
+
+    Raises:
+        pytest.UsageError: What it says cannot be.
+    """
+
+    def said(name: str, default: Any = None) -> Any:
+        # Where this plug-in came after the command line was read, it says nothing.
+        value = config.getoption(name, default)
+        return default if value is None else value
+
+    known = said("--known-failures")
+    try:
+        failures = NONE_KNOWN if known is None else read_known_failures(known)
+    except WrongKnownFailures as error:
+        raise pytest.UsageError(str(error)) from None
+    timeout, start_timeout = said("--parser-timeout", _TIMEOUT), said("--parser-start-timeout", _START_TIMEOUT)
+    if timeout <= 0 or start_timeout <= 0:
+        raise pytest.UsageError("a time-out is more than 0 s")
+    version = said("--format-version")
+    return Options(
+        parser=said("--parser", REFERENCE),
+        timeout=timeout,
+        start_timeout=start_timeout,
+        levels=tuple(level for level in Level if level in said("--level", list(Level))),
+        versions=VERSIONS if version is None else (version,),
+        known=failures,
+        certificate=said("--certificate"),
+        explore=said("--explore", 0),
+        smoke=said("--smoke", False),
+    )
+
+
+def options_of(config: pytest.Config) -> Options:
+    """What the command line of a run of pytest said."""
+    return config.stash[OPTIONS]
+
+
+def _suite() -> Sequence[str]:
+    """What pytest is told to run: in a checkout a folder, elsewhere a package, with its plug-in."""
+    folder = Path(__file__).parents[2]
+    if (folder / "conftest.py").is_file() and folder.name == "conformance":
+        return ["conformance/"]
+    return ["--pyargs", "eurdf_conformance.suite", "-p", "eurdf_conformance.suite.plugin"]

@@ -1,0 +1,108 @@
+"""The plug-in of pytest: its options, one reader a worker, and at the end the certificate and a summary.
+
+A worker of pytest-xdist asks its own process of the reader. What becomes of an item travels in its report; the one who
+collects the reports, a worker or not, makes of them a `Run`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+from eurdf_conformance.certificate.issue import issue
+from eurdf_conformance.certificate.write import write_certificate
+from eurdf_conformance.protocol.message import Started
+from eurdf_conformance.suite.asking import STARTED, Asking, all_cases, new_session
+from eurdf_conformance.suite.item import planned_items
+from eurdf_conformance.suite.options import OPTIONS, add_options, options_of, read_options
+from eurdf_conformance.suite.summary import summary_lines
+from eurdf_conformance.verdict.result import RESULT, Result
+from eurdf_conformance.verdict.run import Run
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """The options of the suite."""
+    add_options(parser)
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Read the options, and where results are collected, collect them."""
+    config.addinivalue_line("markers", "xdist_group(name): run by one worker, in order")
+    config.stash[OPTIONS] = read_options(config)
+    if not hasattr(config, "workerinput"):
+        config.pluginmanager.register(Collector(config), "eurdf_conformance.collector")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Ask on the protocol first; where there is nothing to ask, ask nothing."""
+    asked = [item for item in items if not item.name.endswith("[NOTSET]")]
+    items[:] = sorted(asked, key=lambda item: item.nodeid.partition("::")[0].endswith("test_protocol.py"), reverse=True)
+
+
+@pytest.fixture(scope="session")
+def _reader(pytestconfig: pytest.Config) -> Iterator[Asking]:
+    options = options_of(pytestconfig)
+    with new_session(options) as session:
+        yield Asking(options, session)
+
+
+@pytest.fixture
+def asking(_reader: Asking, request: pytest.FixtureRequest) -> Asking:
+    """The reader, to be asked by the test that runs."""
+    _reader.node = request.node
+    return _reader
+
+
+class Collector:
+    """What became of all items, of all workers."""
+
+    def __init__(self, config: pytest.Config) -> None:
+        self._config = config
+        self._started: Started | None = None
+        self._results: list[Result] = []
+        self._unexpected: list[str] = []
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        """Take a result out of a report."""
+        for name, value in report.user_properties if report.when == "call" else ():
+            if name == RESULT:
+                assert isinstance(value, dict)
+                self._results.append(Result.from_json(value))
+            elif name == STARTED and self._started is None:
+                self._started = Started.model_validate(value, strict=False)
+
+    @pytest.hookimpl(trylast=True)
+    def pytest_sessionfinish(self, session: pytest.Session, exitstatus: int) -> None:
+        """Write the certificate, and let the run fail where a known failure is none."""
+        if not self._results and self._started is None:
+            return
+        run = self.run()
+        self._unexpected = run.known_failures.unexpected(run.results, run.planned)
+        if self._unexpected and exitstatus == pytest.ExitCode.OK:
+            session.exitstatus = pytest.ExitCode.TESTS_FAILED
+        if run_folder := options_of(self._config).certificate:
+            write_certificate(run_folder, issue(run))
+
+    def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
+        """Say what the run comes to."""
+        if not self._results and self._started is None:
+            return
+        terminalreporter.section("conformance to Extended URDF")
+        for line in summary_lines(self.run(), self._unexpected, options_of(self._config).certificate):
+            terminalreporter.line(line)
+
+    def run(self) -> Run:
+        """All that is known."""
+        options = options_of(self._config)
+        return Run(
+            parser=options.parser,
+            started=self._started,
+            planned=tuple(planned_items(all_cases())),
+            results=tuple(self._results),
+            levels=options.levels,
+            versions=options.versions,
+            smoke=options.smoke,
+            explore=options.explore,
+            known_failures=options.known,
+        )

@@ -1,0 +1,102 @@
+"""The rules of the protocol, put to a reader."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from eurdf_conformance.comparison.canonical import canonical_differences
+from eurdf_conformance.corpus.protocol_rule import GOES_ON, QUIET, START, STOP, ProtocolRule
+from eurdf_conformance.corpus.read import CorpusCase
+from eurdf_conformance.protocol.message import Accepted, Rejected
+from eurdf_conformance.runner.outcome import Answered, Outcome
+from eurdf_conformance.runner.session import Session
+from eurdf_conformance.suite.judge import PASSED, Judgement, judge_outcome
+from eurdf_conformance.verdict.verdict import Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """Who is asked, and with what.
+
+    Attributes:
+        session: With the reader.
+        another: Makes a further session with it.
+        valid: A case that it should accept.
+        invalid: One that it should reject.
+    """
+
+    session: Session
+    another: Callable[[], Session]
+    valid: CorpusCase
+    invalid: CorpusCase
+
+    def load(self, case: CorpusCase) -> Outcome:
+        """What comes of loading a case."""
+        return self.session.load(case.description, case.urdf)
+
+
+def check(rule: ProtocolRule, asked: Asked) -> Judgement:
+    """Whether a reader keeps a rule."""
+    return _CHECKS[rule](asked)
+
+
+def _start(asked: Asked) -> Judgement:
+    """EU-PRO-001, EU-PRO-003."""
+    outcome = asked.session.start()
+    return PASSED if isinstance(outcome, Answered) else judge_outcome(outcome)
+
+
+def _quiet(asked: Asked) -> Judgement:
+    """EU-PRO-002: whatever is answered, it is one line."""
+    for case in (asked.valid, asked.invalid, asked.valid):
+        outcome = asked.load(case)
+        if not isinstance(outcome, Answered):
+            return judge_outcome(outcome)
+    return PASSED
+
+
+def _goes_on(asked: Asked) -> Judgement:
+    """EU-PRO-004, EU-PRO-005."""
+    first, rejected, again = [asked.load(case) for case in (asked.valid, asked.invalid, asked.valid)]
+    match rejected:
+        case Answered(answer=Rejected()):
+            pass
+        case Answered(answer=Accepted()):
+            return Judgement(Verdict.FAILED, "it accepts what is wrong")
+        case _:
+            return judge_outcome(rejected)
+    match first, again:
+        case Answered(answer=Accepted(robot=None)), Answered(answer=Accepted(robot=None)):
+            return PASSED
+        case Answered(answer=Accepted(robot=one)), Answered(answer=Accepted(robot=other)) if one and other:
+            found = canonical_differences(one, other, asked.valid.expected.bodies)
+            reason = "after a rejected description it reads another robot from the same files"
+            return Judgement(Verdict.FAILED, reason, tuple(found)) if found else PASSED
+        case Answered(answer=Accepted()), Answered(answer=Accepted()):
+            return Judgement(Verdict.FAILED, "of two times that it reads the same files, it says once what it has read")
+        case Answered(answer=Accepted()), _:
+            return judge_outcome(again)
+    return judge_outcome(first)
+
+
+def _stop(asked: Asked) -> Judgement:
+    """EU-PRO-001."""
+    with asked.another() as session:
+        first = session.start()
+        begin = time.perf_counter()
+        outcome = session.stop()
+        stopping = time.perf_counter() - begin
+    asked.session.seconds_in_reader += session.seconds_in_reader + stopping
+    if outcome is None:
+        return judge_outcome(first)
+    return PASSED if isinstance(outcome, Answered) else judge_outcome(outcome)
+
+
+_CHECKS: Mapping[ProtocolRule, Callable[[Asked], Judgement]] = {
+    START: _start,
+    QUIET: _quiet,
+    GOES_ON: _goes_on,
+    STOP: _stop,
+}

@@ -1,0 +1,65 @@
+"""Three cases of each version, to see first whether a parser is plugged in at all."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from eurdf_conformance.corpus.read import CorpusCase
+from eurdf_conformance.level import Level, Version
+from eurdf_conformance.suite.item import CaseItem
+from eurdf_conformance.verdict.result import Result
+from eurdf_conformance.verdict.verdict import OF_THE_ADAPTER, Verdict
+
+
+@dataclass(frozen=True, slots=True)
+class Three:
+    """Ids of a valid case, of an invalid one, and of one that is evaluated."""
+
+    valid: str
+    invalid: str
+    evaluated: str
+
+
+SMOKE: dict[Version, Three] = {
+    "1": Three(valid="b5f0ja", invalid="n8t4uq", evaluated="b5f0ja"),
+    "2": Three(valid="tq4m8z", invalid="k9b2yf", evaluated="tq4m8z"),
+}
+
+
+def smoke_case(cases: Iterable[CorpusCase], case_id: str) -> CorpusCase:
+    """The case of an id."""
+    return next(case for case in cases if case.id == case_id)
+
+
+def is_smoke(item: CaseItem) -> bool:
+    """Whether an item is among the first to try."""
+    three, level = SMOKE[item.item.version], item.item.level
+    return (item.case.id, level) in {
+        (three.valid, Level.ACCEPT),
+        (three.invalid, Level.ACCEPT),
+        (three.evaluated, Level.KINEMATICS),
+    }
+
+
+def smoke_lines(results: Iterable[Result]) -> Iterator[str]:
+    """What is wrong, with the adapter and apart from that with the parser."""
+    wrong = [result for result in results if result.verdict != Verdict.PASSED]
+    adapter = [result for result in wrong if result.verdict in OF_THE_ADAPTER]
+    parser = [result for result in wrong if result.verdict not in OF_THE_ADAPTER]
+    yield from _part("adapter", "it keeps the protocol", adapter)
+    if adapter and not parser:
+        yield "your parser: nothing can be said of it before the adapter is right"
+    else:
+        yield from _part("parser", "it gives the right answers", parser)
+
+
+def _part(name: str, right: str, wrong: list[Result]) -> Iterator[str]:
+    if not wrong:
+        yield f"your {name} is right so far: {right}"
+        return
+    yield f"your {name} is wrong:"
+    for result in wrong:
+        first = result.differences[0] if result.differences else result.verdict.value
+        yield f"  {result.item.id}/{result.item.level}: {first}"
+        yield f"    {result.reproduce}"

@@ -1,0 +1,29 @@
+"""The rules of the protocol, before anything else."""
+
+from __future__ import annotations
+
+import pytest
+
+from eurdf_conformance.suite.asking import Asking, all_cases
+from eurdf_conformance.suite.item import ProtocolItem, protocol_items
+from eurdf_conformance.suite.options import options_of
+from eurdf_conformance.suite.protocol_check import Asked, check
+from eurdf_conformance.suite.smoke import SMOKE, smoke_case
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """One test a rule and version."""
+    options = options_of(metafunc.config)
+    items = [item for item in protocol_items() if options.wants(item.item)]
+    mark = pytest.mark.xdist_group("smoke" if options.smoke else "protocol")
+    metafunc.parametrize(
+        "protocol_item", [pytest.param(item, id=f"{item.item.id}/{item.item.level}", marks=mark) for item in items]
+    )
+
+
+def test_protocol(protocol_item: ProtocolItem, asking: Asking) -> None:
+    """The reader keeps the rule."""
+    item, three = protocol_item.item, SMOKE[protocol_item.item.version]
+    valid, invalid = (smoke_case(all_cases(), case_id) for case_id in (three.valid, three.invalid))
+    asked = Asked(asking.session, asking.new_session, valid, invalid)
+    asking.settle(item, lambda: check(protocol_item.rule, asked))

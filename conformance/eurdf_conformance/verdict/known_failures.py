@@ -1,0 +1,154 @@
+"""Known failures: what a reader's author expects to fail, in a strict file, so that nothing changes unnoticed.
+
+The file is a YAML list of mappings ``{id, level, verdict, reason}``. It excuses nothing: a level with a known failure
+is not certified. But a run in which all known failures fail as stated, and nothing else does, is as expected.
+"""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Hashable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import yaml
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, TypeAdapter, ValidationError
+
+from eurdf_conformance.level import Level
+from eurdf_conformance.verdict.result import Item, Result
+from eurdf_conformance.verdict.verdict import Verdict
+
+
+def _is_failure(verdict: Any) -> Any:
+    if verdict in (Verdict.PASSED, Verdict.NOT_RUN):
+        raise ValueError(f"a known failure cannot be '{verdict}'")
+    return verdict
+
+
+_FAILURES = [verdict.value for verdict in Verdict if verdict not in (Verdict.PASSED, Verdict.NOT_RUN)]
+
+
+class KnownFailure(BaseModel):
+    """An item that is expected to fail."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    id: Annotated[str, Field(min_length=1)]
+    """Id of the case, with its topic, or name of the property, as reports show it."""
+    level: Level
+    """Level at which it fails."""
+    verdict: Annotated[Verdict, BeforeValidator(_is_failure), Field(json_schema_extra={"enum": _FAILURES})]
+    """What becomes of it."""
+    reason: Annotated[str, Field(pattern=r"\S")]
+    """Why: a sentence for people, such as the address of an issue."""
+
+
+_FILE: TypeAdapter[list[KnownFailure]] = TypeAdapter(list[KnownFailure])
+
+
+class WrongKnownFailures(Exception):  # noqa: N818 - said to the user as it stands
+    """The file cannot be used; its text says why."""
+
+    def __init__(self, path: Path, faults: Sequence[str]) -> None:
+        self.path = path
+        self.faults = tuple(faults)
+        super().__init__(f"{path}: {'; '.join(faults)}")
+
+
+@dataclass(frozen=True)
+class KnownFailures:
+    """The known failures of one reader."""
+
+    failures: tuple[KnownFailure, ...] = ()
+
+    def expects(self, result: Result) -> bool:
+        """Whether this very failure is known."""
+        return self.of(result.item) == result.verdict
+
+    def of(self, item: Item) -> Verdict | None:
+        """The verdict expected of an item; None where it is expected to pass."""
+        return next((known.verdict for known in self.failures if (known.id, known.level) == item.key), None)
+
+    def unexpected(self, results: Iterable[Result], planned: Iterable[Item]) -> list[str]:
+        """What is not as the file says, one sentence each, in its order.
+
+        Args:
+            results: What became of the items.
+            planned: Every item of the suite.
+        """
+        verdicts = {result.item.key: result.verdict for result in results}
+        items = {item.key for item in planned}
+        found = []
+        for known in self.failures:
+            name = f"{known.id}/{known.level}"
+            given = verdicts.get((known.id, known.level))
+            if (known.id, known.level) not in items:
+                found.append(f"{name}: the suite has no such item")
+            elif given == Verdict.PASSED:
+                found.append(f"{name}: known as '{known.verdict}', but it passes now: take it out of the file")
+            elif given not in (None, Verdict.NOT_RUN, known.verdict):
+                found.append(f"{name}: known as '{known.verdict}', but it is '{given}'")
+        return found
+
+
+#: Nothing is known to fail.
+NONE_KNOWN = KnownFailures()
+
+
+def read_known_failures(path: Path) -> KnownFailures:
+    """Read a file of known failures.
+
+    Raises:
+        WrongKnownFailures: It cannot be read, is no YAML, or does not fit; an item stands in it twice.
+    """
+    try:
+        value = yaml.load(path.read_text(encoding="utf-8"), _StrictLoader)
+    except OSError as error:
+        raise WrongKnownFailures(path, [error.strerror or str(error)]) from error
+    except UnicodeDecodeError as error:
+        raise WrongKnownFailures(path, ["it is not in UTF-8"]) from error
+    except yaml.YAMLError as error:
+        raise WrongKnownFailures(path, [" ".join(str(error).split())]) from error
+    try:
+        failures = _FILE.validate_python([] if value is None else value)
+    except ValidationError as error:
+        raise WrongKnownFailures(path, [_fault(detail) for detail in error.errors()]) from error
+    names = Counter(f"{known.id}/{known.level}" for known in failures)
+    twice = [f"{name} stands in it {count} times" for name, count in names.items() if count > 1]
+    if twice:
+        raise WrongKnownFailures(path, twice)
+    return KnownFailures(tuple(failures))
+
+
+def _fault(detail: Any) -> str:
+    where = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in detail["loc"])
+    return f"{where or 'the file'}: {detail['msg'].removeprefix('Value error, ')}"
+
+
+class _StrictLoader(yaml.SafeLoader):
+    """PyYAML takes the last of two equal keys in silence, and makes dates of what looks like one."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Hashable, Any]:
+        mapping = super().construct_mapping(node, deep=deep)
+        if len(mapping) != len(node.value):
+            raise yaml.constructor.ConstructorError(None, None, "a key stands twice in one mapping", node.start_mark)
+        return mapping
+
+
+def known_failures_schema() -> dict[str, Any]:
+    """The JSON Schema (2020-12) of the file."""
+    head = {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "$id": "urn:extended-urdf:schema:known-failures",
+        "title": "Known failures of a reader of Extended URDF",
+        "description": "Items of the conformance suite that are expected to fail, each with its reason.",
+    }
+    return head | _FILE.json_schema()
+
+
+if __name__ == "__main__":
+    import sys
+
+    sys.stdout.write(json.dumps(known_failures_schema(), indent=2) + "\n")

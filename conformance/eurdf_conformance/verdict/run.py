@@ -1,0 +1,54 @@
+"""All that is known at the end of one run of the suite: what the plug-in of pytest hands on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from eurdf_conformance.level import VERSIONS, Level, Version
+from eurdf_conformance.protocol.message import Started
+from eurdf_conformance.verdict.known_failures import NONE_KNOWN, KnownFailures
+from eurdf_conformance.verdict.result import Item, Result
+from eurdf_conformance.verdict.verdict import Verdict
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run of the suite on one reader."""
+
+    #: The parser as the user named it.
+    parser: str
+    #: What the reader said of itself; None where it could not be started.
+    started: Started | None
+    #: Every item of the suite, at any level and for any version, whether it was asked or not. What stands here, is
+    #: claimed and asked for, and has no result, counts as not run: nobody is certified on half of the suite.
+    planned: tuple[Item, ...]
+    results: tuple[Result, ...]
+    #: Levels and versions that the user asked for.
+    levels: tuple[Level, ...] = tuple(Level)
+    versions: tuple[Version, ...] = VERSIONS
+    smoke: bool = False
+    #: Further random mechanisms tried for each property.
+    explore: int = 0
+    known_failures: KnownFailures = field(default=NONE_KNOWN)
+
+    def claims(self, version: Version, level: Level) -> bool:
+        """Whether the reader claims the level for the version."""
+        return self.started is not None and level in self.started.claims.get(version, ())
+
+    def asks(self, version: Version, level: Level) -> bool:
+        """Whether the user asked for the level of the version."""
+        return version in self.versions and level in self.levels
+
+    def accounted(self) -> Iterator[Result]:
+        """A result for each item that is claimed and asked for, by id and level.
+
+        Of an item with several results, which a run does not give, the last counts.
+        """
+        results = {result.item.key: result for result in self.results}
+        items = {item.key: item for item in self.planned} | {key: result.item for key, result in results.items()}
+        for key, item in sorted(items.items(), key=lambda entry: (entry[0][0], list(Level).index(entry[0][1]))):
+            if key in results:
+                yield results[key]
+            elif self.claims(item.version, item.level) and self.asks(item.version, item.level) and not self.smoke:
+                yield Result(item, Verdict.NOT_RUN)

@@ -1,0 +1,80 @@
+"""What ``eurdf certify`` shows of a certificate to a person."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from eurdf.commands.output import cell, new_table, write_lines, write_rendered
+from eurdf.diagnostics.text import visible
+
+if TYPE_CHECKING:
+    from rich.text import Text
+
+    from eurdf.diagnostics.text import Line
+    from eurdf_conformance.certificate.certificate import Certificate, Failure, LevelResult
+
+# How many of the items that did not pass are shown; the certificate has all.
+_SHOWN = 20
+
+
+def show(certificate: Certificate) -> None:
+    """Write what a certificate says to the standard output: what did not pass, then the levels, then the verdict."""
+    from eurdf_conformance.certificate.summary import headline, reader_title
+    from eurdf_conformance.level import VERSIONS, Level
+
+    if certificate.scope.smoke:
+        write_lines(([(visible(line), "")] for line in _smoke_lines(certificate)), sys.stdout)
+        return
+    lines = [line for failure in certificate.failures[:_SHOWN] for line in _failure_lines(failure)]
+    more = len(certificate.failures) - _SHOWN
+    if more > 0:
+        lines.append([(f"{more} more did not pass; --certificate DIR writes a page that shows all", "dim")])
+    lines += [[("not as the known failures say: ", "red"), (visible(each), "")] for each in certificate.unexpected]
+    if lines:
+        write_lines([*lines, []], sys.stdout)
+    table = new_table("level", *(f"version {version}" for version in VERSIONS))
+    for level in Level:
+        table.add_row(cell(level, "bold"), *(_level_cell(certificate.at(version, level)) for version in VERSIONS))
+    write_rendered(table)
+    write_lines([[]], sys.stdout)
+    style = "bold green" if certificate.certified else "bold red"
+    write_lines([[(f"{visible(reader_title(certificate))}: ", "bold"), (headline(certificate), style)]], sys.stdout)
+
+
+def _smoke_lines(certificate: Certificate) -> Iterator[str]:
+    from eurdf_conformance.suite.smoke import smoke_lines
+    from eurdf_conformance.verdict.result import Item, Result
+
+    return smoke_lines(
+        Result(
+            Item(failure.id, failure.level, failure.version, failure.clauses, failure.title),
+            failure.verdict,
+            (failure.difference,) if failure.difference else (),
+            failure.reproduce,
+        )
+        for failure in certificate.failures
+    )
+
+
+def _failure_lines(failure: Failure) -> Iterator[Line]:
+    known = " (known)" if failure.known else ""
+    name = f"{failure.id}/{failure.level}"
+    yield [
+        (f"{failure.verdict}{known} ", "yellow" if failure.known else "red"),
+        (name, "bold"),
+        (f": {failure.title}", ""),
+    ]
+    for line in (failure.difference or "").splitlines():
+        yield [(f"    {visible(line)}", "")]
+    if failure.reproduce:
+        yield [(f"    {visible(failure.reproduce)}", "dim")]
+
+
+def _level_cell(result: LevelResult | None) -> Text:
+    from eurdf_conformance.certificate.summary import level_words
+
+    if result is None or not (result.claimed and result.asked):
+        return cell("not claimed" if result is None else level_words(result), "dim")
+    return cell(level_words(result), "green" if result.certified else "red")

@@ -1,0 +1,36 @@
+"""The oracle as a reader like any other: laws that hold of it are laws that can be met."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from eurdf_conformance.level import VERSIONS, Level, Version
+from eurdf_conformance.oracle import OracleRobot, read
+from eurdf_conformance.protocol.message import Accepted, Quantity, Values
+from eurdf_conformance.protocol.reply import accepted
+
+
+class OracleReader:
+    """The oracle behind the protocol."""
+
+    name = "oracle"
+    version = "1"
+    language = "Python"
+    claims: Mapping[Version, Sequence[Level]] = dict.fromkeys(VERSIONS, tuple(Level))
+
+    def __init__(self) -> None:
+        self.robot: OracleRobot | None = None
+
+    def load(self, description: Path, urdf: Path) -> Accepted:
+        self.robot = read(description, urdf)
+        return accepted(self.robot.canonical())
+
+    def evaluate(
+        self,
+        configurations: Sequence[Mapping[str, Sequence[float]]],
+        frames: Sequence[str],
+        quantities: Sequence[Quantity],
+    ) -> list[Values]:
+        assert self.robot is not None
+        return [self.robot.evaluate(q, frames, quantities) for q in configurations]

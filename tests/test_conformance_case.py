@@ -1,0 +1,312 @@
+"""The cases: what they say, how they are read, and that the reference answers each as it says."""
+
+import json
+import sys
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+import jsonschema
+import pytest
+import yaml
+from pydantic import ValidationError
+
+from eurdf_conformance.adapters.reference import READER
+from eurdf_conformance.corpus import archive, expect, read
+from eurdf_conformance.corpus.case import CASE, SCHEMA_FILE, InvalidCase, ValidCase, case_schema, schema_text
+from eurdf_conformance.corpus.expect import stale
+from eurdf_conformance.corpus.expected import EXPECTED_FILE, Expected, expected_text
+from eurdf_conformance.corpus.lint import lint
+from eurdf_conformance.corpus.read import CASE_FILE, CorpusCase, NotACase, collection_folder, read_case, read_cases
+from eurdf_conformance.suite.conversation import Conversation
+from eurdf_conformance.suite.in_process import InProcess
+from eurdf_conformance.suite.judge import judge
+from eurdf_conformance.verdict.verdict import Verdict
+
+CASES = read_cases()
+VALID = [case for case in CASES if isinstance(case.case, ValidCase)]
+
+
+# The cases of the suite
+
+
+def test_the_lint_finds_nothing_wrong_with_the_cases() -> None:
+    assert [str(fault) for fault in lint()] == []
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.path)
+def test_the_reference_answers_each_case_as_it_says(case: CorpusCase) -> None:
+    """An invalid one gives exactly its code at its place, and its twin is accepted."""
+    conversation = Conversation(InProcess(READER))
+    judged = {level: judge(case, level, conversation) for level in case.levels}
+    assert {level: found for level, found in judged.items() if found.verdict != Verdict.PASSED} == {}
+
+
+def test_the_schema_of_a_case_is_current_and_takes_every_case() -> None:
+    assert SCHEMA_FILE.read_text(encoding="utf-8") == schema_text()
+    validator = jsonschema.Draft202012Validator(case_schema())
+    for case in CASES:
+        said = yaml.safe_load((case.folder / CASE_FILE).read_text(encoding="utf-8"))
+        assert list(validator.iter_errors(said)) == [], case.path
+
+
+def test_an_expectation_that_is_written_is_read_back_the_same() -> None:
+    for case in VALID:
+        again = Expected.model_validate_json(expected_text(case.expected))
+        assert again == case.expected
+
+
+def test_no_case_and_nothing_that_judges_it_imports_the_reference() -> None:
+    package = Path(read.__file__).parents[1]
+    for folder in ("corpus", "comparison", "oracle", "suite", "verdict", "runner", "protocol"):
+        for path in (package / folder).glob("*.py"):
+            text = path.read_text(encoding="utf-8")
+            assert "import eurdf\n" not in text, path
+            assert "from eurdf " not in text, path
+            assert "from eurdf." not in text, path
+
+
+# One case
+
+VALID_CASE = {
+    "id": "ab12cd",
+    "title": "A sentence.",
+    "version": "2",
+    "clauses": ["EU-FRM-001"],
+    "valid": True,
+    "provenance": {"expectation": "hand"},
+}
+INVALID_CASE = VALID_CASE | {
+    "valid": False,
+    "code": "unknown-frame",
+    "place": {"file": "robot.yaml", "line": 1, "column": 1},
+    "twin": "ef34gh",
+    "repair": "Mend it.",
+}
+
+
+def test_a_case_is_valid_or_says_its_fault() -> None:
+    assert isinstance(CASE.validate_python(VALID_CASE), ValidCase)
+    assert isinstance(CASE.validate_python(INVALID_CASE), InvalidCase)
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        VALID_CASE | {"id": "AB12CD"},
+        VALID_CASE | {"id": "ab12c"},
+        VALID_CASE | {"id": 123456},
+        VALID_CASE | {"title": "No sentence"},
+        VALID_CASE | {"version": 2},
+        VALID_CASE | {"version": "2.0"},
+        VALID_CASE | {"clauses": []},
+        VALID_CASE | {"clauses": ["EU-FRM-1"]},
+        VALID_CASE | {"code": "unknown-frame"},
+        VALID_CASE | {"twin": "ef34gh"},
+        VALID_CASE | {"colour": "red"},
+        VALID_CASE | {"valid": "yes"},
+        VALID_CASE | {"configurations": [{"j": 1.0}]},
+        VALID_CASE | {"configurations": [{"j": [float("nan")]}]},
+        VALID_CASE | {"provenance": {"expectation": "reference"}},
+        VALID_CASE | {"description": "../robot.yaml"},
+        INVALID_CASE | {"configurations": []},
+        INVALID_CASE | {"code": "Unknown frame"},
+        INVALID_CASE | {"place": {"file": "robot.yaml", "line": 0, "column": 1}},
+        INVALID_CASE | {"place": {"file": "robot.yaml", "line": 1}},
+        INVALID_CASE | {"place": {"file": "robot.yaml", "column": 1}},
+        {key: value for key, value in INVALID_CASE.items() if key != "repair"},
+        {key: value for key, value in INVALID_CASE.items() if key != "twin"},
+    ],
+    ids=str,
+)
+def test_what_is_no_case_is_refused(said: object) -> None:
+    with pytest.raises(ValidationError):
+        CASE.validate_python(said)
+
+
+WriteCase = Callable[[str], Path]
+
+
+@pytest.fixture
+def written(tmp_path: Path) -> WriteCase:
+    """Writes a `case.yaml`, and gives its folder."""
+
+    def write(text: str) -> Path:
+        folder = tmp_path / "frames" / "ab12cd"
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / CASE_FILE).write_text(text, encoding="utf-8")
+        return folder
+
+    return write
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("", "object"),
+        ("id: [", "while parsing"),
+        (json.dumps(VALID_CASE)[:-1] + ', "title": "Twice."}', "stands twice"),
+        (json.dumps(VALID_CASE | {"robot": "no_such_robot"}), "no_such_robot"),
+        (json.dumps(INVALID_CASE | {"place": {"file": "robot.yaml", "line": "x"}}), "place/line"),
+    ],
+)
+def test_of_a_file_that_says_no_case_it_is_told_why(written: WriteCase, text: str, why: str) -> None:
+    with pytest.raises(NotACase, match=why) as caught:
+        read_case(written(text))
+    assert caught.value.path.name == CASE_FILE
+
+
+def test_a_case_names_its_files(written: WriteCase) -> None:
+    folder = written(json.dumps(VALID_CASE | {"description": "other.yml", "urdf": "sub/other.urdf"}))
+    case = read_case(folder)
+    assert (case.topic, case.path) == ("frames", "frames/ab12cd")
+    assert (case.description, case.urdf) == (folder / "other.yml", folder / "sub" / "other.urdf")
+
+
+def test_a_number_with_an_exponent_is_a_number(written: WriteCase) -> None:
+    text = "id: ab12cd\ntitle: One.\nversion: '2'\nclauses: [EU-FRM-001]\nvalid: true\n"
+    text += "configurations: [{j: [1e-3, -2E5, +3, .5, 4.]}]\nprovenance: {expectation: hand}\n"
+    case = read_case(written(text)).case
+    assert isinstance(case, ValidCase)
+    assert case.configurations == [{"j": [1e-3, -2e5, 3, 0.5, 4.0]}]
+
+
+def test_a_robot_of_the_collection_is_read_where_it_is(written: WriteCase) -> None:
+    home = collection_folder()
+    assert home is not None
+    folder = written(json.dumps(VALID_CASE | {"robot": "four_bar", "description": "robot.v1.yaml"}))
+    assert read_case(folder).description == home / "four_bar" / "robot.v1.yaml"
+
+
+def test_the_collection_of_an_installed_package_is_found_and_the_package_not_imported(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "eurdf" / "collection" / "robots").mkdir(parents=True)
+    (tmp_path / "eurdf" / "__init__.py").write_text("raise SystemError('imported')")
+    elsewhere = tmp_path / "site" / "eurdf_conformance" / "corpus"
+    monkeypatch.setattr(read, "__file__", str(elsewhere / "read.py"))
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.delitem(sys.modules, "eurdf", raising=False)
+    assert collection_folder() == tmp_path / "eurdf" / "collection" / "robots"
+
+
+def test_a_case_is_asked_at_the_levels_that_it_can_be(written: WriteCase) -> None:
+    levels = {
+        "valid": read_case(written(json.dumps(VALID_CASE))).levels,
+        "evaluated": read_case(written(json.dumps(VALID_CASE | {"configurations": [{}]}))).levels,
+        "invalid": read_case(written(json.dumps(INVALID_CASE))).levels,
+    }
+    assert levels == {
+        "valid": ("accept", "structure", "diagnose"),
+        "evaluated": ("accept", "structure", "kinematics", "dynamics", "diagnose"),
+        "invalid": ("accept", "diagnose"),
+    }
+
+
+# Expectations
+
+
+def evaluated_case(tmp_path: Path) -> CorpusCase:
+    """A copy of a case that is evaluated."""
+    case = next(case for case in VALID if case.case.robot is None and case.levels[2] == "kinematics")
+    folder = tmp_path / case.path
+    folder.mkdir(parents=True)
+    for path in case.folder.iterdir():
+        (folder / path.name).write_bytes(path.read_bytes())
+    return read_case(folder)
+
+
+def test_an_expectation_is_stale_where_one_number_of_it_is_another(tmp_path: Path) -> None:
+    case = evaluated_case(tmp_path)
+    path = case.folder / EXPECTED_FILE
+    assert list(stale(case)) == []
+    said = json.loads(path.read_text(encoding="utf-8"))
+    for pointer, change in {
+        "/values/0/mass": lambda: said["values"][0].update(mass=said["values"][0]["mass"] + 1e-6),
+        "/sizes/0": lambda: said["sizes"].__setitem__(0, said["sizes"][0] * 1.01),
+        "/name": lambda: said["robot"].update(name="another"),
+        "bodies": lambda: said["bodies"].append(["another"]),
+        "sizes: 1": lambda: said["sizes"].pop(),
+    }.items():
+        change()
+        path.write_text(json.dumps(said), encoding="utf-8")
+        assert any(pointer in fault for fault in stale(read_case(case.folder))), pointer
+
+
+def test_values_by_hand_may_be_some_of_all_and_are_held_against_the_oracle(tmp_path: Path) -> None:
+    case = evaluated_case(tmp_path)
+    text = (case.folder / CASE_FILE).read_text(encoding="utf-8").replace("expectation: oracle", "expectation: hand")
+    (case.folder / CASE_FILE).write_text(text, encoding="utf-8")
+    some = case.expected.model_dump(mode="json")
+    some["values"] = [{"mass": values["mass"]} for values in some["values"]]
+    (case.folder / EXPECTED_FILE).write_text(json.dumps(some), encoding="utf-8")
+    assert list(stale(read_case(case.folder))) == []
+    some["values"][0]["mass"] *= 2
+    (case.folder / EXPECTED_FILE).write_text(json.dumps(some), encoding="utf-8")
+    assert any("/values/0/mass" in fault for fault in stale(read_case(case.folder)))
+
+
+def test_an_expectation_is_written_where_it_is_missing_or_stale_and_by_hand_it_is_left(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    case = evaluated_case(tmp_path)
+    path, right = case.folder / EXPECTED_FILE, (case.folder / EXPECTED_FILE).read_text(encoding="utf-8")
+    wrong = right.replace('"mass": ', '"mass": 1')
+    monkeypatch.setattr(expect, "read_cases", lambda: [read_case(case.folder)])
+
+    def main(*arguments: str) -> tuple[int, str]:
+        return expect.main(arguments), path.read_text(encoding="utf-8") if path.exists() else ""
+
+    path.unlink()
+    assert main("--check") == (1, "")
+    assert main(case.id) == (0, right)
+    path.write_text(right + "\n", encoding="utf-8")
+    assert main() == (0, right + "\n")
+    path.write_text(wrong, encoding="utf-8")
+    assert main("--check") == (1, wrong)
+    assert "/values/0/mass" in capsys.readouterr().out
+    assert main() == (0, right)
+    said = (case.folder / CASE_FILE).read_text(encoding="utf-8").replace("expectation: oracle", "expectation: hand")
+    (case.folder / CASE_FILE).write_text(said, encoding="utf-8")
+    path.write_text(wrong, encoding="utf-8")
+    assert main() == (1, wrong)
+    with pytest.raises(SystemExit):
+        main("nobody")
+
+
+# The archive
+
+
+def test_the_archive_holds_every_file_and_has_the_same_bytes_whenever_it_is_written(tmp_path: Path) -> None:
+    archive.write_archive(tmp_path / "a", CASES)
+    archive.write_archive(tmp_path / "b", reversed(CASES))
+    zips = [(tmp_path / folder / f"{archive.NAME}.zip").read_bytes() for folder in "ab"]
+    assert zips[0] == zips[1]
+    with zipfile.ZipFile(tmp_path / "a" / f"{archive.NAME}.zip") as whole:
+        names = set(whole.namelist())
+        assert {info.date_time for info in whole.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+        for case in CASES:
+            for name, path in archive.case_files(case):
+                assert whole.read(name) == path.read_bytes()
+                names.remove(name)
+    assert not names
+
+
+def test_the_manifest_says_every_case_with_the_texts_of_its_files(tmp_path: Path) -> None:
+    archive.write_archive(tmp_path, CASES)
+    manifest = json.loads((tmp_path / f"{archive.NAME}.json").read_text(encoding="utf-8"))
+    assert [entry["case"]["id"] for entry in manifest["cases"]] == [case.id for case in CASES]
+    for entry, case in zip(manifest["cases"], CASES, strict=True):
+        assert CASE.validate_json(json.dumps(entry["case"])) == case.case
+        assert (entry["expected"] is None) == isinstance(case.case, InvalidCase)
+        if case.description.is_file():
+            text = entry["files"][case.case.description]
+            assert isinstance(text, dict) or text.encode() == case.description.read_bytes()
+    assert set(manifest["clauses"]) == {clause for case in CASES for clause in case.case.clauses}
+
+
+def test_a_file_that_is_no_text_or_not_there_is_in_the_manifest_too(written: WriteCase) -> None:
+    folder = written(json.dumps(INVALID_CASE | {"urdf": "nowhere.urdf"}))
+    (folder / "robot.yaml").write_bytes(b"a: \xff")
+    (entry,) = archive.manifest([read_case(folder)])["cases"]
+    assert entry["files"] == {"robot.yaml": {"base64": "YTog/w=="}, "nowhere.urdf": None}

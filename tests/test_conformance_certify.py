@@ -1,0 +1,263 @@
+"""The command ``eurdf certify``."""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+
+from eurdf.commands.main import main
+from eurdf_conformance.certificate import suite_run
+from eurdf_conformance.certificate.certificate import certificate_schema, read_certificate
+from eurdf_conformance.certificate.replay import replay_schema
+from eurdf_conformance.certificate.suite_run import CannotRunSuite, SuiteRun, run_suite
+from eurdf_conformance.corpus.case import InvalidCase
+from eurdf_conformance.corpus.read import read_cases
+
+REFERENCE = "eurdf_conformance.adapters.reference:READER"
+
+#: What is tested where it does not matter what.
+SOME = ("--level", "accept", "--format-version", "1", "--jobs", "0")
+
+
+def one_answer(word: str, *options: str) -> str:
+    """The parser that says the same of every description."""
+    reader = Path(__file__).parent / "fakes" / "one_answer.py"
+    return "cmd:" + shlex.join([sys.executable, "-I", "-S", str(reader), word, *options])
+
+
+ACCEPTS, REJECTS = one_answer("accepted"), one_answer("rejected")
+
+
+def certify(*argv: str | Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    # The suite runs pytest, which no test of pytest can do within its own process.
+    command = [sys.executable, "-m", "eurdf.commands.main", "certify", *map(str, argv)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=120, env=os.environ | environment)
+
+
+def certificate_of(*argv: str | Path) -> dict[str, Any]:
+    done = certify(*argv, "--json")
+    assert done.returncode in (0, 1), done.stderr
+    value: dict[str, Any] = json.loads(done.stdout)
+    return value
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+# --- what it says ----------------------------------------------------------------------------------------------------
+
+
+def test_the_reference_is_certified_and_its_certificate_says_so_again_when_it_is_replayed(folder: Path) -> None:
+    done = certify("--parser", REFERENCE, *SOME, "--certificate", "mine", "--date", "2026-01-31")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.endswith(": Certified for version 1: accept\n")
+    assert sorted(path.name for path in Path("mine").iterdir()) == ["badge.svg", "certificate.json", "report.html"]
+    certificate = read_certificate(folder / "mine")
+    assert (certificate.certified, certificate.date) == (True, "2026-01-31")
+
+    again = certify("--verify", "mine", "--jobs", "0")
+    assert (again.returncode, again.stdout) == (0, "mine: the same\n")
+    assert again.stderr == f"running {REFERENCE}\n"
+
+
+def test_a_parser_that_accepts_everything_fails_on_every_invalid_case_and_on_no_valid_one(folder: Path) -> None:
+    given = certificate_of("--parser", ACCEPTS, "--level", "accept", "--jobs", "0")
+    failed = {failure["id"] for failure in given["failures"]}
+    cases = read_cases()
+    right = {case.path for case in cases if not isinstance(case.case, InvalidCase) or case.case.either}
+    wrong = {case.path for case in cases} - right
+    assert wrong <= failed
+    assert not right & failed
+    assert not given["certified"]
+    assert not any(level["certified"] for level in given["levels"])
+
+
+def test_a_parser_that_rejects_everything_fails_on_every_valid_case_and_on_no_invalid_one(folder: Path) -> None:
+    given = certificate_of("--parser", REJECTS, "--level", "accept", "--jobs", "0")
+    failed = {failure["id"] for failure in given["failures"]}
+    cases = read_cases()
+    wrong = {case.path for case in cases if not isinstance(case.case, InvalidCase)}
+    assert wrong <= failed
+    assert not {case.path for case in cases if isinstance(case.case, InvalidCase)} & failed
+    assert not any(level["certified"] for level in given["levels"])
+
+
+def test_what_failed_is_shown_with_the_reason_and_the_command_that_runs_it_again(folder: Path) -> None:
+    done = certify("--parser", ACCEPTS, *SOME)
+    assert done.returncode == 1
+    assert "failed version1/n8t4uq/accept: " in done.stdout
+    assert "length-mismatch" in done.stdout
+    assert "-k n8t4uq/accept" in done.stdout
+    assert done.stdout.endswith("always_accepted 1: Not certified at any level\n")
+
+
+def test_the_json_is_the_certificate_and_fits_its_schema_however_the_run_is_spread(folder: Path) -> None:
+    here = certificate_of("--parser", REJECTS, *SOME)
+    spread = certificate_of("--parser", REJECTS, *SOME[:-1], "2", "--certificate", "mine")
+    jsonschema.Draft202012Validator(certificate_schema()).validate(here)
+    assert here == spread == json.loads(Path("mine/certificate.json").read_text(encoding="utf-8"))
+
+
+# --- a first try -----------------------------------------------------------------------------------------------------
+
+
+def test_a_first_try_tells_a_wrong_adapter_from_a_wrong_parser(folder: Path) -> None:
+    parser = certify("--parser", REJECTS, "--smoke")
+    assert parser.returncode == 1
+    assert parser.stdout.startswith("your adapter is right so far")
+    assert "your parser is wrong" in parser.stdout
+    adapter = certify("--parser", one_answer("rejected", "--chatter"), "--smoke")
+    assert adapter.returncode == 1
+    assert adapter.stdout.startswith("your adapter is wrong")
+
+
+def test_a_first_try_that_passes_certifies_nothing(folder: Path) -> None:
+    done = certify("--parser", REFERENCE, "--smoke", "--json")
+    assert done.returncode == 0, done.stderr
+    given = json.loads(done.stdout)
+    assert given["failures"] == []
+    assert not any(level["certified"] for level in given["levels"])
+
+
+# --- known failures --------------------------------------------------------------------------------------------------
+
+
+def known_failures(folder: Path, *ids: str) -> Path:
+    file = folder / "known.yaml"
+    entries = [f"- {{id: {id_}, level: accept, verdict: failed, reason: An open issue.}}\n" for id_ in ids]
+    file.write_text("".join(entries), encoding="utf-8")
+    return file
+
+
+def test_known_failures_are_counted_and_do_not_certify(folder: Path) -> None:
+    failed = [each["id"] for each in certificate_of("--parser", REJECTS, *SOME)["failures"]]
+    file = known_failures(folder, *failed)
+    done = certify("--parser", REJECTS, *SOME, "--known-failures", file)
+    assert done.returncode == 1
+    assert done.stdout.count("failed (known) ") == len(failed)
+    assert f"known failures: {len(failed)}" in done.stdout
+
+
+def test_a_known_failure_that_passes_or_that_the_suite_lacks_is_told(folder: Path) -> None:
+    file = known_failures(folder, "version1/n8t4uq", "version1/aaaaaa")
+    given = certificate_of("--parser", REJECTS, *SOME, "--known-failures", file)
+    assert [said.partition(":")[0] for said in given["unexpected"]] == [
+        "version1/n8t4uq/accept",
+        "version1/aaaaaa/accept",
+    ]
+
+
+def test_a_file_of_known_failures_that_cannot_be_used_is_refused_before_anything_runs(folder: Path) -> None:
+    (folder / "known.yaml").write_text("- id: version1/n8t4uq\n", encoding="utf-8")
+    done = certify("--parser", "cmd:nowhere", "--known-failures", "known.yaml")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith("eurdf: known.yaml: [0].level: ")
+
+
+# --- what does not run -----------------------------------------------------------------------------------------------
+
+
+def test_a_parser_that_does_not_start_exits_with_2_and_shows_what_it_wrote(folder: Path) -> None:
+    done = certify("--parser", f"cmd:{shlex.quote(sys.executable)} nowhere.py")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "nowhere.py" in done.stderr.splitlines()[0]
+    assert "could not be started: crashed: ended with exit code 2" in done.stderr.splitlines()[1]
+
+
+def test_a_level_that_was_asked_for_and_is_not_claimed_is_not_certified(folder: Path) -> None:
+    done = certify("--parser", REJECTS, "--level", "dynamics", "--jobs", "0")
+    assert done.returncode == 1
+    assert done.stdout.endswith("always_rejected 1: Not certified at any level\n")
+
+
+def test_without_pytest_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(suite_run, "REQUIRED", ("pytest", "no_such_package"))
+    with pytest.raises(CannotRunSuite, match=r"needs no_such_package: pip install 'eurdf\[conformance\]'"):
+        run_suite(SuiteRun(ACCEPTS))
+
+
+def test_the_users_own_settings_of_pytest_have_no_part_in_it(folder: Path) -> None:
+    (folder / "pytest.ini").write_text("[pytest]\naddopts = --no-such-option\n", encoding="utf-8")
+    (folder / "conftest.py").write_text("raise RuntimeError('not mine')\n", encoding="utf-8")
+    done = certify("--parser", REFERENCE, "--smoke", PYTEST_ADDOPTS="--no-such-option", PYTEST_PLUGINS="no_such_plugin")
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.parametrize(
+    "argv",
+    [
+        [],
+        ["--verify", "mine", "--level", "accept"],
+        ["--verify", "mine", "--known-failures", "known.yaml"],
+        ["--compare", "mine", "--parser", "cmd:mine"],
+        ["--compare", "mine", "--json", "-o", "page.html"],
+        ["--compare", "mine"],
+        ["--parser", "cmd:mine", "-o", "page.html"],
+        ["--verify", "nowhere"],
+        ["--compare", "nowhere", "-o", "page.html"],
+    ],
+)
+def test_what_cannot_be_done_exits_with_2_in_one_line(
+    argv: list[str], folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["certify", *argv]) == 2
+    written = capsys.readouterr()
+    assert written.out == ""
+    assert written.err.count("\n") == 1
+    assert written.err.startswith("eurdf: ")
+    assert list(folder.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("option", "said"),
+    [
+        (("--date", "2026-13-01"), "'2026-13-01' is no day"),
+        (("--jobs", "-1"), "'-1' is no count"),
+        (("--parser-timeout", "0"), "'0' is no time"),
+        (("--parser-start-timeout", "nan"), "'nan' is no time"),
+        (("--level", "everything"), "invalid choice"),
+    ],
+)
+def test_a_wrong_value_of_an_option_is_refused(
+    option: tuple[str, str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as refused:
+        main(["certify", "--parser", ACCEPTS, *option])
+    assert refused.value.code == 2
+    assert said in capsys.readouterr().err
+
+
+# --- again, and side by side -----------------------------------------------------------------------------------------
+
+
+def test_a_replay_by_another_parser_is_told_line_by_line(folder: Path) -> None:
+    assert certify("--parser", REJECTS, *SOME, "--certificate", "mine").returncode == 1
+    again = certify("--verify", "mine/certificate.json", "--parser", ACCEPTS, "--jobs", "0")
+    assert again.returncode == 1
+    assert again.stdout.startswith("reader, name: 'always_rejected' then, 'always_accepted' now\n")
+    assert "version1/n8t4uq/accept: failed now, not then\n" in again.stdout
+    assert again.stdout.endswith("mine/certificate.json: differs\n")
+    as_json = certify("--verify", "mine", "--parser", ACCEPTS, "--jobs", "0", "--json")
+    value = json.loads(as_json.stdout)
+    jsonschema.Draft202012Validator(replay_schema()).validate(value)
+    assert value == {"same": False, "differences": again.stdout.splitlines()[:-1]}
+
+
+def test_a_comparison_is_one_page_of_all_its_certificates(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name, parser in (("a", REJECTS), ("b", ACCEPTS)):
+        certify("--parser", parser, *SOME, "--certificate", name)
+    assert main(["certify", "--compare", "a", "b/certificate.json", "-o", "page.html"]) == 0
+    page = Path("page.html").read_text(encoding="utf-8")
+    assert page.index("always_rejected 1") < page.index("always_accepted 1")
+    assert "Clauses on which they differ" in page

@@ -1,0 +1,250 @@
+"""Each message has a JSON Schema in a file, which says what the runner says."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from jsonschema import Draft202012Validator
+from pydantic import ValidationError
+
+from eurdf_conformance.protocol.message import (
+    ANSWER,
+    PROTOCOL,
+    REQUEST,
+    AnyRequest,
+    Evaluate,
+    Load,
+    Start,
+    Stop,
+)
+from eurdf_conformance.protocol.schema import FOLDER, main, message_schemas, schema_text
+from eurdf_conformance.runner.answer import read_answer
+from eurdf_conformance.runner.outcome import Malformed, Misplaced
+
+SCHEMAS = message_schemas()
+
+JOINT = {
+    "name": "j", "type": "revolute", "parent": "a", "child": "b", "lower": [-1], "upper": [None], "velocity": [None],
+    "effort": [2.5], "damping": [0], "friction": [0], "armature": [0],
+}  # fmt: skip
+ROBOT = {
+    "name": "r", "version": "2", "root": "fixed", "links": ["a", "b"], "frames": [], "joints": [JOINT],
+    "closures": [{"name": "c", "type": "3d", "a": "a", "b": "b"}], "actuators": [{"joint": "j", "gear_ratio": [50]}],
+    "configurations": {"home": {"j": [0.5]}}, "own": {"/x-a": {"deep": [1, "two", None, True]}},
+}  # fmt: skip
+ISSUE = {"code": "unknown-frame", "severity": "error", "file": "robot.yaml", "line": 1, "column": 2, "message": "m"}
+READER = {"name": "n", "version": "", "language": "C++"}
+POSE = {"rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "translation": [0, 0, 0.5]}
+VALUES = {
+    "poses": {"tool": POSE},
+    "residuals": {"c": [0, 0, 1e-9]},
+    "jacobian": {"columns": [["j", 0]], "rows": {"c": [[1], [0], [0]]}},
+    "mass_matrix": {"columns": [["j", 0]], "matrix": [[2]]},
+    "mass": 3,
+    "center_of_mass": [0, 0, 1],
+}
+
+#: Requests, and answers to each that fit; ids are left out.
+REQUESTS: dict[str, AnyRequest] = {
+    "start": Start(id=1, protocol=PROTOCOL),
+    "load": Load(id=1, description="/robot.yaml", urdf="/robot.urdf"),
+    "evaluate": Evaluate(id=1, quantities=["mass", "poses"], frames=["tool"], configurations=[{"j": [0.5]}]),
+    "stop": Stop(id=1),
+}
+SOUND: list[tuple[str, dict[str, Any]]] = [
+    ("start", {"outcome": "started", "protocol": "1.0", "reader": READER, "claims": {"1": ["accept"], "2": []}}),
+    ("load", {"outcome": "accepted", "robot": ROBOT, "issues": [ISSUE, {"message": "m"}]}),
+    ("load", {"outcome": "accepted", "robot": None}),
+    ("load", {"outcome": "rejected", "issues": []}),
+    ("load", {"outcome": "rejected", "issues": [{"message": "m", "line": 3.0}]}),
+    ("load", {"outcome": "unsupported", "feature": "f"}),
+    ("load", {"outcome": "skipped", "reason": "r"}),
+    ("start", {"outcome": "errored", "message": "m"}),
+    ("evaluate", {"outcome": "evaluated", "values": [VALUES]}),
+    ("evaluate", {"outcome": "evaluated", "values": [{}]}),
+    ("evaluate", {"outcome": "unsupported", "feature": "f", "reason": "r"}),
+    ("stop", {"outcome": "stopped"}),
+]
+
+
+def changed(value: Any, pointer: str, new: Any) -> Any:
+    """A copy with the value at a JSON pointer replaced, or removed where the new one is ``...``."""
+    copy = json.loads(json.dumps(value))
+    *way, last = pointer.split("/")[1:]
+    place = copy
+    for key in way:
+        place = place[int(key) if isinstance(place, list) else key]
+    if new is ...:
+        del place[last]
+    else:
+        place[int(last) if isinstance(place, list) else last] = new
+    return copy
+
+
+#: Which of the sound answers, the pointer, what stands there instead.
+BROKEN: list[tuple[int, str, Any]] = [
+    (0, "/protocol", "1.1"),
+    (0, "/protocol", ...),
+    (0, "/reader", None),
+    (0, "/reader/name", ""),
+    (0, "/reader/language", ...),
+    (0, "/claims", []),
+    (0, "/claims/3", ["accept"]),
+    (0, "/claims/1", ["all"]),
+    (0, "/claims/1", "accept"),
+    (1, "/robot", ...),
+    (1, "/robot/version", "2.0"),
+    (1, "/robot/root", "free"),
+    (1, "/robot/links", {"a": 1}),
+    (1, "/robot/own", ...),
+    (1, "/robot/extra", 1),
+    (1, "/robot/joints/0/type", "fixed"),
+    (1, "/robot/joints/0/lower", -1),
+    (1, "/robot/joints/0/lower", ["-1"]),
+    (1, "/robot/joints/0/damping", [None]),
+    (1, "/robot/joints/0/mimic", {"joint": "k"}),
+    (1, "/robot/joints/0/armature", ...),
+    (1, "/robot/closures/0/type", "6D"),
+    (1, "/robot/actuators/0/gear_ratio", 50),
+    (1, "/robot/configurations/home", [0.5]),
+    (1, "/robot/configurations/home/j", 0.5),
+    (1, "/issues/0/severity", "fatal"),
+    (1, "/issues/0/line", 0),
+    (1, "/issues/0/column", 1.5),
+    (1, "/issues/1/message", ...),
+    (1, "/issues/1/hint", "h"),
+    (1, "/issues", None),
+    (3, "/issues", ...),
+    (5, "/feature", ...),
+    (6, "/reason", ...),
+    (7, "/message", 3),
+    (8, "/values", VALUES),
+    (8, "/values/0/poses/tool/rotation", [[1, 0, 0], [0, 1, 0]]),
+    (8, "/values/0/poses/tool/rotation/0", [1, 0, 0, 0]),
+    (8, "/values/0/poses/tool/translation", [0, 0]),
+    (8, "/values/0/jacobian/columns/0", ["j"]),
+    (8, "/values/0/jacobian/columns/0", ["j", "0"]),
+    (8, "/values/0/jacobian/rows/c", [1, 0, 0]),
+    (8, "/values/0/mass_matrix/matrix", None),
+    (8, "/values/0/mass", True),
+    (8, "/values/0/center_of_mass", [0, 0]),
+    (8, "/values/0/potential_energy", 1),
+    (11, "/outcome", "ended"),
+    (11, "/reason", "done"),
+]
+
+
+def fits(outcome: str, answer: Any) -> bool:
+    """Whether an answer fits the schema of that outcome, if there is one."""
+    return outcome in SCHEMAS and Draft202012Validator(SCHEMAS[outcome]).is_valid(answer)
+
+
+def test_the_files_are_current() -> None:
+    written = {path.name: path.read_text(encoding="utf-8") for path in FOLDER.iterdir()}
+    assert written == {f"{word}.schema.json": schema_text(schema) for word, schema in SCHEMAS.items()}, (
+        "python -m eurdf_conformance.protocol.schema"
+    )
+
+
+def test_the_command_writes_the_files(tmp_path: Path) -> None:
+    main(tmp_path / "schema")
+    assert {path.name for path in (tmp_path / "schema").iterdir()} == {path.name for path in FOLDER.iterdir()}
+
+
+def test_there_is_one_schema_a_message_each_sound_and_with_an_id_of_its_own() -> None:
+    assert set(SCHEMAS) == {
+        "start", "load", "evaluate", "stop",
+        "started", "accepted", "rejected", "evaluated", "stopped", "unsupported", "skipped", "errored",
+    }  # fmt: skip
+    for word, schema in SCHEMAS.items():
+        Draft202012Validator.check_schema(schema)
+        assert schema["$id"] == f"urn:extended-urdf:protocol:1.0:{word}"
+
+
+@pytest.mark.parametrize("command", REQUESTS)
+def test_a_request_fits_its_schema_and_no_other_and_lacks_nothing(command: str) -> None:
+    request = json.loads(REQUESTS[command].model_dump_json())
+    assert [word for word in SCHEMAS if fits(word, request)] == [command]
+    assert REQUEST.validate_json(json.dumps(request)) == REQUESTS[command]
+    for member in request:
+        assert not fits(command, {key: value for key, value in request.items() if key != member})
+
+
+@pytest.mark.parametrize(("command", "answer"), SOUND)
+def test_a_sound_answer_fits_its_schema_and_no_other_and_the_runner_takes_it(
+    command: str, answer: dict[str, Any]
+) -> None:
+    answer = {"id": 1, **answer}
+    assert [word for word in SCHEMAS if fits(word, answer)] == [answer["outcome"]]
+    found = read_answer(json.dumps(answer).encode(), REQUESTS[command])
+    assert not isinstance(found, Malformed | Misplaced), str(found)
+
+
+@pytest.mark.parametrize(("index", "pointer", "new"), BROKEN)
+def test_what_breaks_the_schema_is_malformed_and_what_is_malformed_breaks_the_schema(
+    index: int, pointer: str, new: Any
+) -> None:
+    command, sound = SOUND[index]
+    answer = changed({"id": 1, **sound}, pointer, new)
+    assert not fits(answer["outcome"], answer)
+    found = read_answer(json.dumps(answer).encode(), REQUESTS[command])
+    assert isinstance(found, Malformed)
+    assert found.placed
+
+
+@pytest.mark.parametrize("identity", [None, "1", True, 1.5, [1]])
+def test_an_id_is_a_whole_number(identity: Any) -> None:
+    answer = {"id": identity, "outcome": "stopped"}
+    assert not fits("stopped", answer)
+    found = read_answer(json.dumps(answer).encode(), REQUESTS["stop"])
+    assert isinstance(found, Malformed)
+    assert not found.placed
+
+
+def test_an_answer_to_another_request_is_misplaced_whatever_else_is_wrong_with_it() -> None:
+    for answer in ({"id": 2, "outcome": "stopped"}, {"id": 2}, {"id": 2, "outcome": "accepted", "robot": 3}):
+        found = read_answer(json.dumps(answer).encode(), REQUESTS["stop"])
+        assert isinstance(found, Misplaced)
+        assert (found.expected_id, found.given_id) == (1, 2)
+
+
+@pytest.mark.parametrize("outcome", ["unsupported", "skipped", "errored"])
+def test_stop_is_answered_by_stopped_only(outcome: str) -> None:
+    answer = {"id": 1, **next(sound for _, sound in SOUND if sound["outcome"] == outcome)}
+    found = read_answer(json.dumps(answer).encode(), REQUESTS["stop"])
+    assert isinstance(found, Malformed)
+    assert f"'{outcome}' is no answer to 'stop'" in found.why
+
+
+@pytest.mark.parametrize("text", ["NaN", "Infinity", "-Infinity"])
+def test_a_constant_that_json_lacks_is_no_value_but_a_text_may_say_it(text: str) -> None:
+    answer = {"id": 1, "outcome": "accepted", "robot": ROBOT}
+    said = json.dumps(answer).replace('"two"', text).encode()
+    found = read_answer(said, REQUESTS["load"])
+    assert isinstance(found, Malformed)
+    assert found.why == f"{text} is no JSON"
+    quoted = json.dumps(answer).replace('"two"', f'"{text}"').encode()
+    assert not isinstance(read_answer(quoted, REQUESTS["load"]), Malformed)
+
+
+def test_several_faults_are_told_with_their_pointers() -> None:
+    answer = {
+        "id": 1,
+        "outcome": "accepted",
+        "robot": changed(ROBOT, "/joints/0/lower", ["low"]),
+        "issues": 3,
+        "a/b": 1,
+    }
+    found = read_answer(json.dumps(answer).encode(), REQUESTS["load"])
+    assert isinstance(found, Malformed)
+    for pointer in ("/robot/joints/0/lower/0: ", "/issues: ", "/a~1b: "):
+        assert pointer in found.why
+
+
+def test_a_message_cannot_be_changed() -> None:
+    with pytest.raises(ValidationError):
+        REQUESTS["stop"].id = 3
+    assert ANSWER.validate_json('{"id": 1, "outcome": "stopped"}').id == 1
