@@ -16,7 +16,7 @@ REPLACED = {
     "spherical": ("revolute", "continuous"),
     "universal": ("revolute", "continuous"),
     "cylindrical": ("revolute", "continuous", "prismatic"),
-    "helical": ("revolute", "continuous"),
+    "helical": ("revolute", "continuous", "prismatic"),
     "locked": ("revolute", "continuous", "prismatic", "planar", "floating"),
 }
 FOLLOWING = ("revolute", "continuous", "prismatic")
@@ -68,7 +68,7 @@ class Files:
         self.urdf.append(
             f'<joint name="{name}" type="{kind}">{origin}<parent link="{parent}"/><child link="{child}"/>'
             f'<axis xyz="{" ".join(map(repr, map(float, axis)))}"/>{mimic}'
-            f"{limit + dynamics if kind in FOLLOWING else ''}</joint>"
+            f"{limit + dynamics}</joint>"
         )
 
     def ball(self, name: str, parent: str) -> str:

@@ -136,7 +136,7 @@ HOSTILE = {
     # what is no text, or never ends
     "an endless device": Hostile("file-unreadable", _linked),
     "a pipe": Hostile("file-unreadable", _pipe),
-    "a pipe for a URDF": Hostile("urdf-not-found", _pipe_as_urdf),
+    "a pipe for a URDF": Hostile("file-unreadable", _pipe_as_urdf),
     "a folder named robot.yaml": Hostile("RobotNotFound", _folder),
     "a YAML file of 100 MB": Hostile("file-too-large", _sparse("robot.yaml")),
     "a URDF of 100 MB": Hostile("file-too-large", _sparse("robot.urdf")),

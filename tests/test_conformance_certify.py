@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shlex
 import subprocess
 import sys
@@ -24,6 +25,9 @@ from eurdf_conformance.corpus.read import read_cases
 REFERENCE = "eurdf_conformance.adapters.reference:READER"
 
 #: What is tested where it does not matter what.
+#: Failures that are shown, so many at most.
+MOST_SHOWN = 20
+
 SOME = ("--level", "accept", "--format-version", "1", "--jobs", "0")
 
 
@@ -96,9 +100,11 @@ def test_a_parser_that_rejects_everything_fails_on_every_valid_case_and_on_no_in
 def test_what_failed_is_shown_with_the_reason_and_the_command_that_runs_it_again(folder: Path) -> None:
     done = certify("--parser", ACCEPTS, *SOME)
     assert done.returncode == 1
-    assert "failed version1/n8t4uq/accept: " in done.stdout
-    assert "length-mismatch" in done.stdout
-    assert "-k n8t4uq/accept" in done.stdout
+    shown = re.findall(r"^failed (\w+)/([\w-]+)/accept: \S", done.stdout, re.MULTILINE)
+    assert len(shown) == MOST_SHOWN
+    for _, id_ in shown:
+        assert f"-k {id_}/accept" in done.stdout
+    assert re.search(r"^\d+ more did not pass", done.stdout, re.MULTILINE)
     assert done.stdout.endswith("always_accepted 1: Not certified at any level\n")
 
 
@@ -145,7 +151,8 @@ def test_known_failures_are_counted_and_do_not_certify(folder: Path) -> None:
     file = known_failures(folder, *failed)
     done = certify("--parser", REJECTS, *SOME, "--known-failures", file)
     assert done.returncode == 1
-    assert done.stdout.count("failed (known) ") == len(failed)
+    assert len(failed) > MOST_SHOWN
+    assert done.stdout.count("failed (known) ") == MOST_SHOWN
     assert f"known failures: {len(failed)}" in done.stdout
 
 

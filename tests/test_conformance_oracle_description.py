@@ -65,6 +65,29 @@ def test_other_properties_stay_the_urdfs_for_each_velocity_but_for_those_stated(
     assert [found.velocity, found.effort, found.damping, found.friction, found.armature] == expected
 
 
+def test_what_is_said_of_a_length_holds_for_the_angle_of_a_screw() -> None:
+    found = canonical_joint("prismatic", f"{{type: helical, pitch: {-4 * pi}, limits: {{effort: 7}}}}")  # |h| / 2π = 2
+    numbers = [found.lower, found.upper, found.velocity, found.effort, found.damping, found.friction]
+    assert numbers == [pytest.approx([value]) for value in (-1, 0.5, 1.5, 7, 20, 12)]
+
+
+def test_limits_and_damping_of_a_planar_joint_are_the_descriptions_only() -> None:
+    found = canonical_joint("planar", "{damping: [1, 2, 3]}")
+    assert (found.velocity, found.effort, found.friction, found.lower) == ([None] * 3, [None] * 3, [0] * 3, [])
+    assert found.damping == [1, 2, 3]
+
+
+def test_a_root_that_floats_is_a_joint_of_configurations_and_nothing_else() -> None:
+    elements = chain(joint("j", "revolute", "base", "end"))
+    floating = two("root: floating\nconfigurations: {q: {root_joint: [1, 2, 3, 0, 0, 0, 2]}}\n")
+    found = robot(elements, floating)
+    assert found.canonical().configurations == {"q": {"root_joint": [1, 2, 3, 0, 0, 0, 1]}}
+    assert [joint.name for joint in found.canonical().joints] == ["j"]
+    for more in ("actuators: [root_joint]", "frames: [{name: f, joint: root_joint}]"):
+        with pytest.raises(NotRead):
+            robot(elements, floating + more)
+
+
 @pytest.mark.parametrize(("entry", "armature"), [("cylindrical", [200.0, 200.0]), ("{armature: 0}", [0.0])])
 def test_the_armature_is_the_rotors_through_the_gear_unless_it_is_stated(entry: str, armature: list[float]) -> None:
     actuators = "actuators: [{joint: j, gear_ratio: -10, rotor_inertia: 2}]"
@@ -99,18 +122,26 @@ def test_merged_joints_turn_about_the_point_where_their_axes_meet_and_their_name
 
 
 def test_the_centre_of_merged_joints_is_nearest_to_their_axes_in_the_sense_of_least_squares() -> None:
-    d = 6e-5
-    found = robot(
+    # Squares: y² + z², x² + (z − d)², x² + (y − 2d)². The link that is carried stands at (0, 2d, up).
+    half_turn_about_x = position(crossing(d := 6e-5, up := 0.1), "end", {"rz": [1, 0, 0, 0]})
+    np.testing.assert_allclose(half_turn_about_x, [0, 0, d - up], atol=1e-17)
+
+
+def test_axes_that_meet_next_to_the_last_origin_meet_there() -> None:
+    half_turn_about_x = position(crossing(d := 6e-5, 0.0), "end", {"rz": [1, 0, 0, 0]})
+    np.testing.assert_allclose(half_turn_about_x, [0, 2 * d, 0], atol=1e-18)
+
+
+def crossing(d: float, up: float) -> OracleRobot:
+    """Axes through (0, 0, 0), (0, 0, d) and (0, 2d, up), along x, y and z, as one joint."""
+    return robot(
         chain(
             joint("rx", "revolute", "base", "x", (1, 0, 0)),
             joint("ry", "revolute", "x", "y", (0, 1, 0), (0, 0, d)),
-            joint("rz", "revolute", "y", "end", (0, 0, 1), (0, 2 * d, -d)),
+            joint("rz", "revolute", "y", "end", (0, 0, 1), (0, 2 * d, up - d)),
         ),
         two("joints: {rz: {type: spherical, merges: [rx, ry, rz]}}"),
     )
-    # Squares: y² + z², x² + (z − d)², x² + (y − 2d)². The link that is carried stands at (0, 2d, 0).
-    half_turn_about_x = position(found, "end", {"rz": [1, 0, 0, 0]})
-    np.testing.assert_allclose(half_turn_about_x, [0, 2 * d - 2 * d, 2 * d / 2], atol=1e-18)
 
 
 ONE_BALL = chain(

@@ -170,7 +170,7 @@ def test_the_users_own_keys_may_stand_in_every_mapping_and_change_nothing(path: 
 def test_the_users_own_data_are_kept_at_every_level_and_nothing_is_sought_within_them() -> None:
     text = "x-a: {x-b: 1}\nclosures: [{name: c, type: 3d, frames: [a, b], x-d: [1]}]\nmetadata: {x-e: 2}\n"
     extension = sound(text)
-    assert extension.own_data == {("x-a",): {"x-b": 1}, ("closures", 0, "x-d"): [1]}
+    assert extension.own_data == {("x-a",): {"x-b": 1}, ("closures", 0, "x-d"): [1], ("metadata", "x-e"): 2}
     assert extension.metadata == {"x-e": 2}
 
 

@@ -119,7 +119,12 @@ def test_another_urdf_may_stand_in_for_the_one_that_is_named(tmp_path: Path) -> 
         eurdf.load(other, urdf=other)
 
 
-@pytest.mark.parametrize("name", ["missing.urdf", "a" * 5000, ".", "no/such/folder/robot.urdf"])
+def test_a_folder_in_place_of_the_urdf_is_a_file_that_cannot_be_read(tmp_path: Path) -> None:
+    report = eurdf.check(_write(tmp_path, URDF, 'extended_urdf: "2.0"\nurdf: .\n'))
+    assert [(found.code, found.line) for found in report.diagnostics] == [("file-unreadable", None)]
+
+
+@pytest.mark.parametrize("name", ["missing.urdf", "a" * 5000, "no/such/folder/robot.urdf"])
 def test_a_urdf_that_does_not_exist_is_told_where_it_is_named(tmp_path: Path, name: str) -> None:
     folder = _write(tmp_path, URDF, f'extended_urdf: "2.0"\nurdf: {name}\n')
     report = eurdf.check(folder)

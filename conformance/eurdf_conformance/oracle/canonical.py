@@ -21,7 +21,7 @@ from eurdf_conformance.protocol.message import (
 
 def canonical(urdf: Urdf, description: Description, tree: Tree) -> CanonicalRobot:
     """What was read, without style."""
-    joints = {joint.name: joint for joint in tree.joints}
+    joints = {joint.name: joint for joint in tree.joints[1:]}
     link = links_of_bodies(tree)
     motors = {actuator.joint: actuator for actuator in description.actuators}
     return CanonicalRobot(

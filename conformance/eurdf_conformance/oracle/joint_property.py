@@ -84,7 +84,7 @@ def position_limits(joint: Joint) -> tuple[Limits, Limits]:
         return [], []
     source = joint.source[0]
     if source.type == "prismatic" and joint.type == "helical" and source.lower is not None and source.upper is not None:
-        # They bound its length, h/2π θ, and so θ; which of them is the lower one is in the sign of h.
+        # They bound its length, h/2π θ, and so θ: they change places where h is negative.
         metre = 2.0 * np.pi / joint.pitch
         low, high = sorted([float(source.lower * metre), float(source.upper * metre)])
         return [low], [high]

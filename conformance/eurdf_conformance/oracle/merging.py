@@ -37,7 +37,8 @@ class Ball:
 def ball(joints: list[UrdfJoint]) -> Ball:
     """Of three joints: the point nearest to their axes, with the last one's orientation, EU-JNT-014 and 022.
 
-    The axes pass through o_i along a_i: the point solves Σ (1 − a_i a_iᵀ) (p − o_i) = 0.
+    The axes pass through o_i along a_i: the point solves Σ (1 − a_i a_iᵀ) (p − o_i) = 0. Where that is as near
+    to the last origin as the axes have to be to it, it is that origin.
     """
     pMj = np.eye(4)
     origins, axes = [], []

@@ -65,7 +65,7 @@ class Tree:
 
     joints: list[Joint]
     links: dict[str, Placed]
-    #: Frames by the name of a joint: of the link that it carries, EU-FRM-005.
+    #: Frames by the name of a joint, but for the root's: of the link that it carries, EU-FRM-005.
     joint_frames: dict[str, Placed]
     #: Frames that the description adds.
     added: dict[str, Placed]
@@ -97,8 +97,6 @@ def build(urdf: Urdf, description: Description) -> Tree:
         raise NotRead(f"{changed} are not joints of the URDF, each once")
     root = Joint(ROOT_JOINT[description.root], description.root, 0, np.eye(4), np.zeros((0, 3)))
     tree = Tree([root], {urdf.root: Placed(0, np.eye(4))}, {}, {})
-    if description.root == "floating":
-        tree.joint_frames[root.name] = tree.links[urdf.root]
     last = {change.merges[-1]: name for name, change in description.changes.items() if change.merges}
     waiting = urdf.below(urdf.root)[::-1]
     while waiting:

@@ -1,4 +1,4 @@
-"""A reader, and the questions that properties put to it."""
+"""A reader, and the questions that laws put to it."""
 
 from __future__ import annotations
 
@@ -35,18 +35,21 @@ class Bench:
     """A reader that is asked about one mechanism after the other.
 
     Attributes:
-        asked: What it was asked about last.
-        paths: The files of that.
+        folder: Where files are written for the reader.
+        asked: What it was asked about since `begin`, and where the files of that are.
     """
 
     def __init__(self, reader: Reader, folder: Path) -> None:
-        """``folder`` is where files are written for the reader."""
-        self.asked: Asked | None = None
-        self.paths: tuple[Path, ...] = ()
+        self.folder = folder
+        self.asked: list[tuple[Asked, tuple[Path, Path]]] = []
         self._reader = reader
-        self._folder = folder
         self._written = 0
-        self._loaded: tuple[Files, Accepted] | None = None
+        self._files: tuple[Files, tuple[Path, Path]] | None = None
+        self._accepted: Accepted | None = None
+
+    def begin(self) -> None:
+        """Another example."""
+        self.asked.clear()
 
     def load(self, asked: Asked) -> Accepted:
         """Let it read two files, if they are not those that it read last.
@@ -54,20 +57,15 @@ class Bench:
         Raises:
             NotAnswered: It does not accept them.
         """
-        self.asked = asked
-        if self._loaded is not None and self._loaded[0] == asked.files:
-            return self._loaded[1]
-        self._loaded = None
-        # A folder of its own: no reader can take one file for the one that stood there before.
-        self._written += 1
-        folder = self._folder / str(self._written)
-        folder.mkdir()
-        description, urdf = self.paths = asked.files.write(folder)
-        outcome = self._reader.load(description, urdf)
-        if not (isinstance(outcome, Answered) and isinstance(outcome.answer, Accepted)):
-            raise NotAnswered(outcome)
-        self._loaded = asked.files, outcome.answer
-        return outcome.answer
+        if self._files is None or self._files[0] != asked.files:
+            self._files, self._accepted = (asked.files, self._write(asked.files)), None
+        self.asked.append((asked, self._files[1]))
+        if self._accepted is None:
+            outcome = self._reader.load(*self._files[1])
+            if not (isinstance(outcome, Answered) and isinstance(outcome.answer, Accepted)):
+                raise NotAnswered(outcome)
+            self._accepted = outcome.answer
+        return self._accepted
 
     def read(self, asked: Asked) -> CanonicalRobot | None:
         """What it has read; None where it does not say.
@@ -87,10 +85,17 @@ class Bench:
         self.load(asked)
         outcome = self._reader.evaluate(asked.configurations, asked.frames, quantities)
         if not (isinstance(outcome, Answered) and isinstance(outcome.answer, Evaluated)):
-            self._loaded = None  # the process that held the robot may be gone
+            self._accepted = None  # the process that held the robot may be gone
             raise NotAnswered(outcome)
         robot = truth(asked.mechanism, asked.version)
         return [
             shaped(values, robot, asked.frames, quantities, f"/values/{index}")
             for index, values in enumerate(outcome.answer.values)
         ]
+
+    def _write(self, files: Files) -> tuple[Path, Path]:
+        """Into a folder of their own: no reader can take one file for the one that stood there before."""
+        self._written += 1
+        folder = self.folder / str(self._written)
+        folder.mkdir()
+        return files.write(folder)

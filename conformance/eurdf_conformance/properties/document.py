@@ -33,8 +33,7 @@ def version2(mechanism: Mechanism) -> Document:
         "actuators": [_actuator(actuator) for actuator in mechanism.actuators],
         "frames": [{"name": frame.name, **_spot(frame.spot)} for frame in mechanism.frames],
         "configurations": {
-            # Whether a file may say where a floating root stands is left open: it is said in questions only.
-            name: {joint: list(q) if len(q) > 1 else q[0] for joint, q in stated.items() if joint != "root_joint"}
+            name: {joint: list(q) if len(q) > 1 else q[0] for joint, q in stated.items()}
             for name, stated in mechanism.configurations.items()
         },
     }

@@ -10,16 +10,18 @@ from pathlib import Path
 import hypothesis
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
+from hypothesis.configuration import set_hypothesis_home_dir
 from hypothesis.errors import Flaky, FlakyFailure, Unsatisfiable
 from hypothesis.strategies import SearchStrategy
 
 from eurdf_conformance.level import Level, Version
 from eurdf_conformance.properties.bench import Bench
+from eurdf_conformance.properties.culprit import culprit
 from eurdf_conformance.properties.example import Example
 from eurdf_conformance.properties.found_case import write_case
 from eurdf_conformance.properties.law import LARGEST, Law
 from eurdf_conformance.properties.strategies.mechanisms import mechanisms
-from eurdf_conformance.properties.trying import try_example
+from eurdf_conformance.properties.trying import try_example, with_log
 from eurdf_conformance.suite.judge import PASSED, Judgement
 from eurdf_conformance.suite.property import Trial
 from eurdf_conformance.verdict.verdict import Verdict
@@ -52,12 +54,13 @@ def explore(law: Law, level: Level, trial: Trial, bench: Bench, folder: Path = E
     if found is None:
         return PASSED
     example, judgement = found
-    # Once more, so that the bench knows what was asked last, and the answer is of this very example.
-    judgement = try_example(law, level, trial.version, bench, example)
-    case = write_case(law, bench, folder) if bench.asked is not None else None
-    log = [judgement.log, f"seed {seed}", f"written as a case: {case}"]
-    reason = f"on a mechanism found by exploring: {judgement.reason}"
-    return replace(judgement, reason=reason, log="\n".join(line for line in log if line))
+    # Once more, since the bench was asked about others meanwhile.
+    again = try_example(law, level, trial.version, bench, example)
+    case = write_case(law, culprit(bench, level), folder)
+    told = replace(judgement, reason=f"on a mechanism found by exploring: {judgement.reason}")
+    log = [f"found by exploring from seed {seed}, and written as a case: {case}"]
+    log += ["asked again, the reader answers otherwise"] * (again != judgement)
+    return with_log(told, *log)
 
 
 def search(
@@ -99,6 +102,8 @@ def search(
         best.append((example, judgement))
         raise _Wrong
 
+    # What it keeps would otherwise lie about where the suite is run.
+    set_hypothesis_home_dir(bench.folder / "hypothesis")
     try:
         attempt()
     except (_Wrong, Flaky, FlakyFailure):
@@ -106,13 +111,14 @@ def search(
         return best[-1] if best else None
     except Unsatisfiable:
         return None
+    finally:
+        set_hypothesis_home_dir(None)
     return None
 
 
 def drawn(law: Law, version: Version) -> SearchStrategy[Example]:
     """What a law is tried with."""
     if law.family is not None:
-        sizes = [int(size) for size in range(law.smallest, LARGEST + 1)]
-        return st.sampled_from(sizes).map(law.family)
+        return st.integers(law.smallest, LARGEST).map(law.family)
     examples = st.builds(Example, mechanism=mechanisms(version, law.closures), seed=st.integers(0, 10**6))
     return examples.filter(lambda example: law.applies(example.mechanism))

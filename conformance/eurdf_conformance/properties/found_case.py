@@ -13,25 +13,22 @@ from eurdf_conformance.corpus.expect import expect
 from eurdf_conformance.corpus.expected import EXPECTED_FILE, expected_text
 from eurdf_conformance.corpus.read import CASE_FILE, CorpusCase, case_folders
 from eurdf_conformance.properties.asked import Asked
-from eurdf_conformance.properties.bench import Bench
 from eurdf_conformance.properties.law import Law
 
 _ALPHABET = "abcdefghijklmnopqrstuvwxyz0123456789"
 
 
-def write_case(law: Law, bench: Bench, folder: Path) -> Path:
-    """Write the robot that a reader was asked about last into a folder of its own, with what the oracle expects.
+def write_case(law: Law, asked: Asked, folder: Path) -> Path:
+    """Write a robot into a folder of its own, with what the oracle expects.
 
     Args:
-        law: The law that it shows the reader to depart from.
-        bench: The reader.
+        law: The law from which a reader was found to depart.
+        asked: What it was asked about the robot.
         folder: Where; the case goes into the folder of its topic there.
 
     Returns:
         The folder of the case.
     """
-    asked = bench.asked
-    assert asked is not None
     topic = "closures" if asked.mechanism.closures else "joints"
     name = fresh_id(asked, {path.name for path in case_folders()})
     home = folder / topic / name

@@ -28,9 +28,7 @@ _WANTED = 3
 
 def main() -> None:
     """Write the file."""
-    examples: dict[Version, Sequence[Example]] = {
-        version: chosen(drawn(version), KEPT[version]) for version in VERSIONS
-    }
+    examples = {version: chosen(drawn(version), KEPT[version]) for version in VERSIONS}
     FROZEN.write_text(frozen_text(examples), encoding="utf-8")
     for version, kept in examples.items():
         count = Counter(feature for example in kept for feature in features(example.mechanism))

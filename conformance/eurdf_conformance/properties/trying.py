@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from eurdf_conformance.level import Level, Version
 from eurdf_conformance.properties.bench import Bench, NotAnswered
 from eurdf_conformance.properties.example import Example
@@ -13,22 +15,34 @@ from eurdf_conformance.verdict.verdict import Verdict
 
 
 def try_law(law: Law, level: Level, trial: Trial) -> Judgement:
-    """Whether a law holds of a reader."""
+    """Whether a law holds of a reader; where exploring is asked for, also whether it fails on a smaller mechanism."""
     bench = Bench(trial.reader, trial.folder)
-    for number, example in enumerate(law.frozen(trial.version), 1):
-        judgement = try_example(law, level, trial.version, bench, example)
-        if judgement.verdict != Verdict.PASSED:
-            return _told(judgement, f"example {number}", bench)
-    if trial.explore:
-        # Hypothesis is needed only here.
-        from eurdf_conformance.properties.explore import explore
+    judgement = try_frozen(law, level, trial.version, bench)
+    if not trial.explore:
+        return judgement
+    # Hypothesis is needed only here.
+    from eurdf_conformance.properties.explore import explore
 
-        return explore(law, level, trial, bench)
+    further = explore(law, level, trial, bench)
+    if judgement.verdict == Verdict.PASSED:
+        return further
+    return with_log(judgement, further.log)
+
+
+def try_frozen(law: Law, level: Level, version: Version, bench: Bench) -> Judgement:
+    """Whether a law holds of a reader on the examples of every certification, up to the first on which it does not."""
+    for number, example in enumerate(law.frozen(version), 1):
+        judgement = try_example(law, level, version, bench, example)
+        if judgement.verdict != Verdict.PASSED:
+            told = replace(judgement, reason=f"example {number}: {judgement.reason}")
+            files = [path for _, paths in bench.asked for path in paths]
+            return with_log(told, *dict.fromkeys(map(str, files)))
     return PASSED
 
 
 def try_example(law: Law, level: Level, version: Version, bench: Bench, example: Example) -> Judgement:
     """Whether a law holds of a reader on one example."""
+    bench.begin()
     try:
         found = law.check(bench, example, version, level)
     except NotAnswered as failure:
@@ -38,13 +52,6 @@ def try_example(law: Law, level: Level, version: Version, bench: Bench, example:
     return Judgement(Verdict.FAILED, f"it is not so: {law.title}", tuple(found)) if found else PASSED
 
 
-def _told(judgement: Judgement, where: str, bench: Bench) -> Judgement:
-    """A judgement that says on which mechanism, and where the files are that the reader was given last."""
-    log = [judgement.log, *map(str, bench.paths)]
-    return Judgement(
-        judgement.verdict,
-        f"{where}: {judgement.reason}",
-        judgement.differences,
-        judgement.issues,
-        "\n".join(line for line in log if line),
-    )
+def with_log(judgement: Judgement, *lines: str) -> Judgement:
+    """A judgement with more lines in its log."""
+    return replace(judgement, log="\n".join(line for line in (judgement.log, *lines) if line))

@@ -8,6 +8,7 @@ import pytest
 
 from eurdf_conformance.suite.asking import Asking
 from eurdf_conformance.suite.item import PropertyItem, property_items
+from eurdf_conformance.suite.judge import Judgement
 from eurdf_conformance.suite.options import options_of
 from eurdf_conformance.suite.property import Trial
 
@@ -23,6 +24,16 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 def test_property(property_item: PropertyItem, asking: Asking, tmp_path: Path) -> None:
     """The property holds of the reader."""
-    item = property_item.item
-    trial = Trial(asking.session, item.version, asking.options.explore, tmp_path)
-    asking.settle(item, lambda: property_item.property.check(trial))
+    asking.settle(property_item.item, lambda: ask(property_item, asking, tmp_path))
+
+
+def ask(item: PropertyItem, asking: Asking, folder: Path) -> Judgement:
+    """Try the property on the frozen examples, and on as many more as the user asks for."""
+    version, count = item.item.version, asking.options.explore
+    if not count:
+        return item.property.check(Trial(asking.session, version, 0, folder))
+    # What crashes a reader is tried again and again, to make it small: that is not to use up the session of all items.
+    with asking.new_session() as session:
+        judgement = item.property.check(Trial(session, version, count, folder))
+    asking.session.seconds_in_reader += session.seconds_in_reader
+    return judgement

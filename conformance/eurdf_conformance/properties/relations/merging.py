@@ -43,9 +43,8 @@ def merging(example: Example, version: Version) -> Pair:
             turns[-1][ball] = A
     columns, before = truth(apart, version).velocities, truth(mechanism, version).velocities
     hidden = {joint for merged in balls.values() for joint in merged[:-1]}
-    hidden |= {joint.child for joint in mechanism.joints if joint.name in hidden} | (
-        balls.keys() - set(all_frames(apart))
-    )
+    hidden |= {joint.child for joint in mechanism.joints if joint.name in hidden}
+    hidden |= balls.keys() - set(all_frames(apart))
     frames = [frame for frame in all_frames(mechanism) if frame not in hidden]
 
     def carry(values: Values, index: int) -> Values:

@@ -36,10 +36,8 @@ LENGTH, ANGLE = 0.5, 1.6
 @cache
 def urdf_joints(kind: Plain) -> SearchStrategy[Joint]:
     """A joint of the URDF, from link to link."""
-    if kind in ("planar", "floating", "fixed"):
-        # What one limit, or one damping, of a joint that slides and turns is of, no clause says.
-        axis = (0.0, 0.0, 1.0) if kind == "planar" else None
-        return st.builds(lambda origin: _joint(kind, origin, axis, None, None, None), poses())
+    if kind == "fixed":
+        return st.builds(lambda origin: _joint(kind, origin, None, None, None, None), poses())
     ranged = kind in ("revolute", "prismatic")
     limits = st.builds(
         Limit,
@@ -48,9 +46,12 @@ def urdf_joints(kind: Plain) -> SearchStrategy[Joint]:
         lower=decimals(-4, -2, 1) if ranged else st.none(),
         upper=decimals(2, 4, 1) if ranged else st.none(),
     )
+    axis: SearchStrategy[Vector | None] = st.none() | axes()
+    if kind in ("planar", "floating"):
+        axis = st.just((0.0, 0.0, 1.0)) if kind == "planar" else st.none()
     some = st.none() | decimals(0, 1)
     limit = limits if ranged else st.none() | limits
-    return st.builds(partial(_joint, kind), poses(), st.none() | axes(), limit, some, some)
+    return st.builds(partial(_joint, kind), poses(), axis, limit, some, some)
 
 
 def _joint(
@@ -109,8 +110,10 @@ def stated(draw: DrawFn, kind: str) -> dict[str, Any]:
     for name in names:
         count = nq if name in ("lower", "upper") else nv
         said[name] = draw(_per_number(*ranges[name], count))
-    own = {"x-bearing": {"series": draw(st.integers(600, 700)), "play": [2e-05, None, True, "no"]}}
-    return said | {"own": own} if said and draw(st.booleans()) else said
+    with_own = draw(st.booleans())
+    if said and with_own:
+        said["own"] = {"x-bearing": {"series": draw(st.integers(600, 700)), "play": [2e-05, None, True, "no"]}}
+    return said
 
 
 @cache
