@@ -41,7 +41,7 @@ class WrongReader(OracleReader):
         return values
 
 
-def with_K(values: Values, change: Callable[[str, Any], Any]) -> Values:
+def with_k(values: Values, change: Callable[[str, Any], Any]) -> Values:
     """Other rows of K, by the name of their closure."""
     if values.jacobian is None:
         return values
@@ -49,7 +49,7 @@ def with_K(values: Values, change: Callable[[str, Any], Any]) -> Values:
     return values.model_copy(update={"jacobian": Jacobian(columns=values.jacobian.columns, rows=rows)})
 
 
-def with_M(values: Values, change: Callable[[Any], Any]) -> Values:
+def with_m(values: Values, change: Callable[[Any], Any]) -> Values:
     """Another mass matrix."""
     if values.mass_matrix is None:
         return values
@@ -71,8 +71,8 @@ def with_poses(values: Values, change: Callable[[str, Any], Any]) -> Values:
 def off(values: Values) -> Values:
     """Everything a little off."""
     found = with_poses(values, lambda name, p: p + 0.01)
-    found = with_K(found, lambda name, K: K * 1.01 + 0.01)
-    return with_M(found, lambda M: M * 1.01)
+    found = with_k(found, lambda name, K: K * 1.01 + 0.01)
+    return with_m(found, lambda M: M * 1.01)
 
 
 class RejectsSlashes(WrongReader):
@@ -152,12 +152,18 @@ class OrderOfNames(WrongReader):
 
 
 class OrderOfFile(WrongReader):
-    """Moves links by where they stand in the URDF."""
+    """Minds where links stand in the URDF."""
+
+    def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
+        super().load(description, urdf)
+        assert self.robot is not None
+        name = next(iter(self.robot.urdf.links))
+        return accepted(self.robot.canonical().model_copy(update={"name": name}))
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
         order = list(robot.urdf.links)
         found = with_poses(values, lambda name, p: p + 0.01 * order.index(name) if name in order else p)
-        return with_M(found, lambda M: M * (2 + order.index(min(order))))
+        return with_m(found, lambda M: M * (2 + order.index(min(order))))
 
 
 class ForgetsAColumn(WrongReader):
@@ -187,7 +193,7 @@ class Weightless(WrongReader):
     """Moves with no effort."""
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
-        return with_M(values, lambda M: 0.0 * M)
+        return with_m(values, lambda M: 0.0 * M)
 
 
 class OffByAMillionth(WrongReader):
@@ -195,7 +201,7 @@ class OffByAMillionth(WrongReader):
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
         found = with_poses(values, lambda name, p: p.astype(np.float32).astype(float))
-        return with_M(found, lambda M: M.astype(np.float32).astype(float) * (1 + 1e-7))
+        return with_m(found, lambda M: M.astype(np.float32).astype(float) * (1 + 1e-7))
 
 
 class TwistForDerivative(WrongReader):
@@ -206,14 +212,21 @@ class TwistForDerivative(WrongReader):
             r = np.array((values.residuals or robot.residuals(q))[name])
             return K * (1.0 + np.linalg.norm(r)) if len(r) == 6 else K - np.linalg.norm(r)
 
-        return with_K(values, change)
+        return with_k(values, change)
 
 
 class LosesARow(WrongReader):
     """Holds a closure in one direction less."""
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
-        return with_K(values, lambda name, K: np.vstack([0.0 * K[:1], K[1:]]) if name == "closure_1" else K)
+        return with_k(values, lambda name, K: np.vstack([0.0 * K[:1], K[1:]]) if name == "closure_1" else K)
+
+
+class LosesARowOf3d(WrongReader):
+    """Holds 3d closures in one direction less."""
+
+    def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
+        return with_k(values, lambda name, K: np.vstack([0.0 * K[:1], K[1:]]) if len(K) == 3 else K)
 
 
 class Noisy(WrongReader):
@@ -221,7 +234,7 @@ class Noisy(WrongReader):
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
         noise = np.random.default_rng(0)
-        return with_K(values, lambda name, K: K + 0.1 * noise.normal(size=K.shape))
+        return with_k(values, lambda name, K: K + 0.1 * noise.normal(size=K.shape))
 
 
 class SeenFromB(WrongReader):
@@ -248,7 +261,7 @@ class SeenFromTheWorld(WrongReader):
                 found[name] = [*(wRa @ np.array(found[name][:3])).tolist(), *found[name][3:]]
         root = next(iter(robot.urdf.links))
         height = float((at.root @ at.pose(robot.tree.links[root]))[2, 3])
-        values = with_M(values, lambda M: M * (1.0 + height))
+        values = with_m(values, lambda M: M * (1.0 + height))
         return values.model_copy(update={"residuals": found}) if values.residuals is not None else values
 
 
@@ -257,8 +270,8 @@ class HoldsTheRoot(WrongReader):
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
         afloat = np.array([name == "root_joint" for name, _ in robot.velocities])
-        values = with_K(values, lambda name, K: K + afloat)
-        return with_M(values, lambda M: M + 0.1 * afloat.any())
+        values = with_k(values, lambda name, K: K + afloat)
+        return with_m(values, lambda M: M + 0.1 * afloat.any())
 
 
 class InMillimetres(WrongReader):
@@ -266,8 +279,8 @@ class InMillimetres(WrongReader):
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
         values = with_poses(values, lambda name, p: p + 0.001)
-        values = with_K(values, lambda name, K: K + 0.001)
-        return with_M(values, lambda M: M + 0.001 * np.eye(len(M)))
+        values = with_k(values, lambda name, K: K + 0.001)
+        return with_m(values, lambda M: M + 0.001 * np.eye(len(M)))
 
 
 class Where(WrongReader):
@@ -323,14 +336,14 @@ class OffByInertials(WrongReader):
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
         fixed = sum(link.inertia is not None for link in robot.urdf.links.values())
-        return with_M(values, lambda M: M * (1.0 + 0.01 * fixed))
+        return with_m(values, lambda M: M * (1.0 + 0.01 * fixed))
 
 
 class OffByLinks(WrongReader):
     """Weighs the names of links."""
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
-        return with_M(values, lambda M: M * (1.0 + 0.01 * len(robot.urdf.links)))
+        return with_m(values, lambda M: M * (1.0 + 0.01 * len(robot.urdf.links)))
 
 
 class OffWhereLeftOut(WrongReader):

@@ -9,7 +9,10 @@ from typing import Any
 from eurdf.description import Description
 from eurdf.format import read_extension
 from eurdf.format.extension import Extension
-from eurdf.mechanism.joint_type import JointType
+from eurdf.format.urdf import Urdf
+from eurdf.format.version1 import Version1
+from eurdf.format.version2 import Version2
+from eurdf.mechanism.joint_type import COORDINATES, JointType
 from eurdf.mechanism.mechanism import Joint, Mechanism
 from eurdf.pinocchio import configuration
 from eurdf_conformance.adapters import reference
@@ -31,12 +34,12 @@ class _Changed:
 
 def data_of_version1(change: Callable[[Any], Any]) -> Deviation:
     """What is read of a description of version 1, as plain data, is changed."""
-    return instead(read_extension, "Version1", _Changed(read_extension.Version1, change))
+    return instead(read_extension, "Version1", _Changed(Version1, change))
 
 
 def data_of_version2(change: Callable[[Any], Any]) -> Deviation:
     """What is read of a description of version 2, as plain data, is changed."""
-    return instead(read_extension, "Version2", _Changed(read_extension.Version2, change))
+    return instead(read_extension, "Version2", _Changed(Version2, change))
 
 
 def said_in_version1(change: Callable[[Extension], Extension]) -> Deviation:
@@ -59,6 +62,21 @@ def refused(where: Callable[[Description], bool]) -> Deviation:
     return described(lambda read: replace(read, mechanism=None) if where(read) else read)
 
 
+def refused_by_urdf(where: Callable[[Urdf], bool]) -> Deviation:
+    """A robot that is right is rejected for its URDF."""
+    return refused(lambda read: read.urdf is not None and where(read.urdf))
+
+
+def refused_by_mechanism(where: Callable[[Mechanism], bool]) -> Deviation:
+    """A robot that is right is rejected for its mechanism."""
+    return refused(lambda read: read.mechanism is not None and where(read.mechanism))
+
+
+def has(kind: Callable[[Joint], bool]) -> Callable[[Description], bool]:
+    """Whether a robot has such a joint."""
+    return lambda read: read.mechanism is not None and any(map(kind, read.mechanism.joints))
+
+
 def mechanism(change: Callable[[Mechanism], Mechanism]) -> Deviation:
     """The mechanism is changed."""
 
@@ -78,7 +96,7 @@ def coordinates(kind: JointType, change: Callable[[list[float]], list[float]]) -
     """The coordinates of joints of one type are taken for others."""
 
     def checked(original: Any, name: str, values: list[float], of: Any) -> Any:
-        there = of is configuration.COORDINATES[kind] and len(values) == len(of.names)
+        there = of is COORDINATES[kind] and len(values) == len(of.names)
         return original(name, change(values) if there else values, of)
 
     return around(configuration, "_checked", checked)
@@ -91,9 +109,7 @@ def canonical(change: Callable[[CanonicalRobot], dict[str, Any]]) -> Deviation:
 
 def canonical_joints(change: Callable[[CanonicalJoint], dict[str, Any]]) -> Deviation:
     """Members of each joint of the canonical description are others."""
-    return canonical(
-        lambda robot: {"joints": [joint.model_copy(update=change(joint)) for joint in robot.joints]}
-    )
+    return canonical(lambda robot: {"joints": [joint.model_copy(update=change(joint)) for joint in robot.joints]})
 
 
 def issues(change: Callable[[list[Issue]], list[Issue]]) -> Deviation:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 from typing import Any
 
 from eurdf.diagnostics import Place
@@ -10,7 +11,6 @@ from eurdf.reading import source, yaml_node
 from eurdf.reading.source import Source
 from eurdf.reading.xml_reader import XmlDocument
 from eurdf.reading.yaml_reader import YamlDocument
-from eurdf_conformance.adapters import reference
 from eurdf_conformance.mutants.deviation import Deviation, around, instead
 from eurdf_conformance.mutants.mutant import mutant
 from eurdf_conformance.mutants.of_the_reference import each_issue
@@ -84,7 +84,13 @@ def tabs_of_8() -> Deviation:
 @mutant("EU-DIA-012")
 def byte_order_mark_is_a_column() -> Deviation:
     """The byte order mark counts as a character of its line."""
-    return instead(source, "BOM", b"\0")
+
+    def position(original: Any, self: Source, index: int) -> tuple[int, int]:
+        line, column = original(self, index)
+        marked = Path(self.file).read_bytes().startswith(source.BOM)
+        return line, column + (marked and line == 1)
+
+    return around(Source, "position", position)
 
 
 @mutant("EU-DIA-009")
@@ -166,9 +172,3 @@ def file_as_a_whole_at_its_beginning() -> Deviation:
         return {"line": 1, "column": 1} if issue.line is None else {}
 
     return each_issue(placed)
-
-
-@mutant("EU-DIA-009")
-def path_as_the_user_gave_it() -> Deviation:
-    """The file is told by the path that the reader was given."""
-    return instead(reference, "encodable", lambda text: text if "." not in text else f"/{text}")

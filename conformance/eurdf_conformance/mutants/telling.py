@@ -8,12 +8,14 @@ from typing import Any
 
 from eurdf import description
 from eurdf.diagnostics.registry import REGISTRY, Phase
+from eurdf.mechanism.frame_names import FrameNames
+from eurdf.mechanism.replacement import _Replacement
 from eurdf_conformance.adapters.reference import Reference
 from eurdf_conformance.mutants.deviation import Deviation, around, instead, result
 from eurdf_conformance.mutants.mutant import mutant
-from eurdf_conformance.mutants.of_the_reference import each_issue, issues, refused
+from eurdf_conformance.mutants.of_the_reference import each_issue, has, issues, refused
 from eurdf_conformance.protocol.message import Accepted, Issue, Rejected
-from eurdf_conformance.protocol.reply import accepted, rejected
+from eurdf_conformance.protocol.reply import accepted, rejected, unsupported
 from eurdf_conformance.verdict.verdict import Verdict
 
 _Answer = Accepted | Rejected
@@ -56,7 +58,7 @@ def late_errors_are_not_told() -> Deviation:
     return issues(lambda found: [issue for issue in found if REGISTRY[issue.code or ""].phase not in _LATE])
 
 
-@mutant("EU-PRO-004")
+@mutant("EU-PRO-004", caught_by=frozenset({Verdict.ERRORED}))
 def fault_is_a_failure() -> Deviation:
     """Where the description is wrong, the reader says that it failed, as what raises an exception does."""
 
@@ -66,9 +68,6 @@ def fault_is_a_failure() -> Deviation:
         return answer
 
     return _answers(failed)
-
-
-fault_is_a_failure.caught_by = frozenset({Verdict.ERRORED})
 
 
 @mutant("EU-SEC-005", caught_by=frozenset({Verdict.ERRORED}))
@@ -124,7 +123,6 @@ def what_follows_is_told() -> Deviation:
 @mutant("EU-DIA-002")
 def frame_at_fault_is_unknown() -> Deviation:
     """Where a frame of the description is at fault, each closure that uses it is told to use an unknown one."""
-    from eurdf.mechanism.frame_names import FrameNames
 
     def by_name(original: Any, self: Any, reference: Any) -> Any:
         if reference.name in self._frames and self._frames[reference.name] is None:
@@ -155,4 +153,24 @@ def code_of_its_own() -> Deviation:
 @mutant("EU-CNF-004")
 def what_is_lacked_is_wrong() -> Deviation:
     """A reader that lacks helical joints says that they are wrong."""
-    return refused(lambda read: any(joint.type == "helical" for joint in read.mechanism.joints if read.mechanism))
+    return refused(has(lambda joint: joint.type == "helical"))
+
+
+@mutant("EU-CNF-005", caught_by=frozenset({Verdict.UNSUPPORTED}))
+def less_than_is_claimed() -> Deviation:
+    """A reader that claims a level lacks helical and universal joints, and says so."""
+
+    def load(original: Any, self: Any, description: Path, urdf: Path) -> Any:
+        answer = original(self, description, urdf)
+        kinds = (
+            {joint.type for joint in answer.robot.joints} if isinstance(answer, Accepted) and answer.robot else set()
+        )
+        return unsupported("joints") if kinds & {"helical", "universal"} else answer
+
+    return around(Reference, "load", load)
+
+
+@mutant("EU-CNF-004")
+def what_is_lacked_is_left_out() -> Deviation:
+    """A reader that lacks universal joints leaves them as the URDF has them."""
+    return around(_Replacement, "universal", lambda original, self, joint: joint)

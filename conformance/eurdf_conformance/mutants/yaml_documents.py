@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from eurdf.description import Description
+from eurdf.diagnostics import Fault
 from eurdf.reading import source, yaml_reader
 from eurdf_conformance.mutants.accepting import accepting
 from eurdf_conformance.mutants.deviation import Deviation, around, instead
@@ -44,7 +45,7 @@ def first_of_a_list() -> Deviation:
     def read(original: Any, self: Any) -> Any:
         try:
             return original(self)
-        except yaml_reader.Fault:
+        except Fault:
             (items,) = [node for node in self._file.nodes.values() if not isinstance(node, tuple)] or [None]
             if items is None or not items.nodes or not hasattr(items.nodes[0], "nodes"):
                 raise
@@ -170,7 +171,7 @@ def tabs_refused() -> Deviation:
     return refused(tabbed)
 
 
-@mutant("EU-YML-004")
+@mutant("EU-EXT-001")
 def merge_key_merges() -> Deviation:
     """The key << merges a mapping into the one that it stands in, as in YAML 1.1."""
 

@@ -54,7 +54,9 @@ def no_hexadecimals() -> Deviation:
 @mutant("EU-YML-011")
 def base_60() -> Deviation:
     """What looks like a time of day is a number to the base 60, as in YAML 1.1."""
-    return _pattern("[0-9]+(:[0-5]?[0-9])+", lambda text: sum(int(n) * 60**i for i, n in enumerate(text.split(":")[::-1])))
+    return _pattern(
+        "[0-9]+(:[0-5]?[0-9])+", lambda text: sum(int(n) * 60**i for i, n in enumerate(text.split(":")[::-1]))
+    )
 
 
 @mutant("EU-YML-011")
@@ -96,7 +98,9 @@ def booleans_in_lower_case_only() -> Deviation:
 @mutant("EU-YML-011")
 def case_does_not_matter() -> Deviation:
     """Words are null or a boolean in whatever case they are written."""
-    return around(yaml_reader, "resolve", lambda resolve, text: resolve(text.lower()) if text.isalpha() else resolve(text))
+    return around(
+        yaml_reader, "resolve", lambda resolve, text: resolve(text.lower()) if text.isalpha() else resolve(text)
+    )
 
 
 @mutant("EU-YML-011")

@@ -29,7 +29,7 @@ def version2(mechanism: Mechanism) -> Document:
             {"name": closure.name, "type": closure.type, "frames": [_reference(closure.a), _reference(closure.b)]}
             for closure in mechanism.closures
         ],
-        "joints": {name: _change(change) for name, change in mechanism.changes.items()},
+        "joints": {name: _change(change) for name, change in mechanism.changes.items() if change.says_something},
         "actuators": [_actuator(actuator) for actuator in mechanism.actuators],
         "frames": [{"name": frame.name, **_spot(frame.spot)} for frame in mechanism.frames],
         "configurations": {
@@ -41,12 +41,13 @@ def version2(mechanism: Mechanism) -> Document:
 
 
 def version1(mechanism: Mechanism) -> Document:
-    """Merges are not written: version 1 finds them."""
+    """Merges are not written: version 1 finds them. Nor is `type` where all closures are 6d, EU-ONE-004."""
     words = {name: _word(change) for name, change in mechanism.changes.items() if not change.merges}
+    types = [closure.type for closure in mechanism.closures]
     motors = [name for actuator in mechanism.actuators for name in names1(mechanism, actuator.joint)]
     found: Document = {
         "closed_loop": [[closure.a, closure.b] for closure in mechanism.closures],
-        "type": [closure.type for closure in mechanism.closures],
+        "type": types if "3d" in types else [],
         "name_mot": motors,
         "joint_name": list(words),
         "joint_type": list(words.values()),

@@ -30,7 +30,7 @@ from eurdf_conformance.verdict.verdict import Verdict
 EXPLORED = Path("explored")
 
 #: s, after which what was found is taken as it is.
-_SHRINKING = 60.0
+SHRINKING = 30.0
 
 
 class _Wrong(Exception):  # noqa: N818 - it says what the reader is
@@ -93,7 +93,7 @@ def search(
     @given(drawn(law, version))
     def attempt(example: Example) -> None:
         nonlocal since
-        if best and example != best[-1][0] and time.monotonic() - since > _SHRINKING:
+        if best and example != best[-1][0] and time.monotonic() - since > SHRINKING:
             return
         judgement = try_example(law, level, version, bench, example)
         if judgement.verdict == Verdict.PASSED or (best and judgement.verdict != best[0][1].verdict):

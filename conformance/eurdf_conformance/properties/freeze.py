@@ -20,7 +20,7 @@ from eurdf_conformance.properties.mechanism import Mechanism
 from eurdf_conformance.properties.strategies.mechanisms import mechanisms
 
 #: Drawn, and kept of these, for each version.
-DRAWN, KEPT = 600, {"1": 30, "2": 40}
+DRAWN, KEPT = 1200, {"1": 30, "2": 40}
 
 #: So often each feature is wanted.
 _WANTED = 3

@@ -99,6 +99,11 @@ class Change(Part):
     #: The user's own data, under keys that begin with `x-`.
     own: dict[str, Any] = {}
 
+    @property
+    def says_something(self) -> bool:
+        """Whether it has a type or a property: a joint that is kept as it is has no entry in a file."""
+        return self != Change(own=self.own)
+
 
 class Spot(Part):
     """A frame at a pose in that of a link or a joint."""

@@ -75,5 +75,5 @@ LAWS = (
     family("platform-ups", "A platform on legs UPS has mobility 6.", platforms.with_universals, range(3, 8)),
     family("platform-sps", "A platform on n legs SPS has mobility 6 + n.", platforms.with_balls, range(3, 8)),
     family("sarrus", "A Sarrus linkage has a redundant row, and moves.", paradoxical.sarrus, range(2, 5)),
-    family("bennett", "A Bennett linkage has three redundant rows, and moves.", paradoxical.bennett, range(2, 6)),
+    family("bennett", "A Bennett linkage has three redundant rows, and moves.", paradoxical.bennett, range(6, 11)),
 )

@@ -159,6 +159,8 @@ def _meaning(spelling: str) -> float:
     for prefix, base in (("0x", 16), ("0o", 8)):
         if word.startswith(prefix):
             return float(int(word[2:], base))
+    if re.fullmatch(r"[-+]?[0-9]+", word):
+        return float(int(word))
     return float(word) if re.fullmatch(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?", word) else float("nan")
 
 

@@ -34,12 +34,12 @@ def bennett(n: int) -> Example:
     """Four skew hinges (Bennett, 1903), with opposite sides alike, sines of twists as their lengths: mobility 1.
 
     Args:
-        n: A degree times fifteen, by which one pair of sides is twisted.
+        n: Three degrees times this is the twist of the shorter pair of sides; no more than 12, for the longer one has
+            to twist by more.
     """
-    ring = Building(f"Bennett linkage, twisted by {15 * n} degrees")
-    alpha, a, b = math.radians(15 * n), 0.3, 0.5
-    beta = math.asin(b / a * math.sin(alpha)) if b * math.sin(alpha) < a else math.pi / 2
-    a = b * math.sin(alpha) / math.sin(beta)
+    ring = Building(f"Bennett linkage, twisted by {3 * n} degrees")
+    alpha, a, b = math.radians(3 * n), 0.3, 0.5
+    beta = math.asin(b / a * math.sin(alpha))
     first = 1.0
     second = 2.0 * math.atan(math.sin((beta + alpha) / 2) / math.sin((beta - alpha) / 2) / math.tan(first / 2))
     M, before = np.eye(4), "ground"

@@ -114,11 +114,7 @@ def lengthened(mechanism: Mechanism, s: float) -> Mechanism:
     return mechanism.replace(
         links=tuple(_scaled(link, 1.0, s) for link in mechanism.links),
         joints=tuple(map(joint, mechanism.joints)),
-        changes={
-            name: longer
-            for name, change in armed(mechanism).items()
-            if (longer := _longer(change, types.get(name, ""), s)) != Change(own=change.own)
-        },
+        changes={name: _longer(change, types.get(name, ""), s) for name, change in armed(mechanism).items()},
         frames=tuple(each.model_copy(update={"spot": spot(each.spot)}) for each in mechanism.frames),
         closures=tuple(each.model_copy(update={"a": said(each.a), "b": said(each.b)}) for each in mechanism.closures),
         actuators=tuple(Actuator(joint=each.joint) for each in mechanism.actuators),

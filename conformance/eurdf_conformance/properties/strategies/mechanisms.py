@@ -14,15 +14,16 @@ from eurdf_conformance.properties.strategies.trees import trees
 
 
 @st.composite
-def mechanisms(draw: DrawFn, version: Version = "2", closures: int = 0) -> Mechanism:
+def mechanisms(draw: DrawFn, version: Version = "2", closures: int = 0, most: int = 6) -> Mechanism:
     """A mechanism that version 2 can say, or, where that is asked for, version 1 too.
 
     Args:
         draw: Of Hypothesis.
         version: 1 where both versions are to say it.
         closures: So many closures at least.
+        most: So many joints at most, those that are merged into one counted as one.
     """
-    tree = draw(trees(version))
+    tree = draw(trees(version, most))
     mechanism = draw(with_closures(tree, version, closures))
     assume(len(mechanism.closures) >= closures)
     assume(is_well_conditioned(mechanism, version))

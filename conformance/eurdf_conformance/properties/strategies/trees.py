@@ -99,10 +99,8 @@ def grow_joint(draw: DrawFn, growth: Growth, kind: Any) -> None:
         was = kind = "revolute"
     elif kind == "mimic":
         was = draw(st.sampled_from(FOLLOWING))
-    elif growth.version == "2" and kind != "fixed" and draw(st.booleans()):
-        growth.changes[name] = draw(changes(None, was))
-        if growth.changes[name] == Change():
-            del growth.changes[name]
+    elif growth.version == "2" and kind != "fixed" and (change := draw(changes(None, was))).says_something:
+        growth.changes[name] = change
     mimic = draw(mimics(draw(st.sampled_from(growth.leaders)))) if kind == "mimic" else None
     ends = {"name": name, "parent": parent, "child": child, "mimic": mimic}
     if kind in (*FOLLOWING, "mimic"):

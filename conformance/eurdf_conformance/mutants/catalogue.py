@@ -1,0 +1,79 @@
+"""All mutants, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from types import MappingProxyType, ModuleType
+
+from eurdf_conformance.mutants import (
+    actuation,
+    canonical_robot,
+    closure_rules,
+    closures,
+    configurations,
+    descriptions,
+    frames,
+    inertia,
+    inertia_rules,
+    joint_properties,
+    joint_rules,
+    joints,
+    merging,
+    places,
+    refusing,
+    refusing_urdf,
+    speaking,
+    telling,
+    urdf_reading,
+    velocities,
+    version1,
+    version1_joints,
+    yaml_documents,
+    yaml_scalars,
+)
+from eurdf_conformance.mutants.accepting import ACCEPTING
+from eurdf_conformance.mutants.mutant import Mutant
+from eurdf_conformance.mutants.silent import SILENT
+
+_MODULES = (
+    yaml_scalars,
+    yaml_documents,
+    descriptions,
+    version1,
+    version1_joints,
+    urdf_reading,
+    frames,
+    joint_properties,
+    joint_rules,
+    joints,
+    merging,
+    closure_rules,
+    closures,
+    velocities,
+    inertia,
+    inertia_rules,
+    actuation,
+    configurations,
+    canonical_robot,
+    refusing,
+    refusing_urdf,
+    telling,
+    places,
+    speaking,
+)
+
+
+def _mutants(module: ModuleType) -> Iterator[Mutant]:
+    return (found for found in vars(module).values() if isinstance(found, Mutant))
+
+
+def _by_name() -> Mapping[str, Mutant]:
+    found: dict[str, Mutant] = {}
+    for each in (*ACCEPTING, *SILENT, *(each for module in _MODULES for each in _mutants(module))):
+        if each.name in found:
+            raise ValueError(f"there are two mutants '{each.name}'")
+        found[each.name] = each
+    return MappingProxyType(found)
+
+
+MUTANTS = _by_name()

@@ -1,0 +1,172 @@
+"""Residuals and constraint Jacobians that are those of another equation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+
+from eurdf.kinematics import residual
+from eurdf.mechanism.mechanism import Closure
+from eurdf.pinocchio.placement import placement_of
+from eurdf_conformance.adapters.reference_values import Quantities
+from eurdf_conformance.mutants.deviation import Deviation, around
+from eurdf_conformance.mutants.mutant import mutant
+from eurdf_conformance.mutants.of_the_reference import mechanism, while_evaluating
+
+
+def _rows(change: Callable[[Any], Any], *, spatial: bool) -> Deviation:
+    """The residual of the closures of one type is a function of the pose of B in A."""
+
+    def rows(original: Any, aMb: Any, is_spatial: bool) -> Any:
+        return change(aMb) if is_spatial is spatial else original(aMb, is_spatial)
+
+    return while_evaluating(lambda: around(residual, "residual_rows", rows))
+
+
+def _derivative(change: Callable[[Any], Any], *, spatial: bool) -> Deviation:
+    """The derivative of the residual of the closures of one type by the twist of B against A."""
+
+    def rows(original: Any, aMb: Any, is_spatial: bool) -> Any:
+        return change(aMb) if is_spatial is spatial else original(aMb, is_spatial)
+
+    return while_evaluating(lambda: around(residual, "rows_of_twist", rows))
+
+
+@mutant("EU-CLO-008")
+def angular_rows_first() -> Deviation:
+    """The rows of a 6d closure are angular, then linear."""
+    return _rows(lambda aMb: np.roll(pin.log6(aMb).vector, 3), spatial=True)
+
+
+@mutant("EU-CLO-008")
+def residual_6d_seen_from_b() -> Deviation:
+    """The residual of a 6d closure is that of the pose of A in B."""
+    return _rows(lambda aMb: pin.log6(aMb.inverse()).vector, spatial=True)
+
+
+@mutant("EU-CLO-008")
+def position_and_log3() -> Deviation:
+    """The linear rows of a 6d closure are the position of B in A, not those of log6."""
+    return _rows(lambda aMb: np.concatenate([aMb.translation, pin.log3(aMb.rotation)]), spatial=True)
+
+
+@mutant("EU-CLO-008")
+def roll_pitch_yaw_rows() -> Deviation:
+    """The angular rows of a 6d closure are roll, pitch and yaw."""
+    return _rows(lambda aMb: np.concatenate([pin.log6(aMb).linear, pin.rpy.matrixToRpy(aMb.rotation)]), spatial=True)
+
+
+@mutant("EU-CLO-008")
+def quaternion_rows() -> Deviation:
+    """The angular rows of a 6d closure are twice the vector of the quaternion, as for small angles."""
+    return _rows(
+        lambda aMb: np.concatenate([pin.log6(aMb).linear, 2.0 * pin.Quaternion(aMb.rotation).coeffs()[:3]]),
+        spatial=True,
+    )
+
+
+@mutant("EU-CLO-009")
+def residual_3d_seen_from_b() -> Deviation:
+    """The residual of a 3d closure is the origin of A in B."""
+    return _rows(lambda aMb: aMb.inverse().translation, spatial=False)
+
+
+@mutant("EU-CLO-009")
+def residual_3d_from_b_to_a() -> Deviation:
+    """The residual of a 3d closure has the other sign."""
+    return _rows(lambda aMb: -aMb.translation, spatial=False)
+
+
+@mutant("EU-CLO-009")
+def residual_3d_in_the_world() -> Deviation:
+    """The residual of a 3d closure is along the axes of the world."""
+
+    def residuals(original: Any, self: Quantities) -> dict[str, list[float]]:
+        found: dict[str, list[float]] = original(self)
+        for closure in self.robot.mechanism.closures:
+            if closure.type == "3d":
+                oMa = self._body(closure.a.body) * placement_of(closure.a.pose)
+                found[closure.name] = (oMa.rotation @ found[closure.name]).tolist()
+        return found
+
+    return around(Quantities, "residuals", residuals)
+
+
+@mutant("EU-CLO-009")
+def sides_of_closures_swapped() -> Deviation:
+    """Of the two frames of a closure the first is B."""
+    return mechanism(
+        lambda robot: replace(robot, closures=tuple(replace(each, a=each.b, b=each.a) for each in robot.closures))
+    )
+
+
+@mutant("EU-CLO-009")
+def all_closures_6d() -> Deviation:
+    """Every closure is 6d."""
+    return _type("6d")
+
+
+@mutant("EU-CLO-008")
+def closures_6d_dropped() -> Deviation:
+    """A 6d closure is dropped, as a weld constraint of a URDF is by Drake."""
+    return mechanism(lambda robot: replace(robot, closures=tuple(each for each in robot.closures if each.type == "3d")))
+
+
+@mutant("EU-CLO-008")
+def all_closures_3d() -> Deviation:
+    """Every closure is 3d."""
+    return _type("3d")
+
+
+def _type(kind: Any) -> Deviation:
+    def typed(closure: Closure) -> Closure:
+        return replace(closure, type=kind)
+
+    return mechanism(lambda robot: replace(robot, closures=tuple(map(typed, robot.closures))))
+
+
+@mutant("EU-CLO-010")
+def derivative_of_the_logarithm_forgotten() -> Deviation:
+    """K of a 6d closure is the twist of B against A, as if the closure were closed."""
+    return _derivative(lambda aMb: np.eye(6), spatial=True)
+
+
+@mutant("EU-CLO-010")
+def derivative_of_the_logarithm_inverted() -> Deviation:
+    """K of a 6d closure has the derivative of the logarithm on the wrong side."""
+    return _derivative(lambda aMb: pin.Jlog6(aMb), spatial=True)
+
+
+@mutant("EU-CLO-010")
+def turning_of_a_forgotten() -> Deviation:
+    """K of a 3d closure leaves out that A turns, as if the closure were closed."""
+    return _derivative(lambda aMb: np.eye(3, 6), spatial=False)
+
+
+def _loops(change: Callable[[Any], Any]) -> Deviation:
+    """The loops are others, where K is made of them."""
+    return while_evaluating(
+        lambda: around(residual, "find_loops", lambda original, robot: tuple(map(change, original(robot))))
+    )
+
+
+@mutant("EU-CLO-010")
+def motion_of_a_forgotten() -> Deviation:
+    """K leaves out the joints that move A."""
+    return _loops(lambda loop: replace(loop, signs=np.maximum(loop.signs, 0.0)))
+
+
+@mutant("EU-CLO-010")
+def one_of_two_followers_forgotten() -> Deviation:
+    """Where several joints of a loop follow one coordinate, the last one alone counts in K."""
+    return _loops(lambda loop: replace(loop, mimics=False))
+
+
+@mutant("EU-CLO-010")
+def sign_of_k() -> Deviation:
+    """K has the other sign than the residual."""
+    return _loops(lambda loop: replace(loop, signs=-loop.signs))

@@ -1,0 +1,130 @@
+"""Joints whose limits, damping or friction are others when the description has changed them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mechanism import Joint
+from eurdf.mechanism.replacement import _Replacement
+from eurdf_conformance.adapters import reference_canonical
+from eurdf_conformance.mutants.deviation import Deviation, around, instead, result, together
+from eurdf_conformance.mutants.mutant import mutant
+
+
+def _spread(change: Any) -> Deviation:
+    """A joint that is replaced takes over other properties from the one it was."""
+    return around(
+        _Replacement, "_spread", lambda original, self, joint, kind: change(original(self, joint, kind), joint)
+    )
+
+
+@mutant("EU-JNT-020")
+def limits_of_a_replaced_joint_lost() -> Deviation:
+    """A joint that is replaced has no limits of velocity and effort, as in the published loader."""
+    return _spread(
+        lambda new, old: replace(new, velocity=(math.inf,) * len(new.velocity), effort=(math.inf,) * len(new.effort))
+    )
+
+
+@mutant("EU-JNT-020")
+def dynamics_of_a_replaced_joint_lost() -> Deviation:
+    """A joint that is replaced has neither damping nor friction, as in the published loader."""
+    return _spread(
+        lambda new, old: replace(new, damping=(0.0,) * len(new.damping), friction=(0.0,) * len(new.friction))
+    )
+
+
+@mutant("EU-JNT-020")
+def limits_for_the_first_velocity_only() -> Deviation:
+    """A joint that is replaced keeps its limits and damping for the first of its velocities."""
+
+    def first(new: Joint, old: Joint) -> Joint:
+        rest = len(new.velocity) - 1
+        return replace(
+            new,
+            velocity=new.velocity[:1] + (math.inf,) * rest,
+            effort=new.effort[:1] + (math.inf,) * rest,
+            damping=new.damping[:1] + (0.0,) * rest,
+        )
+
+    return _spread(first)
+
+
+@mutant("EU-JNT-020")
+def damping_and_friction_swapped() -> Deviation:
+    """Of a joint that is replaced damping is friction, and friction damping."""
+    return _spread(lambda new, old: replace(new, damping=new.friction, friction=new.damping))
+
+
+@mutant("EU-JNT-021")
+def limits_of_one_angle_on_a_ball() -> Deviation:
+    """The limits of an angle bound each of the numbers of a quaternion."""
+
+    def bounded(new: Joint, old: Joint) -> Joint:
+        if new.type is not JointType.SPHERICAL:
+            return new
+        return replace(new, lower=old.lower * 4, upper=old.upper * 4)
+
+    return together(
+        _spread(bounded),
+        instead(reference_canonical, "_UNBOUNDED", frozenset({JointType.PLANAR, JointType.FLOATING})),
+    )
+
+
+@mutant("EU-JNT-027")
+def limits_on_the_other_coordinate() -> Deviation:
+    """The limits of an angle bound the length of a cylindrical joint, and those of a length its angle."""
+    return result(
+        _Replacement, "cylindrical", lambda joint: replace(joint, lower=joint.lower[::-1], upper=joint.upper[::-1])
+    )
+
+
+@mutant("EU-JNT-027")
+def limits_on_both_coordinates() -> Deviation:
+    """The limits of a joint bound both coordinates of the cylindrical joint that it becomes."""
+
+    def cylindrical(original: Any, self: Any, joint: Joint) -> Joint:
+        found: Joint = original(self, joint)
+        return replace(found, lower=joint.lower * 2, upper=joint.upper * 2)
+
+    return around(_Replacement, "cylindrical", cylindrical)
+
+
+@mutant("EU-JNT-027")
+def limits_of_a_slide_are_angles() -> Deviation:
+    """The limits of a prismatic joint that becomes helical bound its angle as they are."""
+
+    def helical(original: Any, self: Any, joint: Joint) -> Joint | None:
+        screw: Joint | None = original(self, joint)
+        return screw and replace(screw, lower=joint.lower, upper=joint.upper)
+
+    return around(_Replacement, "helical", helical)
+
+
+@mutant("EU-JNT-027")
+def limits_of_a_left_handed_screw() -> Deviation:
+    """The limits of a prismatic joint that becomes a left-handed screw are reversed."""
+
+    def helical(original: Any, self: Any, joint: Joint) -> Joint | None:
+        screw: Joint | None = original(self, joint)
+        if screw is None or screw.pitch > 0.0:
+            return screw
+        return replace(screw, lower=screw.upper, upper=screw.lower)
+
+    return around(_Replacement, "helical", helical)
+
+
+@mutant("EU-JNT-027")
+def limits_of_a_universal_joint_lost() -> Deviation:
+    """A joint that becomes universal has no position limits."""
+
+    def universal(original: Any, self: Any, joint: Joint) -> Joint | None:
+        found: Joint | None = original(self, joint)
+        if found is None or found.type is not JointType.UNIVERSAL:
+            return found
+        return replace(found, lower=(-math.inf,) * 2, upper=(math.inf,) * 2)
+
+    return around(_Replacement, "universal", universal)

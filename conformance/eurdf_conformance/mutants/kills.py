@@ -1,0 +1,124 @@
+"""By which cases and properties a mutant is caught."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from eurdf_conformance.adapters.reference import Reference
+from eurdf_conformance.corpus.read import CorpusCase
+from eurdf_conformance.level import VERSIONS, Level, Version
+from eurdf_conformance.mutants.mutant import Mutant
+from eurdf_conformance.properties import LAWS
+from eurdf_conformance.properties.bench import Bench
+from eurdf_conformance.properties.law import Law
+from eurdf_conformance.properties.trying import try_example
+from eurdf_conformance.protocol.serve import ReaderObject
+from eurdf_conformance.runner.session import Session
+from eurdf_conformance.suite.asking import all_cases
+from eurdf_conformance.suite.conversation import Conversation
+from eurdf_conformance.suite.in_process import InProcess
+from eurdf_conformance.suite.item import protocol_items
+from eurdf_conformance.suite.judge import judge
+from eurdf_conformance.suite.protocol_check import Asked, check
+from eurdf_conformance.suite.smoke import SMOKE, smoke_case
+from eurdf_conformance.verdict.result import Item
+from eurdf_conformance.verdict.verdict import Verdict
+
+#: Of the frozen examples of a property so many are tried on a mutant: the suite tries all.
+EXAMPLES = 2
+
+
+def kills(mutant: Mutant) -> list[str]:
+    """The items of the suite that cite the clause of a mutant, and that it does not pass, by id and level.
+
+    Such an item is one that the reference passes; else it would catch anything.
+    """
+    if mutant.as_process:
+        return list(_of_the_protocol(mutant, in_process=False))
+    return [*_of_the_protocol(mutant, in_process=True), *_by_cases(mutant), *_by_properties(mutant)]
+
+
+def _by_cases(mutant: Mutant) -> Iterator[str]:
+    conversation = Conversation(InProcess(mutant))
+    for case in all_cases():
+        if mutant.clause not in case.case.clauses:
+            continue
+        for level in case.levels:
+            if judge(case, level, conversation).verdict in mutant.caught_by and _REFERENCE.passes_case(case, level):
+                yield f"{case.path}/{level}"
+
+
+def _by_properties(mutant: Mutant) -> Iterator[str]:
+    for law in LAWS:
+        if mutant.clause not in law.clauses:
+            continue
+        for level in law.levels:
+            for version in law.versions:
+                if _try(law, level, version, mutant) in mutant.caught_by and _REFERENCE.passes_law(law, level, version):
+                    yield f"properties/{law.name}-{version}/{level}"
+
+
+def _of_the_protocol(mutant: Mutant, *, in_process: bool) -> Iterator[str]:
+    """Rules of the protocol; in this process, only what is answered to the descriptions that they ask about."""
+    for found in protocol_items():
+        if mutant.clause not in found.rule.clauses:
+            continue
+        if not in_process and found.item.version != VERSIONS[-1]:
+            continue  # processes take their time, and the protocol is the same
+        three = SMOKE[found.item.version]
+        valid, invalid = smoke_case(all_cases(), three.valid), smoke_case(all_cases(), three.invalid)
+        if in_process:
+            conversation = Conversation(InProcess(mutant))
+            verdicts = [judge(case, Level.ACCEPT, conversation).verdict for case in (valid, invalid, valid)]
+            verdict = next((each for each in verdicts if each != Verdict.PASSED), Verdict.PASSED)
+        else:
+            with Session(_command(mutant)) as session:
+                verdict = check(found.rule, Asked(session, lambda: Session(_command(mutant)), valid, invalid)).verdict
+        if verdict in mutant.caught_by:
+            yield _name(found.item)
+
+
+def _name(item: Item) -> str:
+    return f"{item.id}/{item.level}"
+
+
+def _command(mutant: Mutant) -> str:
+    return "cmd:" + shlex.join([sys.executable, "-m", "eurdf_conformance.mutants.speaking", mutant.name])
+
+
+def _try(law: Law, level: Level, version: Version, reader: ReaderObject) -> Verdict:
+    """What becomes of a property on the first examples."""
+    with TemporaryDirectory() as folder:
+        bench = Bench(InProcess(reader), Path(folder))
+        for example in law.frozen(version)[:EXAMPLES]:
+            verdict = try_example(law, level, version, bench, example).verdict
+            if verdict != Verdict.PASSED:
+                return verdict
+    return Verdict.PASSED
+
+
+class _Reference:
+    """What the reference passes, each asked once."""
+
+    def __init__(self) -> None:
+        self._conversation = Conversation(InProcess(Reference()))
+        self._known: dict[tuple[str, ...], bool] = {}
+
+    def passes_case(self, case: CorpusCase, level: Level) -> bool:
+        key = case.path, level
+        if key not in self._known:
+            self._known[key] = judge(case, level, self._conversation).verdict == Verdict.PASSED
+        return self._known[key]
+
+    def passes_law(self, law: Law, level: Level, version: Version) -> bool:
+        key = law.name, level, version
+        if key not in self._known:
+            self._known[key] = _try(law, level, version, Reference()) == Verdict.PASSED
+        return self._known[key]
+
+
+_REFERENCE = _Reference()

@@ -1,0 +1,153 @@
+"""Exploring: a search beyond the frozen examples, that makes what it finds small and writes it as a case."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+from conformance_oracle_reader import OracleReader
+from conformance_wrong_readers import ForgetsInlineAngles, UniversalBackwards
+from eurdf_conformance.adapters.reference import READER
+from eurdf_conformance.corpus.lint import lint
+from eurdf_conformance.corpus.read import CorpusCase, read_cases
+from eurdf_conformance.level import Level
+from eurdf_conformance.properties.bench import Bench
+from eurdf_conformance.properties.catalogue import law_of
+from eurdf_conformance.properties.culprit import culprit
+from eurdf_conformance.properties.explore import explore, search
+from eurdf_conformance.properties.strategies.mechanisms import mechanisms
+from eurdf_conformance.properties.trying import try_example, try_law
+from eurdf_conformance.runner.outcome import Crashed, Outcome
+from eurdf_conformance.suite.conversation import Conversation
+from eurdf_conformance.suite.in_process import InProcess
+from eurdf_conformance.suite.judge import Judgement, judge
+from eurdf_conformance.suite.property import Trial
+from eurdf_conformance.verdict.verdict import Verdict
+
+SEED = 1
+
+# What one exploration finds is looked at by several tests: they run where it is.
+pytestmark = pytest.mark.xdist_group("explore")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _small() -> Iterator[None]:
+    """Small to begin with, so that making it smaller is soon done; and from one seed."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("eurdf_conformance.properties.explore.mechanisms", partial(mechanisms, most=2))
+        patch.setattr("random.SystemRandom.randrange", lambda *_: SEED)
+        yield
+
+
+def explored(name: str, reader: OracleReader, folder: Path) -> Judgement:
+    (folder / "files").mkdir()
+    trial = Trial(InProcess(reader), "2", 60, folder / "files")
+    bench = Bench(trial.reader, trial.folder)
+    return explore(law_of(name), Level.KINEMATICS, trial, bench, folder / "explored")
+
+
+def the_case(folder: Path) -> CorpusCase:
+    (case,) = read_cases(folder / "explored")
+    return case
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Judgement]:
+    """What is found of a reader that turns a universal joint about its second axis first."""
+    folder = tmp_path_factory.mktemp("found")
+    return folder, explored("agreement", UniversalBackwards(), folder)
+
+
+def test_what_is_found_is_small(found: tuple[Path, Judgement]) -> None:
+    # One universal joint, and nothing else.
+    robot = the_case(found[0]).expected.robot
+    (joint,) = robot.joints
+    assert joint.type == "universal"
+    assert (robot.links, robot.closures, robot.actuators, robot.frames) == (["link0", "link1"], [], [], [])
+
+
+def test_what_is_found_is_written_as_a_case_that_the_lint_takes(found: tuple[Path, Judgement]) -> None:
+    folder, judgement = found
+    assert judgement.verdict == Verdict.FAILED
+    assert lint(folder / "explored") == []
+    case = the_case(folder)
+    assert f"from seed {SEED}" in judgement.log
+    assert str(case.folder) in judgement.log
+    assert case.topic == "joints"
+
+
+def test_the_case_is_one_that_the_wrong_reader_fails_and_the_reference_passes(found: tuple[Path, Judgement]) -> None:
+    case = the_case(found[0])
+    assert judge(case, Level.KINEMATICS, Conversation(InProcess(UniversalBackwards()))).verdict == Verdict.FAILED
+    for level in case.levels:
+        assert judge(case, level, Conversation(InProcess(READER))).verdict == Verdict.PASSED, level
+
+
+def test_of_two_robots_that_do_not_agree_the_one_that_is_read_wrong_is_written(tmp_path: Path) -> None:
+    # The law compares frames that are said in place, which this reader gets wrong, with others.
+    explored("frames", ForgetsInlineAngles(), tmp_path)
+    case = the_case(tmp_path)
+    assert "rpy" in case.description.read_text("utf-8")
+    assert judge(case, Level.KINEMATICS, Conversation(InProcess(ForgetsInlineAngles()))).verdict == Verdict.FAILED
+    assert case.topic == "closures"
+
+
+def test_where_there_is_nothing_to_find_nothing_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    judgement = explored("moving-base", OracleReader(), tmp_path)
+    assert judgement.verdict == Verdict.PASSED
+    assert [path.name for path in tmp_path.iterdir()] == ["files"]
+
+
+def test_a_family_is_explored_by_its_size(tmp_path: Path) -> None:
+    class LosesLarge(OracleReader):
+        def evaluate(self, *asked: object) -> list:  # type: ignore[override, type-arg]
+            found = super().evaluate(*asked)  # type: ignore[arg-type]
+            assert self.robot is not None
+            large = len(self.robot.urdf.joints) > 9
+            return [values.model_copy(update={"jacobian": None}) if large else values for values in found]
+
+    law = law_of("spherical-polygon")
+    found = search(law, Level.KINEMATICS, "2", Bench(InProcess(LosesLarge()), tmp_path), 60, SEED)
+    assert found is not None
+    assert len(found[0].mechanism.joints) == 10
+
+
+def test_a_crash_is_made_small_as_a_crash(tmp_path: Path) -> None:
+    class CrashesOnBalls(InProcess):
+        def load(self, description: Path, urdf: Path) -> Outcome:
+            if "spherical" in description.read_text("utf-8"):
+                return Crashed(None, "SIGSEGV", "")
+            return super().load(description, urdf)
+
+    bench = Bench(CrashesOnBalls(OracleReader()), tmp_path)
+    found = search(law_of("accepted"), Level.ACCEPT, "2", bench, 100, SEED)
+    assert found is not None
+    example, judgement = found
+    assert judgement.verdict == Verdict.CRASHED
+    assert "spherical" in {change.type for change in example.mechanism.changes.values()}
+    assert len(example.mechanism.types()) == 1
+
+
+def test_the_culprit_is_the_robot_that_is_read_wrong_not_the_one_asked_last(tmp_path: Path) -> None:
+    bench = Bench(InProcess(ForgetsInlineAngles()), tmp_path)
+    law = law_of("frames")
+    example = next(
+        each
+        for each in law.frozen("2")
+        if try_example(law, Level.KINEMATICS, "2", bench, each).verdict == Verdict.FAILED
+    )
+    try_example(law, Level.KINEMATICS, "2", bench, example)
+    assert culprit(bench, Level.KINEMATICS) == bench.asked[0][0]
+
+
+def test_exploring_goes_on_after_a_frozen_example_has_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "files").mkdir()
+    trial = Trial(InProcess(UniversalBackwards()), "2", 60, tmp_path / "files")
+    judgement = try_law(law_of("agreement"), Level.KINEMATICS, trial)
+    assert judgement.reason.startswith("example ")
+    assert "written as a case: explored/joints/" in judgement.log
