@@ -480,7 +480,7 @@ def test_an_interrupt_ends_the_command_quietly(folder: Path) -> None:
     assert process.stdout is not None
     assert process.stdout.readline() == "checking\n"
     process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=60)
+    out, err = process.communicate(timeout=120)
     assert (process.returncode, out, err) == (130, "", "")
 
 
