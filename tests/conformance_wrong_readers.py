@@ -93,6 +93,16 @@ class RejectsFloating(WrongReader):
         return super().load(description, urdf)
 
 
+class RejectsRedundancy(WrongReader):
+    """Takes a redundant row for a fault."""
+
+    def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
+        read = super().load(description, urdf)
+        assert self.robot is not None
+        found = self.robot.dimensions(self.robot.description.configurations["assembled"])
+        return rejected("redundant rows") if found.nc > found.rank else read
+
+
 class ForgetsDamping(WrongReader):
     """Reads no damping."""
 

@@ -39,6 +39,7 @@ FAMILIES = [law for law in LAWS if law.family is not None]
 #: For each law and level a reader that departs from it.
 BROKEN: list[tuple[str, Level, type[wrong.WrongReader]]] = [
     ("accepted", Level.ACCEPT, wrong.RejectsFloating),
+    ("redundant-rows", Level.ACCEPT, wrong.RejectsRedundancy),
     ("structure-agreement", STRUCTURE, wrong.ForgetsDamping),
     ("agreement", KINEMATICS, wrong.OffByAMillionth),
     ("inertia-agreement", DYNAMICS, wrong.OffByAMillionth),

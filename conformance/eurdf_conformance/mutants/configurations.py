@@ -11,6 +11,7 @@ from eurdf.mechanism import configurations
 from eurdf.mechanism.joint_type import COORDINATES, JointType
 from eurdf.mechanism.mechanism import Joint, Mechanism
 from eurdf_conformance.adapters import reference, reference_values
+from eurdf_conformance.level import Level
 from eurdf_conformance.mutants.deviation import Deviation, around, instead
 from eurdf_conformance.mutants.mutant import mutant
 from eurdf_conformance.mutants.of_the_reference import refused
@@ -57,7 +58,7 @@ def left_out_joints_stand_as_at_assembled() -> Deviation:
     return around(reference, "canonical_robot", canonical)
 
 
-@mutant("EU-CFG-005")
+@mutant("EU-CFG-005", level=Level.KINEMATICS)
 def left_out_joints_are_placed_in_the_middle() -> Deviation:
     """Where values are asked for, a joint that is left out stands in the middle of its range."""
 

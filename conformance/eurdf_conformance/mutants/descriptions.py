@@ -11,6 +11,7 @@ from eurdf.format.version2 import Version2
 from eurdf.mechanism import link
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf_conformance.adapters.reference_values import Quantities
+from eurdf_conformance.level import Level
 from eurdf_conformance.mutants.accepting import accepting
 from eurdf_conformance.mutants.deviation import Deviation, around, instead
 from eurdf_conformance.mutants.mutant import mutant
@@ -57,7 +58,13 @@ def version_1_is_called_2() -> Deviation:
 @mutant("EU-VER-003")
 def version_1_unless_it_says() -> Deviation:
     """A description that does not say its version is of version 1, whatever its keys."""
-    return instead(read_extension, "_VERSION2_KEYS", ())
+    return around(
+        read_extension,
+        "_version",
+        lambda original, document, told: (
+            original(document, told) if read_extension.VERSION_KEY in document.data else "1"
+        ),
+    )
 
 
 @mutant("EU-VER-004")
@@ -77,7 +84,7 @@ def root_floats_unless_fixed() -> Deviation:
     return around(description, "link", linked)
 
 
-@mutant("EU-VER-004")
+@mutant("EU-VER-004", level=Level.KINEMATICS)
 def floating_root_only_turns() -> Deviation:
     """A floating root stands at the origin of the world, and only turns there."""
 
@@ -116,11 +123,13 @@ def null_is_left_out() -> Deviation:
 @mutant("EU-SCH-002")
 def version_may_be_a_number() -> Deviation:
     """The version may be the number 2.0."""
-    return around(
-        read_extension,
-        "_written_version",
-        lambda original, document, told: "2.0" if document.data["extended_urdf"] == 2 else original(document, told),
-    )
+
+    def read(original: Any, document: Any, diagnostics: Any) -> Any:
+        if document.data.get(read_extension.VERSION_KEY) == 2:
+            document.data[read_extension.VERSION_KEY] = "2.0"
+        return original(document, diagnostics)
+
+    return around(description, "read_extension", read)
 
 
 @mutant("EU-SCH-004")

@@ -29,11 +29,11 @@ from eurdf_conformance.verdict.result import Item
 from eurdf_conformance.verdict.verdict import Verdict
 
 #: Of the frozen examples of a property so many are tried on a mutant: the suite tries all.
-EXAMPLES = 2
+EXAMPLES = 3
 
 
 def kills(mutant: Mutant) -> list[str]:
-    """The items of the suite that cite the clause of a mutant, and that it does not pass, by id and level.
+    """The items of the suite at its level that cite the clause of a mutant, and that it does not pass.
 
     Such an item is one that the reference passes; else it would catch anything.
     """
@@ -43,23 +43,22 @@ def kills(mutant: Mutant) -> list[str]:
 
 
 def _by_cases(mutant: Mutant) -> Iterator[str]:
-    conversation = Conversation(InProcess(mutant))
+    conversation, level = Conversation(InProcess(mutant)), mutant.level
     for case in all_cases():
-        if mutant.clause not in case.case.clauses:
+        if mutant.clause not in case.case.clauses or level not in case.levels:
             continue
-        for level in case.levels:
-            if judge(case, level, conversation).verdict in mutant.caught_by and _REFERENCE.passes_case(case, level):
-                yield f"{case.path}/{level}"
+        if judge(case, level, conversation).verdict in mutant.caught_by and _REFERENCE.passes_case(case, level):
+            yield f"{case.path}/{level}"
 
 
 def _by_properties(mutant: Mutant) -> Iterator[str]:
+    level = mutant.level
     for law in LAWS:
-        if mutant.clause not in law.clauses:
+        if mutant.clause not in law.clauses or level not in law.levels:
             continue
-        for level in law.levels:
-            for version in law.versions:
-                if _try(law, level, version, mutant) in mutant.caught_by and _REFERENCE.passes_law(law, level, version):
-                    yield f"properties/{law.name}-{version}/{level}"
+        for version in law.versions:
+            if _try(law, level, version, mutant) in mutant.caught_by and _REFERENCE.passes_law(law, level, version):
+                yield f"properties/{law.name}-{version}/{level}"
 
 
 def _of_the_protocol(mutant: Mutant, *, in_process: bool) -> Iterator[str]:
@@ -87,7 +86,7 @@ def _name(item: Item) -> str:
 
 
 def _command(mutant: Mutant) -> str:
-    return "cmd:" + shlex.join([sys.executable, "-m", "eurdf_conformance.mutants.speaking", mutant.name])
+    return "cmd:" + shlex.join([sys.executable, "-m", "eurdf_conformance.mutants", mutant.name])
 
 
 def _try(law: Law, level: Level, version: Version, reader: ReaderObject) -> Verdict:

@@ -23,7 +23,8 @@ _HEAD = f"""# Kill matrix
 
 The suite is tested by **mutants**: the reference reader with one thing broken, in
 [`eurdf_conformance/mutants`](eurdf_conformance/mutants/__init__.py). Each breaks one clause, and must be caught by a
-case or a property that cites that clause, and that the reference passes. One that survives fails the tests.
+case or a property that cites that clause, at its level, and that the reference passes. One that survives fails the
+tests.
 
 A case is named by topic, id and level, a property by name, version and level. A row says how many catch a mutant, and
 names the first {_NAMED}. Of a property {EXAMPLES} examples are tried; the suite tries more.

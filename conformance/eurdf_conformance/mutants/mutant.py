@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from eurdf_conformance.adapters.reference import Reference
+from eurdf_conformance.corpus.clause import read_clauses
+from eurdf_conformance.level import Level
 from eurdf_conformance.mutants.deviation import Deviation
 from eurdf_conformance.protocol.message import Accepted, Quantity, Rejected, Values
 from eurdf_conformance.verdict.verdict import Verdict
@@ -21,6 +23,7 @@ class Mutant(Reference):
         name: What it is called.
         clause: The clause that it breaks.
         breaks: How, as a sentence.
+        level: The level at which it is to be caught, that of the clause.
         caught_by: The verdicts that count as catching it.
         as_process: Whether it is broken in how it speaks, which is seen only where it runs as a process of its own.
     """
@@ -32,6 +35,7 @@ class Mutant(Reference):
         breaks: str,
         deviation: Callable[[], Deviation],
         *,
+        level: Level | None = None,
         caught_by: frozenset[Verdict] = _WRONG,
         as_process: bool = False,
     ) -> None:
@@ -40,6 +44,7 @@ class Mutant(Reference):
         self.clause = clause
         self.breaks = breaks
         self.deviation = deviation
+        self.level = level or Level(read_clauses()[clause].level)
         self.caught_by = caught_by
         self.as_process = as_process
 
@@ -60,18 +65,25 @@ class Mutant(Reference):
 
 
 def mutant(
-    clause: str, *, caught_by: frozenset[Verdict] = _WRONG, as_process: bool = False
+    clause: str,
+    *,
+    level: Level | None = None,
+    caught_by: frozenset[Verdict] = _WRONG,
+    as_process: bool = False,
 ) -> Callable[[Callable[[], Deviation]], Mutant]:
     """Make a mutant of a function that returns its deviation; its name and docstring are the mutant's.
 
     Args:
         clause: The clause that it breaks.
+        level: The level at which it is to be caught, where that is not the one of the clause.
         caught_by: The verdicts that count as catching it.
         as_process: Whether it is broken in how it speaks.
     """
 
     def made(deviation: Callable[[], Deviation]) -> Mutant:
         breaks = " ".join((deviation.__doc__ or "").split())
-        return Mutant(deviation.__name__, clause, breaks, deviation, caught_by=caught_by, as_process=as_process)
+        return Mutant(
+            deviation.__name__, clause, breaks, deviation, level=level, caught_by=caught_by, as_process=as_process
+        )
 
     return made

@@ -1,8 +1,7 @@
-"""Readers that read well, and speak badly: they are seen only where they run as a process of their own."""
+"""Readers that read well, and speak badly; ``python -m eurdf_conformance.mutants NAME`` lets them speak."""
 
 from __future__ import annotations
 
-import sys
 from typing import Any
 
 from eurdf_conformance.mutants.deviation import Deviation, around, instead, result
@@ -60,15 +59,3 @@ def ends_after_one_answer() -> Deviation:
             return
 
     return instead(serve, "serve", once)
-
-
-def main(name: str) -> None:
-    """Serve a mutant that is broken in how it speaks; the module that is run is not the one that is patched."""
-    from eurdf_conformance.mutants import MUTANTS
-
-    with MUTANTS[name].deviation():
-        serve.main(f"eurdf_conformance.mutants:{name}")
-
-
-if __name__ == "__main__":
-    main(sys.argv[1])

@@ -90,17 +90,6 @@ def decimal_commas() -> Deviation:
     return around(_Reader, "numbers", numbers)
 
 
-@mutant("EU-URD-008")
-def blank_names() -> Deviation:
-    """A name may be blank."""
-
-    def name(original: Any, self: Any, element: Any, attribute: str = "name") -> Any:
-        text = element.get(attribute)
-        return text if text and text.isspace() else original(self, element, attribute)
-
-    return around(_Reader, "name", name)
-
-
 @mutant("EU-FRM-001")
 def names_are_trimmed() -> Deviation:
     """Names of the URDF are read without the white space around them."""

@@ -15,8 +15,6 @@ from eurdf_conformance.mutants.deviation import Deviation, around, instead
 from eurdf_conformance.mutants.mutant import mutant
 from eurdf_conformance.mutants.of_the_reference import canonical, said_in_version1
 
-_JOINT_TYPES = ("SPHERICAL", "FIXED", "UJOINT_XY", "UJOINT_XZ", "UJOINT_YX", "UJOINT_YZ", "UJOINT_ZX", "UJOINT_ZY")
-
 
 @mutant("EU-ONE-006")
 def universal_joint_stays_as_it_is() -> Deviation:
@@ -67,7 +65,7 @@ def halves_without_dynamics() -> Deviation:
     )
 
 
-@mutant("EU-ONE-006")
+@mutant("EU-JNT-016")
 def second_axis_first() -> Deviation:
     """UJOINT_AB turns about B first."""
     return _halves(lambda _, first, second: (replace(first, axes=second.axes), replace(second, axes=first.axes)))

@@ -7,6 +7,7 @@ from typing import Any
 from eurdf.description import Description
 from eurdf.diagnostics import Fault
 from eurdf.reading import source, yaml_reader
+from eurdf_conformance.level import Level
 from eurdf_conformance.mutants.accepting import accepting
 from eurdf_conformance.mutants.deviation import Deviation, around, instead
 from eurdf_conformance.mutants.mutant import mutant
@@ -99,7 +100,7 @@ def aliases_refused() -> Deviation:
     return around(yaml_reader._Reader, "_alias", alias)
 
 
-@mutant("EU-YML-006")
+@mutant("EU-YML-006", level=Level.KINEMATICS)
 def first_anchor_counts() -> Deviation:
     """Of two anchors of one name an alias means the first."""
 

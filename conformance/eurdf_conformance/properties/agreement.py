@@ -73,7 +73,7 @@ LAWS = (
     Law(
         "accepted",
         "A mechanism that is right is accepted.",
-        ("EU-CNF-002", "EU-URD-011", "EU-CLO-011"),
+        ("EU-CNF-002", "EU-PRO-004"),
         (Level.ACCEPT,),
         accepted,
     ),

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from functools import partial
 
 from eurdf_conformance.corpus.clause import read_clauses
-from eurdf_conformance.properties import agreement, jacobian_law, mobility
+from eurdf_conformance.properties import agreement, derivative, mobility
 from eurdf_conformance.properties.law import Law
 from eurdf_conformance.properties.relations import (
     ball_closure,
@@ -29,7 +29,7 @@ from eurdf_conformance.suite.property import Property
 
 LAWS: tuple[Law, ...] = (
     *agreement.LAWS,
-    *jacobian_law.LAWS,
+    *derivative.LAWS,
     *mobility.LAWS,
     *renaming.LAWS,
     *spelling.LAWS,

@@ -37,11 +37,11 @@ def write_case(law: Law, asked: Asked, folder: Path) -> Path:
     clauses = read_clauses()
     said = {
         "id": name,
-        "title": f"{law.title.removesuffix('.')}: a mechanism on which a reader was found to depart from that.",
+        "title": f"{law.title.removesuffix('.')}: found by exploring, {name}.",
         "version": asked.version,
         "clauses": [clause for clause in law.clauses if asked.version in clauses[clause].versions],
         "valid": True,
-        "provenance": {"expectation": "oracle", "note": f"found by exploring the property {law.name}"},
+        "provenance": {"expectation": "oracle", "note": f"found on exploring the property {law.name}"},
         "configurations": [{joint: list(q) for joint, q in each.items()} for each in asked.configurations],
         "frames": list(asked.frames),
     }

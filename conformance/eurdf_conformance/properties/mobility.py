@@ -48,7 +48,30 @@ def family(name: str, title: str, member: Callable[[int], Example], sizes: Seque
     )
 
 
+def accepted(bench: Bench, example: Example, version: Version, level: Level) -> list[Difference]:
+    """EU-CLO-011: that rows are redundant is no fault."""
+    bench.load(ask(example.mechanism, version))
+    return []
+
+
+def redundant() -> list[Example]:
+    """Members of all families that have redundant rows."""
+    members = [planar.polygon(4), planar.spatial_polygon(5), planar.parallelograms(3), spherical.polygon(4)]
+    return [*members, paradoxical.sarrus(2), paradoxical.bennett(8)]
+
+
 LAWS = (
+    Law(
+        "redundant-rows",
+        "A mechanism whose closures have redundant rows is accepted.",
+        ("EU-CLO-011", "EU-CNF-002"),
+        (Level.ACCEPT,),
+        accepted,
+        versions=("2",),
+        examples=lambda version: redundant(),
+        family=planar.spatial_polygon,
+        smallest=4,
+    ),
     Law(
         "mobility",
         "nv, nc, rank, mobility, redundant rows and uncontrolled mobility are those of the mechanism.",

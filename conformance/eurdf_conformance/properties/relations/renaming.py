@@ -103,7 +103,7 @@ LAWS = (
     Law(
         "renaming",
         "Other names, whatever letters they are of, change nothing but the names.",
-        ("EU-URD-011", "EU-FRM-004", "EU-FRM-005", "EU-YML-011", "EU-YML-008", "EU-URD-018"),
+        ("EU-URD-011", "EU-FRM-004", "EU-FRM-005", "EU-YML-011", "EU-YML-008"),
         (Level.STRUCTURE, Level.KINEMATICS, Level.DYNAMICS),
         related(renaming),
     ),

@@ -58,7 +58,7 @@ LAWS = (
     Law(
         "reordering",
         "Another order of links, joints, keys and elements changes nothing.",
-        ("EU-CAN-005", "EU-URD-004", "EU-URD-018", "EU-JNT-025"),
+        ("EU-CAN-005", "EU-JNT-025", "EU-CLO-010", "EU-INR-006"),
         (Level.STRUCTURE, Level.KINEMATICS, Level.DYNAMICS),
         related(reordering),
     ),

@@ -27,20 +27,23 @@ def decimals(low: float, high: float, digits: int = 2) -> SearchStrategy[float]:
 @cache
 def vectors(limit: float) -> SearchStrategy[Vector]:
     """Three numbers of no more than a limit."""
-    return st.tuples(*[decimals(-limit, limit)] * 3)
+    scale = 100
+    numbers = st.integers(round(-limit * scale), round(limit * scale))
+    return st.tuples(numbers, numbers, numbers).map(lambda v: (v[0] / scale, v[1] / scale, v[2] / scale))
 
 
 @cache
 def poses() -> SearchStrategy[Pose]:
     """Any pose within half a metre, those along the axes often."""
-    zero = st.just((0.0, 0.0, 0.0))
-    return st.builds(Pose, xyz=vectors(0.5), rpy=st.one_of(zero, vectors(3.1)))
+    turned = st.tuples(vectors(0.5), vectors(3.1)).map(lambda pose: Pose(xyz=pose[0], rpy=pose[1]))
+    return vectors(0.5).map(lambda xyz: Pose(xyz=xyz)) | turned
 
 
 @cache
 def axes() -> SearchStrategy[Vector]:
     """Directions of any length but zero."""
-    return st.tuples(*[st.integers(-3, 3).map(float)] * 3).filter(any)
+    steps = st.integers(-3, 3)
+    return st.tuples(steps, steps, steps).filter(any).map(lambda v: (float(v[0]), float(v[1]), float(v[2])))
 
 
 @cache
