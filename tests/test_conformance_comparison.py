@@ -62,6 +62,12 @@ def robot(joints: list[dict[str, Any]], **more: Any) -> CanonicalRobot:
 BODIES = [["a"], ["c", "b"]]
 
 
+def test_what_is_missing_is_told_of_the_list_whatever_is_wrong_before_it() -> None:
+    expected = robot([joint("j"), joint("k", parent="b", child="c")])
+    found = canonical_differences(expected, robot([joint("j", damping=[7.0])]), [["a"], ["b"], ["c"]])
+    assert [each.pointer for each in found] == ["/joints/0/damping/0", "/joints"]
+
+
 def test_any_link_of_a_body_stands_for_it() -> None:
     assert canonical_differences(robot([joint("j")]), robot([joint("j", child="c")]), BODIES) == []
     (found,) = canonical_differences(robot([joint("j")]), robot([joint("j", child="a")]), BODIES)

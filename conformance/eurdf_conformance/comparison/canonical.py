@@ -60,8 +60,8 @@ def _part_differences(
         for member in type(placed.part).model_fields:
             one, other = getattr(placed.part, member), getattr(found.part, member)
             if one != other:
-                pointer = found.pointer + step(member)
-                yield from value_differences(one, other, pointer, f"{kind} '{name}', {member}")
+                where = found.pointer + step(member)
+                yield from value_differences(one, other, where, f"{kind} '{name}', {member}")
     for name, found in given.items():
         if name not in expected:
             yield Difference(found.pointer, ABSENT, found.part, f"there is no {kind} '{name}'")
