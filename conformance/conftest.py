@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
+
+# All tests are in `suite`: to look for some in every folder of the corpus takes longer than to read it.
+collect_ignore = [str(path) for path in (Path(__file__).parent / "eurdf_conformance").iterdir() if path.name != "suite"]
 
 
 def pytest_addoption(parser: pytest.Parser, pluginmanager: pytest.PytestPluginManager) -> None:

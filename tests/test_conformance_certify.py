@@ -24,10 +24,10 @@ from eurdf_conformance.corpus.read import read_cases
 
 REFERENCE = "eurdf_conformance.adapters.reference:READER"
 
-#: What is tested where it does not matter what.
 #: Failures that are shown, so many at most.
 MOST_SHOWN = 20
 
+#: What is tested where it does not matter what.
 SOME = ("--level", "accept", "--format-version", "1", "--jobs", "0")
 
 

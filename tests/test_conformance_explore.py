@@ -131,7 +131,7 @@ def test_a_crash_is_made_small_as_a_crash(tmp_path: Path) -> None:
     example, judgement = found
     assert judgement.verdict == Verdict.CRASHED
     assert "spherical" in {change.type for change in example.mechanism.changes.values()}
-    assert len(example.mechanism.types()) == 1
+    assert len(example.mechanism.types()) <= 2
 
 
 def test_the_culprit_is_the_robot_that_is_read_wrong_not_the_one_asked_last(tmp_path: Path) -> None:

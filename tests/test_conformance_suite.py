@@ -226,9 +226,12 @@ FEW = "tq4m8z or k9b2yf"
 
 
 def test_a_reader_that_is_right_passes_every_case_and_is_written_a_certificate(tmp_path: Path) -> None:
-    code, out = suite("-n2", "-k", "not properties", f"--certificate={tmp_path}", reader="Right")
+    # Of the older version, which has fewer cases.
+    asked = ["--format-version=1", "-k", "not properties", f"--certificate={tmp_path}"]
+    code, out = suite("-n2", *asked, reader="Right")
     assert code == 0, out
-    items = [item for item in planned_items(CASES.values()) if not item.id.startswith("properties")]
+    few = [item for item in planned_items(CASES.values()) if item.version == "1"]
+    items = [item for item in few if not item.id.startswith("properties")]
     assert f"{len(items)} passed" in out
     assert "by_heart 1 (Python)" in out
     assert json.loads((tmp_path / "certificate.json").read_text(encoding="utf-8"))["reader"]["name"] == "by_heart"

@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
+from types import MappingProxyType
 
 from eurdf_conformance.level import VERSIONS, Version
 
@@ -44,14 +46,11 @@ class Clause:
         return self.keyword.startswith("MUST")
 
 
-def read_clauses(path: Path | None = None) -> Mapping[str, Clause]:
-    """The clauses by id.
-
-    Args:
-        path: A registry; that of this edition if left out.
-    """
-    path = path or next(path for path in _REGISTRIES if path.is_file())
-    return {
+@cache
+def read_clauses() -> Mapping[str, Clause]:
+    """The clauses of this edition by id, read once a process."""
+    path = next(path for path in _REGISTRIES if path.is_file())
+    clauses = {
         entry["id"]: Clause(
             entry["id"],
             entry["keyword"],
@@ -63,6 +62,7 @@ def read_clauses(path: Path | None = None) -> Mapping[str, Clause]:
         )
         for entry in json.loads(path.read_text(encoding="utf-8"))["clauses"]
     }
+    return MappingProxyType(clauses)
 
 
 def all_codes(clauses: Mapping[str, Clause]) -> frozenset[str]:

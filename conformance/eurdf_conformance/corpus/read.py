@@ -82,12 +82,12 @@ class CorpusCase:
         """Topic and id, which name it among the cases."""
         return f"{self.topic}/{self.id}"
 
-    @property
+    @cached_property
     def description(self) -> Path:
         """Path of the YAML file."""
         return self.files / self.case.description
 
-    @property
+    @cached_property
     def urdf(self) -> Path:
         """Path of the URDF that the description names, whether it exists or not."""
         return self.files / self.case.urdf

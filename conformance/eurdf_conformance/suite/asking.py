@@ -76,15 +76,16 @@ class Asking:
         told = [judgement.reason, *map(str, judgement.differences[:_KEPT])] if judgement.reason else []
         result = Result(item, judgement.verdict, tuple(told), reproduce, seconds, in_reader)
         self._keep(RESULT, result.to_json())
-        self._tell(result, failure_text(item, judgement, reproduce, case))
+        self._tell(result, judgement, case)
 
-    def _tell(self, result: Result, text: str) -> None:
+    def _tell(self, result: Result, judgement: Judgement, case: CorpusCase | None) -> None:
         known = self.options.known.of(result.item)
         if known is not None and known == result.verdict:
             pytest.xfail(f"known as '{known}'")
         if known is not None and result.verdict == Verdict.PASSED:
             pytest.fail(f"known as '{known}', but it passes now: take it out of the file", pytrace=False)
         if result.verdict != Verdict.PASSED:
+            text = failure_text(result.item, judgement, result.reproduce, case)
             pytest.fail(text + (f"\n  it is known as '{known}'" if known else ""), pytrace=False)
 
     def _started(self) -> Started | None:

@@ -6,6 +6,7 @@ collects the reports, a worker or not, makes of them a `Run`.
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Iterator
 
 import pytest
@@ -38,6 +39,11 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Ask on the protocol first; where there is nothing to ask, ask nothing."""
     asked = [item for item in items if not item.name.endswith("[NOTSET]")]
     items[:] = sorted(asked, key=lambda item: item.nodeid.partition("::")[0].endswith("test_protocol.py"), reverse=True)
+
+
+def pytest_collection_finish() -> None:
+    """What was collected stays to the end: the garbage collector need not look through it again and again."""
+    gc.freeze()
 
 
 @pytest.fixture(scope="session")
