@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from lxml import etree, html
 
 from conformance_runs import INVALID, PLANNED, VALID, result, run, started
 from eurdf_conformance.certificate import certificate as certificate_module
+from eurdf_conformance.certificate import fingerprint
 from eurdf_conformance.certificate.badge import badge, badge_texts
 from eurdf_conformance.certificate.certificate import (
     Certificate,
@@ -23,11 +25,16 @@ from eurdf_conformance.certificate.certificate import (
 from eurdf_conformance.certificate.comparison_page import comparison_page
 from eurdf_conformance.certificate.fingerprint import clauses_hash, corpus_hash, files_hash
 from eurdf_conformance.certificate.issue import issue
-from eurdf_conformance.certificate.replay import replay_differences, replay_schema, suite_differences
+from eurdf_conformance.certificate.replay import (
+    file_differences,
+    replay_differences,
+    replay_schema,
+    suite_differences,
+)
 from eurdf_conformance.certificate.report import report
 from eurdf_conformance.certificate.write import write_certificate, write_together
 from eurdf_conformance.corpus.clause import read_clauses
-from eurdf_conformance.corpus.read import read_cases
+from eurdf_conformance.corpus.read import read_case, read_cases
 from eurdf_conformance.level import Level
 from eurdf_conformance.verdict.known_failures import KnownFailure, KnownFailures
 from eurdf_conformance.verdict.verdict import Verdict
@@ -118,6 +125,26 @@ def test_the_hash_of_the_corpus_does_not_depend_on_the_order_of_cases_but_on_eac
     cases = read_cases()
     assert corpus_hash(reversed(cases)) == corpus_hash(cases) == corpus_hash()
     assert corpus_hash(cases[1:]) != corpus_hash(cases)
+
+
+def test_a_file_that_is_no_part_of_a_case_does_not_change_the_hash_of_the_corpus(tmp_path: Path) -> None:
+    folder = tmp_path / "closures" / "tq4m8z"
+    shutil.copytree(next(case.folder for case in read_cases() if case.id == folder.name), folder)
+    before = corpus_hash([read_case(folder)])
+    (folder / ".DS_Store").write_bytes(b"a file manager was here")
+    assert corpus_hash([read_case(folder)]) == before
+    with (folder / "robot.yaml").open("a", encoding="utf-8") as stream:
+        stream.write("# more\n")
+    assert corpus_hash([read_case(folder)]) != before
+
+
+def test_the_hash_of_the_properties_changes_with_the_mechanisms_that_they_are_tried_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = fingerprint.properties_hash()
+    (tmp_path / "frozen.json").write_bytes(fingerprint.FROZEN.read_bytes() + b"\n")
+    monkeypatch.setattr(fingerprint, "FROZEN", tmp_path / "frozen.json")
+    assert fingerprint.properties_hash() != before
 
 
 def test_the_hash_of_the_clauses_changes_with_what_one_demands() -> None:
@@ -284,6 +311,37 @@ def test_a_second_run_that_came_to_something_else_is_told_line_by_line(failed: C
         "closures/aaaaa1/accept: crashed now, not then",
         "closures/bbbbb2/accept: failed then, not now",
     ]
+
+
+def forged(certificate: Certificate, **changes: object) -> Certificate:
+    """What somebody made of a certificate by hand."""
+    return Certificate.model_validate(certificate.model_dump() | changes)
+
+
+def test_a_certificate_that_says_more_than_its_cases_is_found_out(failed: Certificate) -> None:
+    levels = [each.model_dump() | {"certified": True} for each in failed.levels]
+    clauses = [*failed.clauses, {"id": "EU-XXX-999", "items": 7, "passed": 7}]
+    better = [each.model_dump() | {"passed": each.items} for each in failed.clauses]
+    says = "what it says does not follow from what became of the cases"
+    assert replay_differences(forged(failed, certified=True), failed) == [says]
+    assert replay_differences(forged(failed, clauses=clauses), failed) == [
+        "clause EU-XXX-999: 7 of 7 passed then, not in it now"
+    ]
+    assert replay_differences(forged(failed, clauses=better), failed) == [
+        "clause EU-CLO-001: 1 of 1 passed then, 0 of 1 passed now"
+    ]
+    assert replay_differences(forged(failed, levels=levels), failed)
+    not_claimed = [
+        row if row["claimed"] else each for each, row in zip(levels, failed.model_dump()["levels"], strict=True)
+    ]
+    assert replay_differences(forged(failed, levels=not_claimed), failed) == [says]
+
+
+def test_a_page_or_a_badge_that_shows_another_certificate_is_found_out(failed: Certificate, tmp_path: Path) -> None:
+    write_certificate(tmp_path, failed)
+    assert file_differences(tmp_path, failed) == []
+    (tmp_path / "badge.svg").write_text(badge(issue(run())), encoding="utf-8")
+    assert file_differences(tmp_path, failed) == ["badge.svg: it does not show this certificate"]
 
 
 def test_a_certificate_of_another_corpus_is_told_apart(failed: Certificate) -> None:

@@ -36,17 +36,16 @@ pytestmark = pytest.mark.xdist_group("explore")
 
 @pytest.fixture(scope="module", autouse=True)
 def _small() -> Iterator[None]:
-    """Small to begin with, so that making it smaller is soon done; and from one seed."""
+    """Small to begin with, so that making it smaller is soon done."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("eurdf_conformance.properties.explore.mechanisms", partial(mechanisms, most=2))
         patch.setattr("eurdf_conformance.properties.explore.SHRINKING", 600.0)
-        patch.setattr("random.SystemRandom.randrange", lambda *_: SEED)
         yield
 
 
 def explored(name: str, reader: OracleReader, folder: Path, count: int = COUNT) -> Judgement:
     (folder / "files").mkdir()
-    trial = Trial(InProcess(reader), "2", count, folder / "files")
+    trial = Trial(InProcess(reader), "2", count, folder / "files", SEED)
     bench = Bench(trial.reader, trial.folder)
     return explore(law_of(name), Level.KINEMATICS, trial, bench, folder / "explored")
 
@@ -149,7 +148,7 @@ def test_the_culprit_is_the_robot_that_is_read_wrong_not_the_one_asked_last(tmp_
 def test_exploring_goes_on_after_a_frozen_example_has_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "files").mkdir()
-    trial = Trial(InProcess(UniversalBackwards()), "2", COUNT, tmp_path / "files")
+    trial = Trial(InProcess(UniversalBackwards()), "2", COUNT, tmp_path / "files", SEED)
     judgement = try_law(law_of("agreement"), Level.KINEMATICS, trial)
     assert judgement.reason.startswith("example ")
     assert "written as a case: explored/joints/" in judgement.log

@@ -1,6 +1,8 @@
 """The certificate: what a reader has come to, as one JSON value, which has a JSON Schema.
 
 Two runs of one suite on one reader give the same bytes: it holds no time but the date, and that only where it is given.
+This is so however a run is spread over processes, but for a reader that breaks so often that it is given up: how far
+each process comes until then differs.
 """
 
 from __future__ import annotations
@@ -37,6 +39,8 @@ class Suite(_Part):
     """Hash of the clauses of the specification: ids, texts, levels and versions."""
     corpus: Hash
     """Hash of the cases, whatever the order of their files."""
+    properties: Hash
+    """Hash of the properties, and of the mechanisms that they are tried on."""
 
 
 class ReaderInfo(_Part):
@@ -56,6 +60,8 @@ class Scope(_Part):
     """Whether it was three cases only, which certify nothing."""
     explore: Count
     """Number of further random mechanisms for each property."""
+    explore_seed: int
+    """What these are drawn from; 0 where there are none."""
 
 
 class LevelResult(_Part):

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable, Iterator, Mapping
-from pathlib import Path
+from collections.abc import Iterable, Mapping
 
+from eurdf_conformance.corpus.archive import case_files
 from eurdf_conformance.corpus.clause import Clause, read_clauses
 from eurdf_conformance.corpus.read import CorpusCase, read_cases
+from eurdf_conformance.properties.example import FROZEN
+from eurdf_conformance.suite.property import all_properties
 
 
 def clauses_hash(clauses: Iterable[Clause] | None = None) -> str:
@@ -23,27 +25,23 @@ def clauses_hash(clauses: Iterable[Clause] | None = None) -> str:
 def corpus_hash(cases: Iterable[CorpusCase] | None = None) -> str:
     """Hash of all files of cases, in whatever order these come; of all cases if left out."""
     files = {
-        name: path.read_bytes() for case in (read_cases() if cases is None else cases) for name, path in _files(case)
+        name: path.read_bytes()
+        for case in (read_cases() if cases is None else cases)
+        for name, path in case_files(case)
     }
     return files_hash(files)
+
+
+def properties_hash() -> str:
+    """Hash of what the properties hold, and of the mechanisms that they are tried on in every certification."""
+    values = [[each.name, each.title, each.clauses, each.level, each.versions] for each in all_properties()]
+    return files_hash({"laws": json.dumps(values, ensure_ascii=False).encode(), FROZEN.name: FROZEN.read_bytes()})
 
 
 def files_hash(files: Mapping[str, bytes]) -> str:
     """Hash of files by name: that of the sorted lines that hold their hashes and names."""
     lines = sorted(f"{_hash(content)}  {name}\n" for name, content in files.items())
     return _hash("".join(lines).encode())
-
-
-def _files(case: CorpusCase) -> Iterator[tuple[str, Path]]:
-    own = case.folder.rglob("*")
-    # Of a robot of the collection the two files are the case; its README and its pictures are not.
-    shared = (case.description, case.urdf) if case.files != case.folder else ()
-    for path in own:
-        if path.is_file():
-            yield f"{case.path}/{path.relative_to(case.folder).as_posix()}", path
-    for path in shared:
-        if path.is_file():
-            yield f"{case.path}/{path.name}", path
 
 
 def _hash(content: bytes) -> str:

@@ -18,7 +18,7 @@ from eurdf_conformance.certificate.certificate import (
     Scope,
     Suite,
 )
-from eurdf_conformance.certificate.fingerprint import clauses_hash, corpus_hash
+from eurdf_conformance.certificate.fingerprint import clauses_hash, corpus_hash, properties_hash
 from eurdf_conformance.protocol.message import PROTOCOL
 from eurdf_conformance.verdict.result import Result
 from eurdf_conformance.verdict.run import Run
@@ -36,7 +36,13 @@ _UNSTABLE = (Verdict.MISPLACED, Verdict.NOT_STARTED)
 
 def installed_suite() -> Suite:
     """What the suite that is installed here is."""
-    return Suite(version=version(_DISTRIBUTION), protocol=PROTOCOL, clauses=clauses_hash(), corpus=corpus_hash())
+    return Suite(
+        version=version(_DISTRIBUTION),
+        protocol=PROTOCOL,
+        clauses=clauses_hash(),
+        corpus=corpus_hash(),
+        properties=properties_hash(),
+    )
 
 
 def issue(run: Run) -> Certificate:
@@ -46,7 +52,13 @@ def issue(run: Run) -> Certificate:
         suite=installed_suite(),
         parser=run.parser,
         reader=ReaderInfo(**run.started.reader.model_dump()) if run.started else None,
-        scope=Scope(levels=run.levels, versions=run.versions, smoke=run.smoke, explore=run.explore),
+        scope=Scope(
+            levels=run.levels,
+            versions=run.versions,
+            smoke=run.smoke,
+            explore=run.explore,
+            explore_seed=run.explore_seed,
+        ),
         date=_date(os.environ.get("SOURCE_DATE_EPOCH")),
         certified=is_certified(run),
         levels=tuple(map(_level_result, standings(run))),

@@ -5,13 +5,15 @@ from __future__ import annotations
 import json
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict
 
-from eurdf_conformance.certificate.certificate import Certificate, Failure
+from eurdf_conformance.certificate.certificate import Certificate, Failure, LevelResult
 from eurdf_conformance.certificate.issue import installed_suite
 from eurdf_conformance.certificate.summary import level_words
+from eurdf_conformance.certificate.write import certificate_files
 from eurdf_conformance.level import VERSIONS, Level
 from eurdf_conformance.verdict.result import Key
 
@@ -40,9 +42,33 @@ def suite_differences(certificate: Certificate) -> list[str]:
 def replay_differences(certificate: Certificate, again: Certificate) -> list[str]:
     """In what a second run is not what a certificate says, one line each.
 
-    Neither the date nor the command that reached the reader matters, nor which failures were expected.
+    Neither the date nor the command that reached the reader matters, nor which failures were expected: all else that a
+    certificate says is to be the same.
     """
-    return [*_reader(certificate, again), *_levels(certificate, again), *_failures(certificate, again)]
+    found = [*_reader(certificate, again), *_levels(certificate, again), *_failures(certificate, again)]
+    found = found or list(_clauses(certificate, again))
+    if found or _essence(certificate) == _essence(again):
+        return found
+    return ["what it says does not follow from what became of the cases"]
+
+
+def file_differences(folder: Path, certificate: Certificate) -> list[str]:
+    """Which of the files beside a certificate do not show what it says, one line each."""
+    return [
+        f"{name}: it does not show this certificate"
+        for name, text in certificate_files(certificate).items()
+        if (folder / name).is_file() and (folder / name).read_bytes() != text.encode()
+    ]
+
+
+def _essence(certificate: Certificate) -> dict[str, Any]:
+    """All that a second run is to come to again."""
+    value = certificate.model_dump(exclude={"suite", "parser", "date", "unexpected"})
+    for failure in value["failures"]:
+        del failure["known"], failure["reproduce"]
+    for level in value["levels"]:
+        del level["known_failures"]
+    return value
 
 
 def _reader(before: Certificate, now: Certificate) -> Iterator[str]:
@@ -58,11 +84,21 @@ def _reader(before: Certificate, now: Certificate) -> Iterator[str]:
 def _levels(before: Certificate, now: Certificate) -> Iterator[str]:
     for version in VERSIONS:
         for level in Level:
-            was, given = before.at(version, level), now.at(version, level)
-            then = level_words(was.model_copy(update={"known_failures": 0})) if was else "not in it"
-            here = level_words(given.model_copy(update={"known_failures": 0})) if given else "not in it"
+            then, here = (_level(each.at(version, level)) for each in (before, now))
             if then != here:
                 yield f"version {version}, {level}: {then} then, {here} now"
+
+
+def _level(result: LevelResult | None) -> str:
+    return "not in it" if result is None else level_words(result.model_copy(update={"known_failures": 0}))
+
+
+def _clauses(before: Certificate, now: Certificate) -> Iterator[str]:
+    was, given = ({each.id: f"{each.passed} of {each.items} passed" for each in all_.clauses} for all_ in (before, now))
+    for name in sorted(was.keys() | given.keys()):
+        then, here = was.get(name, "not in it"), given.get(name, "not in it")
+        if then != here:
+            yield f"clause {name}: {then} then, {here} now"
 
 
 def _failures(before: Certificate, now: Certificate) -> Iterator[str]:

@@ -153,7 +153,7 @@ def _run(certificate: Certificate) -> Iterator[Element]:
             ("parser", certificate.parser),
             ("levels asked", ", ".join(scope.levels)),
             ("versions asked", ", ".join(scope.versions)),
-            *([("further mechanisms", str(scope.explore))] if scope.explore else []),
+            *([("further mechanisms", f"{scope.explore}, from seed {scope.explore_seed}")] if scope.explore else []),
             ("suite", suite.version),
             ("protocol", suite.protocol),
             ("clauses", suite.clauses),

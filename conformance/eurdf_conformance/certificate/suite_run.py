@@ -59,6 +59,8 @@ class SuiteRun:
     known_failures: Path | None = None
     smoke: bool = False
     explore: int = 0
+    #: What is drawn by exploring; None for another seed each time.
+    explore_seed: int | None = None
     #: The day that the certificate shows; None for that of SOURCE_DATE_EPOCH, or none.
     date: date | None = None
     #: Number of processes; None for as many as there are cores. Where pytest-xdist is missing there is one.
@@ -116,7 +118,7 @@ def _arguments(run: SuiteRun, folder: str) -> list[str]:
         *(("-p", "xdist.plugin", "-n", jobs, "--dist", "loadgroup") if is_spread else ()),
         *(f"--parser={run.parser}", f"--certificate={folder}"),
         *(f"--level={level}" for level in run.levels),
-        *(f"--{name}={value}" for name, value in _options(run) if value not in (None, 0)),
+        *(f"--{name}={value}" for name, value in _options(run) if value is not None),
         *(["--smoke"] if run.smoke else []),
     ]
 
@@ -126,7 +128,8 @@ def _options(run: SuiteRun) -> Iterator[tuple[str, Any]]:
     yield "parser-timeout", run.timeout
     yield "parser-start-timeout", run.start_timeout
     yield "known-failures", run.known_failures
-    yield "explore", run.explore
+    yield "explore", run.explore or None
+    yield "explore-seed", run.explore_seed
 
 
 @contextlib.contextmanager

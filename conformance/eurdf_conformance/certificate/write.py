@@ -17,14 +17,15 @@ def write_certificate(folder: Path, certificate: Certificate) -> None:
     Raises:
         OSError: It cannot be written; what was there before is still there.
     """
-    files = {
-        "report.html": report(certificate),
-        "badge.svg": badge(certificate),
-        # Last: where it is, the others are.
-        FILE: certificate.to_text(),
-    }
+    # The certificate last: where it is, the others are.
+    files = {**certificate_files(certificate), FILE: certificate.to_text()}
     folder.mkdir(parents=True, exist_ok=True)
     write_together({folder / name: text for name, text in files.items()})
+
+
+def certificate_files(certificate: Certificate) -> dict[str, str]:
+    """The files that show a certificate to people, by name."""
+    return {"report.html": report(certificate), "badge.svg": badge(certificate)}
 
 
 def write_together(files: Mapping[Path, str]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,27 +11,52 @@ import numpy as np
 from eurdf_conformance.comparison.difference import ABSENT, Difference, step
 from eurdf_conformance.comparison.half_turn import Matrix
 
-#: EU-PRO-008, EU-PRO-009: relative to the size of the robot, or to the largest entry.
+#: EU-PRO-008, EU-PRO-009: of lengths relative to the size of the robot, of M to its largest entry.
 TOLERANCE = 1e-8
 
 
-def agree(expected: Matrix, given: Matrix, near: float) -> bool:
-    """Whether two arrays of one shape are the same within a distance."""
+@dataclass(frozen=True, slots=True)
+class Near:
+    """EU-PRO-008: by how much numbers may be off.
+
+    Attributes:
+        length: Positions, and the rows of residuals and K that are of a position, m.
+        angle: Rotations, and the rows that are of one, rad.
+    """
+
+    length: float
+    angle: float
+
+    @classmethod
+    def of(cls, size: float, tolerance: float = TOLERANCE) -> Near:
+        """What is allowed of a robot whose frames are no farther apart than ``size``, m."""
+        return cls(tolerance * max(1.0, size), tolerance)
+
+    def rows(self, count: int) -> Matrix:
+        """For each of so many rows of a closure: the first three are of a position, those after of a rotation."""
+        return np.array([self.length] * min(count, 3) + [self.angle] * max(count - 3, 0))
+
+
+def agree(expected: Matrix, given: Matrix, near: float | Matrix) -> bool:
+    """Whether two arrays of one shape are the same within a distance, or each entry within its own."""
     return bool(np.all(np.abs(expected - given) <= near))
 
 
-def worst(expected: Matrix, given: Matrix) -> float:
-    """The largest distance of two entries."""
-    return float(np.abs(expected - given).max(initial=0.0))
+def worst(expected: Matrix, given: Matrix, near: float | Matrix) -> tuple[int, str]:
+    """The entry of two arrays that is farthest beyond what is allowed, as its flat index, and how far that is."""
+    off = np.abs(expected - given)
+    allowed = np.broadcast_to(np.asarray(near, dtype=float), off.shape)
+    index = int(np.argmax(off - allowed))
+    return index, f"off by {off.flat[index]:.3g}, allowed {allowed.flat[index]:.1e}"
 
 
-def array_differences(expected: Any, given: Any, near: float, pointer: str, why: str) -> Iterator[Difference]:
+def array_differences(expected: Any, given: Any, near: float | Matrix, pointer: str, why: str) -> Iterator[Difference]:
     """One difference, where numbers are not the same within a distance ``near``, or not as many."""
     one, other = np.array(expected, dtype=float), np.array(given, dtype=float)
     if one.shape != other.shape:
         yield Difference(pointer, expected, given, f"{why}: how many numbers")
     elif not agree(one, other, near):
-        yield Difference(pointer, expected, given, f"{why}, off by {worst(one, other):.3g}, allowed {near:.1e}")
+        yield Difference(pointer, expected, given, f"{why}, {worst(one, other, near)[1]}")
 
 
 def name_differences(

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from eurdf_conformance.comparison.array import TOLERANCE, agree, both, name_differences, worst
+from eurdf_conformance.comparison.array import TOLERANCE, Near, agree, both, name_differences, worst
 from eurdf_conformance.comparison.difference import ABSENT, Difference, step
 from eurdf_conformance.comparison.half_turn import Matrix, twin_rows
 from eurdf_conformance.protocol.message import Jacobian, MassMatrix
@@ -15,14 +15,14 @@ Column = tuple[str, int]
 
 
 def jacobian_differences(
-    expected: Jacobian, given: Jacobian, near: float, pointer: str, twins: Mapping[str, Sequence[float]]
+    expected: Jacobian, given: Jacobian, near: Near, pointer: str, twins: Mapping[str, Sequence[float]]
 ) -> Iterator[Difference]:
     """EU-PRO-007, EU-PRO-008: where K differs.
 
     Args:
         expected: What it should be.
         given: What it is.
-        near: By how much an entry may be off.
+        near: By how much entries may be off.
         pointer: Where it stands in the answer.
         twins: The expected residual of the closures of which the other one of two was given.
     """
@@ -42,7 +42,8 @@ def jacobian_differences(
             continue
         if name in twins:
             one = twin_rows(np.array(twins[name]), one)
-        yield from _entry_differences(one, other, near, where, what, range(len(one)), order, given.columns)
+        allowed = near.rows(len(one))[:, np.newaxis]
+        yield from _entry_differences(one, other, allowed, where, what, range(len(one)), order, given.columns)
 
 
 def mass_matrix_differences(expected: MassMatrix, given: MassMatrix, pointer: str) -> Iterator[Difference]:
@@ -79,7 +80,7 @@ def _order(expected: Sequence[Column], given: Sequence[Column]) -> list[int] | N
 def _entry_differences(
     expected: Matrix,
     given: Matrix,
-    near: float,
+    near: float | Matrix,
     pointer: str,
     why: str,
     rows: Sequence[int],
@@ -89,9 +90,9 @@ def _entry_differences(
     """One difference for a matrix, its worst entry; ``rows`` and ``columns`` say where those stand in the answer."""
     if agree(expected, given, near):
         return
-    row, column = divmod(int(np.argmax(np.abs(expected - given))), expected.shape[1])
+    entry, off = worst(expected, given, near)
+    row, column = divmod(entry, expected.shape[1])
     joint, index = names[columns[column]]
-    off = f"off by {worst(expected, given):.3g}, allowed {near:.1e}"
     yield Difference(
         pointer + step(rows[row]) + step(columns[column]),
         float(expected[row, column]),

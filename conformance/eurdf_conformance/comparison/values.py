@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from eurdf_conformance.comparison.array import TOLERANCE, agree, array_differences, both, name_differences
+from eurdf_conformance.comparison.array import TOLERANCE, Near, agree, array_differences, both, name_differences
 from eurdf_conformance.comparison.columns import jacobian_differences, mass_matrix_differences
 from eurdf_conformance.comparison.difference import ABSENT, Difference, step
 from eurdf_conformance.comparison.half_turn import is_half_turn, twin_residual
@@ -15,15 +15,16 @@ from eurdf_conformance.protocol.message import Pose, Values
 Rows = Mapping[str, Sequence[float]]
 
 
-def values_differences(expected: Values, given: Values, size: float) -> list[Difference]:
+def values_differences(expected: Values, given: Values, size: float, tolerance: float = TOLERANCE) -> list[Difference]:
     """Where values differ; what is not expected is not looked at.
 
     Args:
         expected: What it should be.
         given: What it is; pointers lead into it.
         size: Largest distance of two frames of the robot at that configuration, m.
+        tolerance: By how much poses, residuals and K may be off, of lengths relative to the size above 1 m.
     """
-    near = TOLERANCE * max(1.0, size)
+    near = Near.of(size, tolerance)
     twins = _twins(expected.residuals or {}, given.residuals or {}, near)
     return [
         difference
@@ -34,7 +35,7 @@ def values_differences(expected: Values, given: Values, size: float) -> list[Dif
 
 
 def _quantity_differences(
-    quantity: str, expected: Values, given: Values, near: float, twins: Rows
+    quantity: str, expected: Values, given: Values, near: Near, twins: Rows
 ) -> Iterator[Difference]:
     where = step(quantity)
     match getattr(expected, quantity), getattr(given, quantity):
@@ -51,35 +52,36 @@ def _quantity_differences(
         case one, other if quantity == "mass":
             yield from array_differences(one, other, TOLERANCE * abs(one), where, "mass, kg")
         case one, other:
-            yield from array_differences(one, other, near, where, "centre of mass in the world, m")
+            yield from array_differences(one, other, near.length, where, "centre of mass in the world, m")
 
 
 def _pose_differences(
-    expected: Mapping[str, Pose], given: Mapping[str, Pose], near: float, pointer: str
+    expected: Mapping[str, Pose], given: Mapping[str, Pose], near: Near, pointer: str
 ) -> Iterator[Difference]:
     yield from name_differences(expected, given, pointer, "frame")
     for name in both(expected, given):
         one, other, where = expected[name], given[name], pointer + step(name)
         origin, rotation = f"origin of frame '{name}' in the world, m", f"rotation of frame '{name}' in the world"
-        yield from array_differences(one.translation, other.translation, near, where + "/translation", origin)
-        yield from array_differences(one.rotation, other.rotation, near, where + "/rotation", rotation)
+        yield from array_differences(one.translation, other.translation, near.length, where + "/translation", origin)
+        yield from array_differences(one.rotation, other.rotation, near.angle, where + "/rotation", rotation)
 
 
-def _residual_differences(expected: Rows, given: Rows, near: float, pointer: str, twins: Rows) -> Iterator[Difference]:
+def _residual_differences(expected: Rows, given: Rows, near: Near, pointer: str, twins: Rows) -> Iterator[Difference]:
     yield from name_differences(expected, given, pointer, "closure")
     for name in both(expected, given):
         if name not in twins:
             what = f"residual of closure '{name}', m and rad"
-            yield from array_differences(expected[name], given[name], near, pointer + step(name), what)
+            allowed = near.rows(len(expected[name]))
+            yield from array_differences(expected[name], given[name], allowed, pointer + step(name), what)
 
 
-def _twins(expected: Rows, given: Rows, near: float) -> Rows:
+def _twins(expected: Rows, given: Rows, near: Near) -> Rows:
     """EU-CLO-008: the expected residual of closures at a half turn, where the other one of the two is given."""
     found = {}
     for name in both(expected, given):
         one, other = np.array(expected[name]), np.array(given[name])
-        if not is_half_turn(one) or other.shape != (6,) or agree(one, other, near):
+        if not is_half_turn(one) or other.shape != (6,) or agree(one, other, near.rows(6)):
             continue
-        if agree(twin_residual(one), other, near):
+        if agree(twin_residual(one), other, near.rows(6)):
             found[name] = expected[name]
     return found

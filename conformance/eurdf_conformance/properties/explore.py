@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import random
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -49,8 +48,7 @@ def explore(law: Law, level: Level, trial: Trial, bench: Bench, folder: Path = E
         bench: The reader.
         folder: Where to write the case.
     """
-    seed = random.SystemRandom().randrange(10**9)
-    found = search(law, level, trial.version, bench, trial.explore, seed)
+    found = search(law, level, trial.version, bench, trial.explore, trial.seed)
     if found is None:
         return PASSED
     example, judgement = found
@@ -58,7 +56,7 @@ def explore(law: Law, level: Level, trial: Trial, bench: Bench, folder: Path = E
     again = try_example(law, level, trial.version, bench, example)
     case = write_case(law, culprit(bench, level), folder)
     told = replace(judgement, reason=f"on a mechanism found by exploring: {judgement.reason}")
-    log = [f"found by exploring from seed {seed}, and written as a case: {case}"]
+    log = [f"found by exploring from seed {trial.seed}, and written as a case: {case}"]
     log += ["asked again, the reader answers otherwise"] * (again != judgement)
     return with_log(told, *log)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import random
 import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -42,6 +44,7 @@ class Options:
         known: Failures that are known.
         certificate: Folder to write a certificate into.
         explore: Further random mechanisms to try for each property.
+        explore_seed: What these are drawn from.
         smoke: Whether to try three cases only.
     """
 
@@ -53,6 +56,7 @@ class Options:
     known: KnownFailures = NONE_KNOWN
     certificate: Path | None = None
     explore: int = 0
+    explore_seed: int = 0
     smoke: bool = False
 
     def wants(self, item: Item) -> bool:
@@ -65,7 +69,7 @@ class Options:
         settings = [f"--parser={self.parser}"]
         settings += [f"--parser-timeout={self.timeout:g}"] * (self.timeout != _TIMEOUT)
         settings += [f"--parser-start-timeout={self.start_timeout:g}"] * (self.start_timeout != _START_TIMEOUT)
-        settings += [f"--explore={self.explore}"] * bool(self.explore)
+        settings += [f"--explore={self.explore}", f"--explore-seed={self.explore_seed}"] if self.explore else []
         return shlex.join(["pytest", *_suite(), *settings, "-k", f"{name}/{item.level}"])
 
 
@@ -90,6 +94,9 @@ def add_options(parser: pytest.Parser) -> None:
     group.addoption("--known-failures", type=Path, metavar="FILE", help="YAML list of {id, level, verdict, reason}")
     group.addoption("--certificate", type=Path, metavar="DIR", help="write a certificate into this folder")
     group.addoption("--explore", type=int, default=0, metavar="N", help="further random mechanisms for each property")
+    group.addoption(
+        "--explore-seed", type=int, metavar="SEED", help="what they are drawn from (default: another each time)"
+    )
     group.addoption("--smoke", action="store_true", help="three cases only, to see whether the parser is plugged in")
 
 
@@ -111,8 +118,14 @@ def read_options(config: pytest.Config) -> Options:
     except WrongKnownFailures as error:
         raise pytest.UsageError(str(error)) from None
     timeout, start_timeout = said("--parser-timeout", _TIMEOUT), said("--parser-start-timeout", _START_TIMEOUT)
-    if timeout <= 0 or start_timeout <= 0:
-        raise pytest.UsageError("a time-out is more than 0 s")
+    if not (0 < timeout < math.inf and 0 < start_timeout < math.inf):
+        raise pytest.UsageError("a time-out is more than 0 s, and ends")
+    explore = said("--explore", 0)
+    if explore < 0:
+        raise pytest.UsageError("--explore takes a count")
+    if explore and said("--explore-seed") is None:
+        # Set where workers see it: all of them are to draw from one seed.
+        config.option.explore_seed = random.SystemRandom().randrange(10**9)
     version = said("--format-version")
     return Options(
         parser=said("--parser", REFERENCE),
@@ -122,7 +135,8 @@ def read_options(config: pytest.Config) -> Options:
         versions=VERSIONS if version is None else (version,),
         known=failures,
         certificate=said("--certificate"),
-        explore=said("--explore", 0),
+        explore=explore,
+        explore_seed=said("--explore-seed", 0),
         smoke=said("--smoke", False),
     )
 

@@ -20,6 +20,7 @@ from eurdf_conformance.suite.options import OPTIONS, add_options, options_of, re
 from eurdf_conformance.suite.summary import summary_lines
 from eurdf_conformance.verdict.result import RESULT, Result
 from eurdf_conformance.verdict.run import Run
+from eurdf_conformance.verdict.standing import unclaimed
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -85,7 +86,8 @@ class Collector:
             return
         run = self.run()
         self._unexpected = run.known_failures.unexpected(run.results, run.planned)
-        if self._unexpected and exitstatus == pytest.ExitCode.OK:
+        # Where nothing was asked of what the user asked for, all is not well.
+        if (self._unexpected or unclaimed(run)) and exitstatus == pytest.ExitCode.OK:
             session.exitstatus = pytest.ExitCode.TESTS_FAILED
         if run_folder := options_of(self._config).certificate:
             write_certificate(run_folder, issue(run))
@@ -110,5 +112,6 @@ class Collector:
             versions=options.versions,
             smoke=options.smoke,
             explore=options.explore,
+            explore_seed=options.explore_seed,
             known_failures=options.known,
         )

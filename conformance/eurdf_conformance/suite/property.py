@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib import import_module
-from importlib.util import find_spec
 from pathlib import Path
 
 from eurdf_conformance.level import Level, Version
@@ -25,12 +24,14 @@ class Trial:
         version: Version of the format that the files are of.
         explore: Further random mechanisms to try; 0 for the frozen ones alone.
         folder: Empty, to write files into.
+        seed: What further mechanisms are drawn from.
     """
 
     reader: Reader
     version: Version
     explore: int
     folder: Path
+    seed: int = 0
 
 
 @dataclass(frozen=True)
@@ -56,5 +57,5 @@ class Property:
 
 def all_properties() -> Sequence[Property]:
     """Every property that there is."""
-    found: Sequence[Property] = getattr(import_module(_PACKAGE), "PROPERTIES", ()) if find_spec(_PACKAGE) else ()
+    found: Sequence[Property] = import_module(_PACKAGE).PROPERTIES
     return found

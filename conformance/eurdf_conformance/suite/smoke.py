@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from eurdf_conformance.corpus.read import CorpusCase
 from eurdf_conformance.level import Level, Version
 from eurdf_conformance.suite.item import CaseItem
 from eurdf_conformance.verdict.result import Result
-from eurdf_conformance.verdict.verdict import OF_THE_ADAPTER, Verdict
+from eurdf_conformance.verdict.verdict import OF_THE_ADAPTER
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,9 +42,16 @@ def is_smoke(item: CaseItem) -> bool:
     }
 
 
-def smoke_lines(results: Iterable[Result]) -> Iterator[str]:
-    """What is wrong, with the adapter and apart from that with the parser."""
-    wrong = [result for result in results if result.verdict != Verdict.PASSED]
+def smoke_lines(wrong: Sequence[Result], asked: bool) -> Iterator[str]:
+    """What is wrong, with the adapter and apart from that with the parser.
+
+    Args:
+        wrong: What did not pass.
+        asked: Whether there was anything to ask.
+    """
+    if not asked:
+        yield "nothing was asked: your parser claims neither accept nor kinematics"
+        return
     adapter = [result for result in wrong if result.verdict in OF_THE_ADAPTER]
     parser = [result for result in wrong if result.verdict not in OF_THE_ADAPTER]
     yield from _part("adapter", "it keeps the protocol", adapter)

@@ -25,7 +25,8 @@ def summary_lines(run: Run, unexpected: Sequence[str], certificate: Path | None)
         reader = run.started.reader
         yield f"{reader.name} {reader.version} ({reader.language})"
     if run.smoke:
-        yield from smoke_lines(run.results)
+        wrong = [result for result in run.results if result.verdict != Verdict.PASSED]
+        yield from smoke_lines(wrong, asked=bool(run.results))
     else:
         asked = [standing for standing in standings(run) if standing.asked]
         yield from (_level(standing) for standing in asked if standing.claimed and _was_run(standing))

@@ -34,6 +34,6 @@ def ask(item: PropertyItem, asking: Asking, folder: Path) -> Judgement:
         return item.property.check(Trial(asking.session, version, 0, folder))
     # What crashes a reader is tried again and again, to make it small: that is not to use up the session of all items.
     with asking.new_session() as session:
-        judgement = item.property.check(Trial(session, version, count, folder))
+        judgement = item.property.check(Trial(session, version, count, folder, asking.options.explore_seed))
     asking.session.seconds_in_reader += session.seconds_in_reader
     return judgement

@@ -30,6 +30,8 @@ class Run:
     smoke: bool = False
     #: Further random mechanisms tried for each property.
     explore: int = 0
+    #: What these are drawn from.
+    explore_seed: int = 0
     known_failures: KnownFailures = field(default=NONE_KNOWN)
 
     def claims(self, version: Version, level: Level) -> bool:

@@ -65,5 +65,13 @@ def is_certified(run: Run) -> bool:
     Where the user has asked for some levels only, each of them must be claimed, for one version at least.
     """
     tested = [standing for standing in standings(run) if standing.claimed and standing.asked]
-    missing = set(run.levels) - {standing.level for standing in tested} if len(run.levels) < len(Level) else set()
-    return bool(tested) and not missing and all(standing.certified for standing in tested)
+    return not unclaimed(run) and all(standing.certified for standing in tested)
+
+
+def unclaimed(run: Run) -> tuple[Level, ...]:
+    """The levels that the user has asked for and the reader claims for no version asked for.
+
+    Where the user has asked for all of them, one that is claimed will do.
+    """
+    missing = tuple(level for level in run.levels if not any(run.claims(version, level) for version in run.versions))
+    return () if len(missing) < len(run.levels) == len(Level) else missing

@@ -47,7 +47,7 @@ def _smoke_lines(certificate: Certificate) -> Iterator[str]:
     from eurdf_conformance.suite.smoke import smoke_lines
     from eurdf_conformance.verdict.result import Item, Result
 
-    return smoke_lines(
+    wrong = [
         Result(
             Item(failure.id, failure.level, failure.version, failure.clauses, failure.title),
             failure.verdict,
@@ -55,7 +55,8 @@ def _smoke_lines(certificate: Certificate) -> Iterator[str]:
             failure.reproduce,
         )
         for failure in certificate.failures
-    )
+    ]
+    return smoke_lines(wrong, asked=any(level.counts for level in certificate.levels))
 
 
 def _failure_lines(failure: Failure) -> Iterator[Line]:

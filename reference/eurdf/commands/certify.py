@@ -35,7 +35,7 @@ it), 1 not, 2 the command cannot run. A known failure is no pass.
 """
 
 # Options that say what a run is of; those that say how it is done.
-_OF_A_RUN = ("level", "format_version", "known_failures", "certificate", "date", "explore")
+_OF_A_RUN = ("level", "format_version", "known_failures", "certificate", "date", "explore", "explore_seed")
 _OF_ANY_RUN = ("jobs", "parser_timeout", "parser_start_timeout", "json")
 
 
@@ -62,6 +62,9 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument("--date", metavar="YYYY-MM-DD", type=_date, help="the day that the certificate is to show")
     parser.add_argument(
         "--explore", metavar="N", type=_count, default=0, help="try N more random mechanisms a property"
+    )
+    parser.add_argument(
+        "--explore-seed", metavar="SEED", type=_count, help="what they are drawn from (default: another each time)"
     )
     parser.add_argument(
         "--jobs", metavar="N", type=_count, help="processes, each with its parser (default: a core each)"
@@ -120,13 +123,14 @@ def _certify(args: argparse.Namespace) -> int:
         write_json(certificate.model_dump(mode="json"))
     else:
         show(certificate)
-    passes = not certificate.failures if certificate.scope.smoke else certificate.certified
+    tried = any(level.counts for level in certificate.levels)
+    passes = tried and not certificate.failures if certificate.scope.smoke else certificate.certified
     return 0 if passes and not certificate.unexpected else 1
 
 
 def _verify(args: argparse.Namespace) -> int:
     from eurdf_conformance.certificate.certificate import read_certificate
-    from eurdf_conformance.certificate.replay import Replay, replay_differences, suite_differences
+    from eurdf_conformance.certificate.replay import Replay, file_differences, replay_differences, suite_differences
 
     certificate = read_certificate(args.verify)
     parser = args.parser or certificate.parser
@@ -134,6 +138,8 @@ def _verify(args: argparse.Namespace) -> int:
     write_lines([[("running ", ""), (visible(parser), "bold")]], sys.stderr)
     again = _run_suite(_suite_run(args, parser, certificate))
     found = [*suite_differences(certificate), *replay_differences(certificate, again)]
+    if args.verify.is_dir():
+        found += file_differences(args.verify, certificate)
     if args.json:
         write_json(Replay(same=not found, differences=tuple(found)).model_dump(mode="json"))
     else:
@@ -169,6 +175,7 @@ def _suite_run(args: argparse.Namespace, parser: str, certificate: Certificate |
         known_failures=args.known_failures,
         smoke=scope.smoke if scope else args.smoke,
         explore=scope.explore if scope else args.explore,
+        explore_seed=scope.explore_seed if scope else args.explore_seed,
         date=args.date,
         jobs=args.jobs,
     )
