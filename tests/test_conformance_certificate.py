@@ -308,8 +308,8 @@ def test_a_second_run_that_came_to_something_else_is_told_line_by_line(failed: C
         "reader, name: 'my_reader' then, 'my_other_reader' now",
         "version 2, accept: not certified: 1 failed, 1 of 2 passed then, not certified: 1 crashed, 1 of 2 passed now",
         "version 2, structure: certified: 1 passed then, not claimed now",
-        "closures/aaaaa1/accept: crashed now, not then",
-        "closures/bbbbb2/accept: failed then, not now",
+        "closures/aaaaa1/accept: no failure then, crashed now",
+        "closures/bbbbb2/accept: failed then, no failure now",
     ]
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from eurdf_conformance.corpus.case import ValidCase
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.read import CorpusCase, read_cases
 from eurdf_conformance.level import Level
@@ -39,6 +40,7 @@ from eurdf_conformance.suite.failure_text import failure_text
 from eurdf_conformance.suite.item import case_items, planned_items
 from eurdf_conformance.suite.judge import judge
 from eurdf_conformance.suite.options import Options
+from eurdf_conformance.suite.property import all_properties
 from eurdf_conformance.suite.smoke import SMOKE
 from eurdf_conformance.verdict.verdict import Verdict
 
@@ -195,10 +197,11 @@ def test_of_a_failure_everything_is_printed_that_it_takes_to_mend_the_reader() -
         "  pytest conformance/ '--parser=cmd:./my parser' -k k9b2yf/diagnose",
         "  A closure at a frame that no link, no joint and no frame has the name of.",
         f"  EU-FRM-001: {read_clauses()['EU-FRM-001'].text}",
+        f"  EU-DIA-001: {read_clauses()['EU-DIA-001'].text}",
         "  /issues/0/column: unknown-frame, column: expected 27, given 6",
         "  the reader tells of:",
         "    error unknown-frame robot.yaml:5:6: ?",
-        f"  {INVALID.description}",
+        f"  {INVALID.description}:5:6",
         "        5 |     frames: [coupler_tip, folower_end]",
         "          |      ^",
         "        5 |     frames: [coupler_tip, folower_end]",
@@ -206,6 +209,41 @@ def test_of_a_failure_everything_is_printed_that_it_takes_to_mend_the_reader() -
         f"  {INVALID.urdf}",
         "  what would mend the file: Name the frame as it is called under `frames`, `follower_end`.",
     ]
+
+
+def test_of_values_it_is_said_where_the_robot_stood() -> None:
+    item = next(each.item for each in case_items([VALID]) if each.item.level == Level.KINEMATICS)
+    first, *_ = VALID.expected.values
+    wrong = [first, *(each.model_copy(update={"residuals": {}}) for each in VALID.expected.values[1:])]
+    judgement = judge(
+        VALID, Level.KINEMATICS, Conversation(Scripted(accepts(), Answered(Evaluated(id=1, values=wrong), 0)))
+    )
+    assert isinstance(VALID.case, ValidCase)
+    where = json.dumps(VALID.case.configurations[1])
+    assert f"  at configuration 1: {where}" in failure_text(item, judgement, "", VALID).splitlines()
+
+
+def test_an_item_tests_what_can_be_seen_at_its_level_and_no_more() -> None:
+    clauses, seen = read_clauses(), {level: set[str]() for level in Level}
+    for item in planned_items(CASES.values()):
+        assert item.clauses, item.id
+        seen[item.level] |= {clauses[name].level for name in item.clauses}
+    assert seen == {
+        Level.ACCEPT: {"accept"},
+        Level.STRUCTURE: {"accept", "structure"},
+        Level.KINEMATICS: {"accept", "structure", "kinematics"},
+        Level.DYNAMICS: {"accept", "structure", "kinematics", "dynamics"},
+        Level.DIAGNOSE: {"accept", "diagnose"},
+    }
+    accept = {each.case.id: each.item for each in case_items([VALID, INVALID]) if each.item.level == Level.ACCEPT}
+    assert accept[VALID.id].clauses[-1] == "EU-CNF-002"
+    assert accept[INVALID.id].clauses[-1] == "EU-CNF-001"
+
+
+def test_every_clause_that_a_case_or_a_property_cites_is_tested_by_an_item() -> None:
+    cited = {clause for case in CASES.values() for clause in case.case.clauses}
+    cited |= {clause for found in all_properties() for clause in found.clauses}
+    assert cited <= {clause for item in planned_items(CASES.values()) for clause in item.clauses}
 
 
 # As pytest runs it
@@ -321,7 +359,11 @@ def test_what_the_user_asks_for_and_cannot_be_is_said(tmp_path: Path) -> None:
     for arguments, why in (
         ([f"--known-failures={tmp_path / 'nowhere.yaml'}"], "No such file"),
         (["--parser-timeout=0"], "a time-out is more than 0 s"),
+        (["--parser-start-timeout=nan"], "a time-out is more than 0 s"),
+        (["--explore=-1"], "--explore takes a count"),
         (["--level=everything"], "invalid choice"),
+        (["--parser="], "--parser names no parser"),
+        (["--parser=cmd:no-such-program-anywhere"], "'cmd:no-such-program-anywhere' could not be started: "),
     ):
         code, out = suite(*arguments, reader="Right")
         assert code == pytest.ExitCode.USAGE_ERROR
@@ -345,6 +387,15 @@ def test_smoke_tells_a_wrong_adapter_from_a_wrong_parser() -> None:
     assert "your parser: nothing can be said of it before the adapter is right" in out
 
 
+def test_where_nothing_is_claimed_of_what_is_asked_for_all_is_not_well() -> None:
+    code, out = suite("--smoke", reader="Silent")
+    assert code == 1
+    assert "nothing was asked: your parser claims neither accept nor kinematics" in out
+    code, out = suite("--level=dynamics", reader="Modest")
+    assert code == 1
+    assert "not claimed: dynamics of version 1, dynamics of version 2" in out
+
+
 def test_without_a_parser_it_is_the_reference_that_is_tested() -> None:
     code, out = suite("--smoke")
     assert code == 0
@@ -356,5 +407,7 @@ def test_the_suite_runs_as_an_installed_package_too() -> None:
     code, out = suite("--noconftest", "-k", FEW, reader="Right", command=command)
     assert code == 0
     assert "7 passed" in out
+    code, out = suite("-k", FEW, reader="Lenient", command=command)
+    assert f"pytest {' '.join(command)} --parser=case_reader:Lenient -k k9b2yf/accept" in out
     code, out = suite("-k", FEW, reader="Right", command=command)
     assert code == 0

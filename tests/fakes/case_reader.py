@@ -104,6 +104,12 @@ class Modest(Right):
     claims: Mapping[Version, Sequence[Level]] = {"2": (Level.ACCEPT,)}
 
 
+class Silent(Right):
+    """Claims nothing."""
+
+    claims: Mapping[Version, Sequence[Level]] = {}
+
+
 class Shy(Right):
     """Does not answer all that it claims."""
 

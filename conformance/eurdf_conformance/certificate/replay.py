@@ -106,9 +106,9 @@ def _failures(before: Certificate, now: Certificate) -> Iterator[str]:
     for key in sorted(was.keys() | given.keys()):
         name = "/".join(key)
         if key not in given:
-            yield f"{name}: {was[key].verdict} then, not now"
+            yield f"{name}: {was[key].verdict} then, no failure now"
         elif key not in was:
-            yield f"{name}: {given[key].verdict} now, not then"
+            yield f"{name}: no failure then, {given[key].verdict} now"
         elif was[key].verdict != given[key].verdict:
             yield f"{name}: {was[key].verdict} then, {given[key].verdict} now"
         elif was[key].difference != given[key].difference:

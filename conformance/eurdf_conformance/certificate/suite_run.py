@@ -116,7 +116,7 @@ def _arguments(run: SuiteRun, folder: str) -> list[str]:
         *("--pyargs", _SUITE, "-p", f"{_SUITE}.plugin", "--noconftest"),
         *("-c", os.devnull, "--rootdir", str(package), "-p", "no:cacheprovider", "-q", "--tb=no"),
         *(("-p", "xdist.plugin", "-n", jobs, "--dist", "loadgroup") if is_spread else ()),
-        *(f"--parser={run.parser}", f"--certificate={folder}"),
+        *(f"--parser={run.parser}", "--parser-starts", f"--certificate={folder}"),
         *(f"--level={level}" for level in run.levels),
         *(f"--{name}={value}" for name, value in _options(run) if value is not None),
         *(["--smoke"] if run.smoke else []),

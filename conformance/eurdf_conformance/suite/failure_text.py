@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -46,6 +48,8 @@ def _lines(item: Item, judgement: Judgement, reproduce: str, case: CorpusCase | 
     for name in item.clauses:
         yield f"  {name}: {clauses[name].text}" if name in clauses else f"  {name}"
     yield from _cut([_difference(each) for each in judgement.differences], "differences")
+    if case is not None and isinstance(case.case, ValidCase):
+        yield from _configurations(case.case, judgement)
     if judgement.issues:
         yield "  the reader tells of:"
         yield from _cut([_issue(issue) for issue in judgement.issues], "issues")
@@ -58,6 +62,15 @@ def _lines(item: Item, judgement: Judgement, reproduce: str, case: CorpusCase | 
 
 def _difference(difference: Difference) -> str:
     return f"  {difference}"
+
+
+def _configurations(case: ValidCase, judgement: Judgement) -> Iterator[str]:
+    """Where the robot stood, of the first that values differ at."""
+    for difference in judgement.differences:
+        if found := re.match(r"/values/(\d+)/", difference.pointer):
+            index = int(found[1])
+            yield f"  at configuration {index}: {json.dumps(case.configurations[index], ensure_ascii=False)}"
+            return
 
 
 def _issue(issue: Issue) -> str:
@@ -81,9 +94,12 @@ def _files(case: CorpusCase, level: Level, judgement: Judgement) -> Iterator[str
     if judgement.verdict == Verdict.FAILED:
         places += judgement.issues
     for path in (case.description, case.urdf):
-        yield f"  {path}" + ("" if path.is_file() else " (there is no such file)")
         here = {(place.line, place.column) for place in places if place.file == path.name and place.line is not None}
-        for line, column in sorted(here, key=lambda place: (place[0] or 0, place[1] or 0)):
+        lines = sorted(here, key=lambda place: (place[0] or 0, place[1] or 0))
+        first = "".join(f":{part}" for part in (lines[0] if lines else ()) if part is not None)
+        missing = "" if path.is_file() else " (a folder)" if path.is_dir() else " (there is no such file)"
+        yield f"  {path}{first}{missing}"
+        for line, column in lines:
             yield from _excerpt(path, line or 0, column)
 
 

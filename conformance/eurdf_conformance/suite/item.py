@@ -2,14 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
+from eurdf_conformance.corpus.case import InvalidCase
+from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.protocol_rule import RULES, ProtocolRule
 from eurdf_conformance.corpus.read import CorpusCase
-from eurdf_conformance.level import VERSIONS, Level
+from eurdf_conformance.level import VERSIONS, Level, Version
 from eurdf_conformance.suite.property import Property, all_properties
 from eurdf_conformance.verdict.result import Item
+
+#: The levels of clauses that can be seen at a level.
+_SEEN: Mapping[Level, Collection[str]] = {
+    Level.ACCEPT: (Level.ACCEPT,),
+    Level.STRUCTURE: (Level.ACCEPT, Level.STRUCTURE),
+    Level.KINEMATICS: (Level.ACCEPT, Level.STRUCTURE, Level.KINEMATICS),
+    Level.DYNAMICS: (Level.ACCEPT, Level.STRUCTURE, Level.KINEMATICS, Level.DYNAMICS),
+    Level.DIAGNOSE: (Level.ACCEPT, Level.DIAGNOSE),
+}
+
+#: What every item of a level tests.
+_GENERAL: Mapping[Level, str] = {
+    Level.ACCEPT: "EU-CNF-002",
+    Level.STRUCTURE: "EU-CAN-001",
+    Level.KINEMATICS: "EU-PRO-008",
+    Level.DYNAMICS: "EU-PRO-009",
+    Level.DIAGNOSE: "EU-DIA-001",
+}
 
 
 @dataclass(frozen=True)
@@ -41,7 +61,27 @@ def case_items(cases: Iterable[CorpusCase]) -> Iterator[CaseItem]:
     for case in cases:
         for level in case.levels:
             said = case.case
-            yield CaseItem(Item(case.path, level, said.version, tuple(said.clauses), said.title), case)
+            clauses = clauses_at(level, said.version, said.clauses, _general(case, level))
+            yield CaseItem(Item(case.path, level, said.version, clauses, said.title), case)
+
+
+def clauses_at(level: Level, version: Version, cited: Iterable[str], general: str) -> tuple[str, ...]:
+    """What an item at a level tests: of the clauses cited those that can be seen there, and one of the level itself.
+
+    A reader that has only said whether it accepts a description has shown nothing of what it makes of it.
+    """
+    clauses = read_clauses()
+    seen = (name for name in cited if clauses[name].level in _SEEN[level] and version in clauses[name].versions)
+    return tuple(dict.fromkeys((*seen, general)))
+
+
+def _general(case: CorpusCase, level: Level) -> str:
+    """The clause that every case like this tests at a level."""
+    if level is not Level.ACCEPT:
+        return _GENERAL[level]
+    if isinstance(case.case, InvalidCase):
+        return "EU-PRO-001" if case.case.either else "EU-CNF-001"
+    return "EU-CNF-002"
 
 
 def planned_items(cases: Iterable[CorpusCase]) -> Iterator[Item]:
@@ -63,5 +103,6 @@ def property_items() -> Iterator[PropertyItem]:
     """What there is to ask on random mechanisms."""
     for found in all_properties():
         for version in found.versions:
-            item = Item(f"properties/{found.name}-{version}", found.level, version, found.clauses, found.title)
+            clauses = clauses_at(found.level, version, found.clauses, _GENERAL[found.level])
+            item = Item(f"properties/{found.name}-{version}", found.level, version, clauses, found.title)
             yield PropertyItem(item, found)

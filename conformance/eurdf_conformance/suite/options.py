@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import argparse
 import math
 import random
 import shlex
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -27,6 +27,9 @@ OPTIONS: pytest.StashKey[Options] = pytest.StashKey()
 #: The parser that is tested where none is named.
 REFERENCE = "eurdf_conformance.adapters.reference:READER"
 
+_FOLDER = ("conformance/",)
+_PACKAGE = ("--pyargs", "eurdf_conformance.suite", "-p", "eurdf_conformance.suite.plugin")
+
 _TIMEOUT = 10.0
 _START_TIMEOUT = 30.0
 
@@ -37,6 +40,7 @@ class Options:
 
     Attributes:
         parser: ``package.module:object`` or ``cmd:…``.
+        suite: What pytest was told to run: in a checkout a folder, elsewhere a package, with its plug-in.
         timeout: Time allowed for an answer, s.
         start_timeout: Time allowed for a start, s.
         levels: Those to test.
@@ -49,6 +53,7 @@ class Options:
     """
 
     parser: str = REFERENCE
+    suite: tuple[str, ...] = _FOLDER
     timeout: float = _TIMEOUT
     start_timeout: float = _START_TIMEOUT
     levels: tuple[Level, ...] = tuple(Level)
@@ -69,8 +74,9 @@ class Options:
         settings = [f"--parser={self.parser}"]
         settings += [f"--parser-timeout={self.timeout:g}"] * (self.timeout != _TIMEOUT)
         settings += [f"--parser-start-timeout={self.start_timeout:g}"] * (self.start_timeout != _START_TIMEOUT)
-        settings += [f"--explore={self.explore}", f"--explore-seed={self.explore_seed}"] if self.explore else []
-        return shlex.join(["pytest", *_suite(), *settings, "-k", f"{name}/{item.level}"])
+        if self.explore and item.id.startswith("properties/"):
+            settings += [f"--explore={self.explore}", f"--explore-seed={self.explore_seed}"]
+        return shlex.join(["pytest", *self.suite, *settings, "-k", f"{name}/{item.level}"])
 
 
 def add_options(parser: pytest.Parser) -> None:
@@ -97,6 +103,8 @@ def add_options(parser: pytest.Parser) -> None:
     group.addoption(
         "--explore-seed", type=int, metavar="SEED", help="what they are drawn from (default: another each time)"
     )
+    # For a program that has seen already that the reader starts.
+    group.addoption("--parser-starts", action="store_true", help=argparse.SUPPRESS)
     group.addoption("--smoke", action="store_true", help="three cases only, to see whether the parser is plugged in")
 
 
@@ -127,8 +135,12 @@ def read_options(config: pytest.Config) -> Options:
         # Set where workers see it: all of them are to draw from one seed.
         config.option.explore_seed = random.SystemRandom().randrange(10**9)
     version = said("--format-version")
+    parser = said("--parser", REFERENCE)
+    if not parser.strip():
+        raise pytest.UsageError("--parser names no parser")
     return Options(
-        parser=said("--parser", REFERENCE),
+        parser=parser,
+        suite=_PACKAGE if config.option.pyargs else _FOLDER,
         timeout=timeout,
         start_timeout=start_timeout,
         levels=tuple(level for level in Level if level in said("--level", list(Level))),
@@ -144,11 +156,3 @@ def read_options(config: pytest.Config) -> Options:
 def options_of(config: pytest.Config) -> Options:
     """What the command line of a run of pytest said."""
     return config.stash[OPTIONS]
-
-
-def _suite() -> Sequence[str]:
-    """What pytest is told to run: in a checkout a folder, elsewhere a package, with its plug-in."""
-    folder = Path(__file__).parents[2]
-    if (folder / "conftest.py").is_file() and folder.name == "conformance":
-        return ["conformance/"]
-    return ["--pyargs", "eurdf_conformance.suite", "-p", "eurdf_conformance.suite.plugin"]

@@ -14,7 +14,8 @@ import pytest
 from eurdf_conformance.certificate.issue import issue
 from eurdf_conformance.certificate.write import write_certificate
 from eurdf_conformance.protocol.message import Started
-from eurdf_conformance.suite.asking import STARTED, Asking, all_cases, new_session
+from eurdf_conformance.runner.session import NotStarted
+from eurdf_conformance.suite.asking import STARTED, Asking, all_cases, greet, new_session
 from eurdf_conformance.suite.item import planned_items
 from eurdf_conformance.suite.options import OPTIONS, add_options, options_of, read_options
 from eurdf_conformance.suite.summary import summary_lines
@@ -40,6 +41,17 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Ask on the protocol first; where there is nothing to ask, ask nothing."""
     asked = [item for item in items if not item.name.endswith("[NOTSET]")]
     items[:] = sorted(asked, key=lambda item: item.nodeid.partition("::")[0].endswith("test_protocol.py"), reverse=True)
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Where the reader does not start, say so once; the first cases to try say it in their own way."""
+    options, said = options_of(session.config), session.config.option
+    if hasattr(session.config, "workerinput") or options.smoke or said.parser_starts or said.collectonly:
+        return
+    try:
+        greet(options)
+    except NotStarted as refusal:
+        raise pytest.UsageError(f"'{options.parser}' could not be started: {refusal}") from None
 
 
 def pytest_collection_finish() -> None:

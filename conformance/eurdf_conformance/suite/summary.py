@@ -20,7 +20,8 @@ def summary_lines(run: Run, unexpected: Sequence[str], certificate: Path | None)
         certificate: Folder that a certificate was written into.
     """
     if run.started is None:
-        yield f"{run.parser} could not be started"
+        why = next((result.differences[0] for result in run.results if result.differences), "")
+        yield f"{run.parser} could not be started" + (f": {why}" if why else "")
     else:
         reader = run.started.reader
         yield f"{reader.name} {reader.version} ({reader.language})"
