@@ -173,7 +173,7 @@ def test_an_empty_file_knows_of_no_failure(tmp_path: Path) -> None:
         (KNOWN + "  level: diagnose\n", "a key stands twice"),
         (KNOWN + KNOWN, "closures/bbbbb2/accept stands in it 2 times"),
         ("closures/bbbbb2: failed\n", "list"),
-        ("- [\n", "expected the node content"),
+        ("- [\n", "expected"),
     ],
 )
 def test_a_file_that_is_not_what_it_should_be_is_refused_and_says_why(text: str, said: str, tmp_path: Path) -> None:
@@ -181,6 +181,12 @@ def test_a_file_that_is_not_what_it_should_be_is_refused_and_says_why(text: str,
         known(text, tmp_path)
     assert said in str(refused.value)
     assert str(tmp_path / "known.yaml") in str(refused.value)
+
+
+def test_an_id_copied_with_its_level_is_told_how_it_is_written(tmp_path: Path) -> None:
+    failures = known(KNOWN.replace("closures/bbbbb2", "closures/bbbbb2/accept"), tmp_path)
+    (said,) = failures.unexpected([], PLANNED)
+    assert said.endswith("the suite has no such item; an id is without its level: 'closures/bbbbb2'")
 
 
 def test_a_file_that_is_not_there_is_refused(tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
 """The conformance suite of Extended URDF: it certifies any reader, in any language, through one protocol.
 
 Data flows one way: `corpus` and `properties` make cases, `oracle` says what is right, `runner` asks the reader through
-`protocol`, `comparison` compares, `verdict` counts, `certificate` writes it down. Nothing here imports the reference
-but `adapters.reference`, which is a reader like any other, and `mutants`, which are that reader broken.
+`protocol`, `comparison` compares, `suite` is what pytest runs of all this, `verdict` counts, `certificate` writes it
+down. Nothing here imports the reference but the adapter of it, which is a reader like any other, and `mutants`, which
+are that reader broken.
 """

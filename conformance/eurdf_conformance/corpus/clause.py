@@ -63,8 +63,3 @@ def read_clauses() -> Mapping[str, Clause]:
         for entry in json.loads(path.read_text(encoding="utf-8"))["clauses"]
     }
     return MappingProxyType(clauses)
-
-
-def all_codes(clauses: Mapping[str, Clause]) -> frozenset[str]:
-    """The codes of all diagnostics."""
-    return frozenset(code for clause in clauses.values() for code in clause.codes)

@@ -9,7 +9,6 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -20,7 +19,7 @@ from eurdf_conformance.comparison.values import values_differences
 from eurdf_conformance.corpus.case import ValidCase
 from eurdf_conformance.corpus.expected import EXPECTED_FILE, Expected, expected_text
 from eurdf_conformance.corpus.read import CorpusCase, read_cases
-from eurdf_conformance.oracle import NotRead, OracleRobot, read
+from eurdf_conformance.oracle import NotRead, read
 from eurdf_conformance.protocol.message import Quantity, Values
 
 #: What a level asks for at each configuration.
@@ -41,7 +40,7 @@ def expect(case: CorpusCase) -> Expected:
     robot = read(case.description, case.urdf, case.case.version)
     configurations = case.case.configurations
     return Expected(
-        bodies=_bodies(robot),
+        bodies=sorted(sorted(body, key=str.encode) for body in robot.bodies),
         robot=robot.canonical(),
         values=[
             _rounded(robot.evaluate(configuration, case.case.frames, (*KINEMATICS, *DYNAMICS)))
@@ -109,14 +108,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
             path.write_text(text, encoding="utf-8")
             sys.stdout.write(f"{path}: written\n")
     return int(failed)
-
-
-def _bodies(robot: OracleRobot) -> list[list[str]]:
-    """For each body its links; a body without a link of the URDF is left out."""
-    bodies: defaultdict[int, list[str]] = defaultdict(list)
-    for link, placed in robot.tree.links.items():
-        bodies[placed.body].append(link)
-    return sorted(sorted(body, key=str.encode) for body in bodies.values())
 
 
 def _rounded(values: Values) -> Values:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Hashable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
 
 import yaml
 from pydantic import ValidationError
@@ -16,6 +14,7 @@ from pydantic import ValidationError
 from eurdf_conformance.corpus.case import CASE, TOPICS, Case, ValidCase
 from eurdf_conformance.corpus.expected import EXPECTED_FILE, Expected, read_expected
 from eurdf_conformance.level import Level
+from eurdf_conformance.strict_yaml import load_strictly
 
 CASES = Path(__file__).with_name("cases")
 CASE_FILE = "case.yaml"
@@ -33,27 +32,6 @@ class NotACase(Exception):  # noqa: N818 - it says what the file is
         super().__init__(f"{path}: {why}")
         self.path = path
         self.why = why
-
-
-# The one of libyaml, where PyYAML was built with it, is ten times as quick.
-_SafeLoader: type[yaml.SafeLoader] = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-
-
-class _Loader(_SafeLoader):  # type: ignore[misc, valid-type]
-    """PyYAML takes the last of two equal keys in silence, and ``1e-3`` for a word."""
-
-    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Hashable, Any]:
-        mapping: dict[Hashable, Any] = super().construct_mapping(node, deep=deep)
-        if len(mapping) != len(node.value):
-            raise yaml.constructor.ConstructorError(None, None, "a key stands twice", node.start_mark)
-        return mapping
-
-
-_Loader.add_implicit_resolver(
-    "tag:yaml.org,2002:float",
-    re.compile(r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?$"),
-    list("-+.0123456789"),
-)
 
 
 @dataclass(frozen=True)
@@ -114,7 +92,7 @@ def read_case(folder: Path) -> CorpusCase:
     """
     path = folder / CASE_FILE
     try:
-        case = CASE.validate_python(yaml.load(path.read_text(encoding="utf-8"), _Loader))
+        case = CASE.validate_python(load_strictly(path.read_text(encoding="utf-8")))
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         raise NotACase(path, str(error)) from None
     except ValidationError as error:

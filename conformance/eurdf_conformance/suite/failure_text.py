@@ -44,6 +44,8 @@ def _lines(item: Item, judgement: Judgement, reproduce: str, case: CorpusCase | 
         yield from (f"  {line}" for line in judgement.log.splitlines())
         return
     yield f"  {item.title}"
+    if case is not None and case.case.features:
+        yield f"  It uses: {', '.join(case.case.features)}."
     clauses = read_clauses()
     for name in item.clauses:
         yield f"  {name}: {clauses[name].text}" if name in clauses else f"  {name}"

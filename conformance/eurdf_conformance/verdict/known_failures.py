@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Hashable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
@@ -17,6 +17,7 @@ import yaml
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, TypeAdapter, ValidationError
 
 from eurdf_conformance.level import Level
+from eurdf_conformance.strict_yaml import load_strictly
 from eurdf_conformance.verdict.result import Item, Result
 from eurdf_conformance.verdict.verdict import Verdict
 
@@ -85,12 +86,17 @@ class KnownFailures:
             name = f"{known.id}/{known.level}"
             given = verdicts.get((known.id, known.level))
             if (known.id, known.level) not in items:
-                found.append(f"{name}: the suite has no such item")
+                found.append(f"{name}: the suite has no such item{_hint(known)}")
             elif given == Verdict.PASSED:
                 found.append(f"{name}: known as '{known.verdict}', but it passes now: take it out of the file")
             elif given not in (None, Verdict.NOT_RUN, known.verdict):
                 found.append(f"{name}: known as '{known.verdict}', but it is '{given}'")
         return found
+
+
+def _hint(known: KnownFailure) -> str:
+    case, _, level = known.id.rpartition("/")
+    return f"; an id is without its level: '{case}'" if level in list(Level) else ""
 
 
 #: Nothing is known to fail.
@@ -104,7 +110,7 @@ def read_known_failures(path: Path) -> KnownFailures:
         WrongKnownFailures: It cannot be read, is no YAML, or does not fit; an item stands in it twice.
     """
     try:
-        value = yaml.load(path.read_text(encoding="utf-8"), _StrictLoader)
+        value = load_strictly(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise WrongKnownFailures(path, [error.strerror or str(error)]) from error
     except UnicodeDecodeError as error:
@@ -125,16 +131,6 @@ def read_known_failures(path: Path) -> KnownFailures:
 def _fault(detail: Any) -> str:
     where = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in detail["loc"])
     return f"{where or 'the file'}: {detail['msg'].removeprefix('Value error, ')}"
-
-
-class _StrictLoader(yaml.SafeLoader):
-    """PyYAML takes the last of two equal keys in silence, and makes dates of what looks like one."""
-
-    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Hashable, Any]:
-        mapping = super().construct_mapping(node, deep=deep)
-        if len(mapping) != len(node.value):
-            raise yaml.constructor.ConstructorError(None, None, "a key stands twice in one mapping", node.start_mark)
-        return mapping
 
 
 def known_failures_schema() -> dict[str, Any]:
