@@ -14,13 +14,19 @@ from typing import Any
 import jsonschema
 import pytest
 
+from conformance_runs import INVALID, PLANNED, VALID, item, result, run
+from eurdf.commands.certificate_output import show
 from eurdf.commands.main import main
 from eurdf_conformance.certificate import suite_run
 from eurdf_conformance.certificate.certificate import certificate_schema, read_certificate
+from eurdf_conformance.certificate.issue import issue
 from eurdf_conformance.certificate.replay import replay_schema
 from eurdf_conformance.certificate.suite_run import CannotRunSuite, SuiteRun, run_suite
 from eurdf_conformance.corpus.case import InvalidCase
 from eurdf_conformance.corpus.read import read_cases
+from eurdf_conformance.level import Level
+from eurdf_conformance.suite.smoke import smoke_lines
+from eurdf_conformance.verdict.verdict import Verdict
 
 REFERENCE = "eurdf_conformance.adapters.reference:READER"
 
@@ -123,9 +129,18 @@ def test_a_first_try_tells_a_wrong_adapter_from_a_wrong_parser(folder: Path) -> 
     assert parser.returncode == 1
     assert parser.stdout.startswith("your adapter is right so far")
     assert "your parser is wrong" in parser.stdout
+    assert "/accept: failed: it rejects what is right\n" in parser.stdout
     adapter = certify("--parser", one_answer("rejected", "--chatter"), "--smoke")
     assert adapter.returncode == 1
     assert adapter.stdout.startswith("your adapter is wrong")
+
+
+def test_a_first_try_says_of_each_failure_what_it_is_before_it_says_why() -> None:
+    lacking = result(item(VALID, Level.ACCEPT), Verdict.UNSUPPORTED, "version 2")
+    silent = result(item(INVALID, Level.ACCEPT), Verdict.SKIPPED)
+    lines = list(smoke_lines([lacking, silent], asked=True))
+    assert f"  {VALID}/accept: unsupported: version 2" in lines
+    assert f"  {INVALID}/accept: skipped" in lines
 
 
 def test_a_first_try_that_passes_certifies_nothing(folder: Path) -> None:
@@ -134,6 +149,15 @@ def test_a_first_try_that_passes_certifies_nothing(folder: Path) -> None:
     given = json.loads(done.stdout)
     assert given["failures"] == []
     assert not any(level["certified"] for level in given["levels"])
+
+
+def test_whoever_explores_is_told_where_the_cases_are(capsys: pytest.CaptureFixture[str]) -> None:
+    law = item("properties/agreement-2", Level.ACCEPT)
+    failed = result(law, Verdict.FAILED, "it is not so")
+    show(issue(run(planned=(*PLANNED, law), results=(failed,), explore=20, explore_seed=7)))
+    assert "what exploring from seed 7 has found, if anything, is in explored/" in capsys.readouterr().out
+    show(issue(run(planned=(*PLANNED, law), results=(failed,))))
+    assert "explor" not in capsys.readouterr().out
 
 
 # --- known failures --------------------------------------------------------------------------------------------------
@@ -211,6 +235,10 @@ def test_the_users_own_settings_of_pytest_have_no_part_in_it(folder: Path) -> No
         ["--compare", "mine", "--json", "-o", "page.html"],
         ["--compare", "mine"],
         ["--parser", "cmd:mine", "-o", "page.html"],
+        ["--parser", "cmd:mine", "--force"],
+        ["--parser", "cmd:mine", "--smoke", "--known-failures", "known.yaml"],
+        ["--parser", "cmd:mine", "--smoke", "--explore", "3"],
+        ["--verify", "mine", "--force"],
         ["--verify", "nowhere"],
         ["--compare", "nowhere", "-o", "page.html"],
     ],
@@ -224,6 +252,42 @@ def test_what_cannot_be_done_exits_with_2_in_one_line(
     assert written.err.count("\n") == 1
     assert written.err.startswith("eurdf: ")
     assert list(folder.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", ["report.html", "badge.svg"])
+def test_no_certificate_is_written_over_what_is_none(
+    name: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("mine").mkdir()
+    Path("mine", name).write_text("of somebody else", encoding="utf-8")
+    assert main(["certify", "--parser", "cmd:no-such-parser", "--certificate", "mine"]) == 2
+    assert capsys.readouterr().err == (
+        f"eurdf: 'mine/{name}' exists already, and no certificate beside it; --force replaces it\n"
+    )
+    assert Path("mine", name).read_text(encoding="utf-8") == "of somebody else"
+    # By force it goes on to the parser, and there is none.
+    assert main(["certify", "--parser", "cmd:no-such-parser", "--certificate", "mine", "--force"]) == 2
+    assert "could not be started" in capsys.readouterr().err
+
+
+def test_an_earlier_certificate_is_replaced(folder: Path) -> None:
+    for parser in (REJECTS, ACCEPTS):
+        assert certify("--parser", parser, "--smoke", "--certificate", "mine").returncode == 1
+    reader = read_certificate(folder / "mine").reader
+    assert reader is not None
+    assert reader.name == "always_accepted"
+
+
+def test_a_file_in_the_place_of_the_folder_is_told_before_the_run(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("mine").write_text("", encoding="utf-8")
+    for place in ("mine", "mine/deeper"):
+        assert main(["certify", "--parser", "cmd:no-such-parser", "--certificate", place]) == 2
+        told = capsys.readouterr().err
+        assert f"'{place}'" in told
+        assert "Errno" not in told
+        assert "started" not in told
 
 
 @pytest.mark.parametrize(
@@ -253,7 +317,7 @@ def test_a_replay_by_another_parser_is_told_line_by_line(folder: Path) -> None:
     again = certify("--verify", "mine/certificate.json", "--parser", ACCEPTS, "--jobs", "0")
     assert again.returncode == 1
     assert again.stdout.startswith("reader, name: 'always_rejected' then, 'always_accepted' now\n")
-    assert "version1/n8t4uq/accept: failed now, not then\n" in again.stdout
+    assert "version1/n8t4uq/accept: no failure then, failed now\n" in again.stdout
     assert again.stdout.endswith("mine/certificate.json: differs\n")
     as_json = certify("--verify", "mine", "--parser", ACCEPTS, "--jobs", "0", "--json")
     value = json.loads(as_json.stdout)
@@ -268,3 +332,27 @@ def test_a_comparison_is_one_page_of_all_its_certificates(folder: Path, capsys: 
     page = Path("page.html").read_text(encoding="utf-8")
     assert page.index("always_rejected 1") < page.index("always_accepted 1")
     assert "Clauses on which they differ" in page
+
+
+def test_a_comparison_replaces_nothing_unasked(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    certify("--parser", REJECTS, "--smoke", "--certificate", "a")
+    Path("page.html").write_text("of somebody else", encoding="utf-8")
+    assert main(["certify", "--compare", "a", "-o", "page.html"]) == 2
+    assert capsys.readouterr().err == "eurdf: 'page.html' exists already; --force replaces it\n"
+    assert Path("page.html").read_text(encoding="utf-8") == "of somebody else"
+    assert main(["certify", "--compare", "a", "-o", "page.html", "--force"]) == 0
+    assert "always_rejected 1" in Path("page.html").read_text(encoding="utf-8")
+
+
+def test_readers_of_one_name_are_told_apart_on_the_page(folder: Path) -> None:
+    certify("--parser", REJECTS, "--smoke", "--certificate", "a")
+    (Path("a") / "certificate.json").rename("one.json")
+    text = Path("one.json").read_text(encoding="utf-8")
+    Path("two.json").write_text(text.replace('"language": "Python"', '"language": "C++"'), encoding="utf-8")
+    assert main(["certify", "--compare", "one.json", "two.json", "two.json", "-o", "page.html"]) == 0
+    heads = re.findall(r"<th[^>]*>(always_rejected[^<]*)</th>", Path("page.html").read_text(encoding="utf-8"))
+    assert list(dict.fromkeys(heads)) == [
+        "always_rejected 1 (Python)",
+        "always_rejected 1 (C++), no. 1",
+        "always_rejected 1 (C++), no. 2",
+    ]

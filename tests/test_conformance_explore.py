@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
@@ -12,7 +13,7 @@ from conformance_oracle_reader import OracleReader
 from conformance_wrong_readers import ForgetsInlineAngles, UniversalBackwards
 from eurdf_conformance.adapters.reference import READER
 from eurdf_conformance.corpus.lint import lint
-from eurdf_conformance.corpus.read import CorpusCase, read_cases
+from eurdf_conformance.corpus.read import CASES, CorpusCase, read_cases
 from eurdf_conformance.level import Level
 from eurdf_conformance.properties.bench import Bench
 from eurdf_conformance.properties.catalogue import law_of
@@ -80,6 +81,18 @@ def test_what_is_found_is_written_as_a_case_that_the_lint_takes(found: tuple[Pat
     assert case.topic == "joints"
 
 
+def test_whoever_finds_a_case_is_told_how_to_keep_it_and_to_run_it_alone(found: tuple[Path, Judgement]) -> None:
+    folder, judgement = found
+    case = the_case(folder)
+    move, check = (line.strip() for line in judgement.log.splitlines() if line.startswith("  "))
+    program, source, target = shlex.split(move)
+    assert (program, source) == ("mv", str(case.folder))
+    assert Path(target).resolve() == CASES / case.topic
+    assert Path(target).is_dir()
+    assert check == f"python -m {lint.__module__}"
+    assert f"-k {case.id}" in judgement.log.splitlines()[-1]
+
+
 def test_the_case_is_one_that_the_wrong_reader_fails_and_the_reference_passes(found: tuple[Path, Judgement]) -> None:
     case = the_case(found[0])
     assert judge(case, Level.KINEMATICS, Conversation(InProcess(UniversalBackwards()))).verdict == Verdict.FAILED
@@ -100,6 +113,10 @@ def test_where_there_is_nothing_to_find_nothing_is_written(tmp_path: Path, monke
     monkeypatch.chdir(tmp_path)
     judgement = explored("moving-base", OracleReader(), tmp_path, 60)
     assert judgement.verdict == Verdict.PASSED
+    assert (
+        judgement.log
+        == f"exploring has found nothing wrong on 60 more mechanisms, drawn from seed {SEED}, and no case is written"
+    )
     assert [path.name for path in tmp_path.iterdir()] == ["files"]
 
 
@@ -152,3 +169,19 @@ def test_exploring_goes_on_after_a_frozen_example_has_failed(tmp_path: Path, mon
     judgement = try_law(law_of("agreement"), Level.KINEMATICS, trial)
     assert judgement.reason.startswith("example ")
     assert "written as a case: explored/joints/" in judgement.log
+
+
+def test_where_only_a_frozen_example_fails_it_is_said_that_exploring_has_found_no_more(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "files").mkdir()
+    # A single mechanism, the plainest, which has no universal joint.
+    judgement = try_law(
+        law_of("agreement"), Level.KINEMATICS, Trial(InProcess(UniversalBackwards()), "2", 1, tmp_path / "files", SEED)
+    )
+    assert judgement.reason.startswith("example ")
+    assert judgement.verdict == Verdict.FAILED
+    assert "exploring has found nothing wrong on 1 more" in judgement.log
+    assert "written as a case: " not in judgement.log
+    assert not Path("explored").exists()

@@ -1,5 +1,9 @@
 """The suite is tested by broken readers: each is caught by a case or property that cites the clause that it breaks."""
 
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
 import pytest
 
 from eurdf.diagnostics.registry import REGISTRY
@@ -9,9 +13,27 @@ from eurdf_conformance.mutants.accepting import ACCEPTING
 from eurdf_conformance.mutants.kills import kills
 from eurdf_conformance.mutants.silent import SILENT
 from eurdf_conformance.mutants.unbroken import UNBROKEN
+from eurdf_conformance.protocol.message import Accepted, CanonicalRobot, Rejected
+from eurdf_conformance.protocol.reply import accepted
 from eurdf_conformance.protocol.serve import find_object
+from eurdf_conformance.suite.asking import all_cases
+from eurdf_conformance.suite.smoke import smoke_case
 
 ROWS = matrix.PAGE.read_text(encoding="utf-8").splitlines()
+INERTIA = '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
+#: Of b, 1 kg, which carries c, 2 kg, both r and a are the parent.
+TWO_PARENTS = f"""
+<robot name="two">
+  <link name="r"/>
+  <link name="a"><inertial><mass value="1"/>{INERTIA}</inertial></link>
+  <link name="b"><inertial><mass value="1"/>{INERTIA}</inertial></link>
+  <link name="c"><inertial><mass value="2"/>{INERTIA}</inertial></link>
+  <joint name="b_on_r" type="continuous"><parent link="r"/><child link="b"/></joint>
+  <joint name="b_on_a" type="continuous"><parent link="a"/><child link="b"/></joint>
+  <joint name="c_on_b" type="continuous"><parent link="b"/><child link="c"/></joint>
+  <joint name="first" type="continuous"><parent link="r"/><child link="a"/></joint>
+</robot>
+"""
 NOT_CURRENT = f"{matrix.PAGE.name} is not current: python -m eurdf_conformance.mutants.matrix"
 
 
@@ -29,7 +51,9 @@ def test_the_matrix_has_a_row_for_each_mutant_and_no_other() -> None:
     assert [row.split("|")[:4] for row in ROWS if row.startswith("| ")] == [
         row.split("|")[:4] for row in empty if row.startswith("| ")
     ], NOT_CURRENT
+    only_accept = sum(mutant.only_accepts for mutant in MUTANTS.values())
     assert f"{len(MUTANTS)} mutants, 0 of which survive." in ROWS, NOT_CURRENT
+    assert f"{only_accept} of them only accept what they should reject, and build no robot of it." in ROWS, NOT_CURRENT
 
 
 def test_each_clause_with_a_must_is_broken_by_a_mutant_or_it_is_said_why_none_can() -> None:
@@ -45,6 +69,51 @@ def test_each_diagnostic_but_that_of_meshes_has_a_reader_that_does_not_tell_it()
     assert told - {name.removeprefix("accepts_").removeprefix("silent_of_") for name in names} == {
         "urdf_mesh_unreadable"
     }
+
+
+def load(name: str, case_id: str) -> Accepted | Rejected:
+    case = smoke_case(all_cases(), case_id)
+    return MUTANTS[name].load(case.description, case.urdf)
+
+
+def test_a_mutant_that_only_accepts_has_no_robot() -> None:
+    assert load("accepts_urdf_two_parents", "hi2g80") == accepted()
+
+
+@pytest.mark.parametrize(
+    ("name", "case_id", "kept"),
+    [
+        (
+            "changes_of_unknown_joints_dropped",
+            "bc0ino",
+            lambda robot: [joint for joint in robot.joints if joint.name.startswith("ankle_")],
+        ),
+        ("actuators_of_unknown_joints_dropped", "g2u5wi", lambda robot: robot.actuators),
+        ("closures_of_unknown_frames_dropped", "k9b2yf", lambda robot: robot.closures),
+        ("coordinates_of_unknown_joints_dropped", "htx5kx", lambda robot: robot.configurations["half"]),
+    ],
+)
+def test_a_reader_that_goes_on_has_a_robot_that_lacks_what_was_wrong(
+    name: str, case_id: str, kept: Callable[[CanonicalRobot], Any]
+) -> None:
+    answer = load(name, case_id)
+    assert isinstance(answer, Accepted)
+    assert answer.robot is not None
+    assert not answer.issues
+    assert list(kept(answer.robot)) == []
+
+
+def test_a_link_with_two_parents_is_doubled_as_in_pinocchio(tmp_path: Path) -> None:
+    pin = pytest.importorskip("pinocchio")
+    (tmp_path / "robot.urdf").write_text(TWO_PARENTS, encoding="utf-8")
+    (tmp_path / "robot.yaml").write_text('extended_urdf: "2.0"\n', encoding="utf-8")
+    model = pin.buildModelFromUrdf(str(tmp_path / "robot.urdf"))
+    mutant = MUTANTS["link_with_two_parents_doubled"]
+    answer = mutant.load(tmp_path / "robot.yaml", tmp_path / "robot.urdf")
+    assert isinstance(answer, Accepted)
+    assert answer.robot is not None
+    assert sorted(joint.name.rstrip("'") for joint in answer.robot.joints) == sorted(model.names)[:-1]
+    assert mutant.evaluate([{}], [], ["mass"])[0].mass == pin.computeTotalMass(model) == 7.0
 
 
 def test_a_mutant_says_in_one_sentence_what_is_broken() -> None:

@@ -183,6 +183,7 @@ def test_the_first_cases_to_try_are_of_their_version_and_can_be_evaluated() -> N
     for version, three in SMOKE.items():
         valid, invalid, evaluated = (CASES[case_id] for case_id in (three.valid, three.invalid, three.evaluated))
         assert {case.case.version for case in (valid, invalid, evaluated)} == {version}
+        assert len({valid.id, invalid.id, evaluated.id}) == 3
         assert (valid.case.valid, invalid.case.valid) == (True, False)
         assert Level.KINEMATICS in evaluated.levels
 
@@ -361,6 +362,8 @@ def test_what_the_user_asks_for_and_cannot_be_is_said(tmp_path: Path) -> None:
         (["--parser-timeout=0"], "a time-out is more than 0 s"),
         (["--parser-start-timeout=nan"], "a time-out is more than 0 s"),
         (["--explore=-1"], "--explore takes a count"),
+        (["--smoke", "--explore=1"], "--smoke goes with neither --known-failures nor --explore"),
+        ([f"--certificate={__file__}"], "is a file; a certificate is written into a folder"),
         (["--level=everything"], "invalid choice"),
         (["--parser="], "--parser names no parser"),
         (["--parser=cmd:no-such-program-anywhere"], "'cmd:no-such-program-anywhere' could not be started: "),
@@ -379,7 +382,7 @@ def test_smoke_tells_a_wrong_adapter_from_a_wrong_parser() -> None:
     code, out = suite("--smoke", reader="Lenient")
     assert code == 1
     assert "your adapter is right so far" in out
-    assert "your parser is wrong:\n  protocol/goes-on-2/accept: it accepts what is wrong" in out
+    assert "your parser is wrong:\n  protocol/goes-on-2/accept: failed: it accepts what is wrong" in out
     code, out = suite("--smoke", "--parser=cmd:no-such-program-anywhere")
     assert code == 1
     assert "cmd:no-such-program-anywhere could not be started" in out

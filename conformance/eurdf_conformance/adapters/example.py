@@ -10,7 +10,7 @@ from eurdf_conformance.level import Level
 from eurdf_conformance.protocol.message import Accepted, Rejected, Unsupported
 from eurdf_conformance.protocol.reply import accepted, rejected, unsupported
 
-WRONG = (yaml.YAMLError, ElementTree.ParseError, KeyError, ValueError)  # what the reader raises for wrong files
+WRONG = (OSError, yaml.YAMLError, ElementTree.ParseError, KeyError, ValueError)  # raised for wrong files
 
 
 class Example:

@@ -1,8 +1,7 @@
 """The certificate: what a reader has come to, as one JSON value, which has a JSON Schema.
 
 Two runs of one suite on one reader give the same bytes: it holds no time but the date, and that only where it is given.
-This is so however a run is spread over processes, but for a reader that breaks so often that it is given up: how far
-each process comes until then differs.
+This is so however a run is spread over processes.
 """
 
 from __future__ import annotations

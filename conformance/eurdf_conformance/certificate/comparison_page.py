@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 
 from eurdf_conformance.certificate.certificate import Certificate, ClauseResult
@@ -28,17 +29,33 @@ def _readers(certificates: Sequence[Certificate]) -> Iterator[Element]:
     dated = any(each.date for each in certificates)
     rows = (
         (
-            element("th", reader_title(each), scope="row"),
+            element("th", title, scope="row"),
             element("td", each.reader.language if each.reader else "could not be started"),
             element("td", each.suite.version),
             *([element("td", each.date or "not said")] if dated else []),
         )
-        for each in certificates
+        for title, each in zip(_titles(certificates), certificates, strict=True)
     )
     yield table("Readers", ("reader", "language", "suite", *(["date"] if dated else [])), rows)
     if len({(each.suite.clauses, each.suite.corpus) for each in certificates}) > 1:
         said = "These certificates are of different suites: what one of them tests, another may not."
         yield element("p", said, class_="headline bad")
+
+
+def _titles(certificates: Sequence[Certificate]) -> list[str]:
+    """A title for each that no other has: with the language, and at last a number, where name and version are alike."""
+    titles = [reader_title(each) for each in certificates]
+    languages = [each.reader.language if each.reader else "" for each in certificates]
+    said = Counter(titles)
+    titles = [
+        f"{title} ({language})" if said[title] > 1 and language else title
+        for title, language in zip(titles, languages, strict=True)
+    ]
+    said = Counter(titles)
+    return [
+        f"{title}, no. {titles[:index].count(title) + 1}" if said[title] > 1 else title
+        for index, title in enumerate(titles)
+    ]
 
 
 def _levels(certificates: Sequence[Certificate]) -> Iterator[Element]:
@@ -52,7 +69,7 @@ def _levels(certificates: Sequence[Certificate]) -> Iterator[Element]:
             )
             for level in Level
         )
-        yield table(title, ("level", *map(reader_title, certificates)), rows)
+        yield table(title, ("level", *_titles(certificates)), rows)
 
 
 def _clauses(certificates: Sequence[Certificate]) -> Iterator[Element]:
@@ -70,7 +87,7 @@ def _clauses(certificates: Sequence[Certificate]) -> Iterator[Element]:
             )
             for id_ in differing
         )
-        yield table(title, ("clause", *map(reader_title, certificates)), rows)
+        yield table(title, ("clause", *_titles(certificates)), rows)
 
 
 def _is_met(result: ClauseResult | None) -> bool | None:

@@ -29,7 +29,7 @@ from eurdf_conformance.verdict.verdict import Verdict
 _DISTRIBUTION = "eurdf"
 
 # Which number a request has depends on what the process was asked before it, and that on how a run is spread over
-# processes. So does when a reader is given up.
+# processes. So does when a reader is given up that no longer starts.
 _ID = re.compile(r'("id"\s*:\s*)-?\d+')
 _UNSTABLE = (Verdict.MISPLACED, Verdict.NOT_STARTED)
 

@@ -10,6 +10,34 @@ from eurdf_conformance.certificate.badge import badge
 from eurdf_conformance.certificate.certificate import FILE, Certificate
 from eurdf_conformance.certificate.report import report
 
+#: What shows a certificate to people.
+_SHOWING = ("report.html", "badge.svg")
+
+
+class NoRoom(Exception):  # noqa: N818 - said to the user as it stands
+    """No certificate can be written there; its text says why."""
+
+
+def make_room(folder: Path, *, force: bool = False) -> None:
+    """Make the folder of a certificate, before the run that it is to be of.
+
+    An earlier certificate there will be replaced, what is none only by force.
+
+    Raises:
+        NoRoom: It cannot be.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise NoRoom(f"'{folder}' is a file; a certificate is written into a folder")
+    there = [folder / name for name in _SHOWING if (folder / name).exists()]
+    if there and not force and not (folder / FILE).is_file():
+        raise NoRoom(f"'{there[0]}' exists already, and no certificate beside it")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise NoRoom(f"cannot make the folder '{folder}': {error.strerror or error}") from error
+    if not os.access(folder, os.W_OK):
+        raise NoRoom(f"cannot write into the folder '{folder}'")
+
 
 def write_certificate(folder: Path, certificate: Certificate) -> None:
     """Write ``certificate.json``, ``report.html`` and ``badge.svg`` into a folder, which is made where it is not there.
@@ -25,7 +53,7 @@ def write_certificate(folder: Path, certificate: Certificate) -> None:
 
 def certificate_files(certificate: Certificate) -> dict[str, str]:
     """The files that show a certificate to people, by name."""
-    return {"report.html": report(certificate), "badge.svg": badge(certificate)}
+    return dict(zip(_SHOWING, (report(certificate), badge(certificate)), strict=True))
 
 
 def write_together(files: Mapping[Path, str]) -> None:

@@ -1,7 +1,8 @@
 """All cases for those who do not use pytest: ``python -m eurdf_conformance.corpus.archive OUT`` writes two files.
 
-``eurdf-conformance-cases.zip`` holds a folder a case, ``<topic>/<id>/``, with `case.yaml`, the robot's two files and,
-of a valid case, `expected.json`. ``eurdf-conformance-cases.json`` is the same as one JSON value,
+``eurdf-conformance-cases.zip`` holds a folder a case, ``cases/<topic>/<id>/``, with `case.yaml`, the robot's two files
+and, of a valid case, `expected.json`; and beside them what these say: the schema of `case.yaml`, the clauses, how a
+parser is judged by hand, the license. ``eurdf-conformance-cases.json`` is the cases as one JSON value,
 
     {"manifest": "1.0", "protocol": "1.0", "clauses": {id: text}, "cases": [
         {"topic": …, "case": what case.yaml says, "files": {name: content}, "expected": …}]}
@@ -12,39 +13,92 @@ the same whenever and wherever they are written.
 
 from __future__ import annotations
 
+import argparse
 import base64
+import importlib.metadata
+import io
 import json
+import os
 import sys
 import zipfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from eurdf_conformance.corpus.case import ValidCase
+from eurdf_conformance.corpus.case import SCHEMA_FILE, ValidCase
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.expected import EXPECTED_FILE
-from eurdf_conformance.corpus.read import CASE_FILE, CorpusCase, read_cases
+from eurdf_conformance.corpus.read import CASE_FILE, CorpusCase, NotACase, read_cases
 from eurdf_conformance.protocol.message import PROTOCOL
 
 NAME = "eurdf-conformance-cases"
 
 MANIFEST = "1.0"
 
+#: Folder of the cases in the zip: as deep as here, so that what a `case.yaml` says of its schema leads there.
+_CASES = "cases"
+
+_README = Path(__file__).with_name("archive_readme.txt")
+_LICENSE = "LICENSE"
+
 #: The earliest that a zip can say.
 _DATE = (1980, 1, 1, 0, 0, 0)
 
 
 def write_archive(folder: Path, cases: Iterable[CorpusCase]) -> None:
-    """Write the zip and the manifest into a folder, which is made where it is not there."""
+    """Write the zip and the manifest into a folder, which is made where it is not there: both, or none.
+
+    Raises:
+        OSError: They cannot be written; what was there before is still there.
+    """
     cases = list(cases)
+    archive, plain = archive_paths(folder)
+    text = json.dumps(manifest(cases), ensure_ascii=False, indent=1) + "\n"
+    files = {archive: _zipped(cases), plain: text.encode("utf-8")}
     folder.mkdir(parents=True, exist_ok=True)
+    _write_together(files)
+
+
+def archive_paths(folder: Path) -> tuple[Path, Path]:
+    """Where the zip and the manifest are in a folder."""
+    return folder / f"{NAME}.zip", folder / f"{NAME}.json"
+
+
+def _zipped(cases: Iterable[CorpusCase]) -> bytes:
+    entries = {name: path.read_bytes() for case in cases for name, path in case_files(case)} | _beside()
+    written = io.BytesIO()
     # Stored, since what deflate makes of the same bytes depends on the library that does it.
-    with zipfile.ZipFile(folder / f"{NAME}.zip", "w", zipfile.ZIP_STORED) as archive:
-        for name, path in sorted(entry for case in cases for entry in case_files(case)):
+    with zipfile.ZipFile(written, "w", zipfile.ZIP_STORED) as archive:
+        for name, content in sorted(entries.items()):
             info = zipfile.ZipInfo(name, _DATE)
             info.create_system, info.external_attr = 3, 0o644 << 16
-            archive.writestr(info, path.read_bytes())
-    (folder / f"{NAME}.json").write_text(json.dumps(manifest(cases), ensure_ascii=False, indent=1) + "\n", "utf-8")
+            archive.writestr(info, content)
+    return written.getvalue()
+
+
+def _beside() -> dict[str, bytes]:
+    """What stands beside the cases, so that the zip is whole without this project."""
+    clauses = {name: clause.text for name, clause in sorted(read_clauses().items())}
+    files = {
+        "README.txt": _README.read_bytes(),
+        "clauses.json": (json.dumps(clauses, ensure_ascii=False, indent=1) + "\n").encode("utf-8"),
+        SCHEMA_FILE.name: SCHEMA_FILE.read_bytes(),
+    }
+    license_file = find_license()
+    return files if license_file is None else {**files, _LICENSE: license_file.read_bytes()}
+
+
+def find_license() -> Path | None:
+    """The license of the project: at the root of a checkout, or in what is known of the installed package."""
+    beside = Path(__file__).parents[2]
+    if beside.name == "conformance" and (beside.parent / _LICENSE).is_file():
+        return beside.parent / _LICENSE
+    try:
+        known = importlib.metadata.files("eurdf") or []
+    except importlib.metadata.PackageNotFoundError:
+        return None
+    found = (Path(str(path.locate())) for path in known if path.name == _LICENSE and ".dist-info" in path.parts[0])
+    return next((path for path in found if path.is_file()), None)
 
 
 def manifest(cases: Iterable[CorpusCase]) -> dict[str, Any]:
@@ -69,14 +123,15 @@ def manifest(cases: Iterable[CorpusCase]) -> dict[str, Any]:
 
 def case_files(case: CorpusCase) -> Iterator[tuple[str, Path]]:
     """Every file of a case, by its name in the zip."""
-    yield f"{case.path}/{CASE_FILE}", case.folder / CASE_FILE
+    home = f"{_CASES}/{case.path}"
+    yield f"{home}/{CASE_FILE}", case.folder / CASE_FILE
     if isinstance(case.case, ValidCase):
-        yield f"{case.path}/{EXPECTED_FILE}", case.folder / EXPECTED_FILE
+        yield f"{home}/{EXPECTED_FILE}", case.folder / EXPECTED_FILE
     for name, path in _robot_files(case):
         if path.is_file():
-            yield f"{case.path}/{name}", path
+            yield f"{home}/{name}", path
         elif path.is_dir():  # a fault of its own: a folder where a file should be
-            yield from ((f"{case.path}/{name}/{each.name}", each) for each in path.iterdir())
+            yield from ((f"{home}/{name}/{each.name}", each) for each in path.iterdir())
 
 
 def _robot_files(case: CorpusCase) -> list[tuple[str, Path]]:
@@ -93,7 +148,65 @@ def _content(path: Path) -> str | dict[str, str] | None:
         return {"base64": base64.b64encode(content).decode("ascii")}
 
 
+def _write_together(files: Mapping[Path, bytes]) -> None:
+    """Write files, all or none: each takes its name only when all are on the disk."""
+    scratch = {path: path.with_name(f".{path.name}.{os.getpid()}.tmp") for path in files}
+    try:
+        for path, content in files.items():
+            if path.is_dir():
+                raise IsADirectoryError(21, "it is a folder", str(path))
+            scratch[path].write_bytes(content)
+        for path in files:
+            scratch[path].replace(path)
+    finally:
+        for path in scratch.values():
+            path.unlink(missing_ok=True)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Write the two files, and say so.
+
+    Returns:
+        0 where they are written, 2 where they are not.
+    """
+    parser = argparse.ArgumentParser(
+        prog="python -m eurdf_conformance.corpus.archive",
+        description=f"Write all cases of the suite into a folder: {NAME}.zip, with a README.txt in it, and"
+        f" {NAME}.json, the same as one JSON value.",
+        epilog="Exit codes: 0 written, 2 not written.",
+    )
+    parser.add_argument("out", metavar="OUT", type=Path, help="the folder; it is made where it is not there")
+    parser.add_argument("--force", action="store_true", help="replace the two files if they are there already")
+    options = parser.parse_args(arguments)
+    refusal = None
+    try:
+        refusal = _refusal(options.out, options.force)
+        if refusal is None:
+            cases = read_cases()
+            write_archive(options.out, cases)
+    except OSError as error:
+        refusal = f"cannot write '{error.filename or options.out}': {error.strerror or error}"
+    except NotACase as error:
+        refusal = str(error)
+    if refusal is not None:
+        sys.stderr.write(f"{parser.prog}: {refusal}\n")
+        return 2
+    archive, plain = archive_paths(options.out)
+    sys.stdout.write(f"{archive}: {len(cases)} cases\n{plain}: the same as one JSON value\n")
+    if find_license() is None:
+        sys.stderr.write(f"{archive}: without the license, which was not found; it is BSD-3-Clause\n")
+    return 0
+
+
+def _refusal(folder: Path, force: bool) -> str | None:
+    """Why nothing is to be written there."""
+    if folder.exists() and not folder.is_dir():
+        return f"'{folder}' is a file, and is to be a folder"
+    there = [path for path in archive_paths(folder) if path.exists()]
+    if there and not force:
+        return f"'{there[0]}' exists already; --force replaces it"
+    return None
+
+
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
-        sys.exit("usage: python -m eurdf_conformance.corpus.archive OUT")
-    write_archive(Path(sys.argv[1]), read_cases())
+    sys.exit(main())

@@ -5,8 +5,9 @@ Its docstring says what is broken, and its decorator which clause. Each is a rea
 ``--parser=eurdf_conformance.mutants:angular_rows_first``; `matrix` writes down which cases and properties catch it, of
 which only those count that cite its clause.
 
-How they are broken: those of `accepting` and `silent` lack the rule of one diagnostic each, those of `refusing` have a
-rule too many; the other modules, by topic, misread, with `deviation` and `of_the_reference` for their tools.
+How they are broken: those of `accepting` and `silent` lack the rule of one diagnostic each, and the former build no
+robot of what they accept, as those of `going_on` do; those of `refusing` have a rule too many; the other modules, by
+topic, misread, with `deviation` and `of_the_reference` for their tools.
 """
 
 from eurdf_conformance.mutants.catalogue import MUTANTS

@@ -11,7 +11,7 @@ from eurdf_conformance.adapters.reference import Reference
 from eurdf_conformance.mutants.deviation import Deviation, around, instead
 from eurdf_conformance.mutants.mutant import mutant
 from eurdf_conformance.mutants.of_the_reference import canonical, canonical_joints
-from eurdf_conformance.protocol.message import CanonicalRobot
+from eurdf_conformance.protocol.message import CanonicalJoint, CanonicalRobot
 
 
 @mutant("EU-CAN-001")
@@ -70,6 +70,21 @@ def parent_and_child_swapped() -> Deviation:
 def mimics_are_not_said() -> Deviation:
     """That a joint mimics is not said."""
     return canonical_joints(lambda joint: {"mimic": None})
+
+
+@mutant("EU-CAN-001")
+def universal_joints_are_two_hinges() -> Deviation:
+    """A universal joint is said as two revolute ones, as in MJCF."""
+
+    def hinge(joint: CanonicalJoint, half: int) -> CanonicalJoint:
+        per_axis = ("lower", "upper", "velocity", "effort", "damping", "friction", "armature")
+        own = {key: getattr(joint, key)[half : half + 1] for key in per_axis}
+        return joint.model_copy(update={**own, "name": f"{joint.name}_{half + 1}", "type": "revolute"})
+
+    def hinges(joint: CanonicalJoint) -> list[CanonicalJoint]:
+        return [hinge(joint, 0), hinge(joint, 1)] if joint.type == "universal" else [joint]
+
+    return canonical(lambda robot: {"joints": [each for joint in robot.joints for each in hinges(joint)]})
 
 
 @mutant("EU-CAN-001")

@@ -10,12 +10,14 @@ import numpy as np
 import pinocchio as pin
 
 from eurdf.kinematics import residual
-from eurdf.mechanism.mechanism import Closure
+from eurdf.mechanism.mechanism import Anchor, Closure, Mechanism
+from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.placement import placement_of
 from eurdf_conformance.adapters.reference_values import Quantities
-from eurdf_conformance.mutants.deviation import Deviation, around
+from eurdf_conformance.mutants.deviation import Deviation, around, result
 from eurdf_conformance.mutants.mutant import mutant
 from eurdf_conformance.mutants.of_the_reference import mechanism, while_evaluating
+from eurdf_conformance.protocol.message import Jacobian
 
 
 def _rows(change: Callable[[Any], Any], *, spatial: bool) -> Deviation:
@@ -116,6 +118,48 @@ def closures_6d_dropped() -> Deviation:
     return mechanism(lambda robot: replace(robot, closures=tuple(each for each in robot.closures if each.type == "3d")))
 
 
+@mutant("EU-CLO-009")
+def closures_3d_dropped() -> Deviation:
+    """A 3d closure is said, but has neither residual nor rows in K; Drake drops MuJoCo's connect of two sites."""
+
+    def by_closure(original: Any, self: Quantities, rows: Any) -> dict[str, Any]:
+        kept = {closure.name for closure in self.robot.mechanism.closures if closure.type == "6d"}
+        return {name: rows for name, rows in original(self, rows).items() if name in kept}
+
+    return around(Quantities, "_by_closure", by_closure)
+
+
+@mutant("EU-CLO-009")
+def closures_3d_between_points() -> Deviation:
+    """The two frames of a 3d closure are points, seen along the axes of their links, as in Drake."""
+
+    def point(anchor: Anchor) -> Anchor:
+        return replace(anchor, pose=Pose(anchor.pose.xyz))
+
+    def pointed(closure: Closure) -> Closure:
+        return closure if closure.type == "6d" else replace(closure, a=point(closure.a), b=point(closure.b))
+
+    return mechanism(lambda robot: replace(robot, closures=tuple(map(pointed, robot.closures))))
+
+
+@mutant("EU-CLO-009")
+def frame_b_where_a_is_at_neutral() -> Deviation:
+    """Of a closure frame A alone is read: B is where A is at neutral, as for MuJoCo's connect at an anchor."""
+
+    def anchored(robot: Mechanism) -> Mechanism:
+        at = {robot.bodies[0].name: Pose()}
+        for joint in robot.joints:
+            at[joint.child] = at[joint.parent] * joint.placement * joint.offset
+
+        def on_a(closure: Closure) -> Closure:
+            a, b = closure.a, closure.b
+            return replace(closure, b=replace(b, pose=at[b.body].inverse() * at[a.body] * a.pose))
+
+        return replace(robot, closures=tuple(map(on_a, robot.closures)))
+
+    return mechanism(anchored)
+
+
 @mutant("EU-CLO-008")
 def all_closures_3d() -> Deviation:
     """Every closure is 3d."""
@@ -170,3 +214,15 @@ def one_of_two_followers_forgotten() -> Deviation:
 def sign_of_k() -> Deviation:
     """K has the other sign than the residual."""
     return _loops(lambda loop: replace(loop, signs=-loop.signs))
+
+
+@mutant("EU-CLO-010")
+def rows_of_zeros_left_out() -> Deviation:
+    """K lacks the rows that are 0, such as those by which a planar loop that is closed in 6d is redundant."""
+
+    def jacobian(said: Jacobian) -> Jacobian:
+        return said.model_copy(
+            update={"rows": {name: [row for row in rows if np.any(row)] for name, rows in said.rows.items()}}
+        )
+
+    return result(Quantities, "jacobian", jacobian)

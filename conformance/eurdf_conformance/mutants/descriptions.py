@@ -17,7 +17,7 @@ from eurdf_conformance.mutants.deviation import Deviation, around, instead
 from eurdf_conformance.mutants.mutant import mutant
 from eurdf_conformance.mutants.of_the_reference import canonical, data_of_version2, mechanism, said_in_version2
 
-version_is_missing_and_guessed = accepting("missing-key", "EU-VER-003", "version_is_missing_and_guessed")
+accepts_missing_version = accepting("missing-key", "EU-VER-003", "accepts_missing_version")
 
 
 def _each(value: Any, change: Any) -> Any:

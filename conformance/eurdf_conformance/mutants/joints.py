@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 from typing import Any
 
+from eurdf.description import Description
 from eurdf.format.urdf import _Reader
 from eurdf.mechanism import replacement
 from eurdf.mechanism.joint_transform import joint_transform
@@ -15,7 +16,7 @@ from eurdf.pinocchio import joint_model
 from eurdf_conformance.adapters import reference_values
 from eurdf_conformance.mutants.deviation import Deviation, around, result, together
 from eurdf_conformance.mutants.mutant import mutant
-from eurdf_conformance.mutants.of_the_reference import coordinates, joints
+from eurdf_conformance.mutants.of_the_reference import coordinates, described, joints
 
 
 @mutant("EU-JNT-015")
@@ -130,6 +131,18 @@ def locked_in_the_middle() -> Deviation:
 def locked_on_its_parent() -> Deviation:
     """What a locked joint carries is put where its parent is."""
     return result(replacement, "fixed", lambda joint: replace(joint, placement=type(joint.placement)()))
+
+
+@mutant("EU-JNT-019")
+def closures_lost_by_locking() -> Deviation:
+    """Where the description locks a joint, closures are lost, as by Pinocchio's buildReducedModel."""
+
+    def reduced(read: Description) -> Description:
+        assert read.mechanism is not None
+        locks = read.extension is not None and any(entry.type == "fixed" for entry in read.extension.joints)
+        return replace(read, mechanism=replace(read.mechanism, closures=())) if locks else read
+
+    return described(reduced)
 
 
 @mutant("EU-JNT-025")

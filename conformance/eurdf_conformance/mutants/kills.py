@@ -5,10 +5,12 @@ from __future__ import annotations
 import shlex
 import sys
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from eurdf_conformance.adapters.reference import Reference
+from eurdf_conformance.corpus.protocol_rule import RULES, ProtocolRule
 from eurdf_conformance.corpus.read import CorpusCase
 from eurdf_conformance.level import VERSIONS, Level, Version
 from eurdf_conformance.mutants.mutant import Mutant
@@ -21,11 +23,10 @@ from eurdf_conformance.runner.session import Session
 from eurdf_conformance.suite.asking import all_cases
 from eurdf_conformance.suite.conversation import Conversation
 from eurdf_conformance.suite.in_process import InProcess
-from eurdf_conformance.suite.item import protocol_items
+from eurdf_conformance.suite.item import ProtocolItem, protocol_items
 from eurdf_conformance.suite.judge import judge
 from eurdf_conformance.suite.protocol_check import Asked, check
 from eurdf_conformance.suite.smoke import SMOKE, smoke_case
-from eurdf_conformance.verdict.result import Item
 from eurdf_conformance.verdict.verdict import Verdict
 
 #: Of the frozen examples of a property so many are tried on a mutant: the suite tries all.
@@ -38,8 +39,8 @@ def kills(mutant: Mutant) -> list[str]:
     Such an item is one that the reference passes; else it would catch anything.
     """
     if mutant.as_process:
-        return list(_of_the_protocol(mutant, in_process=False))
-    return [*_of_the_protocol(mutant, in_process=True), *_by_cases(mutant), *_by_properties(mutant)]
+        return list(_by_protocol(mutant))
+    return [*_by_protocol(mutant), *_by_cases(mutant), *_by_properties(mutant)]
 
 
 def _by_cases(mutant: Mutant) -> Iterator[str]:
@@ -61,32 +62,34 @@ def _by_properties(mutant: Mutant) -> Iterator[str]:
                 yield f"properties/{law.name}-{version}/{level}"
 
 
-def _of_the_protocol(mutant: Mutant, *, in_process: bool) -> Iterator[str]:
-    """Rules of the protocol; in this process, only what is answered to the descriptions that they ask about."""
-    for found in protocol_items():
-        if mutant.clause not in found.rule.clauses:
-            continue
-        if not in_process and found.item.version != VERSIONS[-1]:
-            continue  # processes take their time, and the protocol is the same
-        three = SMOKE[found.item.version]
-        valid, invalid = smoke_case(all_cases(), three.valid), smoke_case(all_cases(), three.invalid)
-        if in_process:
-            conversation = Conversation(InProcess(mutant))
-            verdicts = [judge(case, Level.ACCEPT, conversation).verdict for case in (valid, invalid, valid)]
-            verdict = next((each for each in verdicts if each != Verdict.PASSED), Verdict.PASSED)
-        else:
-            with Session(_command(mutant)) as session:
-                verdict = check(found.rule, Asked(session, lambda: Session(_command(mutant)), valid, invalid)).verdict
-        if verdict in mutant.caught_by:
-            yield _name(found.item)
+def _by_protocol(mutant: Mutant) -> Iterator[str]:
+    """Rules of the protocol, put to a process as the suite does; of one version, for it takes its time."""
+    asked_for = [found for found in _protocol_items() if mutant.clause in found.rule.clauses]
+    if not asked_for:
+        return
+    with _asking(_parser(mutant)) as asked:
+        for found in asked_for:
+            if check(found.rule, asked).verdict in mutant.caught_by and _REFERENCE.passes_rule(found.rule):
+                yield f"{found.item.id}/{found.item.level}"
 
 
-def _name(item: Item) -> str:
-    return f"{item.id}/{item.level}"
+def _protocol_items() -> list[ProtocolItem]:
+    return [found for found in protocol_items() if found.item.version == VERSIONS[-1]]
 
 
-def _command(mutant: Mutant) -> str:
-    return "cmd:" + shlex.join([sys.executable, "-m", "eurdf_conformance.mutants", mutant.name])
+@contextmanager
+def _asking(parser: str) -> Iterator[Asked]:
+    """A session with a reader, and the cases that the rules of the protocol are about."""
+    three = SMOKE[VERSIONS[-1]]
+    valid, invalid = (smoke_case(all_cases(), case_id) for case_id in (three.valid, three.invalid))
+    with Session(parser) as session:
+        yield Asked(session, lambda: Session(parser), valid, invalid)
+
+
+def _parser(mutant: Mutant) -> str:
+    if mutant.as_process:
+        return "cmd:" + shlex.join([sys.executable, "-m", "eurdf_conformance.mutants", mutant.name])
+    return f"eurdf_conformance.mutants:{mutant.name}"
 
 
 def _try(law: Law, level: Level, version: Version, reader: ReaderObject) -> Verdict:
@@ -106,12 +109,19 @@ class _Reference:
     def __init__(self) -> None:
         self._conversation = Conversation(InProcess(Reference()))
         self._known: dict[tuple[str, ...], bool] = {}
+        self._kept: set[ProtocolRule] | None = None
 
     def passes_case(self, case: CorpusCase, level: Level) -> bool:
         key = case.path, level
         if key not in self._known:
             self._known[key] = judge(case, level, self._conversation).verdict == Verdict.PASSED
         return self._known[key]
+
+    def passes_rule(self, rule: ProtocolRule) -> bool:
+        if self._kept is None:
+            with _asking("eurdf_conformance.adapters.reference:READER") as asked:
+                self._kept = {each for each in RULES if check(each, asked).verdict == Verdict.PASSED}
+        return rule in self._kept
 
     def passes_law(self, law: Law, level: Level, version: Version) -> bool:
         key = law.name, level, version

@@ -8,6 +8,7 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 from eurdf_conformance.corpus.clause import read_clauses
+from eurdf_conformance.level import VERSIONS
 from eurdf_conformance.mutants.catalogue import MUTANTS
 from eurdf_conformance.mutants.kills import EXAMPLES, kills
 from eurdf_conformance.mutants.mutant import Mutant
@@ -27,7 +28,8 @@ case or a property that cites that clause, at its level, and that the reference 
 tests.
 
 A case is named by topic, id and level, a property by name, version and level. A row says how many catch a mutant, and
-names the first {_NAMED}. Of a property {EXAMPLES} examples are tried; the suite tries more.
+names the first {_NAMED}. Of a property {EXAMPLES} examples are tried; the suite tries more. Rules of the protocol are
+put to a process of the mutant's, as the suite does, for version {VERSIONS[-1]} alone.
 
 Written by `python -m eurdf_conformance.mutants.matrix`.
 """
@@ -58,7 +60,10 @@ def in_order() -> list[Mutant]:
 
 def _lines(caught: Mapping[str, Sequence[str]]) -> Iterator[str]:
     yield _HEAD
-    yield f"{len(MUTANTS)} mutants, {sum(not caught[name] for name in MUTANTS)} of which survive."
+    survive = sum(not caught[name] for name in MUTANTS)
+    only_accept = sum(mutant.only_accepts for mutant in MUTANTS.values())
+    yield f"{len(MUTANTS)} mutants, {survive} of which survive."
+    yield f"{only_accept} of them only accept what they should reject, and build no robot of it."
     yield ""
     yield "| clause | mutant | what is broken | caught by | which |"
     yield "| --- | --- | --- | --- | --- |"

@@ -26,6 +26,7 @@ class Mutant(Reference):
         level: The level at which it is to be caught, that of the clause.
         caught_by: The verdicts that count as catching it.
         as_process: Whether it is broken in how it speaks, which is seen only where it runs as a process of its own.
+        only_accepts: Whether all that it does is to accept, without a robot, what it should reject.
     """
 
     def __init__(
@@ -38,6 +39,7 @@ class Mutant(Reference):
         level: Level | None = None,
         caught_by: frozenset[Verdict] = _WRONG,
         as_process: bool = False,
+        only_accepts: bool = False,
     ) -> None:
         super().__init__()
         self.name = name
@@ -47,6 +49,7 @@ class Mutant(Reference):
         self.level = level or Level(read_clauses()[clause].level)
         self.caught_by = caught_by
         self.as_process = as_process
+        self.only_accepts = only_accepts
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
         """As the reference would, were it so broken."""
@@ -70,6 +73,7 @@ def mutant(
     level: Level | None = None,
     caught_by: frozenset[Verdict] = _WRONG,
     as_process: bool = False,
+    only_accepts: bool = False,
 ) -> Callable[[Callable[[], Deviation]], Mutant]:
     """Make a mutant of a function that returns its deviation; its name and docstring are the mutant's.
 
@@ -78,12 +82,20 @@ def mutant(
         level: The level at which it is to be caught, where that is not the one of the clause.
         caught_by: The verdicts that count as catching it.
         as_process: Whether it is broken in how it speaks.
+        only_accepts: Whether all that it does is to accept what it should reject.
     """
 
     def made(deviation: Callable[[], Deviation]) -> Mutant:
         breaks = " ".join((deviation.__doc__ or "").split())
         return Mutant(
-            deviation.__name__, clause, breaks, deviation, level=level, caught_by=caught_by, as_process=as_process
+            deviation.__name__,
+            clause,
+            breaks,
+            deviation,
+            level=level,
+            caught_by=caught_by,
+            as_process=as_process,
+            only_accepts=only_accepts,
         )
 
     return made

@@ -18,7 +18,7 @@ from eurdf_conformance.mutants.accepting import accepting
 from eurdf_conformance.mutants.deviation import Deviation, around, instead, result
 from eurdf_conformance.mutants.mutant import mutant
 
-entities_are_resolved = accepting("xml-doctype", "EU-SEC-002", "entities_are_resolved")
+accepts_entities = accepting("xml-doctype", "EU-SEC-002", "accepts_entities")
 
 
 def _mimic(change: Callable[[Mimic], Mimic]) -> Deviation:

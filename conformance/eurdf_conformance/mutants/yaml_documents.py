@@ -13,7 +13,7 @@ from eurdf_conformance.mutants.deviation import Deviation, around, instead
 from eurdf_conformance.mutants.mutant import mutant
 from eurdf_conformance.mutants.of_the_reference import refused
 
-python_tags_are_run = accepting("yaml-unknown-tag", "EU-SEC-001", "python_tags_are_run")
+accepts_python_tags = accepting("yaml-unknown-tag", "EU-SEC-001", "accepts_python_tags")
 
 
 def _begins(read: Description, mark: bytes) -> bool:

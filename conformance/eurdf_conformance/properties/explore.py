@@ -17,7 +17,7 @@ from eurdf_conformance.level import Level, Version
 from eurdf_conformance.properties.bench import Bench
 from eurdf_conformance.properties.culprit import culprit
 from eurdf_conformance.properties.example import Example
-from eurdf_conformance.properties.found_case import write_case
+from eurdf_conformance.properties.found_case import how_to_keep, write_case
 from eurdf_conformance.properties.law import LARGEST, Law
 from eurdf_conformance.properties.strategies.mechanisms import mechanisms
 from eurdf_conformance.properties.trying import try_example, with_log
@@ -50,13 +50,18 @@ def explore(law: Law, level: Level, trial: Trial, bench: Bench, folder: Path = E
     """
     found = search(law, level, trial.version, bench, trial.explore, trial.seed)
     if found is None:
-        return PASSED
+        drawn_from = f"{trial.explore} more mechanisms, drawn from seed {trial.seed}"
+        return with_log(PASSED, f"exploring has found nothing wrong on {drawn_from}, and no case is written")
     example, judgement = found
     # Once more, since the bench was asked about others meanwhile.
     again = try_example(law, level, trial.version, bench, example)
     case = write_case(law, culprit(bench, level), folder)
     told = replace(judgement, reason=f"on a mechanism found by exploring: {judgement.reason}")
-    log = [f"found by exploring from seed {trial.seed}, and written as a case: {case}"]
+    log = [
+        f"found by exploring from seed {trial.seed}: {judgement.verdict}: {judgement.reason}",
+        f"made small, and written as a case: {case}",
+        *how_to_keep(case),
+    ]
     log += ["asked again, the reader answers otherwise"] * (again != judgement)
     return with_log(told, *log)
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import hashlib
+import shlex
+from collections.abc import Iterator
 from pathlib import Path
 
 import yaml
@@ -11,7 +13,7 @@ from eurdf_conformance.corpus.case import CASE
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.expect import expect
 from eurdf_conformance.corpus.expected import EXPECTED_FILE, expected_text
-from eurdf_conformance.corpus.read import CASE_FILE, CorpusCase, case_folders
+from eurdf_conformance.corpus.read import CASE_FILE, CASES, CorpusCase, case_folders
 from eurdf_conformance.properties.asked import Asked
 from eurdf_conformance.properties.law import Law
 
@@ -51,6 +53,16 @@ def write_case(law: Law, asked: Asked, folder: Path) -> Path:
     expected = expect(CorpusCase(case, topic, home, home))
     (home / EXPECTED_FILE).write_text(expected_text(expected), encoding="utf-8")
     return home
+
+
+def how_to_keep(case: Path) -> Iterator[str]:
+    """What to do with a case that was written, one line each."""
+    here = Path.cwd()
+    topic = (CASES.relative_to(here) if CASES.is_relative_to(here) else CASES) / case.parent.name
+    yield "to keep it: look at its title and its clauses, move it to the others, and see what the lint says"
+    yield f"  {shlex.join(['mv', str(case), f'{topic}/'])}"
+    yield "  python -m eurdf_conformance.corpus.lint"
+    yield f"to run it alone: when it is there, the same command with -k {case.name}"
 
 
 def fresh_id(asked: Asked, taken: set[str]) -> str:

@@ -105,7 +105,9 @@ def add_options(parser: pytest.Parser) -> None:
     )
     # For a program that has seen already that the reader starts.
     group.addoption("--parser-starts", action="store_true", help=argparse.SUPPRESS)
-    group.addoption("--smoke", action="store_true", help="three cases only, to see whether the parser is plugged in")
+    group.addoption(
+        "--smoke", action="store_true", help="three cases a version, to see whether the parser is plugged in"
+    )
 
 
 def read_options(config: pytest.Config) -> Options:
@@ -134,6 +136,8 @@ def read_options(config: pytest.Config) -> Options:
     if explore and said("--explore-seed") is None:
         # Set where workers see it: all of them are to draw from one seed.
         config.option.explore_seed = random.SystemRandom().randrange(10**9)
+    if said("--smoke", False) and (known is not None or explore):
+        raise pytest.UsageError("--smoke goes with neither --known-failures nor --explore")
     version = said("--format-version")
     parser = said("--parser", REFERENCE)
     if not parser.strip():

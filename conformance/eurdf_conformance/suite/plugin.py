@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import pytest
 
 from eurdf_conformance.certificate.issue import issue
-from eurdf_conformance.certificate.write import write_certificate
+from eurdf_conformance.certificate.write import NoRoom, make_room, write_certificate
 from eurdf_conformance.protocol.message import Started
 from eurdf_conformance.runner.session import NotStarted
 from eurdf_conformance.suite.asking import STARTED, Asking, all_cases, greet, new_session
@@ -44,12 +44,17 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
-    """Where the reader does not start, say so once; the first cases to try say it in their own way."""
+    """What makes the run useless is said once, before it; the first cases to try have their own words for it."""
     options, said = options_of(session.config), session.config.option
-    if hasattr(session.config, "workerinput") or options.smoke or said.parser_starts or said.collectonly:
+    if hasattr(session.config, "workerinput") or said.collectonly:
         return
     try:
-        greet(options)
+        if options.certificate is not None:
+            make_room(options.certificate)
+        if not (options.smoke or said.parser_starts):
+            greet(options)
+    except NoRoom as reason:
+        raise pytest.UsageError(str(reason)) from None
     except NotStarted as refusal:
         raise pytest.UsageError(f"'{options.parser}' could not be started: {refusal}") from None
 

@@ -21,9 +21,11 @@ class Three:
     evaluated: str
 
 
+#: Plain ones, that the smallest of readers can do: a loop that one closure closes; a fault that no reader overlooks,
+#: XML that is none or a name of nothing; and a tree.
 SMOKE: dict[Version, Three] = {
-    "1": Three(valid="b5f0ja", invalid="n8t4uq", evaluated="b5f0ja"),
-    "2": Three(valid="tq4m8z", invalid="k9b2yf", evaluated="tq4m8z"),
+    "1": Three(valid="p893ru", invalid="joac77", evaluated="zrarhs"),
+    "2": Three(valid="tq4m8z", invalid="k9b2yf", evaluated="bqswnu"),
 }
 
 
@@ -67,6 +69,6 @@ def _part(name: str, right: str, wrong: list[Result]) -> Iterator[str]:
         return
     yield f"your {name} is wrong:"
     for result in wrong:
-        first = result.differences[0] if result.differences else result.verdict.value
-        yield f"  {result.item.id}/{result.item.level}: {first}"
+        why = f": {result.differences[0]}" if result.differences else ""
+        yield f"  {result.item.id}/{result.item.level}: {result.verdict}{why}"
         yield f"    {result.reproduce}"

@@ -31,6 +31,13 @@ def show(certificate: Certificate) -> None:
     more = len(certificate.failures) - _SHOWN
     if more > 0:
         lines.append([(f"{more} more did not pass; --certificate DIR writes a page that shows all", "dim")])
+    if certificate.scope.explore and any(failure.id.startswith("properties/") for failure in certificate.failures):
+        from eurdf_conformance.properties.explore import EXPLORED
+
+        seed = certificate.scope.explore_seed
+        lines.append(
+            [(f"what exploring from seed {seed} has found, if anything, is in {EXPLORED}/, a case each", "dim")]
+        )
     lines += [[("not as the known failures say: ", "red"), (visible(each), "")] for each in certificate.unexpected]
     if lines:
         write_lines([*lines, []], sys.stdout)

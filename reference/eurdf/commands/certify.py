@@ -76,6 +76,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--parser-start-timeout", metavar="S", type=_seconds, help="time allowed to start (default: 30 s)"
     )
     parser.add_argument("-o", "--output", metavar="FILE", type=Path, help="where --compare writes its page")
+    parser.add_argument("--force", action="store_true", help="replace files that are there already")
     parser.add_argument("--json", action="store_true", help="write one JSON object")
     parser.set_defaults(run=run)
 
@@ -89,11 +90,15 @@ def run(args: argparse.Namespace) -> int:
     try:
         if args.compare is not None:
             _refuse("--compare", args, "parser", *_OF_A_RUN, *_OF_ANY_RUN)
-            return _compare(args.compare, args.output)
+            return _compare(args.compare, args.output, args.force)
         if args.verify is not None:
-            _refuse("--verify", args, "output", *_OF_A_RUN)
+            _refuse("--verify", args, "output", "force", *_OF_A_RUN)
             return _verify(args)
         _refuse("--parser", args, "output")
+        if args.smoke:
+            _refuse("--smoke", args, "known_failures", "explore", "explore_seed")
+        if args.force and args.certificate is None:
+            raise CannotRun("--force goes with --certificate, or with --compare and -o")
         if args.parser is None:
             raise CannotRun("--parser says which parser to certify, such as --parser='cmd:./my_parser'")
         return _certify(args)
@@ -113,7 +118,12 @@ def _certify(args: argparse.Namespace) -> int:
         read_known_failures(args.known_failures)
     if args.certificate is not None:
         # Where nothing can be written, that is told before the run.
-        args.certificate.mkdir(parents=True, exist_ok=True)
+        from eurdf_conformance.certificate.write import NoRoom, make_room
+
+        try:
+            make_room(args.certificate, force=args.force)
+        except NoRoom as reason:
+            raise CannotRun(f"{reason}; --force replaces it" if args.certificate.is_dir() else str(reason)) from reason
     certificate = _run_suite(_suite_run(args, args.parser))
     if args.certificate is not None:
         from eurdf_conformance.certificate.write import write_certificate
@@ -149,14 +159,14 @@ def _verify(args: argparse.Namespace) -> int:
     return 1 if found else 0
 
 
-def _compare(paths: Sequence[Path], output: Path | None) -> int:
+def _compare(paths: Sequence[Path], output: Path | None, force: bool) -> int:
     from eurdf.commands.output_file import write_new
     from eurdf_conformance.certificate.certificate import read_certificate
     from eurdf_conformance.certificate.comparison_page import comparison_page
 
     if output is None:
         raise CannotRun("-o says where the page is written")
-    write_new(output, comparison_page([read_certificate(path) for path in paths]), force=True)
+    write_new(output, comparison_page([read_certificate(path) for path in paths]), force)
     return 0
 
 
