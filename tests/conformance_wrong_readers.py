@@ -14,6 +14,7 @@ import yaml
 
 from conformance_oracle_reader import OracleReader
 from eurdf_conformance.oracle import OracleRobot
+from eurdf_conformance.oracle.logarithm import log6_derivative
 from eurdf_conformance.protocol.message import Accepted, Jacobian, MassMatrix, Quantity, Rejected, Values
 from eurdf_conformance.protocol.reply import accepted, rejected
 
@@ -223,6 +224,14 @@ class TwistForDerivative(WrongReader):
             return K * (1.0 + np.linalg.norm(r)) if len(r) == 6 else K - np.linalg.norm(r)
 
         return with_k(values, change)
+
+
+class TwistOf6d(WrongReader):
+    """Takes the relative velocity of B, seen from A, for the derivative of the residual of 6d closures."""
+
+    def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
+        r = robot.residuals(q)
+        return with_k(values, lambda name, K: np.linalg.solve(log6_derivative(r[name]), K) if len(K) == 6 else K)
 
 
 class LosesARow(WrongReader):

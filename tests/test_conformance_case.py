@@ -1,6 +1,9 @@
 """The cases: what they say, how they are read, and that the reference answers each as it says."""
 
+import ast
 import json
+import posixpath
+import re
 import sys
 import zipfile
 from collections.abc import Callable
@@ -14,15 +17,20 @@ from pydantic import ValidationError
 from eurdf_conformance.adapters.reference import READER
 from eurdf_conformance.corpus import archive, expect, read
 from eurdf_conformance.corpus.case import CASE, SCHEMA_FILE, InvalidCase, ValidCase, case_schema, schema_text
+from eurdf_conformance.corpus.clause import read_clauses
+from eurdf_conformance.corpus.coverage import missing
 from eurdf_conformance.corpus.expect import stale
 from eurdf_conformance.corpus.expected import EXPECTED_FILE, Expected, expected_text
 from eurdf_conformance.corpus.lint import lint
+from eurdf_conformance.corpus.protocol_rule import OF_RUNNERS, RULES
 from eurdf_conformance.corpus.read import CASE_FILE, CorpusCase, NotACase, collection_folder, read_case, read_cases
+from eurdf_conformance.level import Level
 from eurdf_conformance.suite.conversation import Conversation
 from eurdf_conformance.suite.in_process import InProcess
 from eurdf_conformance.suite.judge import judge
 from eurdf_conformance.verdict.verdict import Verdict
 
+ROOT = Path(__file__).parents[1]
 CASES = read_cases()
 VALID = [case for case in CASES if isinstance(case.case, ValidCase)]
 
@@ -56,14 +64,38 @@ def test_an_expectation_that_is_written_is_read_back_the_same() -> None:
         assert again == case.expected
 
 
-def test_no_case_and_nothing_that_judges_it_imports_the_reference() -> None:
+def test_every_clause_that_a_case_can_test_has_its_cases() -> None:
+    elsewhere = {clause for rule in RULES for clause in rule.clauses} | set(OF_RUNNERS)
+    assert list(missing([case.case for case in CASES], read_clauses(), elsewhere)) == []
+
+
+def imports_the_reference(text: str) -> bool:
+    nodes = list(ast.walk(ast.parse(text)))
+    names = [alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names]
+    names += [node.module for node in nodes if isinstance(node, ast.ImportFrom) if node.module and not node.level]
+    return "eurdf" in {name.split(".")[0] for name in names}
+
+
+def test_only_the_adapters_of_the_reference_and_its_mutants_import_it() -> None:
     package = Path(read.__file__).parents[1]
-    for folder in ("corpus", "comparison", "oracle", "suite", "verdict", "runner", "protocol"):
-        for path in (package / folder).glob("*.py"):
-            text = path.read_text(encoding="utf-8")
-            assert "import eurdf\n" not in text, path
-            assert "from eurdf " not in text, path
-            assert "from eurdf." not in text, path
+    texts = {path.relative_to(package).as_posix(): path.read_text(encoding="utf-8") for path in package.rglob("*.py")}
+    importing = sorted(path for path, text in texts.items() if imports_the_reference(text))
+    assert "adapters/reference.py" in importing
+    assert [path for path in importing if not re.fullmatch(r"adapters/reference\w*\.py|mutants/.*", path)] == []
+
+
+@pytest.mark.parametrize(
+    ("text", "so"),
+    [
+        ("import eurdf", True),
+        ("import os, eurdf.mechanism as m", True),
+        ("from eurdf import load", True),
+        ("def f():\n    from eurdf.mechanism import joint_type", True),
+        ("import eurdf_conformance.oracle\nfrom eurdf_conformance import level\nfrom . import eurdf", False),
+    ],
+)
+def test_an_import_of_the_reference_is_seen_in_every_form(text: str, so: bool) -> None:
+    assert imports_the_reference(text) is so
 
 
 # One case
@@ -289,7 +321,70 @@ def test_the_archive_holds_every_file_and_has_the_same_bytes_whenever_it_is_writ
             for name, path in archive.case_files(case):
                 assert whole.read(name) == path.read_bytes()
                 names.remove(name)
-    assert not names
+        assert names == {"README.txt", "LICENSE", "clauses.json", "case.schema.json"}
+        assert json.loads(whole.read("clauses.json")) == {id_: each.text for id_, each in read_clauses().items()}
+        assert whole.read("LICENSE") == (ROOT / "LICENSE").read_bytes()
+
+
+def test_in_the_zip_a_case_leads_to_its_schema_and_the_readme_to_what_it_names(tmp_path: Path) -> None:
+    archive.write_archive(tmp_path, VALID[:3])
+    with zipfile.ZipFile(tmp_path / f"{archive.NAME}.zip") as whole:
+        for case in VALID[:3]:
+            name = f"cases/{case.path}/{CASE_FILE}"
+            link = whole.read(name).decode().splitlines()[0].partition("$schema=")[2]
+            schema = posixpath.normpath(posixpath.join(posixpath.dirname(name), link))
+            assert whole.read(schema) == SCHEMA_FILE.read_bytes()
+        readme = whole.read("README.txt").decode()
+        clauses = json.loads(whole.read("clauses.json"))
+        assert set(re.findall(r"EU-[A-Z]{3}-[0-9]{3}", readme)) <= clauses.keys()
+        assert set(re.findall(r"[\w.]+\.(?:json|yaml|urdf)", readme)) <= {Path(name).name for name in whole.namelist()}
+    assert all(re.search(rf"^  {level} ", readme, re.MULTILINE) for level in Level)
+
+
+def archived(*arguments: str | Path) -> int:
+    return archive.main(list(map(str, arguments)))
+
+
+def test_the_archive_says_what_it_writes_and_replaces_nothing_unasked(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "new" / "out"
+    assert archived(out) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        f"{out / archive.NAME}.zip: {len(CASES)} cases",
+        f"{out / archive.NAME}.json: the same as one JSON value",
+    ]
+    (out / f"{archive.NAME}.zip").unlink()
+    (out / f"{archive.NAME}.json").write_text("mine", encoding="utf-8")
+    assert archived(out) == 2
+    assert "exists already; --force replaces it" in capsys.readouterr().err
+    assert [path.read_text() for path in out.iterdir()] == ["mine"]
+    assert archived(out, "--force") == 0
+    assert len(list(out.iterdir())) == 2
+
+
+def test_an_archive_that_cannot_be_written_is_said_in_one_line_and_leaves_nothing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("file").write_text("mine", encoding="utf-8")
+    Path("out", f"{archive.NAME}.json").mkdir(parents=True)
+    for wrong in (["file"], ["file/out"], ["out"], ["out", "--force"]):
+        assert archived(*wrong) == 2
+        written = capsys.readouterr()
+        assert (written.out, written.err.count("\n")) == ("", 1)
+        assert not list(Path("out").glob("*.zip"))
+    with pytest.raises(SystemExit) as shown:
+        archived("--help")
+    assert shown.value.code == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "out"]
+
+
+def test_the_license_is_found_where_there_is_no_checkout(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(archive, "__file__", str(tmp_path / "eurdf_conformance" / "corpus" / "archive.py"))
+    found = archive.find_license()
+    assert found is not None
+    assert found.read_bytes() == (ROOT / "LICENSE").read_bytes()
 
 
 def test_the_manifest_says_every_case_with_the_texts_of_its_files(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from conformance_canonical import Read, number_at, numbers_in, restyled, robots, with_number
 from eurdf_conformance.comparison.canonical import canonical_differences
+from eurdf_conformance.comparison.coordinates import COORDINATES, neutral, same_coordinates
 from eurdf_conformance.comparison.difference import ABSENT, Difference
 from eurdf_conformance.comparison.half_turn import twin_residual, twin_rows
 from eurdf_conformance.comparison.issues import fault_differences, warning_differences
@@ -144,6 +145,14 @@ def test_coordinates_of_a_configuration(kind: str, one: Any, other: Any, same: b
     assert all(difference.pointer == "/configurations/q/j" for difference in found)
 
 
+@pytest.mark.parametrize("kind", COORDINATES)
+def test_coordinates_that_are_too_many_or_too_few_are_those_of_no_joint(kind: str) -> None:
+    assert same_coordinates(kind, neutral(kind), neutral(kind))
+    for wrong in ([], neutral(kind)[1:], [*neutral(kind), 0.0]):
+        assert not same_coordinates(kind, wrong, wrong)
+        assert not same_coordinates(kind, neutral(kind), wrong)
+
+
 def test_a_configuration_that_is_missing_is_told_though_it_be_all_neutral() -> None:
     (found,) = canonical_differences(robot([], configurations={"q": {}}), robot([]), BODIES)
     assert (found.pointer, found.expected, found.given) == ("/configurations/q", {}, ABSENT)
@@ -156,6 +165,7 @@ def test_in_the_users_own_data_true_is_not_one_and_order_of_a_list_counts() -> N
     assert canonical_differences(own({"k": [1, 2.0]}), own({"k": [1.0, 2]}), BODIES) == []
     for other in ({"k": [True, 2]}, {"k": [2, 1]}, {"k": [1]}, {"k": [1, 2], "l": None}, None, "12", math.inf, 10**400):
         assert canonical_differences(own({"k": [1, 2]}), own(other), BODIES)
+    assert canonical_differences(own(1), own(10**400), BODIES)
 
 
 def test_a_joint_that_stands_twice_is_a_difference() -> None:
@@ -180,6 +190,20 @@ def test_poses_within_a_hundred_millionth_of_the_robots_size_are_the_same() -> N
     (found,) = values_differences(at(0.0), at(1.1e-8), size=0.1)
     assert found.pointer == "/poses/tip/translation"
     assert values_differences(at(0.0), at(1.1e-8), size=2.0) == []
+
+
+def test_a_rotation_is_not_off_by_more_because_the_robot_is_large() -> None:
+    def at(angle: float, x: float) -> Values:
+        turned = [[math.cos(angle), -math.sin(angle), 0.0], [math.sin(angle), math.cos(angle), 0.0], [0.0, 0.0, 1.0]]
+        pose = {"tip": {"rotation": turned, "translation": [x, 0.0, 0.0]}}
+        rows = [[x], [x], [x], [angle], [angle], [angle]]
+        K = {"columns": [("j", 0)], "rows": {"pin": rows}}
+        return values(poses=pose, residuals={"pin": [x, x, x, angle, angle, angle]}, jacobian=K)
+
+    assert values_differences(at(0.0, 0.0), at(0.9e-8, 0.9e-5), size=1000.0) == []
+    found = values_differences(at(0.0, 0.0), at(1.1e-8, 0.9e-5), size=1000.0)
+    assert [each.pointer for each in found] == ["/poses/tip/rotation", "/residuals/pin", "/jacobian/rows/pin/3/0"]
+    assert all("off by 1.1e-08, allowed 1.0e-08" in each.why for each in found)
 
 
 def test_a_quantity_or_a_frame_that_is_missing_is_a_difference() -> None:

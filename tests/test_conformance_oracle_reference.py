@@ -14,17 +14,21 @@ from hypothesis import given, settings
 
 import eurdf
 from conformance_mechanisms import mechanisms
+from eurdf_conformance.adapters.reference import Reference
 from eurdf_conformance.adapters.reference_canonical import canonical_robot
 from eurdf_conformance.adapters.reference_values import Quantities
 from eurdf_conformance.comparison.canonical import canonical_differences
 from eurdf_conformance.comparison.half_turn import is_half_turn
+from eurdf_conformance.corpus.case import ValidCase
+from eurdf_conformance.corpus.read import CorpusCase, read_cases
 from eurdf_conformance.oracle import OracleRobot, read
-from eurdf_conformance.protocol.message import Quantity, Values
+from eurdf_conformance.protocol.message import Accepted, Quantity, Values
 from wild import FACTS, WILD
 
 QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
 ROBOTS = Path(__file__).parents[1] / "robots"
 COLLECTION = sorted(ROBOTS.glob("*/robot*.yaml")) + [WILD / name / "robot.yaml" for name in FACTS]
+VALID = [case for case in read_cases() if isinstance(case.case, ValidCase)]
 CLOSING = [path for path in COLLECTION if path.parent.name not in FACTS or FACTS[path.parent.name]["closes"]]
 
 #: Relative to the size of the robot, or to the largest entry of M.
@@ -75,6 +79,21 @@ def assert_close(one: Any, other: Any, near: float) -> None:
 @pytest.mark.parametrize("path", COLLECTION, ids=lambda path: f"{path.parent.name}-{path.stem}")
 def test_they_agree_on_a_robot_of_the_collection_and_as_published(path: Path) -> None:
     assert_agreement(read(path, path.parent / "robot.urdf"), eurdf.load(path, geometry=False))
+
+
+@pytest.mark.parametrize("case", VALID, ids=lambda case: case.path)
+def test_they_agree_on_a_valid_case_ten_times_nearer_than_the_clauses_ask_of_a_reader(case: CorpusCase) -> None:
+    """At the configurations of the case, at those of its files, and at its neutral."""
+    assert isinstance(case.case, ValidCase)
+    oracle, reference = read(case.description, case.urdf), Reference()
+    answer = reference.load(case.description, case.urdf)
+    assert isinstance(answer, Accepted)
+    assert answer.robot is not None
+    assert canonical_differences(oracle.canonical(), answer.robot, oracle.bodies) == []
+    at = [*case.case.configurations, *oracle.description.configurations.values(), {}]
+    frames = [*(oracle.tree.links.keys() - oracle.tree.joint_frames.keys()), *case.case.frames]
+    for q, values in zip(at, reference.evaluate(at, frames, QUANTITIES), strict=True):
+        assert_values(oracle.evaluate(q, frames, QUANTITIES), values, NEAR * max(1.0, oracle.size(q)))
 
 
 @pytest.mark.parametrize("path", CLOSING, ids=lambda path: f"{path.parent.name}-{path.stem}")

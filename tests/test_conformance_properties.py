@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 
 import conformance_wrong_readers as wrong
 from conformance_oracle_reader import OracleReader
+from conformance_spoiled import Remembering, Spoiling, spoils
 from eurdf_conformance.comparison.coordinates import COORDINATES
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.level import VERSIONS, Level, Version
@@ -21,9 +23,10 @@ from eurdf_conformance.properties.document import configuration
 from eurdf_conformance.properties.example import FROZEN, frozen_examples, frozen_text
 from eurdf_conformance.properties.features import features
 from eurdf_conformance.properties.law import LARGEST, Law
+from eurdf_conformance.properties.mechanism import Mechanism
 from eurdf_conformance.properties.truth import truth
-from eurdf_conformance.properties.trying import try_frozen
-from eurdf_conformance.protocol.message import Unsupported
+from eurdf_conformance.properties.trying import try_example, try_frozen
+from eurdf_conformance.protocol.message import Accepted, Evaluated, Unsupported
 from eurdf_conformance.protocol.reply import unsupported
 from eurdf_conformance.runner.outcome import Crashed, Outcome
 from eurdf_conformance.suite.in_process import InProcess
@@ -169,9 +172,53 @@ def test_a_crash_is_no_departure_from_a_law_but_a_crash(tmp_path: Path) -> None:
 
 def test_where_a_law_is_broken_the_files_are_told(tmp_path: Path) -> None:
     judgement = tried(law_of("frames"), KINEMATICS, "2", wrong.ForgetsInlineAngles(), tmp_path)
-    paths = [Path(line) for line in judgement.log.splitlines()]
+    lines = judgement.log.splitlines()
+    paths = [Path(line) for line in lines if not line.startswith("  ")]
+    assert all(line.startswith("  at configuration 0: {") for line in lines if line.startswith("  "))
     assert [path.name for path in paths] == ["robot.yaml", "robot.urdf"] * 2
     assert all(path.is_file() for path in paths)
+
+
+def has_both_kinds_of_closure(mechanism: Mechanism) -> bool:
+    return {closure.type for closure in mechanism.closures} == {"3d", "6d"}
+
+
+def test_where_a_3d_closure_is_open_the_k_of_a_6d_one_is_looked_at_all_the_same(tmp_path: Path) -> None:
+    law = replace(law_of("swapping"), applies=has_both_kinds_of_closure)
+    assert len(law.frozen("2")) >= 3
+    assert tried(law, KINEMATICS, "2", OracleReader(), tmp_path).verdict == Verdict.PASSED
+    (tmp_path / "twist").mkdir()
+    judgement = tried(law, KINEMATICS, "2", wrong.TwistOf6d(), tmp_path / "twist")
+    assert judgement.verdict == Verdict.FAILED
+    assert {each.pointer.split("/")[3] for each in judgement.differences} == {"jacobian"}
+
+
+# -- answers of any shape ---------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "found",
+    [found for found in PROPERTIES if found.level is not Level.ACCEPT],
+    ids=lambda found: f"{found.name}-{found.versions[0]}-{found.level}",
+)
+def test_whatever_the_schema_lets_a_reader_answer_a_law_holds_or_is_broken(found: Property, tmp_path: Path) -> None:
+    law, (version,) = law_of(found.name), found.versions
+    kind = Accepted if found.level is STRUCTURE else Evaluated
+    examples = law.frozen(version)
+    example = max(examples, key=lambda each: len(features(each.mechanism))) if kind is Accepted else examples[0]
+    right = Remembering()
+    assert try_example(law, found.level, version, Bench(right, tmp_path), example).verdict == Verdict.PASSED
+    verdicts = []
+    for spoil in spoils([answer for answer in right.said if isinstance(answer, kind)]):
+        for which in (None, 1):  # all of its answers, or the second, so that it does not fit the first
+            folder = tmp_path / f"spoiled {len(verdicts)}"
+            folder.mkdir()
+            reader = Spoiling(right, kind, spoil, which)
+            judgement = try_example(law, found.level, version, Bench(reader, folder), example)
+            assert judgement.verdict in (Verdict.PASSED, Verdict.FAILED), judgement
+            assert all(str(each) for each in judgement.differences)
+            verdicts.append(judgement.verdict)
+    assert Verdict.FAILED in verdicts
 
 
 # -- families ---------------------------------------------------------------------------------------------------------

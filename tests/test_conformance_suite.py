@@ -8,21 +8,25 @@ import subprocess
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from eurdf_conformance.corpus.case import ValidCase
 from eurdf_conformance.corpus.clause import read_clauses
+from eurdf_conformance.corpus.protocol_rule import GOES_ON
 from eurdf_conformance.corpus.read import CorpusCase, read_cases
-from eurdf_conformance.level import Level
+from eurdf_conformance.level import Level, Version
 from eurdf_conformance.protocol.message import (
     Accepted,
     Errored,
     Evaluated,
     Issue,
     Quantity,
+    Reader,
     Rejected,
     Skipped,
+    Started,
     Unsupported,
 )
 from eurdf_conformance.runner.outcome import (
@@ -35,13 +39,17 @@ from eurdf_conformance.runner.outcome import (
     Outcome,
     TimedOut,
 )
+from eurdf_conformance.runner.session import Session
+from eurdf_conformance.suite.asking import Asking
 from eurdf_conformance.suite.conversation import Conversation
 from eurdf_conformance.suite.failure_text import failure_text
 from eurdf_conformance.suite.item import case_items, planned_items
-from eurdf_conformance.suite.judge import judge
+from eurdf_conformance.suite.judge import Judgement, judge
 from eurdf_conformance.suite.options import Options
 from eurdf_conformance.suite.property import all_properties
+from eurdf_conformance.suite.protocol_check import Asked, check
 from eurdf_conformance.suite.smoke import SMOKE
+from eurdf_conformance.verdict.result import RESULT
 from eurdf_conformance.verdict.verdict import Verdict
 
 ROOT = Path(__file__).parents[1]
@@ -245,6 +253,37 @@ def test_every_clause_that_a_case_or_a_property_cites_is_tested_by_an_item() -> 
     cited = {clause for case in CASES.values() for clause in case.case.clauses}
     cited |= {clause for found in all_properties() for clause in found.clauses}
     assert cited <= {clause for item in planned_items(CASES.values()) for clause in item.clauses}
+
+
+class NoReader(Session):
+    """Started by its own word, and nothing else."""
+
+    @property
+    def started(self) -> Started:
+        claims: dict[Version, list[Level]] = {"2": list(Level)}
+        return Started(id=1, protocol="1.0", reader=Reader(name="r", version="1", language="Python"), claims=claims)
+
+
+def test_an_answer_that_breaks_the_suite_is_no_pass_and_is_kept() -> None:
+    asking, item = Asking(Options(), NoReader("cmd:nothing")), next(case_items([VALID])).item
+    asking.node = SimpleNamespace(user_properties=[])  # type: ignore[assignment]
+
+    def broken() -> Judgement:
+        raise KeyError("elbow")
+
+    with pytest.raises(pytest.fail.Exception, match="the suite itself broke on this answer, please tell us: KeyError"):
+        asking.settle(item, broken)
+    assert asking.node is not None
+    kept = dict(asking.node.user_properties)[RESULT]
+    assert isinstance(kept, dict)
+    assert kept["verdict"] == "failed"
+
+
+def test_of_the_protocol_the_files_are_named() -> None:
+    with Session("cmd:" + shlex.join([sys.executable, "-c", "print(1)"])) as session:
+        found = check(GOES_ON, Asked(session, lambda: session, VALID, INVALID))
+    assert found.verdict != Verdict.PASSED
+    assert {str(VALID.description), str(INVALID.urdf)} <= set(found.log.splitlines())
 
 
 # As pytest runs it

@@ -38,8 +38,11 @@ def has_quaternion(joint_type: str) -> bool:
 
 
 def same_coordinates(joint_type: str, expected: Sequence[float], given: Sequence[float]) -> bool:
-    """EU-CAN-005, step 5: q and −q are one rotation, and the angle of a continuous joint counts modulo 2π."""
-    if len(expected) != len(given):
+    """EU-CAN-005, step 5: q and −q are one rotation, and the angle of a continuous joint counts modulo 2π.
+
+    Coordinates that are too many or too few for a joint are the same as none.
+    """
+    if not len(expected) == len(given) == COORDINATES[joint_type]:
         return False
     if joint_type == "continuous":
         turn = math.remainder(given[0] - expected[0], math.tau) if math.isfinite(given[0] - expected[0]) else math.inf

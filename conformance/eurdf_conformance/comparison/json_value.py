@@ -54,4 +54,6 @@ def _same_scalar(expected: Any, given: Any) -> bool:
 
 def _is_number(value: Any) -> bool:
     # In JSON, 1 and 1.0 are one number, and true is none.
-    return isinstance(value, int | float) and not isinstance(value, bool) and not math.isnan(value)
+    if isinstance(value, float):
+        return not math.isnan(value)
+    return isinstance(value, int) and not isinstance(value, bool)

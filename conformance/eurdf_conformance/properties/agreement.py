@@ -18,7 +18,7 @@ from eurdf_conformance.protocol.message import Quantity
 
 
 def accepted(bench: Bench, example: Example, version: Version, level: Level) -> list[Difference]:
-    """EU-CNF-002."""
+    """EU-CNF-002, EU-CLO-011: what is right is accepted, redundant rows or not."""
     bench.load(ask(example.mechanism, version))
     return []
 

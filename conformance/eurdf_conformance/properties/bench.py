@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from eurdf_conformance.comparison.difference import Difference
 from eurdf_conformance.corpus.expect import DYNAMICS, KINEMATICS
 from eurdf_conformance.level import Level
 from eurdf_conformance.properties.asked import Asked
 from eurdf_conformance.properties.files import Files
-from eurdf_conformance.properties.shape import shaped
+from eurdf_conformance.properties.shape import WrongShape, shaped
 from eurdf_conformance.properties.truth import truth
 from eurdf_conformance.protocol.message import Accepted, CanonicalRobot, Evaluated, Quantity, Values
 from eurdf_conformance.runner.outcome import Answered, Outcome
@@ -76,7 +77,7 @@ class Bench:
         return self.load(asked).robot
 
     def evaluate(self, asked: Asked, quantities: Sequence[Quantity]) -> list[Values]:
-        """What it says at each configuration, the columns in the order of the oracle's.
+        """What it says at each configuration, and nothing but that, the columns in the order of the oracle's.
 
         Raises:
             NotAnswered: It does not accept the files, or does not say.
@@ -87,10 +88,12 @@ class Bench:
         if not (isinstance(outcome, Answered) and isinstance(outcome.answer, Evaluated)):
             self._accepted = None  # the process that held the robot may be gone
             raise NotAnswered(outcome)
+        given, count = outcome.answer.values, len(asked.configurations)
+        if len(given) != count:
+            raise WrongShape([Difference("/values", count, len(given), "how many configurations")])
         robot = truth(asked.mechanism, asked.version)
         return [
-            shaped(values, robot, asked.frames, quantities, f"/values/{index}")
-            for index, values in enumerate(outcome.answer.values)
+            shaped(values, robot, asked.frames, quantities, f"/values/{index}") for index, values in enumerate(given)
         ]
 
     def _write(self, files: Files) -> tuple[Path, Path]:

@@ -37,7 +37,7 @@ def derivative(bench: Bench, example: Example, version: Version, level: Level) -
         assert values.jacobian is not None
         for name, rows in values.jacobian.rows.items():
             r = np.array([each.residuals[name] for each in around if each.residuals is not None])
-            r = r.reshape(nv, len(_WEIGHTS), -1)
+            r = r.reshape(nv, len(_WEIGHTS), len(rows))
             expected = np.einsum("vsr,s->rv", r, np.array(list(_WEIGHTS.values()))) / _STEP
             where = f"/values/{index}/jacobian/rows{step(name)}"
             why = f"rows of K of closure '{name}', and differences of its residual"

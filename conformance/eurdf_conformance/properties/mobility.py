@@ -8,6 +8,7 @@ import numpy as np
 
 from eurdf_conformance.comparison.difference import Difference
 from eurdf_conformance.level import Level, Version
+from eurdf_conformance.properties.agreement import accepted
 from eurdf_conformance.properties.asked import ask
 from eurdf_conformance.properties.bench import Bench
 from eurdf_conformance.properties.counts import Counts, count_differences, counts_of
@@ -46,12 +47,6 @@ def family(name: str, title: str, member: Callable[[int], Example], sizes: Seque
         family=member,
         smallest=sizes[0],
     )
-
-
-def accepted(bench: Bench, example: Example, version: Version, level: Level) -> list[Difference]:
-    """EU-CLO-011: that rows are redundant is no fault."""
-    bench.load(ask(example.mechanism, version))
-    return []
 
 
 def redundant() -> list[Example]:

@@ -36,6 +36,14 @@ class Names:
         """That of a frame, whatever bears it."""
         return next(names[name] for names in (self.links, self.joints, self.frames) if name in names)
 
+    def link(self, name: str) -> str:
+        """That of a link; a name that is none of links stays."""
+        return self.links.get(name, name)
+
+    def closure(self, name: str) -> str:
+        """That of a closure; a name that is none of closures stays."""
+        return self.closures.get(name, name)
+
     def joint(self, name: str) -> str:
         """That of a joint; the root's keeps its own."""
         return self.joints.get(name, name)

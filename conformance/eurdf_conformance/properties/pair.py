@@ -35,14 +35,14 @@ class Pair:
         one: The first.
         other: The second, evaluated at as many configurations.
         carry: From the values of the first, at a configuration of some index, to what follows for the second.
-        seen: From the values of the second to the part of them that follows.
+        seen: From the values of the second, at that configuration, to the part of them that follows.
         carry_robot: From what was read of the first to what is to be read of the second.
     """
 
     one: Asked
     other: Asked
     carry: Callable[[Values, int], Values] = unchanged
-    seen: Callable[[Values], Values] = lambda values: values
+    seen: Callable[[Values, int], Values] = unchanged
     carry_robot: Callable[[CanonicalRobot], CanonicalRobot] = unchanged_robot
 
 
@@ -72,5 +72,5 @@ def _value_differences(bench: Bench, pair: Pair, level: Level) -> list[Differenc
     robot = truth(pair.one.mechanism, pair.one.version)
     found = []
     for index, (one, other, q) in enumerate(zip(before, after, pair.one.configurations, strict=True)):
-        found += same_values(pair.carry(one, index), pair.seen(other), robot.size(q), f"/values/{index}")
+        found += same_values(pair.carry(one, index), pair.seen(other, index), robot.size(q), f"/values/{index}")
     return found

@@ -9,8 +9,8 @@ from eurdf_conformance.comparison.difference import Difference
 from eurdf_conformance.comparison.values import values_differences
 from eurdf_conformance.protocol.message import Values
 
-#: How far apart two answers may be, of which each may be off by EU-PRO-008 or 009 and what is made of it by more.
-SLACK = 100.0
+#: EU-PRO-008, EU-PRO-009: each of two right answers may be off by 1e-8, and what is made of one of them by more.
+NEAR = 100.0 * TOLERANCE
 
 
 def same_values(expected: Values, given: Values, size: float, pointer: str) -> list[Difference]:
@@ -23,14 +23,14 @@ def same_values(expected: Values, given: Values, size: float, pointer: str) -> l
         pointer: Where they stand in the answer.
     """
     inert = {"mass_matrix": None, "mass": None}
-    found = values_differences(expected.model_copy(update=inert), given, SLACK * max(1.0, size))
+    found = values_differences(expected.model_copy(update=inert), given, size, NEAR)
     if expected.mass is not None:
         one = expected.mass
-        found += array_differences(one, given.mass, SLACK * TOLERANCE * abs(one), "/mass", "mass, kg")
+        found += array_differences(one, given.mass, NEAR * abs(one), "/mass", "mass, kg")
     if expected.mass_matrix is not None and given.mass_matrix is not None:
         M, other = np.array(expected.mass_matrix.matrix), np.array(given.mass_matrix.matrix)
         order = [given.mass_matrix.columns.index(column) for column in expected.mass_matrix.columns]
-        near = SLACK * TOLERANCE * float(np.abs(M).max(initial=0.0))
+        near = NEAR * float(np.abs(M).max(initial=0.0))
         other = other[np.ix_(order, order)] if order else other
         found += array_differences(M.tolist(), other.tolist(), near, "/mass_matrix/matrix", "M")
     return [each.within(pointer) for each in found]

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 from eurdf_conformance.comparison.array import name_differences
 from eurdf_conformance.comparison.columns import Column, column_differences
 from eurdf_conformance.comparison.difference import ABSENT, Difference, step
 from eurdf_conformance.oracle import OracleRobot
 from eurdf_conformance.protocol.message import Jacobian, MassMatrix, Quantity, Values
+
+#: m, kg, or whatever the unit: no number of a mechanism comes near, and of more the squares are no numbers.
+HUGE = 1e100
 
 
 class WrongShape(Exception):  # noqa: N818 - it says what the values are
@@ -26,7 +30,7 @@ class WrongShape(Exception):  # noqa: N818 - it says what the values are
 def shaped(
     values: Values, robot: OracleRobot, frames: Sequence[str], quantities: Sequence[Quantity], pointer: str
 ) -> Values:
-    """The same values, their columns in the order of the oracle's.
+    """The quantities that were asked for, their columns in the order of the oracle's.
 
     Args:
         values: As a reader gave them.
@@ -38,8 +42,10 @@ def shaped(
     Raises:
         WrongShape: They are not of the shape asked for.
     """
-    if wrong := [each.within(pointer) for each in _differences(values, robot, frames, quantities)]:
-        raise WrongShape(wrong)
+    values = values.model_copy(update={name: None for name in Values.model_fields if name not in quantities})
+    wrong = [*_differences(values, robot, frames, quantities), *_huge_numbers(values.model_dump(), "")]
+    if wrong:
+        raise WrongShape([each.within(pointer) for each in wrong])
     columns = robot.velocities
     ordered: dict[str, object] = {}
     if (K := values.jacobian) is not None:
@@ -93,3 +99,14 @@ def _mass_matrix_differences(M: MassMatrix, columns: Sequence[Column]) -> Iterat
     widths = [len(row) for row in M.matrix]
     if widths != [len(columns)] * len(columns):
         yield Difference("/mass_matrix/matrix", [len(columns)] * len(columns), widths, "how long each row of M is")
+
+
+def _huge_numbers(value: Any, pointer: str) -> Iterator[Difference]:
+    if isinstance(value, dict):
+        for name, each in value.items():
+            yield from _huge_numbers(each, pointer + step(name))
+    elif isinstance(value, list):
+        for index, each in enumerate(value):
+            yield from _huge_numbers(each, pointer + step(index))
+    elif isinstance(value, float) and abs(value) > HUGE:
+        yield Difference(pointer, f"no more than {HUGE:g}", value, "no mechanism has so large a number")

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+import re
+from collections.abc import Iterator
 from dataclasses import replace
 
 from eurdf_conformance.level import Level, Version
@@ -35,9 +38,18 @@ def try_frozen(law: Law, level: Level, version: Version, bench: Bench) -> Judgem
         judgement = try_example(law, level, version, bench, example)
         if judgement.verdict != Verdict.PASSED:
             told = replace(judgement, reason=f"example {number}: {judgement.reason}")
-            files = [path for _, paths in bench.asked for path in paths]
-            return with_log(told, *dict.fromkeys(map(str, files)))
+            return with_log(told, *dict.fromkeys(_files(bench, judgement)))
     return PASSED
+
+
+def _files(bench: Bench, judgement: Judgement) -> Iterator[str]:
+    """The files that a reader was asked about, and where the robot of each stood at the first difference."""
+    pointers = (re.match(r"/values/(\d+)", each.pointer) for each in judgement.differences)
+    index = next((int(found[1]) for found in pointers if found), None)
+    for asked, paths in bench.asked:
+        yield from map(str, paths)
+        if index is not None and index < len(asked.configurations):
+            yield f"  at configuration {index}: {json.dumps(asked.configurations[index], ensure_ascii=False)}"
 
 
 def try_example(law: Law, level: Level, version: Version, bench: Bench, example: Example) -> Judgement:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+import traceback
 from collections.abc import Callable
 from functools import cache
 
@@ -70,7 +71,12 @@ class Asking:
         if started is not None and item.level not in started.claims.get(item.version, ()):
             pytest.skip(f"{started.reader.name} does not claim level {item.level} for version {item.version}")
         begin, before = time.perf_counter(), self._session.seconds_in_reader
-        judgement = ask()
+        try:
+            judgement = ask()
+        except Exception as error:
+            # That an answer breaks the suite is a fault of the suite; it is no pass all the same.
+            why = f"the suite itself broke on this answer, please tell us: {type(error).__name__}: {error}"
+            judgement = Judgement(Verdict.FAILED, why, log=traceback.format_exc())
         seconds, in_reader = time.perf_counter() - begin, self._session.seconds_in_reader - before
         reproduce = self.options.reproduce(item)
         told = [judgement.reason, *map(str, judgement.differences[:_KEPT])] if judgement.reason else []

@@ -80,20 +80,27 @@ def judge_outcome(outcome: Outcome) -> Judgement:
     match outcome:
         case Answered(answer=answer):
             return _judge_answer(answer)
+        case Crashed(code=None, signal=None):
+            verdict, why = Verdict.CRASHED, "the process closed its standard output, without an answer"
         case Crashed(code=code, signal=signal):
             verdict, how = Verdict.CRASHED, f"by {signal}" if signal else f"with exit code {code}"
             why = f"the process ended {how}, without an answer"
         case TimedOut():
             verdict, why = Verdict.TIMED_OUT, "there was no answer in the time allowed"
-        case Malformed(line=line, why=what):
-            verdict, why = Verdict.MALFORMED, f"a line is no answer: {what}: {line[:_WIDTH]!r}"
+        case Malformed(line=line, why=what, placed=placed):
+            # Of a line that is an answer but for a fault, the beginning says nothing: what is wrong says where.
+            verdict, quoted = Verdict.MALFORMED, "" if placed else f": {line[:_WIDTH]!r}"
+            why = f"a line is no answer: {what}{quoted}"
         case Misplaced():
             verdict, why = Verdict.MISPLACED, "the answer is to another request"
         case Chatter(lines=lines):
             verdict, why = Verdict.CHATTER, f"a line that nobody asked for stands on its output: {lines[0][:_WIDTH]!r}"
         case CannotStart(why=what):
             verdict, why = Verdict.NOT_STARTED, what.splitlines()[0]
-    return Judgement(verdict, why, log=str(outcome))
+    log = str(outcome)
+    if isinstance(outcome, Malformed | CannotStart):
+        log = log.partition("\n")[2]  # the first line is the reason
+    return Judgement(verdict, why, log=log)
 
 
 def _judge_answer(answer: AnyAnswer) -> Judgement:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from eurdf_conformance.comparison.canonical import canonical_differences
 from eurdf_conformance.corpus.protocol_rule import GOES_ON, QUIET, START, STOP, ProtocolRule
 from eurdf_conformance.corpus.read import CorpusCase
-from eurdf_conformance.protocol.message import Accepted, Rejected
+from eurdf_conformance.protocol.message import Accepted, Rejected, Started
 from eurdf_conformance.runner.outcome import Answered, Outcome
 from eurdf_conformance.runner.session import Session
 from eurdf_conformance.suite.judge import PASSED, Judgement, judge_outcome
@@ -38,14 +38,21 @@ class Asked:
 
 
 def check(rule: ProtocolRule, asked: Asked) -> Judgement:
-    """Whether a reader keeps a rule."""
-    return _CHECKS[rule](asked)
+    """Whether a reader keeps a rule; where not, with the files that it was asked about."""
+    judgement = _CHECKS[rule](asked)
+    if judgement.verdict == Verdict.PASSED or rule not in (QUIET, GOES_ON):
+        return judgement
+    files = [str(path) for case in (asked.valid, asked.invalid) for path in (case.description, case.urdf)]
+    return replace(judgement, log="\n".join(filter(None, (judgement.log, *files))))
 
 
 def _start(asked: Asked) -> Judgement:
     """EU-PRO-001, EU-PRO-003."""
     outcome = asked.session.start()
-    return PASSED if isinstance(outcome, Answered) else judge_outcome(outcome)
+    match outcome:
+        case Answered(answer=Started()):
+            return PASSED
+    return judge_outcome(outcome)
 
 
 def _quiet(asked: Asked) -> Judgement:

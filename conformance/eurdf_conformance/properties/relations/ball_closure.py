@@ -50,7 +50,7 @@ def motions(bench: Bench, mechanism: Mechanism, version: Version) -> Matrix:
     robot, q = truth(mechanism, version), configuration(mechanism, at["assembled"], version)
     (values,) = bench.evaluate(ask(mechanism, version, at=at, frames=[]), ("jacobian",))
     _, sizes, Vt = np.linalg.svd(scaled(stacked(values), robot, q))
-    rank = int(np.sum(sizes > 1e-5 * max(1.0, sizes[0])))
+    rank = int(np.sum(sizes > 1e-5 * sizes.max(initial=1.0)))
     return np.asarray(Vt[rank:].T)
 
 

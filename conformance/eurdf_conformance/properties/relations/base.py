@@ -72,7 +72,7 @@ def mounted(mechanism: Mechanism, pose: Pose) -> Mechanism:
     return mechanism.replace(links=(*mechanism.links, Link(name="floor")), joints=(*mechanism.joints, mount))
 
 
-def _without_root(values: Values) -> Values:
+def _without_root(values: Values, index: int) -> Values:
     if values.mass_matrix is None:
         return values
     kept = [i for i, (joint, _) in enumerate(values.mass_matrix.columns) if joint != "root_joint"]

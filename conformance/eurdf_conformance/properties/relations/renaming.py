@@ -46,25 +46,25 @@ def values_renamed(values: Values, names: Names, joint: Name) -> Values:
     if values.poses is not None:
         changed["poses"] = keyed(values.poses, names.frame)
     if values.residuals is not None:
-        changed["residuals"] = keyed(values.residuals, names.closures.__getitem__)
+        changed["residuals"] = keyed(values.residuals, names.closure)
     if (K := values.jacobian) is not None:
         columns = [(joint(name), i) for name, i in K.columns]
-        changed["jacobian"] = Jacobian(columns=columns, rows=keyed(K.rows, names.closures.__getitem__))
+        changed["jacobian"] = Jacobian(columns=columns, rows=keyed(K.rows, names.closure))
     if (M := values.mass_matrix) is not None:
         changed["mass_matrix"] = MassMatrix(columns=[(joint(name), i) for name, i in M.columns], matrix=M.matrix)
     return values.model_copy(update=changed)
 
 
 def robot_renamed(robot: CanonicalRobot, names: Names, joint: Name) -> CanonicalRobot:
-    """The same canonical description under other names; a body that is none of links keeps the name it was given."""
+    """The same canonical description under other names; what the mechanism does not name keeps the name it was given.
 
-    def link(name: str) -> str:
-        return names.links.get(name, name)
-
+    That is a body that is none of links, and whatever a reader makes up.
+    """
+    link = names.link
     return robot.model_copy(
         update={
             "links": [link(name) for name in robot.links],
-            "frames": [names.frames[name] for name in robot.frames],
+            "frames": [names.frames.get(name, name) for name in robot.frames],
             "joints": [
                 each.model_copy(
                     update={
@@ -77,12 +77,12 @@ def robot_renamed(robot: CanonicalRobot, names: Names, joint: Name) -> Canonical
                 for each in robot.joints
             ],
             "closures": [
-                each.model_copy(update={"name": names.closures[each.name], "a": link(each.a), "b": link(each.b)})
+                each.model_copy(update={"name": names.closure(each.name), "a": link(each.a), "b": link(each.b)})
                 for each in robot.closures
             ],
             "actuators": [each.model_copy(update={"joint": joint(each.joint)}) for each in robot.actuators],
             "configurations": {
-                names.configurations[name]: keyed(configuration, joint)
+                names.configurations.get(name, name): keyed(configuration, joint)
                 for name, configuration in robot.configurations.items()
             },
             "own": {_pointer(pointer, joint): value for pointer, value in robot.own.items()},
@@ -92,11 +92,11 @@ def robot_renamed(robot: CanonicalRobot, names: Names, joint: Name) -> Canonical
 
 def _pointer(pointer: str, joint: Name) -> str:
     """A JSON pointer to the user's own data, which may lead by the name of a joint."""
-    _, first, *rest = pointer.split("/")
-    if first != "joints" or not rest:
-        return pointer
-    name = joint(rest[0].replace("~1", "/").replace("~0", "~"))
-    return "/".join(["", first, name.replace("~", "~0").replace("/", "~1"), *rest[1:]])
+    match pointer.split("/"):
+        case ["", "joints", name, *rest]:
+            new = joint(name.replace("~1", "/").replace("~0", "~"))
+            return "/".join(["", "joints", new.replace("~", "~0").replace("/", "~1"), *rest])
+    return pointer
 
 
 LAWS = (

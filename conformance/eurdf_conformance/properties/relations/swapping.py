@@ -18,7 +18,7 @@ def swapping(example: Example, version: Version) -> Pair:
     """A mechanism whose closures join frames that have names, and the same one with A and B swapped.
 
     With ᴬM_B = (R, p): 6d, log6 of the inverse is −log6, so r′ = −r and K′ = −K. 3d: r′ = −Rᵀ p, and K′ = −Rᵀ K where
-    p is zero.
+    p is zero; where it is not, K′ has a part more that K does not tell, and is not compared.
     """
     mechanism = with_named_frames(example.mechanism)
     other = mechanism.replace(
@@ -37,10 +37,17 @@ def swapping(example: Example, version: Version) -> Pair:
         residuals = {name: (turn[name] @ r).tolist() for name, r in values.residuals.items()}
         rows = {name: (turn[name] @ np.array(K)).tolist() for name, K in values.jacobian.rows.items()}
         jacobian = Jacobian(columns=values.jacobian.columns, rows=rows)
-        turned = names[index] != "assembled" and any(closure.type == "3d" for closure in mechanism.closures)
-        return values.model_copy(update={"residuals": residuals, "jacobian": None if turned else jacobian})
+        return compared(values.model_copy(update={"residuals": residuals, "jacobian": jacobian}), index)
 
-    return Pair(ask(mechanism, version), ask(other, version), carry)
+    def compared(values: Values, index: int) -> Values:
+        """Without the rows of K that do not follow."""
+        if names[index] == "assembled" or values.jacobian is None:
+            return values
+        balls = {closure.name for closure in mechanism.closures if closure.type == "3d"}
+        rows = {name: K for name, K in values.jacobian.rows.items() if name not in balls}
+        return values.model_copy(update={"jacobian": values.jacobian.model_copy(update={"rows": rows})})
+
+    return Pair(ask(mechanism, version), ask(other, version), carry, seen=compared)
 
 
 LAWS = (
