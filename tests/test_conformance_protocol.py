@@ -225,7 +225,7 @@ def test_a_constant_that_json_lacks_is_no_value_but_a_text_may_say_it(text: str)
     said = json.dumps(answer).replace('"two"', text).encode()
     found = read_answer(said, REQUESTS["load"])
     assert isinstance(found, Malformed)
-    assert found.why == f"{text} is no JSON"
+    assert found.why == f"/robot/own/~1x-a/deep/1: {text} is no JSON"
     quoted = json.dumps(answer).replace('"two"', f'"{text}"').encode()
     assert not isinstance(read_answer(quoted, REQUESTS["load"]), Malformed)
 

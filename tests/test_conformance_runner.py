@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import os
+import signal
 import statistics
+import subprocess
+import sys
 import time
 import tracemalloc
 from pathlib import Path
 
 import pytest
 
-from conformance_fakes import accepts, fake, has_ended, load, runs
+from conformance_fakes import FAKES, accepts, fake, has_ended, load, runs
+from eurdf_conformance.corpus.protocol_rule import START, STOP
+from eurdf_conformance.corpus.read import read_cases
 from eurdf_conformance.protocol.message import Errored, Evaluated, Rejected, Started, Stopped
 from eurdf_conformance.runner.outcome import (
     Answered,
@@ -22,6 +28,9 @@ from eurdf_conformance.runner.outcome import (
     TimedOut,
 )
 from eurdf_conformance.runner.session import NotStarted, Session
+from eurdf_conformance.suite.judge import Judgement, judge_outcome
+from eurdf_conformance.suite.protocol_check import Asked, check
+from eurdf_conformance.verdict.verdict import Verdict
 
 #: For each way to go wrong: what comes of it, words that tell it, and whether the process can be asked on.
 WAYS = [
@@ -48,7 +57,8 @@ WAYS = [
     ("unknown_outcome", Malformed, "'valid'", True),
     ("no_id", Malformed, "without the 'id'", False),
     ("wrong_kind", Malformed, "'evaluated' is no answer to 'load'", True),
-    ("not_a_number", Malformed, "NaN is no JSON", True),
+    ("not_a_number", Malformed, "/robot/own/~1x-a: NaN is no JSON", True),
+    ("null_for_a_number", Malformed, "/robot/joints/0/damping/0: Input should be a valid number, not null", True),
     ("nested_deep", Malformed, "not JSON of a sensible depth", False),
     ("endless_line", Malformed, "a line of more than 1,048,576 bytes", False),
     ("endless_lines", Malformed, "not JSON", False),
@@ -115,7 +125,7 @@ def test_a_crash_after_an_answer_is_told_at_the_next_request_and_said_to_be_from
 
 
 def test_a_crash_right_after_an_answer_is_told_with_its_exit_code() -> None:
-    with Session(fake("exits_after_answering"), restarts=30) as session:
+    with Session(fake("exits_after_answering")) as session:
         for _ in range(30):
             assert accepts(load(session, "fault"), "fault")
             outcome = load(session, "next")  # the process may be alive still, or be dying, or be dead
@@ -169,6 +179,24 @@ def test_the_log_of_what_went_wrong_is_kept_and_bounded() -> None:
         assert len(outcome.log) == 2**14
 
 
+def test_of_a_long_log_enough_is_shown_to_see_what_node_js_misses() -> None:
+    trace = [f"    at somewhere (node:internal/modules/esm/{number})" for number in range(10)]
+    log = ["Error [ERR_MODULE_NOT_FOUND]: Cannot find package 'yaml'", *trace, "  code: 'ERR'", "}", "", "Node.js v24"]
+    assert log[0] in str(Crashed(1, None, "\n".join(log)))
+
+
+def test_a_headline_says_what_happened_once_and_the_rest_is_below() -> None:
+    with Session(fake("closes_stdout"), timeout=5.0) as session:
+        judgement = judge_outcome(load(session, "fault"))
+        assert judgement.reason == "the process closed its standard output, without an answer"
+    with Session(fake("null_for_a_number")) as session:
+        judgement = judge_outcome(load(session, "fault"))
+        assert "null, which some libraries write for NaN and infinity: these are no JSON" in judgement.reason
+        assert "a link" not in judgement.reason
+        assert "a link" in judgement.log
+        assert "Input should be" not in judgement.log
+
+
 def test_an_endless_line_takes_no_more_memory_than_is_allowed() -> None:
     with Session(fake("endless_line"), line_limit=2**20) as session:
         assert accepts(load(session, "first"), "first")
@@ -191,7 +219,7 @@ def test_an_endless_line_takes_no_more_memory_than_is_allowed() -> None:
     [
         ("crashes_at_start", Crashed, "no licence found"),
         ("hangs_at_start", TimedOut, "no answer in 0.5 s"),
-        ("refuses_to_start", Answered, "answered 'errored'"),
+        ("refuses_to_start", Answered, "answered 'errored': no licence"),
         ("speaks_another_protocol", Malformed, "/protocol: Input should be '1.0'"),
         ("byte_order_mark", Malformed, "byte order mark"),
         ("banner", Chatter, "Welcome to Fake 1.0!"),
@@ -210,10 +238,19 @@ def test_a_reader_that_does_not_start_is_told_why_and_given_up(way: str, kind: t
     assert session.ended is None
 
 
+def test_who_answers_to_start_that_it_failed_does_not_keep_the_rule_of_starting() -> None:
+    with Session(fake("refuses_to_start")) as session:
+        asked = Asked(session, lambda: Session(fake("refuses_to_start")), *read_cases()[:2])
+        for rule in (START, STOP):
+            judgement = check(rule, asked)
+            assert (judgement.verdict, judgement.reason) == (Verdict.ERRORED, "no licence")
+
+
 @pytest.mark.parametrize(
     ("parser", "words"),
     [
-        ("cmd:/no/such/program", "/no/such/program"),
+        ("cmd:/no/such/program", "there is no program '/no/such/program'"),
+        ("cmd:no-such-program", "there is no program 'no-such-program' where programs are (PATH)"),
         ("cmd:", "there is no command"),
         ("cmd:'unclosed", "closing quotation"),
         ("reader.py", "neither 'package.module:object' nor 'cmd:'"),
@@ -228,6 +265,32 @@ def test_what_cannot_be_started_is_said_so(parser: str, words: str) -> None:
         assert isinstance(load(session, "robot"), CannotStart)
 
 
+@pytest.mark.parametrize(
+    ("parser", "text", "mode", "words"),
+    [
+        ("cmd:mine.py", "", 0o644, "the file that is here is './mine.py', and it must be executable"),
+        ("cmd:./mine.py", "", 0o644, "'./mine.py' is not executable"),
+        ("cmd:./mine.py", "print(1)", 0o755, "'./mine.py' is no program; a script begins with a line"),
+        (
+            "cmd:./mine.py",
+            "#!/no/such/python",
+            0o755,
+            "'./mine.py' names in its first line a program that there is not",
+        ),
+        ("cmd:./folder", "", 0o644, "'./folder' is a folder"),
+    ],
+)
+def test_of_a_file_that_does_not_run_it_is_said_what_may_help(
+    parser: str, text: str, mode: int, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "mine.py").write_text(text)
+    (tmp_path / "mine.py").chmod(mode)
+    with Session(parser) as session:
+        assert words in str(session.start())
+
+
 def test_a_sound_reader_says_who_it_is() -> None:
     with Session(fake("sound")) as session:
         assert isinstance(session.started, Started)
@@ -235,25 +298,56 @@ def test_a_sound_reader_says_who_it_is() -> None:
         assert session.started.claims == {"2": ["accept"]}
 
 
-def test_it_is_restarted_so_often_and_then_given_up() -> None:
-    with Session(fake("exits"), restarts=2) as session:
-        assert [load(session, "fault").word for _ in range(5)] == ["crashed"] * 3 + ["cannot start"] * 2
-        outcome = load(session, "sound")
-        assert isinstance(outcome, CannotStart)
-        assert "given up after 2 restarts, the last after: crashed: ended with exit code 3" in str(outcome)
+def test_a_reader_that_starts_is_restarted_for_every_request_that_breaks_it() -> None:
+    with Session(fake("exits")) as session:
+        assert [load(session, "fault").word for _ in range(30)] == ["crashed"] * 30
+        assert accepts(load(session, "next"), "next")
+        assert session.restarts == 30
 
 
-def test_a_reader_that_does_not_start_again_is_no_crash_of_the_next_request(
+@pytest.mark.parametrize("names", [["fault"], ["fault_1", "sound_1", "fault_2"]], ids=["all", "some"])
+def test_what_a_reader_comes_to_that_crashes_is_the_same_however_it_is_spread(names: list[str]) -> None:
+    asked = [f"{name}_{number}" for number in range(30) for name in names]
+
+    def judged(sessions: int) -> dict[str, Judgement]:
+        found = {}
+        for part in range(sessions):
+            with Session(fake("exits")) as session:
+                found |= {name: judge_outcome(load(session, name)) for name in asked[part::sessions]}
+        return found
+
+    found = judged(1)
+    assert found == judged(2) == judged(7)
+    crashed = {name for name, judgement in found.items() if judgement.verdict == Verdict.CRASHED}
+    assert crashed == {name for name in asked if name.startswith("fault")}
+
+
+def test_a_reader_that_does_not_start_again_is_no_crash_of_the_next_request_and_at_last_given_up(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("FAKE_STARTED", str(tmp_path / "started"))
-    with Session(fake("starts_once"), timeout=0.5, restarts=3) as session:
+    with Session(fake("starts_once"), timeout=0.5, failed_starts=3) as session:
         assert accepts(load(session, "first"), "first")
         process = session._process
         assert process is not None
         process.end()  # as any outcome that breaks it does
-        assert [load(session, "next").word for _ in range(4)] == ["cannot start"] * 4
+        assert [load(session, "next").word for _ in range(5)] == ["cannot start"] * 5
         assert session.restarts == 3
+        (tmp_path / "started").unlink()
+        outcome = load(session, "next")
+        assert isinstance(outcome, CannotStart)
+        assert "given up, for it did not start 3 times in a row: crashed: ended with exit code 9" in str(outcome)
+
+
+def test_failed_starts_count_only_in_a_row(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("FAKE_STARTED", str(tmp_path / "started"))
+    with Session(fake("starts_once"), failed_starts=2) as session:
+        for _ in range(4):
+            assert accepts(load(session, "first"), "first")
+            assert session._process is not None
+            session._process.end()
+            assert load(session, "next").word == "cannot start"
+            (tmp_path / "started").unlink()
 
 
 def test_a_robot_is_loaded_again_before_it_is_evaluated_by_another_process() -> None:
@@ -321,6 +415,34 @@ def test_an_error_on_this_side_ends_the_reader_at_once() -> None:
     assert session._process is not None
     assert not session._process.alive
     assert session.ended is None
+
+
+RUNNER = """
+import sys
+from conformance_fakes import fake, load
+from eurdf_conformance.runner.session import Session
+with Session(fake("spins"), timeout=60.0) as session:
+    load(session, "fault")
+"""
+
+
+@pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
+def test_a_reader_ends_with_a_runner_that_is_killed(end: signal.Signals, tmp_path: Path) -> None:
+    pids = tmp_path / "pids"
+    environment = os.environ | {"FAKE_PIDS": str(pids), "PYTHONPATH": str(FAKES.parent)}
+    with subprocess.Popen(
+        [sys.executable, "-c", RUNNER], env=environment, stderr=subprocess.DEVNULL, start_new_session=True
+    ) as runner:
+        for _ in range(300):
+            if pids.exists():
+                break
+            time.sleep(0.05)
+        reader, child = map(int, pids.read_text().split())
+        assert runs(reader)
+        assert runs(child)
+        os.killpg(runner.pid, end)  # as Ctrl-C does, all of the group
+    assert has_ended(reader)
+    assert has_ended(child)
 
 
 # -- cost ------------------------------------------------------------------------------------------------------------

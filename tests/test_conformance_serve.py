@@ -14,8 +14,10 @@ import pytest
 from conformance_fakes import FAKES, load
 from eurdf_conformance.protocol.message import Accepted, AnyAnswer, Errored, Evaluated, Rejected, Skipped, Unsupported
 from eurdf_conformance.protocol.serve import find_object, serve
-from eurdf_conformance.runner.outcome import Answered, Crashed, Outcome
+from eurdf_conformance.runner.outcome import Answered, Crashed, Malformed, Outcome
 from eurdf_conformance.runner.session import Session
+from eurdf_conformance.suite.judge import judge_outcome
+from eurdf_conformance.verdict.verdict import OF_THE_ADAPTER
 
 
 @pytest.fixture(autouse=True)
@@ -55,14 +57,52 @@ def test_an_object_or_a_class_is_served_by_its_import_path(path: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("path", "words"), [("no_such_module:READER", "No module named 'no_such_module'"), ("python_readers:Nil", "Nil")]
+    ("path", "words"),
+    [
+        ("no_such_module:READER", f"there is no module 'no_such_module': neither in the working folder, {FAKES}, nor "),
+        ("python_readers.inner:READER", "there is no module 'python_readers.inner': "),
+        ("python_readers:Nil", "python_readers has no 'Nil'"),
+        ("python_readers:holder.outer", "python_readers has no 'holder.outer'"),
+        ("python_readers:TakesArguments", "the class python_readers:TakesArguments is not made without arguments"),
+        ("python_readers:NoName", "is no reader: an object of the class NoName has no name"),
+        ("python_readers:NoLoad", "is no reader: an object of the class NoLoad has no load"),
+        ("python_readers:number", "is no reader: 3 has no name and no version and no language and no claims"),
+        ("python_readers:function", "is no reader: the function function has no name"),
+        ("python_readers:NumberForVersion", "its version is 1, and should be a text"),
+        ("python_readers:OnePath", "its method load(description) cannot be called as load(description, urdf)"),
+        ("python_readers:OneArgument", "cannot be called as evaluate(configurations, frames, quantities)"),
+        ("python_readers:number_for_version", "it claims version 2; versions are '1' and '2', texts"),
+        ("python_readers:no_mapping", "should say for each version the levels, as in {'2': ['accept']}"),
+        ("python_readers:no_level", "it claims level 'acept'; levels are accept, structure"),
+        ("python_readers:no_list", "what it claims for version 2 should be a list of levels"),
+    ],
 )
-def test_an_object_that_cannot_be_imported_ends_the_process_with_the_reason_in_the_log(path: str, words: str) -> None:
+def test_what_is_no_reader_ends_the_process_with_the_reason_in_a_line(path: str, words: str) -> None:
     with Session(path) as session:
         outcome = session.start()
         assert isinstance(outcome, Crashed)
         assert outcome.code == 1
         assert words in outcome.log
+        assert len(outcome.log.splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("path", "first", "last"),
+    [
+        ("python_readers:Raises", "python_readers.py", "RuntimeError: no licence"),
+        ("imports_what_is_missing:X", "imports_what_is_missing.py", "No module named 'no_such_package'"),
+    ],
+)
+def test_what_the_module_of_a_reader_raises_is_told_with_its_own_lines_alone(path: str, first: str, last: str) -> None:
+    with Session(path) as session:
+        outcome = session.start()
+    assert isinstance(outcome, Crashed)
+    lines = outcome.log.splitlines()
+    assert lines[0].startswith("Traceback")
+    assert first in lines[1]
+    assert last in lines[-1]
+    assert "serve.py" not in outcome.log
+    assert "importlib" not in outcome.log
 
 
 def test_what_a_reader_prints_is_log_and_what_it_reads_is_nothing() -> None:
@@ -107,21 +147,52 @@ def test_issues_are_sentences_or_say_more() -> None:
     assert [issue["line"] for issue in answer["issues"]] == [3, None]
 
 
-@pytest.mark.parametrize("name", ["no_canonical_description", "half_a_character", "nothing"])
-def test_what_cannot_be_an_answer_is_errored_and_no_rejection(name: str) -> None:
-    answers = served("Answers", load_request(name, 1), load_request("robot", 2))
+def test_what_cannot_be_written_is_errored_and_no_rejection() -> None:
+    answers = served("Answers", load_request("half_a_character", 1), load_request("robot", 2))
     assert [answer["outcome"] for answer in answers] == ["errored", "accepted"]
+
+
+RETURNS = "use accepted, rejected, unsupported or skipped of eurdf_conformance.protocol.reply"
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("nothing", f"load returned None; {RETURNS}"),
+        (
+            "no_canonical_description",
+            "given to accepted(): /robot/version: Field required; /robot/root: Field required",
+        ),
+        ("no_plain_data", "given to accepted(): /robot is no plain data: Object of type set is not JSON serializable"),
+        ("not_a_number", "given to accepted(): /robot/own/~1x/0/y: NaN and infinity are no JSON"),
+        ("no_issue", "given to rejected(): /issues/0: Input should be a valid dictionary or instance of Issue, not "),
+        ("values", "Values: /mass: Input should be a finite number, not inf: NaN and infinity are no JSON"),
+        ("pose", "Pose: /rotation: List should have at least 3 items after validation, not 1, not [[1.0, 0.0, 0.0]]"),
+    ],
+)
+def test_what_is_no_answer_is_the_fault_of_the_adapter_and_no_rejection(name: str, why: str) -> None:
+    with Session("python_readers:Answers") as session:
+        outcome = load(session, name)
+        assert isinstance(outcome, Malformed)
+        assert outcome.why.startswith(why)
+        judgement = judge_outcome(outcome)
+        assert judgement.verdict in OF_THE_ADAPTER
+        assert "it wrote" not in judgement.log
+        assert not any(inside in judgement.reason for inside in ("pydantic", "model_", "\n", "\\n"))
+        assert isinstance(answer_of(load(session, "robot")), Accepted)
+        assert session.restarts == 0
+
+
+def test_values_that_are_none_are_the_fault_of_the_adapter() -> None:
+    with Session("python_readers:Answers") as session:
+        outcome = session.evaluate([{}], ["nothing"], ["mass"])
+        assert isinstance(outcome, Malformed)
+        assert outcome.why.startswith("evaluate returned None; give a list of Values, one a configuration, or use ")
 
 
 def test_a_reader_that_does_not_evaluate_says_so() -> None:
     request = {"id": 1, "command": "evaluate", "quantities": ["mass"], "frames": [], "configurations": [{}]}
     assert served("Plain", request) == [{"id": 1, "outcome": "unsupported", "feature": "evaluate", "reason": ""}]
-
-
-def test_a_claim_that_is_none_is_errored_at_the_start() -> None:
-    (answer,) = served("WrongClaims", {"id": 1, "command": "start", "protocol": "1.0"})
-    assert answer["outcome"] == "errored"
-    assert "everything" in answer["message"]
 
 
 @pytest.mark.parametrize(

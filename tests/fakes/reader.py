@@ -221,6 +221,15 @@ def dies_before_its_child(request):
     os._exit(5)
 
 
+def spins(request):
+    """For ever, as its child; their ids go where the environment says."""
+    written = Path(os.environ["FAKE_PIDS"])
+    written.with_suffix(".new").write_text(f"{os.getpid()} {child()}")
+    written.with_suffix(".new").rename(written)
+    while True:
+        pass
+
+
 def closes_stdout(request):
     os.close(1)
     time.sleep(60)
@@ -239,6 +248,19 @@ def carriage_returns(request):
 def whole_numbers_with_a_point(request):
     issue = {"message": request["description"], "line": 3.0}
     say({**accepted(request), "id": float(request["id"]), "issues": [issue]})
+
+
+def null_for_a_number(request):
+    """As JavaScript writes NaN."""
+    joint = {
+        "name": "j", "type": "revolute", "parent": "a", "child": "b", "lower": [0], "upper": [0], "velocity": [0],
+        "effort": [0], "damping": [None], "friction": [0], "armature": [0],
+    }  # fmt: skip
+    robot = {
+        "name": "r", "version": "2", "root": "fixed", "links": 50 * ["a link"], "frames": [], "joints": [joint],
+        "closures": [], "actuators": [], "configurations": {}, "own": {},
+    }  # fmt: skip
+    say({**accepted(request), "robot": robot})
 
 
 def errors(request):

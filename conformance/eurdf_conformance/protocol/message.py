@@ -14,6 +14,10 @@ from eurdf_conformance.level import Level, Version
 
 PROTOCOL: Literal["1.0"] = "1.0"
 
+#: What `serve` says of an adapter that gives no answer: a line ``{"id": 1, "fault": "…"}``. It fits no schema, so it is
+#: malformed, as the adapter is; its words are those that the runner tells.
+FAULT = "fault"
+
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Numbers = list[Number]
 

@@ -4,11 +4,23 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import Any, TypeVar
 
-from eurdf_conformance.protocol.message import Accepted, CanonicalRobot, Issue, Rejected, Skipped, Unsupported
+from pydantic import ValidationError
+
+from eurdf_conformance.protocol.fault import faults, not_finite
+from eurdf_conformance.protocol.message import Accepted, Answer, CanonicalRobot, Issue, Rejected, Skipped, Unsupported
 
 NO_ID = 0
+
+_Reply = TypeVar("_Reply", bound=Answer)
+
+
+class WrongReply(Exception):  # noqa: N818 - it says what the reply is
+    """What an adapter gives is no answer: its own fault, of which its text tells.
+
+    It is no ValueError, which is what many readers raise for wrong files, and adapters take for a rejection.
+    """
 
 
 def accepted(robot: CanonicalRobot | Mapping[str, Any] | None = None, issues: Iterable[Issue | str] = ()) -> Accepted:
@@ -19,11 +31,14 @@ def accepted(robot: CanonicalRobot | Mapping[str, Any] | None = None, issues: It
         issues: What is wrong with it all the same, each at least a sentence.
 
     Raises:
-        ValueError: Plain data that is no canonical description.
+        WrongReply: The robot is no canonical description, or an issue is none.
     """
     if isinstance(robot, Mapping):
-        robot = CanonicalRobot.model_validate_json(json.dumps(robot))
-    return Accepted(id=NO_ID, robot=robot, issues=_issues(issues))
+        robot = _canonical(robot)
+    own = robot.own if isinstance(robot, CanonicalRobot) else {}
+    for pointer in not_finite(own, "/robot/own"):
+        raise WrongReply(f"given to accepted(): {pointer}: NaN and infinity are no JSON")
+    return _reply(Accepted, robot=robot, issues=_issues(issues))
 
 
 def rejected(*issues: Issue | str) -> Rejected:
@@ -31,8 +46,11 @@ def rejected(*issues: Issue | str) -> Rejected:
 
     Args:
         issues: Why, each at least a sentence.
+
+    Raises:
+        WrongReply: An issue is none.
     """
-    return Rejected(id=NO_ID, issues=_issues(issues))
+    return _reply(Rejected, issues=_issues(issues))
 
 
 def unsupported(feature: str, reason: str = "") -> Unsupported:
@@ -41,8 +59,11 @@ def unsupported(feature: str, reason: str = "") -> Unsupported:
     Args:
         feature: The feature, in a word or two.
         reason: For people.
+
+    Raises:
+        WrongReply: They are no text.
     """
-    return Unsupported(id=NO_ID, feature=feature, reason=reason)
+    return _reply(Unsupported, feature=feature, reason=reason)
 
 
 def skipped(reason: str) -> Skipped:
@@ -50,9 +71,28 @@ def skipped(reason: str) -> Skipped:
 
     Args:
         reason: Why.
+
+    Raises:
+        WrongReply: It is no text.
     """
-    return Skipped(id=NO_ID, reason=reason)
+    return _reply(Skipped, reason=reason)
+
+
+def _canonical(robot: Mapping[str, Any]) -> CanonicalRobot:
+    try:
+        return CanonicalRobot.model_validate_json(json.dumps(robot))
+    except ValidationError as error:
+        raise WrongReply(f"given to accepted(): {faults(error, '/robot')}") from None
+    except (TypeError, ValueError, RecursionError) as error:  # a set, an array of numpy, what contains itself
+        raise WrongReply(f"given to accepted(): /robot is no plain data: {error}") from None
 
 
 def _issues(issues: Iterable[Issue | str]) -> list[Issue]:
     return [Issue.model_validate({"message": issue}) if isinstance(issue, str) else issue for issue in issues]
+
+
+def _reply(kind: type[_Reply], **members: Any) -> _Reply:
+    try:
+        return kind(id=NO_ID, **members)
+    except ValidationError as error:
+        raise WrongReply(f"given to {kind.model_fields['outcome'].default}(): {faults(error)}") from None

@@ -3,21 +3,27 @@
 from __future__ import annotations
 
 import importlib
+import inspect
 import json
 import os
 import sys
 import traceback
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any, Protocol, runtime_checkable
 
 from pydantic import ValidationError
 
 from eurdf_conformance.level import Level, Version
+from eurdf_conformance.protocol import message
+from eurdf_conformance.protocol.fault import faults
 from eurdf_conformance.protocol.message import (
+    FAULT,
     PROTOCOL,
     REQUEST,
     Accepted,
+    Answer,
     AnyAnswer,
     AnyRequest,
     Errored,
@@ -33,8 +39,11 @@ from eurdf_conformance.protocol.message import (
     Stop,
     Stopped,
     Unsupported,
+    Value,
     Values,
 )
+from eurdf_conformance.protocol.reader_fault import described, reader_fault
+from eurdf_conformance.protocol.reply import WrongReply
 
 Configuration = Mapping[str, Sequence[float]]
 
@@ -88,24 +97,45 @@ def serve(reader: ReaderObject, requests: Iterable[bytes], answers: IO[bytes]) -
             return
 
 
+class NoReader(Exception):  # noqa: N818 - it says what there is not
+    """There is no such reader; its text says why."""
+
+
 def find_object(path: str) -> Any:
     """The object that ``package.module:object`` names; where it is a class, one of it.
 
     Raises:
-        ImportError: There is no such module.
-        AttributeError: The module has no such object.
+        NoReader: There is no such module, it has no such object, or one cannot be made of the class without arguments.
     """
     module, _, name = path.partition(":")
-    found: Any = importlib.import_module(module)
+    try:
+        found: Any = importlib.import_module(module)
+    except ModuleNotFoundError as error:
+        missing = error.name or ""
+        if not f"{module}.".startswith(f"{missing}."):
+            raise  # what the module imports is missing
+        where = f"neither in the working folder, {Path.cwd()}, nor in PYTHONPATH, nor installed for {sys.executable}"
+        raise NoReader(f"there is no module '{missing}': {where}") from None
     for part in name.split("."):
+        if not hasattr(found, part):
+            raise NoReader(f"{module} has no '{name}'")
         found = getattr(found, part)
-    return found() if isinstance(found, type) else found
+    if not isinstance(found, type):
+        return found
+    try:
+        inspect.signature(found).bind()
+    except TypeError:
+        raise NoReader(f"the class {path} is not made without arguments: name an object that is made of it") from None
+    except ValueError:  # nobody knows
+        pass
+    return found()
 
 
 def main(path: str) -> None:
     """Serve an object over standard input and output, of which it gets neither.
 
-    EU-PRO-002: what it, or a library below it, prints to standard output goes to standard error.
+    EU-PRO-002: what it, or a library below it, prints to standard output goes to standard error. Where the object is no
+    reader, the process ends at once and says so there.
     """
     requests, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     nothing = os.open(os.devnull, os.O_RDONLY)
@@ -113,19 +143,37 @@ def main(path: str) -> None:
     os.close(nothing)
     os.dup2(2, 1)
     sys.stdout = sys.stderr
-    serve(find_object(path), requests, answers)
+    try:
+        reader = find_object(path)
+        fault = reader_fault(reader)
+    except NoReader as why:
+        sys.exit(str(why))
+    except Exception as error:
+        _print_traceback(error)
+        sys.exit(1)
+    if fault:
+        sys.exit(f"{path} is no reader: {fault}")
+    serve(reader, requests, answers)
 
 
-def _answer_to(reader: ReaderObject, line: bytes) -> AnyAnswer:
+@dataclass(frozen=True)
+class _NoAnswer:
+    """What an adapter gave is no answer to the request of that id; why."""
+
+    id: int
+    why: str
+
+
+def _answer_to(reader: ReaderObject, line: bytes) -> AnyAnswer | _NoAnswer:
     try:
         request = REQUEST.validate_json(line)
     except ValidationError as error:
-        return Errored(id=_id_in(line), message=f"no request of protocol {PROTOCOL}: {error}")
+        return Errored(id=_id_in(line), message=f"no request of protocol {PROTOCOL}: {faults(error)}")
     return _answer(reader, request)
 
 
-def _answer(reader: ReaderObject, request: AnyRequest) -> AnyAnswer:
-    """The reader's answer; an exception is its word that it failed."""
+def _answer(reader: ReaderObject, request: AnyRequest) -> AnyAnswer | _NoAnswer:
+    """The reader's answer; an exception is its word that it failed, unless it says that the adapter is wrong."""
     try:
         match request:
             case Start():
@@ -134,30 +182,54 @@ def _answer(reader: ReaderObject, request: AnyRequest) -> AnyAnswer:
                 return Started(id=request.id, protocol=PROTOCOL, reader=who, claims=claims)
             case Load():
                 reply = reader.load(Path(request.description), Path(request.urdf))
-                return reply.model_copy(update={"id": request.id})
+                return _with_id(reply, request, "use accepted, rejected, unsupported or skipped")
             case Evaluate():
                 return _evaluated(reader, request)
             case Stop():
                 return Stopped(id=request.id)
     except Exception as error:
-        traceback.print_exc()
+        _print_traceback(error)
+        if isinstance(error, WrongReply):
+            return _NoAnswer(request.id, str(error))
+        if isinstance(error, ValidationError) and error.title in _PARTS:
+            return _NoAnswer(request.id, f"{error.title}: {faults(error)}")
         return Errored(id=request.id, message=f"{type(error).__name__}: {error}")
 
 
-def _evaluated(reader: ReaderObject, request: Evaluate) -> AnyAnswer:
+def _evaluated(reader: ReaderObject, request: Evaluate) -> AnyAnswer | _NoAnswer:
     if not isinstance(reader, Evaluator):
         return Unsupported(id=request.id, feature="evaluate")
     values = reader.evaluate(request.configurations, request.frames, request.quantities)
-    if isinstance(values, Unsupported | Skipped):
-        return values.model_copy(update={"id": request.id})
-    return Evaluated(id=request.id, values=values)
+    if isinstance(values, list):
+        return Evaluated(id=request.id, values=values)
+    return _with_id(values, request, "give a list of Values, one a configuration, or use unsupported or skipped")
 
 
-def _written(answer: AnyAnswer) -> bytes:
+def _with_id(reply: Any, request: Load | Evaluate, what_to_do: str) -> AnyAnswer | _NoAnswer:
+    """What a method returned, as the answer to a request."""
+    if isinstance(reply, Answer):
+        answer: AnyAnswer = reply.model_copy(update={"id": request.id})  # type: ignore[assignment]
+        return answer
+    fault = f"{request.command} returned {described(reply)}; {what_to_do} of eurdf_conformance.protocol.reply"
+    return _NoAnswer(request.id, fault)
+
+
+def _written(answer: AnyAnswer | _NoAnswer) -> bytes:
+    if isinstance(answer, _NoAnswer):
+        return json.dumps({"id": answer.id, FAULT: answer.why}).encode()
     try:
         return answer.model_dump_json().encode()
     except ValueError as error:  # half a surrogate pair, which UTF-8 cannot say
         return Errored(id=answer.id, message=f"the answer cannot be written: {error}").model_dump_json().encode()
+
+
+def _print_traceback(error: Exception) -> None:
+    """To the log: where it was raised, from the first line on that is not of this file."""
+    trace = error.__traceback__
+    ours = (__file__, importlib.__file__, "<frozen importlib._bootstrap>", "<frozen importlib._bootstrap_external>")
+    while trace is not None and trace.tb_frame.f_code.co_filename in ours:
+        trace = trace.tb_next
+    traceback.print_exception(error.with_traceback(trace))
 
 
 def _id_in(line: bytes) -> int:
@@ -168,6 +240,10 @@ def _id_in(line: bytes) -> int:
         return 0
     found = given.get("id") if isinstance(given, dict) else None
     return found if type(found) is int else 0
+
+
+#: What an adapter may make by hand; where it cannot, pydantic names it.
+_PARTS = {name for name, found in vars(message).items() if isinstance(found, type) and issubclass(found, Value)}
 
 
 if __name__ == "__main__":

@@ -8,7 +8,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from eurdf_conformance.protocol.message import ANSWER, AnyAnswer, AnyRequest, Evaluate, Evaluated, Stop
+from eurdf_conformance.protocol.fault import faults, not_finite
+from eurdf_conformance.protocol.message import ANSWER, FAULT, AnyAnswer, AnyRequest, Evaluate, Evaluated, Stop
 from eurdf_conformance.runner.outcome import Malformed, Misplaced
 
 #: Characters that are kept of a line that is no answer.
@@ -29,9 +30,9 @@ def read_answer(line: bytes, request: AnyRequest) -> AnyAnswer | Malformed | Mis
     except ValidationError as error:
         return _unfit(line, request, error)
     if b"NaN" in line or b"Infinity" in line:  # pydantic takes them where any value may stand
-        _, constants = _parsed(line)
+        value, constants = _parsed(line)
         if constants:
-            return Malformed(shown(line), f"{constants[0]} is no JSON", placed=answer.id == request.id)
+            return Malformed(shown(line), _no_json(value, constants), placed=answer.id == request.id)
     return _placed(answer, line, request)
 
 
@@ -71,18 +72,34 @@ def _unfit(line: bytes, request: AnyRequest, error: ValidationError) -> AnyAnswe
     if given_id != request.id:
         return Misplaced(shown(line), request.id, given_id)
     if constants:
-        return Malformed(shown(line), f"{constants[0]} is no JSON", placed=True)
+        return Malformed(shown(line), _no_json(value, constants), placed=True)
+    if isinstance(fault := value.get(FAULT), str):
+        words = " ".join(fault.split()).encode("utf-8", "backslashreplace")
+        return Malformed("", shown(words), placed=True)  # the line says no more
     # 2.0 is a whole number in JSON Schema, and some libraries have no others.
     try:
         return _placed(ANSWER.validate_json(json.dumps(_whole(value))), line, request)
     except (ValidationError, RecursionError):
-        return Malformed(shown(line), _faults(error), placed=True)
+        return Malformed(shown(line), f"it breaks the schema: {faults(error, skip=1)}", placed=True)
 
 
 def _parsed(line: bytes) -> tuple[Any, list[str]]:
     """The value of a JSON text, and the constants in it that Python takes and JSON has not: NaN and Infinity."""
     constants: list[str] = []
-    return json.loads(line.decode("utf-8"), parse_constant=constants.append), constants
+
+    def constant(text: str) -> float:
+        constants.append(text)
+        return float(text)
+
+    return json.loads(line.decode("utf-8"), parse_constant=constant), constants
+
+
+def _no_json(value: Any, constants: Sequence[str]) -> str:
+    try:
+        where = f"{next(not_finite(value), 'the answer')}: "
+    except RecursionError:
+        where = ""
+    return f"{where}{constants[0]} is no JSON"
 
 
 def _whole(value: Any) -> Any:
@@ -107,17 +124,3 @@ def _reason(why: Exception) -> str:
             return "not JSON of a sensible depth"
         case _:
             return str(why)
-
-
-def _faults(error: ValidationError) -> str:
-    """What is wrong, at which JSON pointer; the first few."""
-    faults = error.errors(include_url=False, include_input=False)
-    told = [f"{_pointer(fault['loc'])}: {fault['msg']}" for fault in faults[:3]]
-    more = f"; and {len(faults) - 3} more" if len(faults) > 3 else ""
-    return "it breaks the schema: " + "; ".join(told) + more
-
-
-def _pointer(location: Sequence[int | str]) -> str:
-    """Without the first part, which is the kind of answer."""
-    parts = (str(part).replace("~", "~0").replace("/", "~1") for part in location[1:])
-    return "".join(f"/{part}" for part in parts) or "the answer"

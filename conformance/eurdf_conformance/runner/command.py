@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 import re
 import shlex
 import sys
+from pathlib import Path
 
 _OBJECT = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*(\.[^\W\d]\w*)*")
 
@@ -27,3 +29,29 @@ def command_of(parser: str) -> list[str]:
     if _OBJECT.fullmatch(parser):
         return [sys.executable, "-m", "eurdf_conformance.protocol.serve", parser]
     raise ValueError(f"'{parser}' is neither 'package.module:object' nor 'cmd:' and a command line")
+
+
+def why_not(program: str, error: Exception) -> str:
+    """Why a program cannot be started, and what may help.
+
+    Args:
+        program: As the command line has it.
+        error: What came of trying.
+    """
+    path, is_path = Path(program), "/" in program
+    match error:
+        case FileNotFoundError() if not is_path:
+            hint = f"; the file that is here is './{program}', and it must be executable" if path.is_file() else ""
+            return f"there is no program '{program}' where programs are (PATH){hint}"
+        case FileNotFoundError() if path.exists():
+            return f"'{program}' names in its first line a program that there is not"
+        case FileNotFoundError():
+            return f"there is no program '{path.absolute()}'"
+        case PermissionError() if path.is_dir():
+            return f"'{program}' is a folder"
+        case PermissionError() if path.is_file():
+            return f"'{program}' is not executable: chmod +x, or name what runs it, as in 'cmd:python {program}'"
+        case OSError(errno=errno.ENOEXEC):
+            return f"'{program}' is no program; a script begins with a line as '#!/usr/bin/env python3'"
+        case _:
+            return str(error)

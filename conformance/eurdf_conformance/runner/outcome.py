@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from eurdf_conformance.protocol.message import AnyAnswer
+from eurdf_conformance.protocol.message import AnyAnswer, Errored, Skipped, Unsupported
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +25,9 @@ class Answered:
         return self.answer.outcome
 
     def __str__(self) -> str:
+        match self.answer:
+            case Errored(message=said) | Skipped(reason=said) | Unsupported(feature=said):
+                return f"answered '{self.word}'" + (f": {said}" if said else "")
         return f"answered '{self.word}'"
 
 
@@ -84,7 +87,7 @@ class Malformed:
     """A line that is no JSON object, or does not fit the schema of an answer to the request.
 
     Attributes:
-        line: Its beginning.
+        line: Its beginning; empty where `why` is all that it says.
         why: What is wrong with it.
         placed: Whether it repeats the id of the request, so that the process can be asked on.
         log: The end of what went to standard error meanwhile.
@@ -145,7 +148,7 @@ class CannotStart:
     """There is no process to ask.
 
     Attributes:
-        why: Why not: there is no such program, it did not answer `start`, or it was started too often.
+        why: Why not: there is no such program, or it did not answer `start`.
     """
 
     why: str
@@ -156,6 +159,9 @@ class CannotStart:
         return f"cannot start: {self.why}"
 
 
+#: Lines shown of a log: of Node.js, the last dozen say where it was when it found that a package is missing.
+_LOG_LINES = 20
+
 Failure = Crashed | TimedOut | Malformed | Misplaced | Chatter | CannotStart
 Outcome = Answered | Failure
 
@@ -165,5 +171,5 @@ def _written(text: str) -> str:
 
 
 def _logged(text: str) -> str:
-    lines = text.strip().splitlines()[-5:]
+    lines = text.strip().splitlines()[-_LOG_LINES:]
     return "".join(f"\n  log: {line}" for line in lines)

@@ -1,7 +1,8 @@
 """A process and its three pipes: whole lines out of its standard output, with a deadline and a bound on memory.
 
 One selector waits for all of them, and for the end of the process, so that a reader that fills one pipe while another
-is waited for can neither hang nor hang up. The process leads a group of its own, which ends with it.
+is waited for can neither hang nor hang up. The process leads a group of its own, which ends with it, and with this
+process (`guard`).
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from enum import Enum, auto
+
+from eurdf_conformance.runner import guard
 
 #: Bytes that a line may have. The mass matrix of a robot of 1000 velocities takes 20 MB.
 LINE_LIMIT = 64 * 2**20
@@ -71,6 +74,7 @@ class Pipes:
             stderr=subprocess.PIPE,
             start_new_session=True,
         )
+        guard.begins(self._process.pid)
         streams = self._process.stdin, self._process.stdout, self._process.stderr
         self._stdin, self._stdout, self._stderr = (stream.fileno() for stream in streams if stream is not None)
         self._exit_seen, self._exit_told = os.pipe()
@@ -149,6 +153,7 @@ class Pipes:
         # Its leader is dead or alive, but not reaped: the id of the group is still its own.
         with contextlib.suppress(ProcessLookupError, PermissionError):
             os.killpg(self._process.pid, signal.SIGKILL)
+        guard.ends(self._process.pid)
         self._watcher.join(_DEATH)
         if not self._watcher.is_alive():
             code = self._process.wait()

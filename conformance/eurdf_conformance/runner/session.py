@@ -1,4 +1,4 @@
-"""A conversation with a reader, over as many processes as it takes, within a bound."""
+"""A conversation with a reader, over as many processes as it takes."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from eurdf_conformance.protocol.message import (
     Started,
     Stop,
 )
-from eurdf_conformance.runner.command import command_of
+from eurdf_conformance.runner.command import command_of, why_not
 from eurdf_conformance.runner.outcome import Answered, CannotStart, Outcome
 from eurdf_conformance.runner.pipes import LINE_LIMIT
 from eurdf_conformance.runner.process import ReaderProcess
@@ -39,8 +39,12 @@ class NotStarted(Exception):  # noqa: N818 - it says what the reader is
 class Session:
     """A reader to ask; as a context manager it starts the reader, and ends it whatever happens.
 
-    After an outcome that breaks the process, another one is started when the reader is next asked. A reader that does
-    not start the first time, or was started too often, is given up: whatever it is asked, the outcome is `CannotStart`.
+    After an outcome that breaks the process, another one is started when the reader is next asked: one a request at
+    most, so that there are never more starts than requests. A reader that does not start the first time, or fails to
+    start several times in a row later on, is given up: whatever it is asked, the outcome is `CannotStart`.
+
+    Restarts as such have no other bound. What becomes of a request would depend on it: on how many others had broken
+    the process before, and so on how they are spread over sessions.
 
     Attributes:
         seconds_in_reader: Time spent waiting for the reader, its starts included, s.
@@ -55,7 +59,7 @@ class Session:
         timeout: float = 10.0,
         start_timeout: float = 30.0,
         stop_timeout: float = 5.0,
-        restarts: int = 20,
+        failed_starts: int = 3,
         line_limit: int = LINE_LIMIT,
     ) -> None:
         """Nothing is started yet.
@@ -65,7 +69,7 @@ class Session:
             timeout: Time allowed for an answer, s.
             start_timeout: Time allowed for starting the process and the answer to `start`, s.
             stop_timeout: Time allowed from `stop` to the end of the process, s.
-            restarts: How often the reader may be started again.
+            failed_starts: So many restarts that fail, one after the other, are enough to give the reader up.
             line_limit: Bytes that a line may have.
         """
         self.parser = parser
@@ -73,11 +77,12 @@ class Session:
         self.restarts = 0
         self.ended: Outcome | None = None
         self._timeout, self._start_timeout, self._stop_timeout = timeout, start_timeout, stop_timeout
-        self._most_restarts, self._line_limit = restarts, line_limit
+        self._most_failed_starts, self._line_limit = failed_starts, line_limit
         self._process: ReaderProcess | None = None
         self._asked = 0
         self._first: Outcome | None = None  # what came of the first start
-        self._last = ""  # what broke the last process
+        self._failed_starts = 0  # in a row
+        self._last = ""  # what came of the last of them
         self._accepted: Load | None = None  # the robot that `evaluate` is of
 
     def __enter__(self) -> Session:
@@ -108,7 +113,6 @@ class Session:
         """Start the reader, if that was not done; what came of the first start."""
         if self._first is None:
             self._first = self._begin()
-            self._last = str(self._first)
         return self._first
 
     def load(self, description: Path, urdf: Path, *, timeout: float | None = None) -> Outcome:
@@ -178,13 +182,14 @@ class Session:
             return CannotStart(f"given up, for it did not start: {first}")
         if self._process is not None and self._process.alive:
             return None
-        if self.restarts >= self._most_restarts:
-            return CannotStart(f"given up after {self.restarts} restarts, the last after: {self._last}")
+        if self._failed_starts >= self._most_failed_starts:
+            return CannotStart(f"given up, for it did not start {self._failed_starts} times in a row: {self._last}")
         self.restarts += 1
         again = self._begin()
         if not _is_started(again):
-            self._last = str(again)
+            self._failed_starts, self._last = self._failed_starts + 1, str(again)
             return CannotStart(f"it did not start again: {again}")
+        self._failed_starts = 0
         if isinstance(request, Evaluate) and self._accepted is not None:
             loaded = self._put(self._accepted, self._timeout)
             if not (isinstance(loaded, Answered) and isinstance(loaded.answer, Accepted)):
@@ -194,9 +199,13 @@ class Session:
     def _begin(self) -> Outcome:
         """Start a process and greet it."""
         try:
-            self._process = ReaderProcess(command_of(self.parser), self._line_limit)
-        except (OSError, ValueError) as why:
+            command = command_of(self.parser)
+        except ValueError as why:
             return CannotStart(str(why))
+        try:
+            self._process = ReaderProcess(command, self._line_limit)
+        except (OSError, ValueError) as why:
+            return CannotStart(why_not(command[0], why))
         outcome = self._put(Start(id=0, protocol=PROTOCOL), self._start_timeout)
         if not _is_started(outcome):
             self._process.end()
@@ -209,8 +218,6 @@ class Session:
         outcome = self._process.ask(request.model_copy(update={"id": self._next_id()}), timeout)
         # What was answered says itself how long the reader took; the rest is ours.
         self.seconds_in_reader += outcome.seconds if isinstance(outcome, Answered) else time.perf_counter() - begin
-        if not self._process.alive:
-            self._last = str(outcome)
         return outcome
 
     def _next_id(self) -> int:

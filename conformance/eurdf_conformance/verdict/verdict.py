@@ -26,7 +26,7 @@ class Verdict(StrEnum):
     MISPLACED = "misplaced"
     #: More lines than requests.
     CHATTER = "chatter"
-    #: The process cannot be started, or has been restarted too often.
+    #: The process cannot be started, or not again.
     NOT_STARTED = "not started"
     #: The item was never asked: the run was cut short, or limited to other items.
     NOT_RUN = "not run"

@@ -1,0 +1,70 @@
+"""What is wrong with data that are to be a message, in words for whoever made them."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from pydantic import ValidationError
+
+#: Faults told at once, and characters shown of a value.
+_MOST, _WIDTH = 3, 60
+
+# Of these the value says nothing: it is that around what is missing, or too much as a whole.
+_VALUE_APART = ("missing", "extra_forbidden", "union_tag_invalid", "union_tag_not_found")
+
+
+def faults(error: ValidationError, within: str = "", skip: int = 0) -> str:
+    """What is wrong, at which JSON pointer; the first few.
+
+    Args:
+        error: What pydantic says.
+        within: Pointer to the data.
+        skip: So many parts of each location are no part of the pointer: they name the kind of message.
+    """
+    found = error.errors(include_url=False)
+    told = [
+        f"{_pointer(each['loc'][skip:], within) or 'the whole'}: {_words(each['type'], each['msg'], each['input'])}"
+        for each in found[:_MOST]
+    ]
+    more = f"; and {len(found) - _MOST} more" if len(found) > _MOST else ""
+    return "; ".join(told) + more
+
+
+def not_finite(value: Any, within: str = "") -> Iterator[str]:
+    """Pointers to the numbers of plain data that JSON has none of: NaN and infinity."""
+    match value:
+        case float() if not math.isfinite(value):
+            yield within
+        case Mapping():
+            for key, item in value.items():
+                yield from not_finite(item, _pointer([key], within))
+        case list() | tuple():
+            for index, item in enumerate(value):
+                yield from not_finite(item, _pointer([index], within))
+
+
+def _words(kind: str, message: str, value: Any) -> str:
+    if kind in _VALUE_APART:
+        return message
+    if kind == "finite_number":
+        return f"{message}, not {value}: NaN and infinity are no JSON"
+    told = f"{message}, not {_shown(value)}"
+    if kind == "float_type" and value is None:
+        return f"{told}, which some libraries write for NaN and infinity: these are no JSON"
+    return told
+
+
+def _shown(value: Any) -> str:
+    try:
+        text = json.dumps(value, ensure_ascii=False, default=repr)
+    except (TypeError, ValueError, RecursionError):  # keys that are no texts, what contains itself
+        text = repr(value)
+    return text if len(text) <= _WIDTH else f"{text[:_WIDTH]}…"
+
+
+def _pointer(parts: Sequence[Any], within: str) -> str:
+    escaped = (str(part).replace("~", "~0").replace("/", "~1") for part in parts)
+    return within + "".join(f"/{part}" for part in escaped)

@@ -1,0 +1,70 @@
+"""Whether a Python object is a reader at all, said before it is asked for anything."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from eurdf_conformance.level import VERSIONS, Level
+
+_LEVELS = ", ".join(Level)
+
+
+def reader_fault(reader: Any) -> str:
+    """What keeps an object from being a `ReaderObject`, in a sentence; empty where nothing does."""
+    missing = [name for name in ("name", "version", "language", "claims", "load") if not hasattr(reader, name)]
+    if missing:
+        return f"{described(reader)} has no {' and no '.join(missing)}"
+    for name in ("name", "version", "language"):
+        if not isinstance(said := getattr(reader, name), str):
+            return f"its {name} is {described(said)}, and should be a text"
+    if not reader.name:
+        return "its name is empty"
+    fault = _claims_fault(reader.claims) or _method_fault(reader, "load", ("description", "urdf"))
+    if not fault and hasattr(reader, "evaluate"):
+        fault = _method_fault(reader, "evaluate", ("configurations", "frames", "quantities"))
+    return fault
+
+
+def described(value: Any) -> str:
+    """A value in a word or two, for a sentence."""
+    if value is None or isinstance(value, bool | int | float):
+        return repr(value)
+    if isinstance(value, type):
+        return f"the class {value.__name__}"
+    if inspect.isroutine(value):
+        return f"the function {value.__name__}"
+    return f"an object of the class {type(value).__name__}"
+
+
+def _claims_fault(claims: Any) -> str:
+    """What is wrong with the claims."""
+    as_in = "as in {'2': ['accept']}"
+    if not isinstance(claims, Mapping):
+        return f"its claims are {described(claims)}, and should say for each version the levels, {as_in}"
+    for version, levels in claims.items():
+        if version not in VERSIONS:
+            return f"it claims version {version!r}; versions are {' and '.join(map(repr, VERSIONS))}, texts, {as_in}"
+        if isinstance(levels, str) or not isinstance(levels, Sequence):
+            return f"what it claims for version {version} should be a list of levels, {as_in}"
+        for level in levels:
+            if level not in list(Level):
+                return f"it claims level {level!r}; levels are {_LEVELS}"
+    return ""
+
+
+def _method_fault(reader: Any, name: str, parameters: Sequence[str]) -> str:
+    """What is wrong with a method."""
+    method, asked = getattr(reader, name), f"{name}({', '.join(parameters)})"
+    if not callable(method):
+        return f"its {name} is {described(method)}, and should be a method {asked}"
+    try:
+        signature = inspect.signature(method)
+    except (TypeError, ValueError):  # of another language, perhaps
+        return ""
+    try:
+        signature.bind(*parameters)
+    except TypeError:
+        return f"its method {name}{signature} cannot be called as {asked}"
+    return ""
