@@ -32,7 +32,7 @@ def ask(item: PropertyItem, asking: Asking, folder: Path) -> Judgement:
     version, count = item.item.version, asking.options.explore
     if not count:
         return item.property.check(Trial(asking.session, version, 0, folder))
-    # What crashes a reader is tried again and again, to make it small: the session of all items is to have no part in it.
+    # What crashes a reader is tried again and again, to make it small: the session of all items has no part in that.
     with asking.new_session() as session:
         judgement = item.property.check(Trial(session, version, count, folder, asking.options.explore_seed))
     asking.session.seconds_in_reader += session.seconds_in_reader
