@@ -198,7 +198,12 @@ def test_where_a_3d_closure_is_open_the_k_of_a_6d_one_is_looked_at_all_the_same(
 
 @pytest.mark.parametrize(
     "found",
-    [found for found in PROPERTIES if found.level is not Level.ACCEPT],
+    # Where a law is of both versions, answers to the second have more to spoil.
+    [
+        found
+        for found in PROPERTIES
+        if found.level is not Level.ACCEPT and found.versions[0] == law_of(found.name).versions[-1]
+    ],
     ids=lambda found: f"{found.name}-{found.versions[0]}-{found.level}",
 )
 def test_whatever_the_schema_lets_a_reader_answer_a_law_holds_or_is_broken(found: Property, tmp_path: Path) -> None:

@@ -307,7 +307,7 @@ def test_a_reader_that_starts_is_restarted_for_every_request_that_breaks_it() ->
 
 @pytest.mark.parametrize("names", [["fault"], ["fault_1", "sound_1", "fault_2"]], ids=["all", "some"])
 def test_what_a_reader_comes_to_that_crashes_is_the_same_however_it_is_spread(names: list[str]) -> None:
-    asked = [f"{name}_{number}" for number in range(30) for name in names]
+    asked = [f"{name}_{number}" for number in range(8) for name in names]
 
     def judged(sessions: int) -> dict[str, Judgement]:
         found = {}
@@ -317,7 +317,7 @@ def test_what_a_reader_comes_to_that_crashes_is_the_same_however_it_is_spread(na
         return found
 
     found = judged(1)
-    assert found == judged(2) == judged(7)
+    assert found == judged(3)
     crashed = {name for name, judgement in found.items() if judgement.verdict == Verdict.CRASHED}
     assert crashed == {name for name in asked if name.startswith("fault")}
 

@@ -108,16 +108,6 @@ class Asking:
         self.node.user_properties.append((name, value))
 
 
-def greet(options: Options) -> None:
-    """See whether the reader starts, before everything is asked of what does not.
-
-    Raises:
-        NotStarted: It does not.
-    """
-    with new_session(options) as session:
-        _ = session.started
-
-
 def new_session(options: Options) -> Session:
     """A session with the reader that is tested."""
     return Session(options.parser, timeout=options.timeout, start_timeout=options.start_timeout)

@@ -14,14 +14,17 @@ import pytest
 from eurdf_conformance.certificate.issue import issue
 from eurdf_conformance.certificate.write import NoRoom, make_room, write_certificate
 from eurdf_conformance.protocol.message import Started
-from eurdf_conformance.runner.session import NotStarted
-from eurdf_conformance.suite.asking import STARTED, Asking, all_cases, greet, new_session
+from eurdf_conformance.runner.session import NotStarted, Session
+from eurdf_conformance.suite.asking import STARTED, Asking, all_cases, new_session
 from eurdf_conformance.suite.item import planned_items
 from eurdf_conformance.suite.options import OPTIONS, add_options, options_of, read_options
 from eurdf_conformance.suite.summary import summary_lines
 from eurdf_conformance.verdict.result import RESULT, Result
 from eurdf_conformance.verdict.run import Run
 from eurdf_conformance.verdict.standing import unclaimed
+
+#: The session whose reader has started before anything is asked of it.
+GREETED: pytest.StashKey[Session] = pytest.StashKey()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -52,7 +55,11 @@ def pytest_sessionstart(session: pytest.Session) -> None:
         if options.certificate is not None:
             make_room(options.certificate)
         if not (options.smoke or said.parser_starts):
-            greet(options)
+            # Where there are no workers, who starts is asked.
+            session.config.stash[GREETED] = greeted = new_session(options)
+            _ = greeted.started
+            if session.config.getoption("dist", "no") != "no":
+                greeted.stop()
     except NoRoom as reason:
         raise pytest.UsageError(str(reason)) from None
     except NotStarted as refusal:
@@ -67,8 +74,14 @@ def pytest_collection_finish() -> None:
 @pytest.fixture(scope="session")
 def _reader(pytestconfig: pytest.Config) -> Iterator[Asking]:
     options = options_of(pytestconfig)
-    with new_session(options) as session:
+    with pytestconfig.stash.get(GREETED, None) or new_session(options) as session:
         yield Asking(options, session)
+
+
+def pytest_unconfigure(config: pytest.Config) -> None:
+    """End the reader that was started, where nothing was asked of it."""
+    if (session := config.stash.get(GREETED, None)) is not None:
+        session.stop()
 
 
 @pytest.fixture
