@@ -32,12 +32,13 @@ from eurdf_conformance.certificate.replay import (
     suite_differences,
 )
 from eurdf_conformance.certificate.report import report
-from eurdf_conformance.certificate.write import write_certificate, write_together
+from eurdf_conformance.certificate.write import write_certificate
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.read import read_case, read_cases
 from eurdf_conformance.level import Level
 from eurdf_conformance.verdict.known_failures import KnownFailure, KnownFailures
 from eurdf_conformance.verdict.verdict import Verdict
+from eurdf_conformance.write_together import write_together
 
 ALL = {version: list(Level) for version in ("1", "2")}
 HOSTILE = "<script>alert(1)</script> & \x1b[31m\0"
@@ -167,7 +168,7 @@ def test_files_are_written_all_or_none(tmp_path: Path) -> None:
     (tmp_path / "a").write_text("before", encoding="utf-8")
     (tmp_path / "b").mkdir()
     with pytest.raises(IsADirectoryError):
-        write_together({tmp_path / "a": "after", tmp_path / "b": "after"})
+        write_together({tmp_path / "a": b"after", tmp_path / "b": b"after"})
     assert (tmp_path / "a").read_text(encoding="utf-8") == "before"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a", "b"]
 

@@ -113,7 +113,7 @@ def test_the_oracle_finds_the_published_dimensions(name: str) -> None:
     assert list(vars(found.dimensions(found.closed({}))).values()) == facts
 
 
-@settings(max_examples=150, deadline=None, derandomize=True)
+@settings(max_examples=60, deadline=None, derandomize=True)
 @given(mechanisms("2"))
 def test_they_agree_on_random_mechanisms_of_version_2(
     tmp_path_factory: pytest.TempPathFactory, drawn: tuple[str, dict[str, Any], int]
@@ -121,7 +121,7 @@ def test_they_agree_on_random_mechanisms_of_version_2(
     assert_agreement(*both(tmp_path_factory.mktemp("robot"), *drawn[:2]), seed=drawn[2])
 
 
-@settings(max_examples=100, deadline=None, derandomize=True)
+@settings(max_examples=40, deadline=None, derandomize=True)
 @given(mechanisms("1"))
 def test_they_agree_on_random_mechanisms_of_version_1(
     tmp_path_factory: pytest.TempPathFactory, drawn: tuple[str, dict[str, Any], int]

@@ -214,7 +214,9 @@ def test_whatever_the_schema_lets_a_reader_answer_a_law_holds_or_is_broken(found
     right = Remembering()
     assert try_example(law, found.level, version, Bench(right, tmp_path), example).verdict == Verdict.PASSED
     verdicts = []
-    for spoil in spoils([answer for answer in right.said if isinstance(answer, kind)]):
+    ways = spoils([answer for answer in right.said if isinstance(answer, kind)])
+    # Every fourth, another one for each law: to try all takes a minute.
+    for spoil in ways[len(found.name) % 4 :: 4]:
         for which in (None, 1):  # all of its answers, or the second, so that it does not fit the first
             folder = tmp_path / f"spoiled {len(verdicts)}"
             folder.mkdir()

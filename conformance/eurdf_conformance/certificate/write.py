@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
 from pathlib import Path
 
 from eurdf_conformance.certificate.badge import badge
 from eurdf_conformance.certificate.certificate import FILE, Certificate
 from eurdf_conformance.certificate.report import report
+from eurdf_conformance.write_together import write_together
 
 #: What shows a certificate to people.
 _SHOWING = ("report.html", "badge.svg")
@@ -48,28 +48,9 @@ def write_certificate(folder: Path, certificate: Certificate) -> None:
     # The certificate last: where it is, the others are.
     files = {**certificate_files(certificate), FILE: certificate.to_text()}
     folder.mkdir(parents=True, exist_ok=True)
-    write_together({folder / name: text for name, text in files.items()})
+    write_together({folder / name: text.encode() for name, text in files.items()})
 
 
 def certificate_files(certificate: Certificate) -> dict[str, str]:
     """The files that show a certificate to people, by name."""
     return dict(zip(_SHOWING, (report(certificate), badge(certificate)), strict=True))
-
-
-def write_together(files: Mapping[Path, str]) -> None:
-    """Write text files, in UTF-8, all or none: each takes its name only when all are on the disk.
-
-    Raises:
-        OSError: One cannot be written.
-    """
-    scratch = {path: path.with_name(f".{path.name}.{os.getpid()}.tmp") for path in files}
-    try:
-        for path, text in files.items():
-            if path.is_dir():
-                raise IsADirectoryError(21, "it is a folder", str(path))
-            scratch[path].write_text(text, encoding="utf-8", newline="")
-        for path in files:
-            scratch[path].replace(path)
-    finally:
-        for path in scratch.values():
-            path.unlink(missing_ok=True)

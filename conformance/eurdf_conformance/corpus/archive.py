@@ -18,10 +18,9 @@ import base64
 import importlib.metadata
 import io
 import json
-import os
 import sys
 import zipfile
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +29,7 @@ from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.expected import EXPECTED_FILE
 from eurdf_conformance.corpus.read import CASE_FILE, CorpusCase, NotACase, read_cases
 from eurdf_conformance.protocol.message import PROTOCOL
+from eurdf_conformance.write_together import write_together
 
 NAME = "eurdf-conformance-cases"
 
@@ -56,7 +56,7 @@ def write_archive(folder: Path, cases: Iterable[CorpusCase]) -> None:
     text = json.dumps(manifest(cases), ensure_ascii=False, indent=1) + "\n"
     files = {archive: _zipped(cases), plain: text.encode("utf-8")}
     folder.mkdir(parents=True, exist_ok=True)
-    _write_together(files)
+    write_together(files)
 
 
 def archive_paths(folder: Path) -> tuple[Path, Path]:
@@ -146,21 +146,6 @@ def _content(path: Path) -> str | dict[str, str] | None:
         return content.decode("utf-8")
     except UnicodeDecodeError:
         return {"base64": base64.b64encode(content).decode("ascii")}
-
-
-def _write_together(files: Mapping[Path, bytes]) -> None:
-    """Write files, all or none: each takes its name only when all are on the disk."""
-    scratch = {path: path.with_name(f".{path.name}.{os.getpid()}.tmp") for path in files}
-    try:
-        for path, content in files.items():
-            if path.is_dir():
-                raise IsADirectoryError(21, "it is a folder", str(path))
-            scratch[path].write_bytes(content)
-        for path in files:
-            scratch[path].replace(path)
-    finally:
-        for path in scratch.values():
-            path.unlink(missing_ok=True)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
