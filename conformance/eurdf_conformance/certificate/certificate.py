@@ -13,6 +13,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from eurdf_conformance.json_schema import published, schema_text
 from eurdf_conformance.level import Level, Version
 from eurdf_conformance.verdict.verdict import Verdict
 
@@ -164,12 +165,8 @@ def read_certificate(path: Path) -> Certificate:
 
 def certificate_schema() -> dict[str, Any]:
     """The JSON Schema (2020-12) of a certificate."""
-    head = {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "$id": "urn:extended-urdf:schema:certificate",
-    }
-    return head | Certificate.model_json_schema(mode="serialization")
+    return published("schema:certificate", Certificate.model_json_schema(mode="serialization"))
 
 
 if __name__ == "__main__":
-    sys.stdout.write(json.dumps(certificate_schema(), indent=2) + "\n")
+    sys.stdout.write(schema_text(certificate_schema()))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -14,6 +13,7 @@ from eurdf_conformance.certificate.certificate import Certificate, Failure, Leve
 from eurdf_conformance.certificate.issue import installed_suite
 from eurdf_conformance.certificate.summary import level_words
 from eurdf_conformance.certificate.write import certificate_files
+from eurdf_conformance.json_schema import published, schema_text
 from eurdf_conformance.level import VERSIONS, Level
 from eurdf_conformance.verdict.result import Key
 
@@ -125,12 +125,8 @@ def _by_key(certificate: Certificate) -> dict[Key, Failure]:
 
 def replay_schema() -> dict[str, Any]:
     """The JSON Schema (2020-12) of a `Replay`."""
-    head = {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "$id": "urn:extended-urdf:schema:replay",
-    }
-    return head | Replay.model_json_schema(mode="serialization")
+    return published("schema:replay", Replay.model_json_schema(mode="serialization"))
 
 
 if __name__ == "__main__":
-    sys.stdout.write(json.dumps(replay_schema(), indent=2) + "\n")
+    sys.stdout.write(schema_text(replay_schema()))

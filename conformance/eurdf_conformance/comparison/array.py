@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from eurdf_conformance.comparison.difference import ABSENT, Difference, step
+from eurdf_conformance.comparison.difference import ABSENT, Difference
 from eurdf_conformance.comparison.half_turn import Matrix
+from eurdf_conformance.json_pointer import step
 
 #: EU-PRO-008, EU-PRO-009: of lengths relative to the size of the robot, of M to its largest entry.
 TOLERANCE = 1e-8

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from eurdf_conformance.comparison.coordinates import neutral, same_coordinates
-from eurdf_conformance.comparison.difference import ABSENT, Difference, step
+from eurdf_conformance.comparison.difference import ABSENT, Difference
 from eurdf_conformance.comparison.json_value import value_differences
 from eurdf_conformance.comparison.plain_robot import Part, Placed, PlainRobot, plain_robot
+from eurdf_conformance.json_pointer import step
 from eurdf_conformance.protocol.message import CanonicalRobot
 
 

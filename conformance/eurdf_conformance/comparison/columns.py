@@ -7,8 +7,9 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from eurdf_conformance.comparison.array import TOLERANCE, Near, agree, both, name_differences, worst
-from eurdf_conformance.comparison.difference import ABSENT, Difference, step
+from eurdf_conformance.comparison.difference import ABSENT, Difference
 from eurdf_conformance.comparison.half_turn import Matrix, twin_rows
+from eurdf_conformance.json_pointer import step
 from eurdf_conformance.protocol.message import Jacobian, MassMatrix
 
 Column = tuple[str, int]

@@ -65,8 +65,3 @@ def plain(value: Any) -> Any:
     if isinstance(value, Sequence) and not isinstance(value, str):
         return [plain(each) for each in value]
     return value
-
-
-def step(key: str | int) -> str:
-    """A key, or an index, as one step of a JSON pointer."""
-    return "/" + str(key).replace("~", "~0").replace("/", "~1")

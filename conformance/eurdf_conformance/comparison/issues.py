@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Literal, Protocol
 
-from eurdf_conformance.comparison.difference import ABSENT, Difference, step
+from eurdf_conformance.comparison.difference import ABSENT, Difference
+from eurdf_conformance.json_pointer import step
 from eurdf_conformance.protocol.message import Issue
 
 #: EU-DIA-013: where a text stops being YAML, or XML, each parser has its own opinion.

@@ -6,7 +6,8 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from eurdf_conformance.comparison.difference import ABSENT, Difference, plain, step
+from eurdf_conformance.comparison.difference import ABSENT, Difference, plain
+from eurdf_conformance.json_pointer import step
 
 #: EU-CAN-005: numbers are the same within this, relative to the expected one where that is above 1.
 TOLERANCE = 1e-9

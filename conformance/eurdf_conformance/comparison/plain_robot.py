@@ -6,13 +6,14 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from eurdf_conformance.comparison.difference import ABSENT, Difference, step
+from eurdf_conformance.comparison.difference import ABSENT, Difference
 from eurdf_conformance.comparison.universal import (
     universal_pairs,
     velocities,
     with_defaults,
     with_limits,
 )
+from eurdf_conformance.json_pointer import step
 from eurdf_conformance.protocol.message import CanonicalActuator, CanonicalClosure, CanonicalJoint, CanonicalRobot
 
 #: The joint by which a floating root moves.

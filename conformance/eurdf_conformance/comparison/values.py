@@ -8,8 +8,9 @@ import numpy as np
 
 from eurdf_conformance.comparison.array import TOLERANCE, Near, agree, array_differences, both, name_differences
 from eurdf_conformance.comparison.columns import jacobian_differences, mass_matrix_differences
-from eurdf_conformance.comparison.difference import ABSENT, Difference, step
+from eurdf_conformance.comparison.difference import ABSENT, Difference
 from eurdf_conformance.comparison.half_turn import is_half_turn, twin_residual
+from eurdf_conformance.json_pointer import step
 from eurdf_conformance.protocol.message import Pose, Values
 
 Rows = Mapping[str, Sequence[float]]

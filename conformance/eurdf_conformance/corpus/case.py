@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, model_validator
 
+from eurdf_conformance import json_schema
 from eurdf_conformance.level import Version
 
 #: The folders of cases, in the order in which cases are run.
@@ -121,17 +121,13 @@ CASE: TypeAdapter[Case] = TypeAdapter(Annotated[Case, Field(discriminator="valid
 
 def case_schema() -> dict[str, Any]:
     """JSON Schema (2020-12) of `case.yaml`."""
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "$id": "urn:extended-urdf:schema:conformance-case",
-        "title": "A case of the conformance suite of Extended URDF",
-        **CASE.json_schema(),
-    }
+    title = "A case of the conformance suite of Extended URDF"
+    return json_schema.published("schema:conformance-case", CASE.json_schema(), title=title)
 
 
 def schema_text() -> str:
     """The schema as its file holds it."""
-    return json.dumps(case_schema(), indent=2, ensure_ascii=False) + "\n"
+    return json_schema.schema_text(case_schema())
 
 
 if __name__ == "__main__":

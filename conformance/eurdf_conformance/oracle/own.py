@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-
-def escaped(key: str) -> str:
-    """A key as a part of a pointer."""
-    return key.replace("~", "~0").replace("/", "~1")
+from eurdf_conformance.json_pointer import step
 
 
 def own_data(value: Any, pointer: str = "") -> dict[str, Any]:
@@ -15,9 +12,9 @@ def own_data(value: Any, pointer: str = "") -> dict[str, Any]:
     found: dict[str, Any] = {}
     if isinstance(value, list):
         for i, item in enumerate(value):
-            found |= own_data(item, f"{pointer}/{i}")
+            found |= own_data(item, pointer + step(i))
     elif isinstance(value, dict):
         for key, member in value.items():
-            inner = f"{pointer}/{escaped(key)}"
+            inner = pointer + step(key)
             found |= {inner: member} if key.startswith("x-") else own_data(member, inner)
     return found

@@ -6,9 +6,9 @@ from typing import Any, Literal
 
 import numpy as np
 
+from eurdf_conformance.json_pointer import step
 from eurdf_conformance.oracle.description import Actuator, Change, Closure, Description, FrameReference
 from eurdf_conformance.oracle.not_read import NotRead
-from eurdf_conformance.oracle.own import escaped
 from eurdf_conformance.oracle.plain_value import sequence, text
 
 KEYS = ("closed_loop", "type", "name_mot", "joint_name", "joint_type")
@@ -29,7 +29,7 @@ def version1(document: dict[str, Any]) -> Description:
         ),
         changes=dict(zip(names, changes, strict=True)),
         actuators=tuple(Actuator(text(name)) for name in sequence(document.get("name_mot", []))),
-        own={"/" + escaped(key): value for key, value in document.items() if key not in KEYS},
+        own={step(key): value for key, value in document.items() if key not in KEYS},
     )
 
 

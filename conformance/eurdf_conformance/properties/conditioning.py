@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from eurdf_conformance.level import Version
 from eurdf_conformance.oracle import OracleRobot
 from eurdf_conformance.properties.document import configuration
 from eurdf_conformance.properties.mechanism import Configuration, Mechanism
+from eurdf_conformance.properties.placement import Matrix
 from eurdf_conformance.properties.truth import truth
-
-Matrix = NDArray[np.float64]
 
 #: Singular values of K, free of units, are rounding below the first and none is between the two.
 ZERO, SMALL = 1e-9, 3e-4

@@ -5,14 +5,13 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from eurdf_conformance.comparison.difference import Difference
 from eurdf_conformance.oracle import OracleRobot
+from eurdf_conformance.oracle.dimensions import rank
 from eurdf_conformance.properties.conditioning import scaled, selection
 from eurdf_conformance.properties.mechanism import Configuration
-
-Matrix = NDArray[np.float64]
+from eurdf_conformance.properties.placement import Matrix
 
 #: Of K and S, free of units: what is smaller is zero, but for what EU-PRO-008 allows. No example has any near it.
 _RANK = 1e-5
@@ -39,8 +38,8 @@ def counts_of(K: Matrix, robot: OracleRobot, q: Configuration) -> Counts:
         q: The configuration.
     """
     K, S = scaled(K, robot, q), selection(robot)
-    (nc, nv), rank = K.shape, _rank(K)
-    return Counts(nv, nc, rank, nv - rank, nc - rank, nv - _rank(np.vstack([K, S])))
+    (nc, nv), found = K.shape, rank(K, _RANK)
+    return Counts(nv, nc, found, nv - found, nc - found, nv - rank(np.vstack([K, S]), _RANK))
 
 
 def count_differences(expected: Counts, given: Counts, pointer: str) -> list[Difference]:
@@ -50,10 +49,3 @@ def count_differences(expected: Counts, given: Counts, pointer: str) -> list[Dif
         for word, one in asdict(expected).items()
         if one != asdict(given)[word]
     ]
-
-
-def _rank(A: Matrix) -> int:
-    if not A.size:
-        return 0
-    values = np.linalg.svd(A, compute_uv=False)
-    return int(np.sum(values > _RANK * max(1.0, values[0])))

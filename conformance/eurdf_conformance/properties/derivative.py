@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 
 from eurdf_conformance.comparison.array import TOLERANCE, array_differences
-from eurdf_conformance.comparison.difference import Difference, step
+from eurdf_conformance.comparison.difference import Difference
+from eurdf_conformance.json_pointer import step
 from eurdf_conformance.level import Level, Version
 from eurdf_conformance.properties.asked import ask
 from eurdf_conformance.properties.bench import Bench

@@ -7,7 +7,8 @@ from typing import Any
 
 from eurdf_conformance.comparison.array import name_differences
 from eurdf_conformance.comparison.columns import Column, column_differences
-from eurdf_conformance.comparison.difference import ABSENT, Difference, step
+from eurdf_conformance.comparison.difference import ABSENT, Difference
+from eurdf_conformance.json_pointer import step
 from eurdf_conformance.oracle import OracleRobot
 from eurdf_conformance.protocol.message import Jacobian, MassMatrix, Quantity, Values
 

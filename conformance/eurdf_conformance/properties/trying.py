@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import re
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -12,6 +10,7 @@ from eurdf_conformance.properties.bench import Bench, NotAnswered
 from eurdf_conformance.properties.example import Example
 from eurdf_conformance.properties.law import Law
 from eurdf_conformance.properties.shape import WrongShape
+from eurdf_conformance.suite.failure_text import where_it_stood
 from eurdf_conformance.suite.judge import PASSED, Judgement, judge_outcome
 from eurdf_conformance.suite.property import Trial
 from eurdf_conformance.verdict.verdict import Verdict
@@ -44,12 +43,9 @@ def try_frozen(law: Law, level: Level, version: Version, bench: Bench) -> Judgem
 
 def _files(bench: Bench, judgement: Judgement) -> Iterator[str]:
     """The files that a reader was asked about, and where the robot of each stood at the first difference."""
-    pointers = (re.match(r"/values/(\d+)", each.pointer) for each in judgement.differences)
-    index = next((int(found[1]) for found in pointers if found), None)
     for asked, paths in bench.asked:
         yield from map(str, paths)
-        if index is not None and index < len(asked.configurations):
-            yield f"  at configuration {index}: {json.dumps(asked.configurations[index], ensure_ascii=False)}"
+        yield from where_it_stood(judgement, asked.configurations)
 
 
 def try_example(law: Law, level: Level, version: Version, bench: Bench, example: Example) -> Judgement:

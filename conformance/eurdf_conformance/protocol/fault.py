@@ -9,6 +9,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from eurdf_conformance.json_pointer import step
+
 #: Faults told at once, and characters shown of a value.
 _MOST, _WIDTH = 3, 60
 
@@ -66,5 +68,4 @@ def _shown(value: Any) -> str:
 
 
 def _pointer(parts: Sequence[Any], within: str) -> str:
-    escaped = (str(part).replace("~", "~0").replace("/", "~1") for part in parts)
-    return within + "".join(f"/{part}" for part in escaped)
+    return within + "".join(map(step, parts))

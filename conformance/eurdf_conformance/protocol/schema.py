@@ -2,28 +2,21 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from pathlib import Path
 from typing import Any, get_args
 
+from eurdf_conformance.json_schema import Schema, published, schema_text
 from eurdf_conformance.protocol.message import PROTOCOL, Answer, AnyAnswer, AnyRequest, Request
 
 #: Where the files are: ``load.schema.json`` and the like, by the command or the outcome.
 FOLDER = Path(__file__).parent / "schema"
-
-Schema = dict[str, Any]
 
 
 def message_schemas() -> dict[str, Schema]:
     """The schema of each message, by its command or its outcome."""
     messages: tuple[type[Request] | type[Answer], ...] = (*get_args(AnyRequest), *get_args(AnyAnswer))
     return {_word(message): _schema(message) for message in messages}
-
-
-def schema_text(schema: Schema) -> str:
-    """A schema as its file holds it."""
-    return json.dumps(schema, indent=2, ensure_ascii=False) + "\n"
 
 
 def main(folder: Path) -> None:
@@ -45,12 +38,7 @@ def _schema(message: type[Request] | type[Answer]) -> Schema:
         schema["required"] = list(members)
     else:
         schema["required"] = [name for name in members if name == tag or name in schema["required"]]
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "$id": f"urn:extended-urdf:protocol:{PROTOCOL}:{_word(message)}",
-        "title": _word(message),
-        **schema,
-    }
+    return published(f"protocol:{PROTOCOL}:{_word(message)}", schema, title=_word(message))
 
 
 def _tag(message: type[Request] | type[Answer]) -> str:

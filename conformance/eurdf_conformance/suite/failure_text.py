@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from eurdf_conformance.comparison.difference import Difference
@@ -51,7 +51,7 @@ def _lines(item: Item, judgement: Judgement, reproduce: str, case: CorpusCase | 
         yield f"  {name}: {clauses[name].text}" if name in clauses else f"  {name}"
     yield from _cut([_difference(each) for each in judgement.differences], "differences")
     if case is not None and isinstance(case.case, ValidCase):
-        yield from _configurations(case.case, judgement)
+        yield from where_it_stood(judgement, case.case.configurations)
     if judgement.issues:
         yield "  the reader tells of:"
         yield from _cut([_issue(issue) for issue in judgement.issues], "issues")
@@ -66,13 +66,12 @@ def _difference(difference: Difference) -> str:
     return f"  {difference}"
 
 
-def _configurations(case: ValidCase, judgement: Judgement) -> Iterator[str]:
-    """Where the robot stood, of the first that values differ at."""
-    for difference in judgement.differences:
-        if found := re.match(r"/values/(\d+)/", difference.pointer):
-            index = int(found[1])
-            yield f"  at configuration {index}: {json.dumps(case.configurations[index], ensure_ascii=False)}"
-            return
+def where_it_stood(judgement: Judgement, configurations: Sequence[Mapping[str, Sequence[float]]]) -> Iterator[str]:
+    """The configuration, of those asked for, of the first difference that is at one."""
+    pointers = (re.match(r"/values/(\d+)", each.pointer) for each in judgement.differences)
+    index = next((int(found[1]) for found in pointers if found), None)
+    if index is not None and index < len(configurations):
+        yield f"  at configuration {index}: {json.dumps(configurations[index], ensure_ascii=False)}"
 
 
 def _issue(issue: Issue) -> str:

@@ -6,7 +6,6 @@ is not certified. But a run in which all known failures fail as stated, and noth
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -16,6 +15,7 @@ from typing import Annotated, Any
 import yaml
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, TypeAdapter, ValidationError
 
+from eurdf_conformance.json_schema import published, schema_text
 from eurdf_conformance.level import Level
 from eurdf_conformance.strict_yaml import load_strictly
 from eurdf_conformance.verdict.result import Item, Result
@@ -135,16 +135,15 @@ def _fault(detail: Any) -> str:
 
 def known_failures_schema() -> dict[str, Any]:
     """The JSON Schema (2020-12) of the file."""
-    head = {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "$id": "urn:extended-urdf:schema:known-failures",
-        "title": "Known failures of a reader of Extended URDF",
-        "description": "Items of the conformance suite that are expected to fail, each with its reason.",
-    }
-    return head | _FILE.json_schema()
+    return published(
+        "schema:known-failures",
+        _FILE.json_schema(),
+        title="Known failures of a reader of Extended URDF",
+        description="Items of the conformance suite that are expected to fail, each with its reason.",
+    )
 
 
 if __name__ == "__main__":
     import sys
 
-    sys.stdout.write(json.dumps(known_failures_schema(), indent=2) + "\n")
+    sys.stdout.write(schema_text(known_failures_schema()))

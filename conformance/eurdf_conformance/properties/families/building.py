@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from eurdf_conformance.oracle.spatial import unit
 from eurdf_conformance.oracle.transform import transform
@@ -25,9 +24,7 @@ from eurdf_conformance.properties.mechanism import (
     Spot,
     Vector,
 )
-from eurdf_conformance.properties.placement import inverse, matrix_of, pose_of
-
-Matrix = NDArray[np.float64]
+from eurdf_conformance.properties.placement import Matrix, inverse, matrix_of, pose_of
 
 #: Where the whole of a family stands: along no axis of the world.
 ASKEW = Pose(xyz=(0.1, -0.2, 0.3), rpy=(0.4, -0.5, 0.6))

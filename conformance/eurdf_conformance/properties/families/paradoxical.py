@@ -7,7 +7,8 @@ import math
 import numpy as np
 
 from eurdf_conformance.properties.example import Example
-from eurdf_conformance.properties.families.building import Building, Matrix, along, angle, at
+from eurdf_conformance.properties.families.building import Building, along, angle, at
+from eurdf_conformance.properties.placement import Matrix
 
 
 def sarrus(n: int) -> Example:

@@ -8,8 +8,8 @@ from typing import Literal
 import numpy as np
 
 from eurdf_conformance.properties.example import Example
-from eurdf_conformance.properties.families.building import Building, Matrix, along, angle, at
-from eurdf_conformance.properties.placement import quaternion_of
+from eurdf_conformance.properties.families.building import Building, along, angle, at
+from eurdf_conformance.properties.placement import Matrix, quaternion_of
 
 
 def with_universals(n: int) -> Example:

@@ -8,12 +8,12 @@ from eurdf_conformance.comparison.difference import Difference
 from eurdf_conformance.level import Level, Version
 from eurdf_conformance.properties.asked import ask
 from eurdf_conformance.properties.bench import Bench
-from eurdf_conformance.properties.conditioning import Matrix, scaled
+from eurdf_conformance.properties.conditioning import scaled
 from eurdf_conformance.properties.document import configuration
 from eurdf_conformance.properties.example import Example
 from eurdf_conformance.properties.law import Law
 from eurdf_conformance.properties.mechanism import Change, Inertia, Joint, Link, Mechanism
-from eurdf_conformance.properties.placement import pose_of, quaternion_of
+from eurdf_conformance.properties.placement import Matrix, pose_of, quaternion_of
 from eurdf_conformance.properties.relations.saying import with_inline_frames
 from eurdf_conformance.properties.truth import truth
 from eurdf_conformance.protocol.message import Values

@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from eurdf_conformance.comparison.columns import Column
+from eurdf_conformance.properties.placement import Matrix
 from eurdf_conformance.protocol.message import Jacobian, MassMatrix, Pose, Values
-
-Matrix = NDArray[np.float64]
 
 
 def moved(values: Values, T: Matrix) -> Values:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from eurdf_conformance.json_pointer import key_of, step
 from eurdf_conformance.level import Level, Version
 from eurdf_conformance.properties.asked import ask
 from eurdf_conformance.properties.document import names1
@@ -94,8 +95,7 @@ def _pointer(pointer: str, joint: Name) -> str:
     """A JSON pointer to the user's own data, which may lead by the name of a joint."""
     match pointer.split("/"):
         case ["", "joints", name, *rest]:
-            new = joint(name.replace("~1", "/").replace("~0", "~"))
-            return "/".join(["", "joints", new.replace("~", "~0").replace("/", "~1"), *rest])
+            return "/".join([f"/joints{step(joint(key_of(name)))}", *rest])
     return pointer
 
 
