@@ -16,6 +16,7 @@ from eurdf_conformance.mutants.accepting import accepting
 from eurdf_conformance.mutants.deviation import Deviation, around, instead
 from eurdf_conformance.mutants.mutant import mutant
 from eurdf_conformance.mutants.of_the_reference import canonical, data_of_version2, mechanism, said_in_version2
+from eurdf_conformance.oracle.own import own_data
 
 accepts_missing_version = accepting("missing-key", "EU-VER-003", "accepts_missing_version")
 
@@ -177,6 +178,16 @@ def pointers_are_not_escaped() -> Deviation:
 def pointers_without_x() -> Deviation:
     """Own data is kept under its key without the x-."""
     return canonical(lambda robot: {"own": {where.replace("/x-", "/"): value for where, value in robot.own.items()}})
+
+
+@mutant("EU-CAN-002")
+def own_data_within_own_data() -> Deviation:
+    """A key that begins with x- within the user's own data is listed once more, by itself."""
+
+    def listed(own: dict[str, Any]) -> dict[str, Any]:
+        return own | {inner: value for where, item in own.items() for inner, value in own_data(item, where).items()}
+
+    return canonical(lambda robot: {"own": listed(robot.own)})
 
 
 @mutant("EU-EXT-004")

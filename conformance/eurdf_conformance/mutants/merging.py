@@ -87,6 +87,12 @@ def properties_of_the_nearest_more_than_once() -> Deviation:
     return instead(merging, "_nearest_axes", nearest)
 
 
+@mutant("EU-JNT-028")
+def properties_by_rounding() -> Deviation:
+    """Of two ways to give axes their joints that differ by rounding, the one with the larger sum is taken."""
+    return instead(merging, "_AS_LARGE", 0.0)
+
+
 @mutant("EU-JNT-024")
 def properties_lost_by_merging() -> Deviation:
     """Merged joints have neither limits nor damping nor friction, as in the published loader."""

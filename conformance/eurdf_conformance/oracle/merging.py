@@ -18,6 +18,8 @@ LIGHT = 1e-5
 NEAR = 1e-4
 #: Sine of the angle between two axes, EU-JNT-007.
 PARALLEL = 1e-6
+#: Between sums of cosines, EU-JNT-028.
+EVEN = 1e-9
 
 
 @dataclass(frozen=True)
@@ -59,10 +61,13 @@ def ball(joints: list[UrdfJoint]) -> Ball:
 
 
 def nearest(axes: Array) -> list[int]:
-    """For each axis of the ball's frame its joint, each joint once, by the largest sum of cosines, EU-JNT-024."""
-    cosines = np.abs(axes)  # of joint and axis of the frame
-    best = max(permutations(range(3)), key=lambda joints: sum(cosines[j, axis] for axis, j in enumerate(joints)))
-    return list(best)
+    """For each axis of the ball's frame its joint, each joint once, by the largest sum of cosines, EU-JNT-024.
+
+    Of several that are the largest, the first in the order of the joints counts, EU-JNT-028.
+    """
+    ways = sorted(permutations(range(3)))
+    sums = np.array([np.abs(axes)[way, range(3)].sum() for way in ways])
+    return list(ways[int(np.argmax(sums >= sums.max() - EVEN))])
 
 
 def chain(urdf: Urdf, names: tuple[str, ...]) -> list[UrdfJoint]:

@@ -21,7 +21,11 @@ MEETING = 1e-4
 #: Directions whose sine is below this are parallel (EU-JNT-007).
 PARALLEL = 1e-6
 
+#: In the order of EU-JNT-028.
 _ORDERS = tuple(itertools.permutations(range(3)))
+
+#: Sums of cosines that differ by no more are as large (EU-JNT-028).
+_AS_LARGE = 1e-9
 
 _ROTARY = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS})
 
@@ -91,7 +95,7 @@ def check_chain(
 
 
 def merge(chain: Chain, name: str) -> tuple[Joint, Joint, Joint]:
-    """EU-JNT-022 to -024: the first two joints, fixed at their zero, and the spherical joint that the three become.
+    """EU-JNT-022 to -024, and -028: the first two joints, fixed at their zero, and the ball that the three become.
 
     The links in between stay where they are at zero, fixed to the body before. The spherical joint turns about the
     point where the axes meet; its frame has the orientation of the last joint's at zero. Where the last joint's origin
@@ -228,7 +232,8 @@ def _nearest_axes(chain: Chain) -> tuple[Joint, ...]:
     back = replace(chain.zero, xyz=(0.0, 0.0, 0.0)).inverse()
     first, second, third = (tuple(map(abs, back.rotate(direction))) for direction in chain.directions)
     near = (first, second, third)
-    x, y, z = max(_ORDERS, key=lambda order: near[order[0]][0] + near[order[1]][1] + near[order[2]][2])
+    sums = [near[x][0] + near[y][1] + near[z][2] for x, y, z in _ORDERS]
+    x, y, z = next(order for order, found in zip(_ORDERS, sums, strict=True) if found >= max(sums) - _AS_LARGE)
     return chain.joints[x], chain.joints[y], chain.joints[z]
 
 
