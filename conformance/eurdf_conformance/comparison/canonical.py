@@ -61,6 +61,8 @@ def _part_differences(
             yield Difference(pointer, placed.part, ABSENT, f"{kind} '{name}' is missing")
             continue
         found = given[name]
+        if found.part == placed.part:
+            continue
         for member in type(placed.part).model_fields:
             one, other = getattr(placed.part, member), getattr(found.part, member)
             if one != other:

@@ -113,13 +113,15 @@ def plain_robot(robot: CanonicalRobot, bodies: Iterable[Iterable[str]], links: I
 
 
 def _joint(joint: CanonicalJoint, first_link: Mapping[str, str]) -> CanonicalJoint:
-    ends = {end: first_link.get(getattr(joint, end), getattr(joint, end)) for end in ("parent", "child")}
-    return with_limits(joint.model_copy(update=ends))
+    parent, child = first_link.get(joint.parent, joint.parent), first_link.get(joint.child, joint.child)
+    if (parent, child) != (joint.parent, joint.child):
+        joint = joint.model_copy(update={"parent": parent, "child": child})
+    return with_limits(joint)
 
 
 def _closure(closure: CanonicalClosure, first_link: Mapping[str, str]) -> CanonicalClosure:
-    ends = {end: first_link.get(getattr(closure, end), getattr(closure, end)) for end in ("a", "b")}
-    return closure.model_copy(update=ends)
+    a, b = first_link.get(closure.a, closure.a), first_link.get(closure.b, closure.b)
+    return closure if (a, b) == (closure.a, closure.b) else closure.model_copy(update={"a": a, "b": b})
 
 
 def _velocities(joint: str, joints: Mapping[str, Placed[CanonicalJoint]]) -> int:

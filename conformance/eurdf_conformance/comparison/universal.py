@@ -70,6 +70,8 @@ def universal_pairs(joints: Sequence[CanonicalJoint], links: Collection[str]) ->
 
 def with_defaults(actuator: CanonicalActuator, velocities: int) -> CanonicalActuator:
     """EU-CAN-005, step 6: `gear_ratio` and `rotor_inertia` left out are 1 and 0."""
+    if actuator.gear_ratio is not None and actuator.rotor_inertia is not None:
+        return actuator
     return CanonicalActuator(
         joint=actuator.joint,
         gear_ratio=[1.0] * velocities if actuator.gear_ratio is None else actuator.gear_ratio,
@@ -79,6 +81,8 @@ def with_defaults(actuator: CanonicalActuator, velocities: int) -> CanonicalActu
 
 def with_limits(joint: CanonicalJoint) -> CanonicalJoint:
     """EU-CAN-005, step 4: a revolute joint without limits is continuous, a continuous one has the limits null."""
+    if joint.type == "continuous" and (joint.lower, joint.upper) == ([None], [None]):
+        return joint
     unlimited = all(limit is None for limit in (*joint.lower, *joint.upper))
     if joint.type == "continuous" or (joint.type == "revolute" and unlimited):
         return joint.model_copy(update={"type": "continuous", "lower": [None], "upper": [None]})

@@ -15,10 +15,12 @@ from hypothesis.strategies import SearchStrategy
 
 from eurdf_conformance.level import Level, Version
 from eurdf_conformance.properties.bench import Bench
+from eurdf_conformance.properties.conditioning import is_well_conditioned
 from eurdf_conformance.properties.culprit import culprit
 from eurdf_conformance.properties.example import Example
 from eurdf_conformance.properties.found_case import how_to_keep, write_case
 from eurdf_conformance.properties.law import LARGEST, Law
+from eurdf_conformance.properties.smaller import smaller
 from eurdf_conformance.properties.strategies.mechanisms import mechanisms
 from eurdf_conformance.properties.trying import try_example, with_log
 from eurdf_conformance.suite.judge import PASSED, Judgement
@@ -111,12 +113,30 @@ def search(
         attempt()
     except (_Wrong, Flaky, FlakyFailure):
         # Flaky: the time for making it smaller was over, or the reader does not answer alike when asked again.
-        return best[-1] if best else None
+        return _reduced(law, level, version, bench, *best[-1]) if best else None
     except Unsatisfiable:
         return None
     finally:
         set_hypothesis_home_dir(None)
     return None
+
+
+def _reduced(
+    law: Law, level: Level, version: Version, bench: Bench, example: Example, judgement: Judgement
+) -> tuple[Example, Judgement]:
+    """Without the parts that are not needed for the reader to depart from the law in the same way."""
+    until = time.monotonic() + SHRINKING
+    # A family is of certain mechanisms, of which more is known than they say.
+    candidates = iter(() if law.family else smaller(example.mechanism))
+    while (mechanism := next(candidates, None)) is not None and time.monotonic() < until:
+        few = len(mechanism.closures) < law.closures
+        if few or not law.applies(mechanism) or not is_well_conditioned(mechanism, version):
+            continue
+        tried = example.model_copy(update={"mechanism": mechanism})
+        found = try_example(law, level, version, bench, tried)
+        if found.verdict == judgement.verdict:
+            example, judgement, candidates = tried, found, smaller(mechanism)
+    return example, judgement
 
 
 def drawn(law: Law, version: Version) -> SearchStrategy[Example]:
