@@ -599,7 +599,14 @@ def test_another_version_of_yaml_is_refused(version: str) -> None:
         ('日本: "\\d"\n', (1, 6), "an escape", "single quotes"),
         ("a: ]\n", (1, 4), "a value is missing", None),
         ("{a: 1} b\n", (1, 8), "belongs to nothing", None),
-        ("a: &é 1\n", (1, 5), "while scanning an anchor", None),
+        ("a: &é 1\n", (1, 5), "no name for an anchor", "ASCII letters"),
+        ("a: & 1\n", (1, 5), "no name for an anchor", "ASCII letters"),
+        ("a: &an:chor 1\n", (1, 4), "no name for an anchor", "ASCII letters"),
+        ("a: {b: !!str &an:c 1}\n", (1, 14), "no name for an anchor", "ASCII letters"),
+        ("a: &b 1\nc: *b:\n", (2, 4), "no name for an anchor", "ASCII letters"),
+        ("a: {?b: 1}\n", (1, 6), "right before a key", "quote"),
+        ("a: [?b]\n", (1, 6), "right before a key", "quote"),
+        ("%MINE 1\n---\na: 1\n", (1, 6), "only the directives", "leave the line out"),
     ],
 )
 def test_a_syntax_error_is_told_in_plain_words_at_its_place(
@@ -610,3 +617,41 @@ def test_a_syntax_error_is_told_in_plain_words_at_its_place(
     assert (diagnostic.line, diagnostic.column) == position
     assert message in diagnostic.message
     assert hint is None or hint in str(diagnostic.hint)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("%MINE 1\n---\na: b\n", {"a": "b"}),
+        ("a: &b:c d\n", {"a": "d"}),
+        ("a: &é b\n", {"a": "b"}),
+        ("a: b\n\t\nc: d\n", {"a": "b", "c": "d"}),
+        ("a:\n  -\tb\n", {"a": ["b"]}),
+        ("a:\tb\n", {"a": "b"}),
+        ("a: |\n \tb\n", {"a": "\tb\n"}),
+        ("a: {b: :c}\n", {"a": {"b": ":c"}}),
+        ("a: {b: ?c}\n", {"a": {"b": "?c"}}),
+        ("a: {?b: c}\n", {"a": {"?b": "c"}}),
+        ("a: [?b: c]\n", {"a": [{"?b": "c"}]}),
+        ("a: [::b]\n", {"a": ["::b"]}),
+        ("a: {b:, c: d}\n", {"a": {"b": None, "c": "d"}}),
+        ("a: {b\n  c: d}\n", {"a": {"b c": "d"}}),
+        ('a: {"b"\n  : c}\n', {"a": {"b": "c"}}),
+        ("a: |\n  b\n   ", {"a": "b\n \n"}),
+        ("a: |\n  b\n   \n", {"a": "b\n \n"}),
+        ("a: >-\n  b\n ", {"a": "b"}),
+        ("a: 'b\n  '\n ", {"a": "b "}),
+        ("a: b\n  ", {"a": "b"}),
+    ],
+)
+def test_what_stands_at_the_edge_of_yaml_is_refused_or_means_what_yaml_1_2_says(text: str, value: object) -> None:
+    # EU-YML-012. The values are those of YAML 1.2.2, by hand.
+    try:
+        assert read_yaml(Source("robot.yaml", text, text.encode())).data == value
+    except Fault as fault:
+        assert fault.diagnostic.code == "yaml-syntax"
+
+
+@pytest.mark.parametrize("text", ["?a: 1\n", "a: &b\n  c: d\n", "a: &b d\n*b : c\n", "a: [&b c,*b]\n", "{? a : b}\n"])
+def test_what_only_looks_like_the_edge_of_yaml_is_read(text: str) -> None:
+    assert isinstance(read_yaml(Source("robot.yaml", text, text.encode())).data, dict)

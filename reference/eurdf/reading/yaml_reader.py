@@ -25,7 +25,7 @@ from eurdf.diagnostics import Fault, Place
 from eurdf.reading.core_schema import TAG_PREFIX, resolve, resolve_tagged
 from eurdf.reading.source import YAML_LIMIT, Source, short, too_large
 from eurdf.reading.yaml_node import Alias, Collection, Node, Span, json_pointer
-from eurdf.reading.yaml_syntax import syntax_fault
+from eurdf.reading.yaml_syntax import UNUSUAL_NAME, USUAL_NAME, syntax_fault
 
 #: Mappings and lists that may be nested in one another, aliases expanded.
 DEPTH_LIMIT = 64
@@ -88,6 +88,8 @@ def read_yaml(source: Source) -> YamlDocument:
     if len(source.data) > YAML_LIMIT:
         raise too_large(source.file, f"{YAML_LIMIT:,} bytes")
     data, original = _without_other_breaks(source)
+    if source.text[-1:] == " " and not source.text.splitlines()[-1].strip(" "):
+        data += b"\n"  # without which a block scalar would lose the end of this line
     if data.count(b"\n%TAG") + data.count(b"\r%TAG") + data.startswith(b"%TAG") > DIRECTIVE_LIMIT:
         raise too_large(source.file, f"{DIRECTIVE_LIMIT} %TAG directives")
     try:
@@ -177,6 +179,7 @@ class _Reader:
                 raise self._tag_fault(event, _quote(text)) from None
         span = _span(event)
         if event.anchor is not None:
+            self._check_name(event, "&")
             self._anchors[event.anchor] = value, span
         around = self._open[-1]
         if around.awaits_key:
@@ -201,6 +204,7 @@ class _Reader:
         if self._count > NODE_LIMIT:
             raise too_large(self._source.file, f"{NODE_LIMIT:,} keys and values")
         if event.anchor is not None:
+            self._check_name(event, "&")
             self._anchors[event.anchor] = data, collection
         self._open.append(collection)
 
@@ -216,6 +220,7 @@ class _Reader:
         around.add(collection.data, collection)
 
     def _alias(self, event: AliasEvent) -> None:
+        self._check_name(event, "*")
         name = str(event.anchor)
         shown = short(name)
         if name not in self._anchors:
@@ -240,9 +245,21 @@ class _Reader:
             around.height = max(around.height, collection.height + 1)
             around.add(value, Alias(_span(event), collection))
 
+    def _check_name(self, event: Any, sign: str) -> None:
+        """EU-YML-012: where libyaml ends the name of an anchor, YAML 1.2 may go on."""
+        text, name = self._source.text, f"{sign}{event.anchor}"
+        begin = text.find(name, event.start_mark.index)
+        if text[begin + len(name) : begin + len(name) + 1].strip(" \t\r\n,[]{}"):
+            raise Fault("yaml-syntax", UNUSUAL_NAME, self._source.place(begin, begin + len(name)), USUAL_NAME)
+
     def _key(self, value: Any, event: Event) -> None:
         """Take a value as the next key of the innermost mapping."""
         mapping = self._open[-1]
+        begin = event.start_mark.index
+        if self._source.text[begin - 1 : begin] == "?":
+            # EU-YML-012: within braces, to libyaml it marks a key whatever follows.
+            message = "a '?' stands right before a key, within braces or brackets"
+            raise self._fault("yaml-syntax", message, event, "quote the key, and its '?' if it is a part of it")
         if type(value) is not str:
             text = event.value if isinstance(event, ScalarEvent) else ""
             what = ("a key is null" if text else "a key is empty") if value is None else f"a key is {_kind(value)}"

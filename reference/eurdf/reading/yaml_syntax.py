@@ -23,6 +23,10 @@ class _Meaning(NamedTuple):
     late: bool = False  # whether libyaml notices it only long after the place where the node around it begins
 
 
+#: Of an anchor or an alias, and what would be right.
+UNUSUAL_NAME = "this is no name for an anchor"
+USUAL_NAME = "name it by ASCII letters, digits, '-' and '_'"
+
 _AFTER_VALUE = _Meaning("this stands after the end of a value", "quote the value as a whole")
 _TAB = _Meaning("a tab is used as indentation", "indent with spaces")
 _MEANINGS = {
@@ -58,7 +62,8 @@ _MEANINGS = {
     ),
     "did not find expected hexdecimal number": _Meaning("an escape lacks its hexadecimal digits"),
     "found invalid Unicode character escape code": _Meaning("an escape stands for no Unicode character"),
-    "found unknown directive name": _Meaning("YAML has no such directive"),
+    "did not find expected alphabetic or numeric character": _Meaning(UNUSUAL_NAME, USUAL_NAME),
+    "found unknown directive name": _Meaning("only the directives %YAML and %TAG are known", "leave the line out"),
     "found incompatible YAML document": _Meaning(
         "the %YAML directive asks for another version than 1.2", "leave the directive out", "yaml-version"
     ),
