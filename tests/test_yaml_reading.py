@@ -647,7 +647,7 @@ def test_a_syntax_error_is_told_in_plain_words_at_its_place(
 def test_what_stands_at_the_edge_of_yaml_is_refused_or_means_what_yaml_1_2_says(text: str, value: object) -> None:
     # EU-YML-012. The values are those of YAML 1.2.2, by hand.
     try:
-        found = read_yaml(Source("robot.yaml", text, text.encode())).data
+        found: object = read_yaml(Source("robot.yaml", text, text.encode())).data
     except Fault as fault:
         found = fault.diagnostic.code
     assert found in (value, "yaml-syntax")

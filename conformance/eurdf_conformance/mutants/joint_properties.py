@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -19,6 +20,16 @@ def _spread(change: Any) -> Deviation:
     return around(
         _Replacement, "_spread", lambda original, self, joint, kind: change(original(self, joint, kind), joint)
     )
+
+
+def _screw(change: Callable[[Joint, Joint], Joint]) -> Deviation:
+    """A slide becomes another screw."""
+
+    def helical(original: Any, self: Any, joint: Joint) -> Joint | None:
+        screw: Joint | None = original(self, joint)
+        return change(screw, joint) if screw and joint.type is JointType.PRISMATIC else screw
+
+    return around(_Replacement, "helical", helical)
 
 
 @mutant("EU-JNT-020")
@@ -93,28 +104,31 @@ def limits_on_both_coordinates() -> Deviation:
     return around(_Replacement, "cylindrical", cylindrical)
 
 
-@mutant("EU-JNT-027")
+@mutant("EU-JNT-029")
 def limits_of_a_slide_are_angles() -> Deviation:
     """The limits of a prismatic joint that becomes helical bound its angle as they are."""
-
-    def helical(original: Any, self: Any, joint: Joint) -> Joint | None:
-        screw: Joint | None = original(self, joint)
-        return screw and replace(screw, lower=joint.lower, upper=joint.upper)
-
-    return around(_Replacement, "helical", helical)
+    return _screw(lambda screw, slide: replace(screw, lower=slide.lower, upper=slide.upper))
 
 
-@mutant("EU-JNT-027")
+@mutant("EU-JNT-029")
 def limits_of_a_left_handed_screw() -> Deviation:
     """The limits of a prismatic joint that becomes a left-handed screw are reversed."""
+    return _screw(
+        lambda screw, slide: screw if screw.pitch > 0.0 else replace(screw, lower=screw.upper, upper=screw.lower)
+    )
 
-    def helical(original: Any, self: Any, joint: Joint) -> Joint | None:
-        screw: Joint | None = original(self, joint)
-        if screw is None or screw.pitch > 0.0:
-            return screw
-        return replace(screw, lower=screw.upper, upper=screw.lower)
 
-    return around(_Replacement, "helical", helical)
+@mutant("EU-JNT-029")
+def numbers_of_a_slide_on_a_screw() -> Deviation:
+    """A prismatic joint that becomes helical keeps its numbers for velocity, effort, damping and friction."""
+    kept = ("velocity", "effort", "damping", "friction")
+    return _screw(lambda screw, slide: replace(screw, **{name: getattr(slide, name) for name in kept}))
+
+
+@mutant("EU-JNT-029")
+def damping_of_a_screw_by_its_lead() -> Deviation:
+    """The damping of a prismatic joint that becomes helical is multiplied by what it advances in a radian, once."""
+    return _screw(lambda screw, slide: replace(screw, damping=(slide.damping[0] * abs(screw.pitch) / (2.0 * math.pi),)))
 
 
 @mutant("EU-JNT-027")

@@ -60,7 +60,7 @@ def properties(joint: Joint, actuator: Actuator | None) -> Properties:
 
 
 def length_of_a_radian(joint: Joint) -> float:
-    """The length k = |h| / 2π, m/rad, where a prismatic joint of the URDF becomes helical; else 1: EU-JNT-020."""
+    """The length k = |h| / 2π, m/rad, where a prismatic joint of the URDF becomes helical; else 1: EU-JNT-029."""
     slides = bool(joint.source) and joint.source[0].type == "prismatic"
     return abs(joint.pitch) / (2.0 * np.pi) if slides and joint.type == "helical" else 1.0
 
@@ -78,7 +78,10 @@ def sources(joint: Joint) -> list[UrdfJoint | None]:
 
 
 def position_limits(joint: Joint) -> tuple[Limits, Limits]:
-    """Those of the URDF, on coordinates of the same kind, angle or length: EU-JNT-027, none on a ball: EU-JNT-021."""
+    """Those of the URDF, on coordinates of the same kind, angle or length: EU-JNT-027; none on a ball: EU-JNT-021.
+
+    Of a slide that becomes a screw, EU-JNT-029.
+    """
     kinds = joint.kind.bounded
     if not joint.source:
         return [], []

@@ -81,7 +81,8 @@ LAWS = (
         "structure-agreement",
         "What is read of a mechanism is what it was written from.",
         (
-            *("EU-CAN-001", "EU-CAN-002", "EU-JNT-020", "EU-JNT-021", "EU-JNT-024", "EU-JNT-027", "EU-ACT-006"),
+            *("EU-CAN-001", "EU-CAN-002", "EU-ACT-006"),
+            *("EU-JNT-020", "EU-JNT-021", "EU-JNT-024", "EU-JNT-027", "EU-JNT-029"),
             *("EU-ACT-007", "EU-CFG-005", "EU-EXT-002", "EU-VER-004"),
             *("EU-ONE-004", "EU-ONE-005", "EU-ONE-006", "EU-ONE-007"),
         ),

@@ -334,7 +334,7 @@ class _Replacement:
         return replace(spread, lower=(-math.inf, joint.lower[0]), upper=(math.inf, joint.upper[0]))
 
     def helical(self, joint: Joint) -> Joint | None:
-        """EU-JNT-008, EU-JNT-027: a helix has a pitch; what bounds a slide bounds the screw's angle."""
+        """EU-JNT-008, EU-JNT-029: a helix has a pitch; what the URDF says of a slide holds of the screw's angle."""
         pitch = self.entry.pitch
         assert pitch is not None
         if pitch == 0.0:

@@ -255,7 +255,7 @@ class _Reader:
     def _key(self, value: Any, event: Event) -> None:
         """Take a value as the next key of the innermost mapping."""
         mapping = self._open[-1]
-        begin = event.start_mark.index
+        begin, _ = _span(event)
         if self._source.text[begin - 1 : begin] == "?":
             # EU-YML-012: within braces, to libyaml it marks a key whatever follows.
             message = "a '?' stands right before a key, within braces or brackets"
