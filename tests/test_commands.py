@@ -208,6 +208,15 @@ def test_a_bad_usage_exits_with_2(argv: list[str]) -> None:
     assert exit_.value.code == 2
 
 
+@pytest.mark.parametrize("name", ["stdout", "stderr"])
+def test_a_stream_that_is_closed_changes_nothing_else(name: str, folder: Path) -> None:
+    robot(folder)
+    program = f"import sys; sys.{name} = None; from eurdf.commands.main import main; sys.exit(main(['check', '.']))"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout == ("" if name == "stdout" else ".: sound\n")
+
+
 # --- which robots a path stands for ----------------------------------------------------------------------------------
 
 

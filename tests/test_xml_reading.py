@@ -10,8 +10,10 @@ from dataclasses import dataclass, field
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from lxml import etree
 
 from eurdf.diagnostics import Diagnostic, Fault, Place
+from eurdf.reading import xml_reader
 from eurdf.reading.source import Source
 from eurdf.reading.xml_reader import TAG_LIMIT, XmlDocument, read_xml
 from eurdf.reading.xml_syntax import DEPTH_LIMIT
@@ -286,6 +288,11 @@ def test_256_levels_are_read_and_257_are_refused_where_they_begin() -> None:
     read("<a>" * DEPTH_LIMIT + "</a>" * DEPTH_LIMIT)
     diagnostic = fault_of("<a>" * (DEPTH_LIMIT + 1) + "</a>" * (DEPTH_LIMIT + 1))
     assert (diagnostic.code, diagnostic.column) == ("file-too-large", 3 * DEPTH_LIMIT + 1)
+
+
+def test_the_bound_is_the_same_where_libxml2_takes_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(xml_reader, "_parser", lambda: etree.XMLParser(huge_tree=True))
+    test_256_levels_are_read_and_257_are_refused_where_they_begin()
 
 
 @pytest.mark.parametrize(

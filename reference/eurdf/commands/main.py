@@ -41,6 +41,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     for name, value in _START_FASTER.items():
         os.environ.setdefault(name, value)
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:  # closed by who started the command
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115 - to the end of the process
     _write_any_character(sys.stdout)
     _write_any_character(sys.stderr)
     try:

@@ -68,7 +68,8 @@ def _refuse_too_large(
     elif closures * joints > CLOSURES_TIMES_JOINTS_LIMIT and document is not None:
         most = CLOSURES_TIMES_JOINTS_LIMIT // joints
         message = f"the robot has {closures:,} closures on {joints:,} joints; on so many it may have {most:,}"
-        diagnostics.report("file-too-large", message, document.place(("closures",)))
+        key = "closed_loop" if mechanism.version == "1" else "closures"
+        diagnostics.report("file-too-large", message, document.place((key,)))
 
 
 def _bare(urdf: Urdf, root: Root) -> Mechanism:

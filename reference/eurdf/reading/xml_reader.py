@@ -8,10 +8,13 @@ from lxml import etree
 
 from eurdf.diagnostics import Fault, Place
 from eurdf.reading.source import URDF_LIMIT, Source, short, too_large
-from eurdf.reading.xml_syntax import NAMESPACE_ERRORS, refused, syntax_fault
+from eurdf.reading.xml_syntax import DEPTH_LIMIT, NAMESPACE_ERRORS, refused, syntax_fault
 
 #: Tags and attributes that a file may have: what takes memory is their number.
 TAG_LIMIT = 1_000_000
+
+#: libxml2 has the same bound, but before 2.14 it takes one level more.
+_TOO_DEEP = etree.XPath(f"boolean({'/*' * (DEPTH_LIMIT + 1)})")
 
 _DECLARED_ENCODING = re.compile(r"""<\?xml\s[^>]*?\sencoding\s*=\s*(["'])(.*?)\1""")
 _BEFORE_DOCTYPE = re.compile(r"(?:[ \t\r\n]+|<\?.*?\?>|<!--.*?-->)*+", re.DOTALL)
@@ -113,6 +116,8 @@ def read_xml(source: Source) -> XmlDocument:
         if fault is not None:
             raise fault from None
         root = _read_with_namespace_errors(source)
+    if _TOO_DEEP(root) and (fault := syntax_fault(source)) is not None:
+        raise fault
     if root.prefix is None and root.tag.startswith("{"):
         namespace, _, _ = root.tag.rpartition("}")
         for element in root.iter():

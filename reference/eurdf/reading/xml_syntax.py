@@ -27,12 +27,13 @@ class _TooDeep(Exception):  # noqa: N818 - never seen outside
     """Ends the look for the fault."""
 
 
-def syntax_fault(source: Source, error: Any) -> Fault | None:
+def syntax_fault(source: Source, error: Any = None) -> Fault | None:
     """The fault that says what is wrong with the text, or None if it has only `NAMESPACE_ERRORS`.
 
     Args:
         source: The text.
-        error: The `lxml.etree.XMLSyntaxError`. Its columns are in no fixed unit, so that expat is asked first.
+        error: The `lxml.etree.XMLSyntaxError`. Its columns are in no fixed unit, so that expat is asked first. None
+            where libxml2 has taken the text.
     """
     parser = expat.ParserCreate("utf-8")
     opened: list[tuple[str, int]] = []  # name and byte of each start tag that is not closed yet
@@ -63,7 +64,9 @@ def syntax_fault(source: Source, error: Any) -> Fault | None:
             return _not_closed(source, problem, at, name, index(byte))
         start, end_, message, hint = _explain(source.text, problem, at)
         return Fault("xml-syntax", message, source.place(start, end_), hint)
-    return None if error.code in NAMESPACE_ERRORS else refused(source, error.code, error.msg, error.position[0])
+    if error is None or error.code in NAMESPACE_ERRORS:
+        return None
+    return refused(source, error.code, error.msg, error.position[0])
 
 
 def refused(source: Source, code: int, message: str, line: int) -> Fault:
