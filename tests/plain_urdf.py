@@ -122,6 +122,9 @@ def trees(draw: st.DrawFn) -> str:
         # A later joint of the file may already follow this one; then this one must not follow another.
         if leaders and not any(f'<mimic joint="{name}"' in element for element in elements) and draw(st.booleans()):
             multiplier, offset = draw(st.tuples(NUMBERS, NUMBERS))
+            if kind == "continuous":
+                # Pinocchio forgets the turns of its leader: of another number of turns, its own model is wrong.
+                multiplier = float(round(multiplier))
             leader = draw(st.sampled_from(leaders))
             content += f'<mimic joint="{leader}" multiplier="{multiplier!r}" offset="{offset!r}"/>'
             followers.add(name)

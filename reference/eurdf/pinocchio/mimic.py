@@ -20,7 +20,8 @@ class Following:
             mimic joints cannot be chained.
         late: The leaders that come after one of their followers, in order. In Pinocchio a leader comes first.
         counted: Names of the continuous joints to hold as one angle. Pinocchio holds a continuous joint as (cos, sin),
-            which has lost the number of turns, and lets only continuous joints follow one, which follow no other.
+            which has lost the number of turns that a multiplier such as 0.5 is in want of, and lets only continuous
+            joints follow one, which follow no other.
     """
 
     laws: Mapping[str, Mimic] = field(default_factory=dict)
@@ -64,6 +65,8 @@ def _follow_chain(name: str, mimics: Mapping[str, Mimic], laws: dict[str, Mimic]
 
 def _counted(mechanism: Mechanism, laws: Mapping[str, Mimic]) -> frozenset[str]:
     continuous = {joint.name for joint in mechanism.joints if joint.type is JointType.CONTINUOUS}
+    # A turn of the leader is a whole number of turns of a follower, or makes a difference.
+    whole = {name for name, law in laws.items() if law.multiplier.is_integer()}
     # One joint with a plain coordinate makes all that lead it, or are led with it, have one.
-    plain = {law.joint for name, law in laws.items() if not continuous.issuperset((name, law.joint))}
+    plain = {law.joint for name, law in laws.items() if not ({name, law.joint} <= continuous and name in whole)}
     return frozenset(continuous & (plain | {name for name, law in laws.items() if law.joint in plain}))
