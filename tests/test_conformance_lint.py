@@ -9,9 +9,11 @@ import pytest
 from eurdf_conformance.corpus import lint
 from eurdf_conformance.corpus.case import CASE, Case
 from eurdf_conformance.corpus.clause import Clause, read_clauses
-from eurdf_conformance.corpus.coverage import missing
+from eurdf_conformance.corpus.coverage import UNSAID, missing, said_in
 from eurdf_conformance.corpus.lines import lines_of
 from eurdf_conformance.corpus.one_edit import edit_faults, lines_edited
+from eurdf_conformance.corpus.read import read_cases
+from eurdf_conformance.level import VERSIONS, Version
 
 FIXTURES = Path(__file__).parent / "data" / "conformance_lint"
 BROKEN = sorted(path.parent.name for path in FIXTURES.glob("*/fault.txt"))
@@ -52,8 +54,10 @@ def test_the_command_says_what_is_wrong_and_what_is_not_tested(
     root = str(cases("sound"))
     assert lint.main([root]) == 0
     out = capsys.readouterr().out
-    assert "missing: EU-FRM-001 (version 1, version 2): a valid case, an invalid case (unknown-frame)" in out
-    assert "EU-ACT-001" not in out
+    for version in VERSIONS:
+        assert f"missing: EU-FRM-001 (version {version}): a valid case, an invalid case (unknown-frame)" in out
+    assert "EU-ACT-001 (version 1)" in out
+    assert "EU-ACT-001 (version 2)" not in out
     assert lint.main([root, "--complete"]) == 1
     assert lint.main([str(cases("title-twice"))]) == 1
     assert "title: another case has the same title" in capsys.readouterr().out
@@ -107,11 +111,11 @@ def test_lines_end_at_any_line_end_and_a_byte_order_mark_is_none_of_them(tmp_pat
 # Coverage
 
 
-def case(clause: str, code: str | None = None, warning: str | None = None) -> Case:
+def case(clause: str, code: str | None = None, warning: str | None = None, version: Version = "2") -> Case:
     said: dict[str, object] = {
         "id": "ab12cd",
         "title": "One.",
-        "version": "2",
+        "version": version,
         "clauses": [clause],
         "valid": code is None,
         "provenance": {"expectation": "hand"},
@@ -124,8 +128,10 @@ def case(clause: str, code: str | None = None, warning: str | None = None) -> Ca
     return CASE.validate_python(said)
 
 
-def clause(keyword: str = "MUST", codes: tuple[str, ...] = (), testable: bool = True) -> dict[str, Clause]:
-    return {"EU-FRM-001": Clause("EU-FRM-001", keyword, "", "accept", ("2",), frozenset(codes), testable)}
+def clause(
+    keyword: str = "MUST", codes: tuple[str, ...] = (), testable: bool = True, versions: tuple[Version, ...] = ("2",)
+) -> dict[str, Clause]:
+    return {"EU-FRM-001": Clause("EU-FRM-001", keyword, "", "accept", versions, frozenset(codes), testable)}
 
 
 @pytest.mark.parametrize(
@@ -148,6 +154,27 @@ def test_what_is_missing_for_a_clause(clauses: dict[str, Clause], cases: list[Ca
     found = list(missing(cases, clauses))
     assert found == ([f"EU-FRM-001 (version 2): {', '.join(lacks)}"] if lacks else [])
     assert list(missing(cases, clauses, elsewhere=["EU-FRM-001"])) == []
+
+
+@pytest.mark.parametrize(
+    ("cases", "lacks"),
+    [
+        ([case("EU-FRM-001"), case("EU-FRM-001", version="1")], ["an invalid case (one)", "an invalid case (one)"]),
+        ([case("EU-FRM-001"), case("EU-FRM-001", code="one", version="1")], ["a valid case", "an invalid case (one)"]),
+    ],
+)
+def test_a_case_of_one_version_tests_a_clause_in_that_one_alone(cases: list[Case], lacks: list[str]) -> None:
+    found = list(missing(cases, clause(codes=("one",), versions=VERSIONS)))
+    assert found == [f"EU-FRM-001 (version {version}): {lack}" for version, lack in zip(VERSIONS, lacks, strict=True)]
+
+
+def test_a_version_that_cannot_say_a_clause_needs_no_case_and_has_none() -> None:
+    clauses = read_clauses()
+    for name, why in UNSAID.items():
+        assert set(said_in(clauses[name])) == set(clauses[name].versions) - set(why) != set(clauses[name].versions)
+        assert not any(f"version {version}" in line for line in missing([], {name: clauses[name]}) for version in why)
+        citing = {case.case.version for case in read_cases() if name in case.case.clauses}
+        assert citing.isdisjoint(why), f"{name} can be said in a version of which it is said that it cannot"
 
 
 def test_the_registry_of_clauses_is_read() -> None:

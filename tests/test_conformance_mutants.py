@@ -1,4 +1,4 @@
-"""The suite is tested by broken readers: each is caught by a case or property that cites the clause that it breaks."""
+"""The suite is tested by broken readers: each is caught, in each version, by what cites the clause that it breaks."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -8,9 +8,11 @@ import pytest
 
 from eurdf.diagnostics.registry import REGISTRY
 from eurdf_conformance.corpus.clause import read_clauses
+from eurdf_conformance.corpus.coverage import said_in
+from eurdf_conformance.level import VERSIONS, Version
 from eurdf_conformance.mutants import MUTANTS, matrix
 from eurdf_conformance.mutants.accepting import ACCEPTING
-from eurdf_conformance.mutants.kills import kills
+from eurdf_conformance.mutants.kills import by_version, kills
 from eurdf_conformance.mutants.silent import SILENT
 from eurdf_conformance.mutants.unbroken import UNBROKEN
 from eurdf_conformance.protocol.message import Accepted, CanonicalRobot, Rejected
@@ -38,11 +40,38 @@ NOT_CURRENT = f"{matrix.PAGE.name} is not current: python -m eurdf_conformance.m
 
 
 @pytest.mark.parametrize("name", MUTANTS)
-def test_a_mutant_is_caught_by_what_cites_its_clause_and_the_matrix_says_so(name: str) -> None:
+def test_a_mutant_is_caught_in_each_version_by_what_cites_its_clause_and_the_matrix_says_so(name: str) -> None:
+    """And in no version in which it is said that files cannot show what is broken."""
     mutant = MUTANTS[name]
     caught = kills(mutant)
-    assert caught, f"{mutant.clause}: {name} survives: {mutant.breaks}"
+    found = {version: len(items) for version, items in by_version(mutant, caught).items()}
+    assert all(found.values()), f"{mutant.clause}: {name} survives: {mutant.breaks} By version: {found}"
+    assert set(found) == set(mutant.versions), f"{name} is caught in a version that it is not of: {found}"
     assert matrix.row(mutant, caught) in ROWS, NOT_CURRENT
+
+
+def test_a_mutant_that_is_caught_in_one_version_alone_survives_in_the_other() -> None:
+    mutant = MUTANTS["tilde_is_text"]
+    items = ["yaml/w6p1cd/structure", "properties/yaml-style-2/structure"]
+    assert by_version(mutant, items) == {"1": [], "2": items}
+    assert f"| 0 | 2 | `{items[0]}`, `{items[1]}` |" in matrix.row(mutant, items)
+    caught = {**dict.fromkeys(MUTANTS, ("protocol/start-2/accept",)), mutant.name: items}
+    assert [matrix.survivors(caught, version) for version in VERSIONS] == [[mutant], []]
+
+
+def test_a_rule_of_the_protocol_counts_for_both_versions() -> None:
+    item = "protocol/start-2/accept"
+    assert by_version(MUTANTS["gone_after_a_rejection"], [item]) == {"1": [item], "2": [item]}
+
+
+def test_what_a_version_cannot_say_does_not_survive_in_it() -> None:
+    versions = {name: MUTANTS[name].versions for name in ("frames_are_not_said", "second_axis_first", "lines_from_0")}
+    assert versions == {"frames_are_not_said": ("2",), "second_axis_first": ("1",), "lines_from_0": ("1", "2")}
+    # By its clause, of which version 1 can say nothing.
+    assert MUTANTS["accepts_joint_axes_parallel"].versions == ("2",)
+    assert all(set(each.versions) <= set(read_clauses()[each.clause].versions) for each in MUTANTS.values())
+    items = ["frames/8eydqr/structure"]
+    assert f"| - | 1 | `{items[0]}` |" in matrix.row(MUTANTS["frames_are_not_said"], items)
 
 
 def test_the_matrix_has_a_row_for_each_mutant_and_no_other() -> None:
@@ -52,14 +81,18 @@ def test_the_matrix_has_a_row_for_each_mutant_and_no_other() -> None:
         row.split("|")[:4] for row in empty if row.startswith("| ")
     ], NOT_CURRENT
     only_accept = sum(mutant.only_accepts for mutant in MUTANTS.values())
-    assert f"{len(MUTANTS)} mutants, 0 of which survive." in ROWS, NOT_CURRENT
-    assert f"{only_accept} of them only accept what they should reject, and build no robot of it." in ROWS, NOT_CURRENT
+    assert f"There are {len(MUTANTS)} mutants." in ROWS, NOT_CURRENT
+    for version in VERSIONS:
+        of_it = sum(version in mutant.versions for mutant in MUTANTS.values())
+        assert f"{of_it} are to be caught in version {version}, 0 of which survive." in ROWS, NOT_CURRENT
+    assert f"{only_accept} only accept what they should reject, and build no robot of it." in ROWS, NOT_CURRENT
 
 
-def test_each_clause_with_a_must_is_broken_by_a_mutant_or_it_is_said_why_none_can() -> None:
-    broken = {mutant.clause for mutant in MUTANTS.values()}
-    musts = {clause.id for clause in read_clauses().values() if clause.must}
-    assert musts - broken == set(UNBROKEN)
+@pytest.mark.parametrize("version", VERSIONS)
+def test_each_clause_with_a_must_is_broken_by_a_mutant_or_it_is_said_why_none_can(version: Version) -> None:
+    broken = {mutant.clause for mutant in MUTANTS.values() if version in mutant.versions}
+    musts = {clause.id for clause in read_clauses().values() if clause.must and version in said_in(clause)}
+    assert musts - broken == set(UNBROKEN) & musts
     assert broken <= {clause.id for clause in read_clauses().values() if clause.testable}
 
 

@@ -1,4 +1,4 @@
-"""Which clauses have no case that tests them."""
+"""Which clauses have no case that tests them, in each version that they are of."""
 
 from __future__ import annotations
 
@@ -6,10 +6,22 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from eurdf_conformance.corpus.case import Case, InvalidCase, ValidCase
 from eurdf_conformance.corpus.clause import Clause
+from eurdf_conformance.level import Version
+
+#: By clause the versions of it in which no two files can keep it or break it, each with the reason.
+UNSAID: Mapping[str, Mapping[Version, str]] = {
+    "EU-CAN-004": {"1": "Version 1 has no configurations."},
+    "EU-JNT-007": {"1": "UJOINT names two axes that differ; joints of parallel axes are not merged, by EU-ONE-007."},
+}
+
+
+def said_in(clause: Clause) -> tuple[Version, ...]:
+    """The versions of a clause in which files can keep it or break it."""
+    return tuple(version for version in clause.versions if version not in UNSAID.get(clause.id, {}))
 
 
 def missing(cases: Iterable[Case], clauses: Mapping[str, Clause], elsewhere: Iterable[str] = ()) -> Iterator[str]:
-    """What is missing, one line a clause.
+    """What is missing, one line a clause and version, for each version is certified apart.
 
     A MUST that a diagnostic stands for needs a case that breaks it and one that does not; a SHOULD, one that earns the
     warning; any other MUST, a case. Where a code stands for a clause, a case that breaks it has that code.
@@ -23,17 +35,19 @@ def missing(cases: Iterable[Case], clauses: Mapping[str, Clause], elsewhere: Ite
     for clause in clauses.values():
         if not clause.testable or clause.id in elsewhere:
             continue
-        citing = [case for case in cases if clause.id in case.clauses]
-        valid = [case for case in citing if isinstance(case, ValidCase)]
-        broken = {case.code for case in citing if isinstance(case, InvalidCase)}
-        warned = {warning.code for case in valid for warning in case.warnings}
-        lacks = []
-        if not clause.codes:
-            lacks += ["a case"] * (clause.must and not citing)
-        elif clause.must:
-            lacks += ["a valid case"] * (not valid)
-            lacks += [f"an invalid case ({code})" for code in sorted(clause.codes - broken)]
-        else:
-            lacks += [f"a valid case with the warning {code}" for code in sorted(clause.codes - warned)]
-        if lacks:
-            yield f"{clause.id} ({', '.join(f'version {version}' for version in clause.versions)}): {', '.join(lacks)}"
+        for version in said_in(clause):
+            citing = [case for case in cases if clause.id in case.clauses and case.version == version]
+            if lacks := _lacks(clause, citing):
+                yield f"{clause.id} (version {version}): {', '.join(lacks)}"
+
+
+def _lacks(clause: Clause, citing: list[Case]) -> list[str]:
+    """What a clause lacks, given the cases of one version that cite it."""
+    valid = [case for case in citing if isinstance(case, ValidCase)]
+    broken = {case.code for case in citing if isinstance(case, InvalidCase)}
+    warned = {warning.code for case in valid for warning in case.warnings}
+    if not clause.codes:
+        return ["a case"] * (clause.must and not citing)
+    if clause.must:
+        return ["a valid case"] * (not valid) + [f"an invalid case ({code})" for code in sorted(clause.codes - broken)]
+    return [f"a valid case with the warning {code}" for code in sorted(clause.codes - warned)]

@@ -202,7 +202,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     tested = {clause for rule in RULES for clause in rule.clauses}
     gaps = list(missing(cases, clauses, tested | set(OF_RUNNERS)))
     sys.stdout.writelines(f"{line}\n" for line in [*faults, *(f"missing: {gap}" for gap in gaps)])
-    sys.stdout.write(f"{len(cases)} cases, {len(faults)} faults, {len(gaps)} clauses without a case\n")
+    sys.stdout.write(f"{len(cases)} cases, {len(faults)} faults, {len(gaps)} clauses without their cases\n")
     return int(bool(faults or (options.complete and gaps)))
 
 

@@ -54,6 +54,18 @@ def motor_in_place_of_armature() -> Deviation:
 
 
 @mutant("EU-ACT-006")
+def armature_of_0_is_not_stated() -> Deviation:
+    """An armature of 0 that the description states gives way to that of the motor, as where 0 counts as nothing."""
+    return around(
+        link,
+        "with_motor",
+        lambda original, joint, entry, armature_given: original(
+            joint, entry, armature_given=armature_given and any(joint.armature)
+        ),
+    )
+
+
+@mutant("EU-ACT-006")
 def motor_beside_armature() -> Deviation:
     """The armature of the motor is added to the one that the description states."""
 
@@ -77,7 +89,7 @@ def ratio_left_out_is_0() -> Deviation:
     )
 
 
-@mutant("EU-ACT-007")
+@mutant("EU-ACT-007", versions=("2",))  # version 1 has no gears
 def motor_on_the_first_velocity() -> Deviation:
     """A motor acts along the first velocity of its joint alone."""
 
@@ -132,7 +144,7 @@ def actuated_joint_must_be_of_one_velocity() -> Deviation:
     return _refused(lambda robot, driven: any(joint.coordinates.nv > 1 for joint in driven))
 
 
-@mutant("EU-ACT-001")
+@mutant("EU-ACT-001", versions=("1",))  # version 2 splits no joint
 def motor_on_both_halves() -> Deviation:
     """No joint that a universal one was split into may have a motor."""
 

@@ -96,3 +96,9 @@ class _Open:
 
     def __init__(self, openings: Any) -> None:
         self.open = openings
+
+
+@mutant("EU-FIL-002")
+def closures_times_joints_without_bound() -> Deviation:
+    """A robot may have any number of closures on any number of joints."""
+    return instead(link, "CLOSURES_TIMES_JOINTS_LIMIT", 10**12)

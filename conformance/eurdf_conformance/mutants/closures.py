@@ -10,9 +10,11 @@ import numpy as np
 import pinocchio as pin
 
 from eurdf.kinematics import residual
+from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Anchor, Closure, Mechanism
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.placement import placement_of
+from eurdf.pinocchio.robot import Robot
 from eurdf_conformance.adapters.reference_values import Quantities
 from eurdf_conformance.mutants.deviation import Deviation, around, result
 from eurdf_conformance.mutants.mutant import mutant
@@ -129,7 +131,7 @@ def closures_3d_dropped() -> Deviation:
     return around(Quantities, "_by_closure", by_closure)
 
 
-@mutant("EU-CLO-009")
+@mutant("EU-CLO-009", versions=("2",))  # the frames of version 1 have the axes of links
 def closures_3d_between_points() -> Deviation:
     """The two frames of a 3d closure are points, seen along the axes of their links, as in Drake."""
 
@@ -211,6 +213,25 @@ def one_of_two_followers_forgotten() -> Deviation:
 
 
 @mutant("EU-CLO-010")
+def turning_after_a_slide_forgotten() -> Deviation:
+    """K leaves out a joint that turns as the prismatic one slides that it follows."""
+
+    def loops(original: Any, robot: Robot) -> Any:
+        slides = {joint.name for joint in robot.mechanism.joints if joint.type is JointType.PRISMATIC}
+        turning = [
+            joint.name
+            for joint in robot.mechanism.joints
+            if joint.mimic is not None and joint.mimic.joint in slides and joint.name not in slides
+        ]
+        columns = [robot.model.idx_vExtendeds[robot.model.getJointId(name)] for name in turning]
+        return tuple(
+            replace(loop, signs=np.where(np.isin(loop.columns, columns), 0.0, loop.signs)) for loop in original(robot)
+        )
+
+    return while_evaluating(lambda: around(residual, "find_loops", loops))
+
+
+@mutant("EU-CLO-010")
 def sign_of_k() -> Deviation:
     """K has the other sign than the residual."""
     return _loops(lambda loop: replace(loop, signs=-loop.signs))
@@ -226,3 +247,24 @@ def rows_of_zeros_left_out() -> Deviation:
         )
 
     return result(Quantities, "jacobian", jacobian)
+
+
+def _angle(aMb: Any) -> float:
+    return float(np.linalg.norm(pin.log3(aMb.rotation)))
+
+
+@mutant("EU-CLO-008")
+def logarithm_of_small_turns() -> Deviation:
+    """The linear rows of a 6d closure that is turned by less than 1e-3 rad are the position of B in A."""
+
+    def rows(aMb: Any) -> Any:
+        v, ω = (aMb.translation, pin.log3(aMb.rotation)) if _angle(aMb) < 1e-3 else np.split(pin.log6(aMb).vector, 2)
+        return np.concatenate([v, ω])
+
+    return _rows(rows, spatial=True)
+
+
+@mutant("EU-CLO-010")
+def derivative_at_small_turns() -> Deviation:
+    """K of a 6d closure that is turned by less than 1e-5 rad is the twist of B against A, as if it were closed."""
+    return _derivative(lambda aMb: np.eye(6) if _angle(aMb) < 1e-5 else pin.Jlog6(aMb.inverse()), spatial=True)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 from eurdf.description import Description
 from eurdf.format.read_extension import VERSION_KEY
 from eurdf.mechanism import configurations
 from eurdf.mechanism.joint_type import COORDINATES, JointType
-from eurdf.mechanism.mechanism import Joint, Mechanism
+from eurdf.mechanism.mechanism import ROOT_JOINT, Joint, Mechanism
 from eurdf_conformance.adapters import reference, reference_values
 from eurdf_conformance.level import Level
 from eurdf_conformance.mutants.deviation import Deviation, around, instead
@@ -92,9 +93,27 @@ def left_out_joints_within_their_limits() -> Deviation:
 @mutant("EU-CFG-006")
 def quaternions_as_written() -> Deviation:
     """A quaternion is kept as it is written."""
+    return _as_written(lambda joint: True)
+
+
+@mutant("EU-CFG-006")
+def quaternions_of_floating_joints_as_written() -> Deviation:
+    """The quaternion of a floating joint, the root's aside, is kept as it is written."""
+    return _as_written(lambda joint: joint.type is JointType.FLOATING and joint.name != ROOT_JOINT)
+
+
+@mutant("EU-CFG-006")
+def quaternion_of_the_root_as_written() -> Deviation:
+    """The quaternion of a floating root is kept as it is written."""
+    return _as_written(lambda joint: joint.name == ROOT_JOINT)
+
+
+def _as_written(which: Callable[[Joint], bool]) -> Deviation:
+    """The coordinates of such joints are kept as they are written."""
 
     def checked(original: Any, joint: Joint, values: Any, *arguments: Any) -> Any:
-        return None if original(joint, values, *arguments) is None else values
+        found = original(joint, values, *arguments)
+        return values if found is not None and which(joint) else found
 
     return around(configurations, "_coordinates", checked)
 

@@ -97,19 +97,19 @@ def floating_root_only_turns() -> Deviation:
     return around(Quantities, "__init__", placed)
 
 
-@mutant("EU-SCH-002")
+@mutant("EU-SCH-002", versions=("2",))  # version 1 has no numbers
 def text_is_a_number() -> Deviation:
     """A text that looks like a number is one."""
     return data_of_version2(lambda data: _each(data, _number))
 
 
-@mutant("EU-SCH-002")
+@mutant("EU-SCH-002", versions=("2",))  # version 1 has no numbers
 def true_is_one() -> Deviation:
     """A boolean is the number 0 or 1, as in Python and C."""
     return data_of_version2(lambda data: _each(data, lambda value: float(value) if isinstance(value, bool) else value))
 
 
-@mutant("EU-SCH-002")
+@mutant("EU-SCH-002", versions=("2",))  # of version 1 it is null_is_an_empty_list
 def null_is_left_out() -> Deviation:
     """A key whose value is null is left out."""
 
@@ -121,7 +121,7 @@ def null_is_left_out() -> Deviation:
     return data_of_version2(without)
 
 
-@mutant("EU-SCH-002")
+@mutant("EU-SCH-002", versions=("2",))  # version 1 says no version
 def version_may_be_a_number() -> Deviation:
     """The version may be the number 2.0."""
 
@@ -133,7 +133,7 @@ def version_may_be_a_number() -> Deviation:
     return around(description, "read_extension", read)
 
 
-@mutant("EU-SCH-004")
+@mutant("EU-SCH-004", versions=("2",))  # version 1 has upper case itself
 def case_of_types_does_not_matter() -> Deviation:
     """A closure's type, and a joint's, may be in upper case, as in version 1."""
     words = ("3D", "6D", "Spherical", "SPHERICAL", "FIXED", "Fixed", "XY", "Floating")

@@ -142,7 +142,7 @@ def frames_of_joints_are_unknown() -> Deviation:
     return instead(FrameNames, "_joint_child", lambda self, name: None)
 
 
-@mutant("EU-FRM-001")
+@mutant("EU-FRM-001", versions=("2",))  # version 1 adds no frames
 def frames_of_the_description_only_once_listed() -> Deviation:
     """A frame that the description adds cannot be used by a closure."""
 
@@ -171,7 +171,7 @@ def name_used_nowhere_is_ambiguous() -> Deviation:
     return refused(ambiguous)
 
 
-@mutant("EU-CAN-001")
+@mutant("EU-CAN-001", versions=("2",))  # version 1 adds no frames
 def frames_are_not_said() -> Deviation:
     """Frames that the description adds are not said."""
     return canonical(lambda robot: {"frames": []})

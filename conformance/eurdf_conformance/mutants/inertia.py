@@ -68,6 +68,23 @@ def links_behind_fixed_joints_are_points() -> Deviation:
 
 
 @mutant("EU-INR-005")
+def links_behind_two_fixed_joints_are_not_turned() -> Deviation:
+    """The moments of a link two or more fixed joints from its body are along its own axes, not those of `inertial`."""
+
+    def changed(robot: Mechanism) -> Mechanism:
+        welded = {joint.child: joint.parent for joint in robot.joints if joint.type is JointType.FIXED}
+        twice = {child for child, parent in welded.items() if parent in welded}
+        return replace(robot, bodies=tuple(_unturned(body) if body.name in twice else body for body in robot.bodies))
+
+    return mechanism(changed)
+
+
+def _unturned(body: Body) -> Body:
+    inertia = body.inertia
+    return body if inertia is None else replace(body, inertia=replace(inertia, pose=Pose(inertia.pose.xyz)))
+
+
+@mutant("EU-INR-005")
 def mass_of_the_root_is_lost() -> Deviation:
     """The mass does not count the root."""
 
@@ -79,7 +96,7 @@ def mass_of_the_root_is_lost() -> Deviation:
     return instead(Quantities, "_masses", property(lambda self: masses(original, self)))
 
 
-@mutant("EU-INR-006")
+@mutant("EU-INR-006", versions=("2",))  # version 1 has no armatures
 def armature_forgotten() -> Deviation:
     """M lacks the armatures."""
 
@@ -90,7 +107,7 @@ def armature_forgotten() -> Deviation:
     return around(model, "set_limits", limits)
 
 
-@mutant("EU-INR-006")
+@mutant("EU-INR-006", versions=("2",))  # version 1 has no armatures
 def armature_of_the_first_velocity() -> Deviation:
     """Of a joint of several velocities the armature of the first counts for all."""
 

@@ -79,7 +79,7 @@ def mass_is_enough() -> Deviation:
     return around(inertia, "_immaterial", immaterial)
 
 
-@mutant("EU-INR-004")
+@mutant("EU-INR-004", versions=("2",))  # version 1 has no armatures
 def armature_is_no_inertia() -> Deviation:
     """What moves at the end of the tree must have inertia though its joint have an armature."""
 

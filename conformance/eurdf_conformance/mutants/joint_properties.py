@@ -85,7 +85,7 @@ def limits_of_one_angle_on_a_ball() -> Deviation:
     )
 
 
-@mutant("EU-JNT-027")
+@mutant("EU-JNT-027", versions=("2",))  # version 1 has no cylindrical joints
 def limits_on_the_other_coordinate() -> Deviation:
     """The limits of an angle bound the length of a cylindrical joint, and those of a length its angle."""
     return result(
@@ -93,7 +93,7 @@ def limits_on_the_other_coordinate() -> Deviation:
     )
 
 
-@mutant("EU-JNT-027")
+@mutant("EU-JNT-027", versions=("2",))  # version 1 has no cylindrical joints
 def limits_on_both_coordinates() -> Deviation:
     """The limits of a joint bound both coordinates of the cylindrical joint that it becomes."""
 
@@ -131,7 +131,7 @@ def damping_of_a_screw_by_its_lead() -> Deviation:
     return _screw(lambda screw, slide: replace(screw, damping=(slide.damping[0] * abs(screw.pitch) / (2.0 * math.pi),)))
 
 
-@mutant("EU-JNT-027")
+@mutant("EU-JNT-027", versions=("2",))  # of version 1 it is second_half_without_limits
 def limits_of_a_universal_joint_lost() -> Deviation:
     """A joint that becomes universal has no position limits."""
 

@@ -72,7 +72,7 @@ def link_before_merged_joints_counts() -> Deviation:
     return around(replacement, "check_chain", check)
 
 
-@mutant("EU-JNT-004")
+@mutant("EU-JNT-004", versions=("2",))  # version 1 changes no properties
 def properties_of_a_mimicked_joint_stay() -> Deviation:
     """A joint that is mimicked may not be changed, be it in its properties only."""
 
@@ -128,7 +128,7 @@ def limits_stated_must_be_both() -> Deviation:
     return around(replacement._Replacement, "override", override)
 
 
-@mutant("EU-JNT-003")
+@mutant("EU-JNT-003", versions=("2",))  # version 1 names no merged joint
 def name_of_the_last_merged_joint_taken() -> Deviation:
     """A merged joint may not have the name of the last of the three."""
 

@@ -11,8 +11,8 @@ from eurdf.format.urdf import _Reader
 from eurdf.mechanism import replacement
 from eurdf.mechanism.joint_transform import joint_transform
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Joint
-from eurdf.pinocchio import joint_model
+from eurdf.mechanism.mechanism import ROOT_JOINT, Joint
+from eurdf.pinocchio import configuration, joint_model
 from eurdf_conformance.adapters import reference_values
 from eurdf_conformance.mutants.deviation import Deviation, around, result, together
 from eurdf_conformance.mutants.mutant import mutant
@@ -32,18 +32,41 @@ def quaternion_the_other_way() -> Deviation:
 
 
 @mutant("EU-JNT-015")
+def ball_at_half_a_turn_is_at_rest() -> Deviation:
+    """A quaternion is divided by its w, and one whose w is 0 taken for no rotation."""
+    return coordinates(JointType.SPHERICAL, lambda c: c if c[3] else [0.0, 0.0, 0.0, 1.0])
+
+
+@mutant("EU-JNT-015")
 def ball_about_the_childs_axes() -> Deviation:
     """A spherical joint turns about one axis, that of the URDF, by the angle of its quaternion."""
     return coordinates(JointType.SPHERICAL, lambda c: [math.hypot(*c[:3]), 0.0, 0.0, c[3]])
 
 
-@mutant("EU-JNT-016")
+@mutant("EU-JNT-025")
+def floating_joint_at_half_a_turn_is_not_turned() -> Deviation:
+    """The quaternion of a floating joint is divided by its w, and one whose w is 0 taken for no rotation."""
+    return coordinates(JointType.FLOATING, lambda c: c if c[6] else [*c[:3], 0.0, 0.0, 0.0, 1.0])
+
+
+@mutant("EU-JNT-025", versions=("2",))  # the root of version 1 is fixed
+def root_at_half_a_turn_is_not_turned() -> Deviation:
+    """The quaternion of a floating root is divided by its w, and one whose w is 0 taken for no rotation."""
+
+    def checked(original: Any, name: str, values: list[float], of: Any) -> Any:
+        turned = name != ROOT_JOINT or values[-1]
+        return original(name, values if turned else [*values[:3], 0.0, 0.0, 0.0, 1.0], of)
+
+    return around(configuration, "_checked", checked)
+
+
+@mutant("EU-JNT-016", versions=("2",))  # of version 1 it is second_axis_first
 def axes_of_a_universal_joint_swapped() -> Deviation:
     """A universal joint turns about its second axis first."""
     return around(joint_model, "_universal", lambda original, first, second: original(second, first))
 
 
-@mutant("EU-JNT-016")
+@mutant("EU-JNT-016", versions=("2",))  # version 1 has two hinges, each on the one before
 def second_axis_fixed_to_the_parent() -> Deviation:
     """The second axis of a universal joint is fixed to the parent: it turns by R(a₂, θ₂) R(a₁, θ₁)."""
     return together(
@@ -52,7 +75,7 @@ def second_axis_fixed_to_the_parent() -> Deviation:
     )
 
 
-@mutant("EU-JNT-016")
+@mutant("EU-JNT-016", versions=("2",))  # those of version 1 are so
 def axes_of_a_universal_joint_made_perpendicular() -> Deviation:
     """The second axis of a universal joint is made perpendicular to the first."""
 
@@ -64,7 +87,7 @@ def axes_of_a_universal_joint_made_perpendicular() -> Deviation:
     return around(joint_model, "_universal", universal)
 
 
-@mutant("EU-JNT-016")
+@mutant("EU-JNT-016", versions=("2",))  # version 1 has two hinges
 def axes_of_a_universal_joint_in_the_parents_frame() -> Deviation:
     """The axes of a universal joint are in the frame of the parent link."""
 

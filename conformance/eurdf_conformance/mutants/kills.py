@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import shlex
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from eurdf_conformance.adapters.reference import Reference
+from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.protocol_rule import RULES, ProtocolRule
 from eurdf_conformance.corpus.read import CorpusCase
 from eurdf_conformance.level import VERSIONS, Level, Version
@@ -23,7 +25,7 @@ from eurdf_conformance.runner.session import Session
 from eurdf_conformance.suite.asking import all_cases
 from eurdf_conformance.suite.conversation import Conversation
 from eurdf_conformance.suite.in_process import InProcess
-from eurdf_conformance.suite.item import ProtocolItem, protocol_items
+from eurdf_conformance.suite.item import ProtocolItem, planned_items, protocol_items
 from eurdf_conformance.suite.judge import judge
 from eurdf_conformance.suite.protocol_check import Asked, check
 from eurdf_conformance.suite.smoke import SMOKE, smoke_case
@@ -43,6 +45,24 @@ def kills(mutant: Mutant) -> list[str]:
     return [*_by_protocol(mutant), *_by_cases(mutant), *_by_properties(mutant)]
 
 
+def by_version(mutant: Mutant, items: Iterable[str]) -> dict[Version, list[str]]:
+    """In which version each item catches a mutant: those in which the mutant is to be caught, and any others.
+
+    Each version is certified apart. A rule of the protocol is put to a mutant in one version alone, for it does not
+    depend on it, and counts for each.
+    """
+    found: dict[Version, list[str]] = {version: [] for version in mutant.versions}
+    for item in items:
+        for version in mutant.versions if item.startswith("protocol/") else (_version_of()[item],):
+            found.setdefault(version, []).append(item)
+    return found
+
+
+@cache
+def _version_of() -> Mapping[str, Version]:
+    return {f"{item.id}/{item.level}": item.version for item in planned_items(all_cases())}
+
+
 def _by_cases(mutant: Mutant) -> Iterator[str]:
     conversation, level = Conversation(InProcess(mutant)), mutant.level
     for case in all_cases():
@@ -53,11 +73,11 @@ def _by_cases(mutant: Mutant) -> Iterator[str]:
 
 
 def _by_properties(mutant: Mutant) -> Iterator[str]:
-    level = mutant.level
+    level, cited_in = mutant.level, read_clauses()[mutant.clause].versions
     for law in LAWS:
         if mutant.clause not in law.clauses or level not in law.levels:
             continue
-        for version in law.versions:
+        for version in (each for each in law.versions if each in cited_in):
             if _try(law, level, version, mutant) in mutant.caught_by and _REFERENCE.passes_law(law, level, version):
                 yield f"properties/{law.name}-{version}/{level}"
 

@@ -7,7 +7,8 @@ from pathlib import Path
 
 from eurdf_conformance.adapters.reference import Reference
 from eurdf_conformance.corpus.clause import read_clauses
-from eurdf_conformance.level import Level
+from eurdf_conformance.corpus.coverage import said_in
+from eurdf_conformance.level import Level, Version
 from eurdf_conformance.mutants.deviation import Deviation
 from eurdf_conformance.protocol.message import Accepted, Quantity, Rejected, Values
 from eurdf_conformance.verdict.verdict import Verdict
@@ -24,6 +25,7 @@ class Mutant(Reference):
         clause: The clause that it breaks.
         breaks: How, as a sentence.
         level: The level at which it is to be caught, that of the clause.
+        versions: The versions in which it is to be caught: those of the clause in which its deviation can be seen.
         caught_by: The verdicts that count as catching it.
         as_process: Whether it is broken in how it speaks, which is seen only where it runs as a process of its own.
         only_accepts: Whether all that it does is to accept, without a robot, what it should reject.
@@ -37,6 +39,7 @@ class Mutant(Reference):
         deviation: Callable[[], Deviation],
         *,
         level: Level | None = None,
+        versions: tuple[Version, ...] | None = None,
         caught_by: frozenset[Verdict] = _WRONG,
         as_process: bool = False,
         only_accepts: bool = False,
@@ -47,6 +50,7 @@ class Mutant(Reference):
         self.breaks = breaks
         self.deviation = deviation
         self.level = level or Level(read_clauses()[clause].level)
+        self.versions = versions or said_in(read_clauses()[clause])
         self.caught_by = caught_by
         self.as_process = as_process
         self.only_accepts = only_accepts
@@ -71,6 +75,7 @@ def mutant(
     clause: str,
     *,
     level: Level | None = None,
+    versions: tuple[Version, ...] | None = None,
     caught_by: frozenset[Verdict] = _WRONG,
     as_process: bool = False,
     only_accepts: bool = False,
@@ -80,6 +85,7 @@ def mutant(
     Args:
         clause: The clause that it breaks.
         level: The level at which it is to be caught, where that is not the one of the clause.
+        versions: The versions in which it is to be caught, where its deviation cannot be seen in all of the clause.
         caught_by: The verdicts that count as catching it.
         as_process: Whether it is broken in how it speaks.
         only_accepts: Whether all that it does is to accept what it should reject.
@@ -93,6 +99,7 @@ def mutant(
             breaks,
             deviation,
             level=level,
+            versions=versions,
             caught_by=caught_by,
             as_process=as_process,
             only_accepts=only_accepts,

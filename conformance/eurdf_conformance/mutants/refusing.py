@@ -34,7 +34,13 @@ def redundant_rows_refused() -> Deviation:
     )
 
 
-@mutant("EU-CLO-004")
+@mutant("EU-FIL-002")
+def two_dozen_closures_at_most() -> Deviation:
+    """A robot of more than 24 closures is refused."""
+    return refused_by_mechanism(lambda robot: len(robot.closures) > 24)
+
+
+@mutant("EU-CLO-004", versions=("2",))  # in version 1 a link has one frame
 def second_closure_of_two_links_refused() -> Deviation:
     """Two closures may not join the same two links."""
     return refused_by_mechanism(
@@ -73,6 +79,12 @@ def slashes_in_names_refused() -> Deviation:
 
 
 @mutant("EU-CNF-002")
+def long_names_refused() -> Deviation:
+    """A name may have 64 characters."""
+    return _refused_by_names(lambda name: len(name) > 64)
+
+
+@mutant("EU-CNF-002")
 def names_beyond_ascii_refused() -> Deviation:
     """A name must be of ASCII."""
     return _refused_by_names(lambda name: not name.isascii())
@@ -84,13 +96,13 @@ def own_keys_refused() -> Deviation:
     return refused_by_mechanism(lambda robot: robot.version == "2.0" and bool(robot.own_data))
 
 
-@mutant("EU-FIL-004")
+@mutant("EU-FIL-004", versions=("2",))  # version 1 names no URDF
 def urdf_in_another_folder_refused() -> Deviation:
     """The URDF must be in the folder of the description."""
     return refused(lambda read: "/" in str(_said(read, "urdf")))
 
 
-@mutant("EU-JNT-005")
+@mutant("EU-JNT-005", versions=("2",))  # version 1 has neither
 def prismatic_stays_prismatic() -> Deviation:
     """A prismatic joint may become neither cylindrical nor helical."""
 
@@ -109,7 +121,7 @@ def left_handed_screws_refused() -> Deviation:
     return refused(has(lambda joint: joint.pitch < 0.0))
 
 
-@mutant("EU-SCH-002")
+@mutant("EU-SCH-002", versions=("2",))  # version 1 has no numbers
 def integers_are_no_numbers() -> Deviation:
     """Where a number is asked for, an integer is refused."""
     return refused(lambda read: any(type(value) is int for value in _numbers(_said(read, "configurations"))))

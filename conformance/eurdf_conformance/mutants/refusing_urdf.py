@@ -145,3 +145,15 @@ def unknown_elements_refused() -> Deviation:
             for child in element
         )
     )
+
+
+@mutant("EU-FIL-002")
+def a_thousand_links_at_most() -> Deviation:
+    """A robot of more than 1000 links is refused."""
+    return refused_by_urdf(lambda urdf: len(urdf.links) > 1000)
+
+
+@mutant("EU-FIL-002")
+def two_dozen_joints_on_a_link_at_most() -> Deviation:
+    """A robot with more than 24 joints on one link is refused."""
+    return refused_by_urdf(lambda urdf: any(len(joints) > 24 for joints in urdf.children.values()))

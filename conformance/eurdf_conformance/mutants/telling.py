@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from eurdf import description
+from eurdf.description import Description
 from eurdf.diagnostics.registry import REGISTRY, Phase
 from eurdf.mechanism.frame_names import FrameNames
 from eurdf.mechanism.replacement import _Replacement
@@ -76,6 +77,21 @@ def fault_of_a_file_is_not_caught() -> Deviation:
     return instead(description, "Fault", KeyboardInterrupt)
 
 
+@mutant("EU-SEC-005", caught_by=frozenset({Verdict.ERRORED}))
+def tree_is_walked_by_recursion() -> Deviation:
+    """A function that calls itself for each link on a link walks the tree, and fails where it is 1000 links deep."""
+
+    def walked(read: Description) -> Description:
+        deep = {"": 0}
+        for joint in () if read.urdf is None else read.urdf.walk():
+            deep[joint.child] = deep.get(joint.parent, 0) + 1
+        if max(deep.values()) > 1000:
+            raise RecursionError("maximum recursion depth exceeded")
+        return read
+
+    return result(Reference, "describe", walked)
+
+
 @mutant("EU-PRO-005", caught_by=frozenset({Verdict.ERRORED}))
 def gone_after_a_rejection() -> Deviation:
     """After it has rejected a description, the reader reads nothing."""
@@ -120,7 +136,7 @@ def what_follows_is_told() -> Deviation:
     return issues(more)
 
 
-@mutant("EU-DIA-002")
+@mutant("EU-DIA-002", versions=("2",))  # version 1 adds no frames
 def frame_at_fault_is_unknown() -> Deviation:
     """Where a frame of the description is at fault, each closure that uses it is told to use an unknown one."""
 
@@ -150,13 +166,13 @@ def code_of_its_own() -> Deviation:
     return each_issue(lambda issue: {"code": f"{issue.code}-error"})
 
 
-@mutant("EU-CNF-004")
+@mutant("EU-CNF-004", versions=("2",))  # version 1 has no helical joints
 def what_is_lacked_is_wrong() -> Deviation:
     """A reader that lacks helical joints says that they are wrong."""
     return refused(has(lambda joint: joint.type == "helical"))
 
 
-@mutant("EU-CNF-005", caught_by=frozenset({Verdict.UNSUPPORTED}))
+@mutant("EU-CNF-005", caught_by=frozenset({Verdict.UNSUPPORTED}), versions=("2",))  # version 1 has neither
 def less_than_is_claimed() -> Deviation:
     """A reader that claims a level lacks helical and universal joints, and says so."""
 
@@ -170,7 +186,7 @@ def less_than_is_claimed() -> Deviation:
     return around(Reference, "load", load)
 
 
-@mutant("EU-CNF-004")
+@mutant("EU-CNF-004", versions=("2",))  # of version 1 it is universal_joint_stays_as_it_is
 def what_is_lacked_is_left_out() -> Deviation:
     """A reader that lacks universal joints leaves them as the URDF has them."""
     return around(_Replacement, "universal", lambda original, self, joint: joint)

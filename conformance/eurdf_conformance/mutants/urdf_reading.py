@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import unicodedata
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -11,9 +12,10 @@ from eurdf.diagnostics import Fault
 from eurdf.format import urdf
 from eurdf.format.urdf import _Reader
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Mimic
+from eurdf.mechanism.mechanism import Mechanism, Mimic
 from eurdf.pinocchio import mimic, robot
 from eurdf.reading import xml_reader
+from eurdf_conformance.adapters import reference_values
 from eurdf_conformance.mutants.accepting import accepting
 from eurdf_conformance.mutants.deviation import Deviation, around, instead, result
 from eurdf_conformance.mutants.mutant import mutant
@@ -39,6 +41,12 @@ def multiplier_dropped() -> Deviation:
 
 
 @mutant("EU-URD-032")
+def multiplier_of_0_is_1() -> Deviation:
+    """A multiplier of 0 counts as none, which is 1."""
+    return _mimic(lambda found: replace(found, multiplier=found.multiplier or 1.0))
+
+
+@mutant("EU-URD-032")
 def offset_before_multiplier() -> Deviation:
     """A joint that mimics stands at multiplier · (q + offset)."""
     return _mimic(lambda found: replace(found, offset=found.multiplier * found.offset))
@@ -59,6 +67,45 @@ def chain_of_mimics_cut() -> Deviation:
         laws.update({follower: replace(mimics[follower], joint=law.joint) for follower, law in laws.items()})
 
     return around(mimic, "_follow_chain", follow)
+
+
+@mutant("EU-URD-032")
+def chain_of_three_mimics_cut() -> Deviation:
+    """Of a chain of joints that mimic, the two laws nearest to a joint count, as if what they lead to led them all."""
+
+    def follow(original: Any, name: str, mimics: Mapping[str, Mimic], laws: dict[str, Mimic]) -> None:
+        original(name, mimics, laws)
+        for follower, law in laws.items():
+            one = mimics[follower]
+            other = mimics.get(one.joint)
+            if other is not None and other.joint in mimics:
+                offset = one.multiplier * other.offset + one.offset
+                laws[follower] = Mimic(law.joint, one.multiplier * other.multiplier, offset)
+
+    return around(mimic, "_follow_chain", follow)
+
+
+def _without_turns(kind: JointType) -> Deviation:
+    """The angles of joints of one type, of which the others follow some, are brought within half a turn."""
+
+    def vector(original: Any, mechanism: Mechanism, model: Any, given: Mapping[str, Any], *at: Any) -> Any:
+        turning = {joint.name for joint in mechanism.joints if joint.type is kind} & given.keys()
+        within = {name: [math.remainder(given[name][0], math.tau)] for name in turning}
+        return original(mechanism, model, {**given, **within}, *at)
+
+    return around(reference_values, "configuration_vector", vector)
+
+
+@mutant("EU-URD-032")
+def turns_of_a_leader_lost() -> Deviation:
+    """Of a continuous joint, those that follow it know the cosine and the sine, and no whole turns: Pinocchio."""
+    return _without_turns(JointType.CONTINUOUS)
+
+
+@mutant("EU-URD-032")
+def turns_of_a_revolute_leader_lost() -> Deviation:
+    """Of a revolute joint, those that follow it know the angle within half a turn."""
+    return _without_turns(JointType.REVOLUTE)
 
 
 @mutant("EU-URD-032")

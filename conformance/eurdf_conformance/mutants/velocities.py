@@ -94,19 +94,19 @@ def planar_seen_from_the_joint() -> Deviation:
     return _velocities(JointType.PLANAR, other)
 
 
-@mutant("EU-JNT-026")
+@mutant("EU-JNT-026", versions=("2",))  # version 1 has no cylindrical joints
 def cylindrical_velocities_reversed() -> Deviation:
     """The velocities of a cylindrical joint are angular, then linear."""
     return _velocities(JointType.CYLINDRICAL, lambda q: np.eye(2)[::-1])
 
 
-@mutant("EU-JNT-026")
+@mutant("EU-JNT-026", versions=("2",))  # version 1 has no helical joints
 def helical_velocity_is_linear() -> Deviation:
     """The velocity of a helical joint is that along its axis, in units of 10 mm/s."""
     return _velocities(JointType.HELICAL, lambda q: np.array([[100.0]]))
 
 
-@mutant("EU-JNT-026")
+@mutant("EU-JNT-026", versions=("2",))  # version 1 has two hinges, named apart
 def universal_velocities_reversed() -> Deviation:
     """The first velocity of a universal joint is that about its second axis."""
     return _velocities(JointType.UNIVERSAL, lambda q: np.eye(2)[::-1])
@@ -142,7 +142,7 @@ def followers_have_columns() -> Deviation:
     )
 
 
-@mutant("EU-PRO-007")
+@mutant("EU-PRO-007", versions=("2",))  # the root of version 1 is fixed
 def root_has_no_columns() -> Deviation:
     """The velocities of a floating root are not named."""
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from eurdf.mechanism import merging, replacement
@@ -11,9 +13,12 @@ from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Joint
 from eurdf.mechanism.merging import Chain
 from eurdf.mechanism.replacement import _Replacement
+from eurdf_conformance.adapters.reference import Reference
 from eurdf_conformance.mutants.deviation import Deviation, around, instead
 from eurdf_conformance.mutants.mutant import mutant
-from eurdf_conformance.mutants.of_the_reference import canonical, said_in_version1
+from eurdf_conformance.mutants.of_the_reference import canonical, refused_by_mechanism, said_in_version1
+from eurdf_conformance.protocol.reply import unsupported
+from eurdf_conformance.verdict.verdict import Verdict
 
 
 @mutant("EU-ONE-006")
@@ -65,7 +70,7 @@ def halves_without_dynamics() -> Deviation:
     )
 
 
-@mutant("EU-JNT-016")
+@mutant("EU-JNT-016", versions=("1",))  # version 2 has no UJOINT
 def second_axis_first() -> Deviation:
     """UJOINT_AB turns about B first."""
     return _halves(lambda _, first, second: (replace(first, axes=second.axes), replace(second, axes=first.axes)))
@@ -174,3 +179,33 @@ def ball_named_after_the_first() -> Deviation:
         return replace(first, name=ball.name), second, replace(ball, name=first.name)
 
     return around(replacement, "merge", merge)
+
+
+# Version 2 splits no joint.
+
+
+@mutant("EU-CNF-004", versions=("1",))
+def split_that_is_lacked_is_wrong() -> Deviation:
+    """A reader that lacks UJOINT says that it is wrong."""
+    return refused_by_mechanism(lambda robot: any(body.virtual for body in robot.bodies))
+
+
+@mutant("EU-CNF-005", caught_by=frozenset({Verdict.UNSUPPORTED}), versions=("1",))
+def split_that_is_claimed_is_lacked() -> Deviation:
+    """A reader that claims a level lacks UJOINT, and says so."""
+
+    def load(original: Any, self: Any, description: Path, urdf: Path) -> Any:
+        return unsupported("UJOINT") if b"UJOINT" in description.read_bytes() else original(self, description, urdf)
+
+    return around(Reference, "load", load)
+
+
+@mutant("EU-JNT-027", versions=("1",))
+def limits_of_the_second_half_lost() -> Deviation:
+    """The second of the two joints that a universal one is split into has no position limits."""
+
+    def split(original: Any, self: Any, joint: Joint) -> Joint | None:
+        second: Joint | None = original(self, joint)
+        return second and replace(second, lower=(-math.inf,), upper=(math.inf,))
+
+    return around(_Replacement, "split", split)

@@ -39,6 +39,18 @@ def bounds_of_a_hundredth() -> Deviation:
     return instead(yaml_reader, "NODE_LIMIT", 1000)
 
 
+@mutant("EU-FIL-002")
+def bounds_of_three_thousand() -> Deviation:
+    """A description may have 3000 keys and values."""
+    return instead(yaml_reader, "NODE_LIMIT", 3000)
+
+
+@mutant("EU-FIL-002")
+def keys_and_values_without_bound() -> Deviation:
+    """A description may have any number of keys and values."""
+    return instead(yaml_reader, "NODE_LIMIT", 10**9)
+
+
 @mutant("EU-YML-002")
 def first_of_a_list() -> Deviation:
     """Of a description that is a list, the first item counts."""
