@@ -7,6 +7,7 @@ import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import jsonschema
 import pytest
@@ -27,6 +28,7 @@ from eurdf_conformance.certificate.fingerprint import clauses_hash, corpus_hash,
 from eurdf_conformance.certificate.issue import issue
 from eurdf_conformance.certificate.replay import (
     file_differences,
+    own_faults,
     replay_differences,
     replay_schema,
     suite_differences,
@@ -36,12 +38,16 @@ from eurdf_conformance.certificate.write import write_certificate
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.read import read_case, read_cases
 from eurdf_conformance.level import Level
+from eurdf_conformance.suite.item import case_items
+from eurdf_conformance.suite.options import Options
+from eurdf_conformance.suite.reproduce import PACKAGE
 from eurdf_conformance.verdict.known_failures import KnownFailure, KnownFailures
+from eurdf_conformance.verdict.result import Result
 from eurdf_conformance.verdict.verdict import Verdict
 from eurdf_conformance.write_together import write_together
 
 ALL = {version: list(Level) for version in ("1", "2")}
-HOSTILE = "<script>alert(1)</script> & \x1b[31m\0"
+HOSTILE = "<script>alert(1)</script> & \x1b[31m\0\u202e"
 
 
 def text_of(page: str) -> str:
@@ -220,7 +226,7 @@ def test_what_a_reader_says_of_itself_cannot_become_part_of_a_page_or_a_badge(fa
     for page in (report(given), comparison_page([given, failed])):
         assert "<script" not in page
         assert "\x1b" not in page
-        assert "\\x1b[31m\\x00" in page
+        assert "\\x1b[31m\\x00\\u202e" in page
     etree.fromstring(badge(given))
 
 
@@ -343,6 +349,129 @@ def test_a_page_or_a_badge_that_shows_another_certificate_is_found_out(failed: C
     assert file_differences(tmp_path, failed) == []
     (tmp_path / "badge.svg").write_text(badge(issue(run())), encoding="utf-8")
     assert file_differences(tmp_path, failed) == ["badge.svg: it does not show this certificate"]
+
+
+def test_a_badge_or_a_page_that_is_missing_beside_a_certificate_is_told(failed: Certificate, tmp_path: Path) -> None:
+    write_certificate(tmp_path, failed)
+    (tmp_path / "badge.svg").unlink()
+    (tmp_path / "report.html").rename(tmp_path / "my_report.html")
+    told = ["report.html: it is missing", "badge.svg: it is missing"]
+    assert file_differences(tmp_path, failed) == told
+    assert file_differences(tmp_path / "certificate.json", failed) == []  # of which nobody says what is beside it
+
+
+def test_a_certificate_is_the_very_text_that_the_suite_writes(failed: Certificate, tmp_path: Path) -> None:
+    write_certificate(tmp_path, failed)
+    file = tmp_path / "certificate.json"
+    text = file.read_text(encoding="utf-8")
+    file.write_text(
+        text.replace('"certified": false,\n  "levels"', '"certified": true,\n  "certified": false,\n  "levels"')
+    )
+    assert read_certificate(file) == failed
+    told = ["certificate.json: the whole: the key 'certified' stands twice in it"]
+    assert file_differences(tmp_path, read_certificate(file)) == file_differences(file, failed) == told
+    file.write_text(text.replace("\n", ""), encoding="utf-8")
+    assert file_differences(file, failed) == ["certificate.json: it is not written as the suite writes it"]
+
+
+#: A case of the suite, and what became of it in a run whose reader was expected to fail otherwise, or to pass.
+REAL = next(found.item for found in case_items(read_cases()) if found.item.level == Level.ACCEPT)
+
+
+def with_known(verdict: Verdict, *known: tuple[str, Verdict], **options: Any) -> Certificate:
+    """A certificate of a run of one case of the suite that came to a verdict, and of known failures."""
+    failures = [KnownFailure(id=id_, level=Level.ACCEPT, verdict=of, reason="An issue.") for id_, of in known]
+    given = Options("cmd:./my_reader", **options)
+    of_case = Result(REAL, verdict, ("/outcome: expected",), given.reproduce(REAL))
+    claims = started({REAL.version: [Level.ACCEPT]})
+    return issue(
+        run(
+            started=claims,
+            planned=(REAL,),
+            results=(of_case,),
+            known_failures=KnownFailures(tuple(failures)),
+            explore=given.explore,
+            explore_seed=given.explore_seed,
+        )
+    )
+
+
+SOUND = [
+    with_known(Verdict.FAILED),
+    with_known(Verdict.FAILED, (REAL.id, Verdict.FAILED)),
+    with_known(Verdict.FAILED, (REAL.id, Verdict.CRASHED)),
+    with_known(Verdict.PASSED, (REAL.id, Verdict.CRASHED)),
+    with_known(Verdict.FAILED, ("closures/nobody", Verdict.FAILED), (f"{REAL.id}/accept", Verdict.FAILED)),
+    with_known(Verdict.FAILED, suite=PACKAGE, timeout=2.5, explore=3, explore_seed=9),
+    with_known(Verdict.TIMED_OUT, start_timeout=1e-05),
+    issue(run(claims=ALL, results=())),
+]
+
+
+@pytest.mark.parametrize("certificate", SOUND)
+def test_what_the_suite_writes_agrees_with_itself(certificate: Certificate) -> None:
+    assert own_faults(certificate) == []
+
+
+def forged_failure(certificate: Certificate, **changes: object) -> Certificate:
+    (failure,) = certificate.failures
+    return forged(certificate, failures=[failure.model_dump() | changes])
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "rm -rf /",
+        "",
+        *(
+            SOUND[0].failures[0].reproduce.replace(before, after)
+            for before, after in (
+                ("pytest ", "pytest  "),
+                ("pytest ", "pytest --parser-timeout=$(reboot) "),
+                ("./my_reader", "./their_reader"),
+                ("conformance/", "conformance/ ; reboot"),
+                ("-k ", "--explore=5 -k "),
+                ("/accept", "/structure"),
+            )
+        ),
+    ],
+)
+def test_a_command_that_does_not_run_the_case_again_is_found_out(command: str) -> None:
+    name = f"{REAL.id}/accept"
+    told = [f"{name}: the command that is to run it again is none of the suite: {command}"]
+    assert own_faults(forged_failure(SOUND[0], reproduce=command)) == told
+
+
+def test_known_failures_that_are_not_those_of_the_failures_are_found_out() -> None:
+    version = f"version {REAL.version}, accept"
+    assert own_faults(forged_failure(SOUND[0], known=True)) == [
+        f"{version}: known failures: 0 by its count, 1 by its failures"
+    ]
+    assert own_faults(forged_failure(SOUND[1], known=False)) == [
+        f"{version}: known failures: 1 by its count, 0 by its failures"
+    ]
+    levels = [each.model_dump() | {"known_failures": 3} for each in SOUND[0].levels if each.known_failures == 0]
+    assert own_faults(forged(SOUND[0], levels=levels))
+    not_run = own_faults(forged_failure(SOUND[1], verdict="not run"))
+    assert not_run == [f"{REAL.id}/accept: known, but what was not run is not known to fail"]
+
+
+@pytest.mark.parametrize(
+    ("index", "sentence"),
+    [
+        (0, "x"),
+        (0, "all is well/accept: known as 'certified', but it is better"),
+        (0, f"{REAL.id}/accept: known as 'failed', but it passes now: take it out of the file"),
+        (0, f"{REAL.id}/accept: known as 'skipped', but it is 'crashed'"),
+        (0, f"{REAL.id}/accept: the suite has no such item"),
+        (1, f"{REAL.id}/accept: known as 'skipped', but it is 'failed'"),
+        (3, f"{REAL.id}/accept: known as 'skipped', but it is 'failed'"),
+        (0, "closures/nobody/accept: the suite has no such item, and is wrong"),
+    ],
+)
+def test_what_is_said_of_known_failures_and_does_not_follow_is_found_out(index: int, sentence: str) -> None:
+    told = f"unexpected: of these failures no file of known ones makes it say: {sentence}"
+    assert own_faults(forged(SOUND[index], unexpected=[sentence])) == [told]
 
 
 def test_a_certificate_of_another_corpus_is_told_apart(failed: Certificate) -> None:

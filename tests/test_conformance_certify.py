@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
+import pty
 import re
 import shlex
 import subprocess
@@ -129,7 +131,8 @@ def test_a_first_try_tells_a_wrong_adapter_from_a_wrong_parser(folder: Path) -> 
     assert parser.returncode == 1
     assert parser.stdout.startswith("your adapter is right so far")
     assert "your parser is wrong" in parser.stdout
-    assert "/accept: failed: it rejects what is right\n" in parser.stdout
+    told = '/accept: failed: /outcome: it rejects what is right: expected "accepted", given "rejected"\n'
+    assert told in parser.stdout
     adapter = certify("--parser", one_answer("rejected", "--chatter"), "--smoke")
     assert adapter.returncode == 1
     assert adapter.stdout.startswith("your adapter is wrong")
@@ -149,6 +152,21 @@ def test_a_first_try_that_passes_certifies_nothing(folder: Path) -> None:
     given = json.loads(done.stdout)
     assert given["failures"] == []
     assert not any(level["certified"] for level in given["levels"])
+
+
+def test_a_first_try_runs_on_a_terminal_too(folder: Path) -> None:
+    terminal, stream = pty.openpty()
+    command = [sys.executable, "-m", "eurdf.commands.main", "certify", "--parser", REFERENCE, "--smoke"]
+    with subprocess.Popen(
+        command, stdout=subprocess.DEVNULL, stderr=stream, env={**os.environ, "TERM": "xterm"}
+    ) as run:
+        os.close(stream)
+        shown = b""
+        with contextlib.suppress(OSError):  # its other end is closed
+            while chunk := os.read(terminal, 4096):
+                shown += chunk
+    os.close(terminal)
+    assert (done.returncode, b"certifying" in shown) == (0, True)
 
 
 def test_whoever_explores_is_told_where_the_cases_are(capsys: pytest.CaptureFixture[str]) -> None:
@@ -323,6 +341,38 @@ def test_a_replay_by_another_parser_is_told_line_by_line(folder: Path) -> None:
     value = json.loads(as_json.stdout)
     jsonschema.Draft202012Validator(replay_schema()).validate(value)
     assert value == {"same": False, "differences": again.stdout.splitlines()[:-1]}
+
+
+def test_a_replay_tells_what_somebody_has_changed_in_the_file(folder: Path) -> None:
+    assert certify("--parser", REJECTS, "--smoke", "--certificate", "mine").returncode == 1
+    again = certify("--verify", "mine")
+    assert (again.returncode, again.stdout) == (0, "mine: the same\n")
+    file = Path("mine/certificate.json")
+    text = file.read_text(encoding="utf-8")
+    file.write_text(text.replace("-k tq4m8z/accept", "; reboot").replace('"known": false', '"known": true', 1))
+    again = certify("--verify", file)
+    assert again.returncode == 1
+    told = "closures/tq4m8z/accept: the command that is to run it again is none of the suite: pytest"
+    assert again.stdout.startswith(told)
+    assert again.stdout.endswith(
+        ": known failures: 0 by its count, 1 by its failures\nmine/certificate.json: differs\n"
+    )
+    file.write_text(text.replace('"parser"', '"parser": "cmd:theirs",\n  "parser"'), encoding="utf-8")
+    Path("mine/badge.svg").unlink()
+    again = certify("--verify", "mine")
+    assert again.stdout.splitlines() == [
+        "certificate.json: the whole: the key 'parser' stands twice in it",
+        "badge.svg: it is missing",
+        "mine: differs",
+    ]
+
+
+def test_what_a_reader_writes_that_does_not_start_steers_no_terminal(folder: Path) -> None:
+    program = r"import sys; sys.stderr.write('\x1b[2J\u202e no licence\n'); sys.exit(3)"
+    done = certify("--parser", "cmd:" + shlex.join([sys.executable, "-c", program]))
+    assert done.returncode == 2
+    assert r"\x1b[2J\u202e no licence" in done.stderr
+    assert "\x1b" not in done.stderr
 
 
 def test_a_comparison_is_one_page_of_all_its_certificates(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,25 +2,30 @@
 
 from __future__ import annotations
 
+import io
 import json
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import pytest
 from jsonschema import Draft202012Validator
 from pydantic import ValidationError
 
+from eurdf_conformance.level import Level, Version
 from eurdf_conformance.protocol.message import (
     ANSWER,
     PROTOCOL,
     REQUEST,
+    Accepted,
     AnyRequest,
     Evaluate,
     Load,
     Start,
     Stop,
 )
+from eurdf_conformance.protocol.reply import accepted
 from eurdf_conformance.protocol.schema import FOLDER, main, message_schemas, schema_text
+from eurdf_conformance.protocol.serve import serve
 from eurdf_conformance.runner.answer import read_answer
 from eurdf_conformance.runner.outcome import Malformed, Misplaced
 
@@ -228,6 +233,80 @@ def test_a_constant_that_json_lacks_is_no_value_but_a_text_may_say_it(text: str)
     assert found.why == f"/robot/own/~1x-a/deep/1: {text} is no JSON"
     quoted = json.dumps(answer).replace('"two"', f'"{text}"').encode()
     assert not isinstance(read_answer(quoted, REQUESTS["load"]), Malformed)
+
+
+class Named:
+    """A reader in Python that accepts whatever it is to load."""
+
+    name, version, language = "named", "1", "Python"
+    claims: ClassVar[dict[Version, list[Level]]] = {"2": [Level.ACCEPT]}
+
+    def load(self, description: Path, urdf: Path) -> Accepted:
+        return accepted()
+
+
+#: Texts in an answer to `load`, with what stands there instead, and what is told of it.
+TWICE = [
+    ('"outcome": "accepted"', '"outcome": "rejected", "outcome": "accepted"', "the whole: the key 'outcome'"),
+    ('"outcome": "accepted"', '"outcome":"accepted","outcome"\t:\t"rejected"', "the whole: the key 'outcome'"),
+    ('"root": "fixed"', '"root": "fixed", "root": "fixed"', "/robot: the key 'root'"),
+    ('"name": "j"', '"name": "i", "name": "j"', "/robot/joints/0: the key 'name'"),
+    ('"home": ', '"home": {"j": [9]}, "home": ', "/robot/configurations: the key 'home'"),
+    ('"two"', '{"k": 1, "k": {"l": 2}}', "/robot/own/~1x-a/deep/1: the key 'k'"),
+    ('"two"', '[{"k": "\\u003a", "k": 1}]', "/robot/own/~1x-a/deep/1/0: the key 'k'"),
+    ('"deep": ', '"a:b": 1, "a\\u003ab": ":", "deep": ', "/robot/own/~1x-a: the key 'a:b'"),
+    ('"issues"', '"verdict": 1, "verdict": 2, "issues"', "the whole: the key 'verdict'"),
+]
+
+
+@pytest.mark.parametrize(("before", "after", "told"), TWICE, ids=[told for *_, told in TWICE])
+def test_a_key_that_stands_twice_is_malformed_for_who_reads_it_may_take_either(
+    before: str, after: str, told: str
+) -> None:
+    sound = json.dumps({"id": 1, "outcome": "accepted", "robot": ROBOT, "issues": []})
+    assert sound.count(before) == 1
+    found = read_answer(sound.replace(before, after).encode(), REQUESTS["load"])
+    assert isinstance(found, Malformed)
+    assert found.placed
+    assert found.why == f"{told} stands twice in it"
+
+
+@pytest.mark.parametrize("ids", [(1, 2), (2, 1), (1, 1)])
+def test_an_answer_with_two_ids_is_to_no_request(ids: tuple[int, int]) -> None:
+    line = '{{"id": {}, "id": {}, "outcome": "rejected", "issues": []}}'.format(*ids)
+    found = read_answer(line.encode(), REQUESTS["load"])
+    assert isinstance(found, Malformed)
+    assert not found.placed
+    assert found.why == "an answer in which the key 'id' stands twice"
+
+
+@pytest.mark.parametrize("text", [r"\"id\": 1, \"id\": 2", r"\u0022k\u0022\u003a 1, \"k\": 1", "::"])
+def test_a_text_may_look_like_keys_that_stand_twice(text: str) -> None:
+    line = json.dumps({"id": 1, "outcome": "accepted", "robot": ROBOT}).replace("two", text)
+    assert not isinstance(read_answer(line.encode(), REQUESTS["load"]), Malformed)
+
+
+@pytest.mark.parametrize(
+    ("short", "pointer"),
+    [('"two"', "/robot/own/~1x-a/deep/1"), ("-7", "/issues/0/line"), ("50", "/robot/actuators/0/gear_ratio/0")],
+)
+def test_a_number_that_python_does_not_read_is_told_in_words_of_the_suite(short: str, pointer: str) -> None:
+    issue = {"message": "m", "line": -7}
+    text = json.dumps({"id": 1, "outcome": "accepted", "robot": ROBOT, "issues": [issue]})
+    assert text.count(short) == 1
+    found = read_answer(text.replace(short, "1" * 5000).encode(), REQUESTS["load"])
+    assert isinstance(found, Malformed)
+    assert found.placed
+    assert found.why == f"{pointer}: a number of 5,000 digits, which is too long"
+
+
+def test_an_adapter_in_python_takes_no_request_in_which_a_key_stands_twice() -> None:
+    line = b'{"id": 3, "command": "load", "description": "/a", "description": "/b", "urdf": "/c"}'
+    answers = io.BytesIO()
+    serve(Named(), [line], answers)
+    answer = json.loads(answers.getvalue())
+    told = "no request of protocol 1.0: the whole: the key 'description' stands twice in it"
+    assert answer == {"id": 3, "outcome": "errored", "message": told}
 
 
 def test_several_faults_are_told_with_their_pointers() -> None:

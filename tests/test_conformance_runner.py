@@ -52,6 +52,9 @@ WAYS = [
     ("no_line_end", TimedOut, 'it wrote: \'{"id": 3,', False),
     ("unknown_member", Malformed, "/verdict: Extra inputs are not permitted", True),
     ("member_missing", Malformed, "/robot: Field required", True),
+    ("another_outcome_before", Malformed, "the whole: the key 'outcome' stands twice in it", True),
+    ("two_ids", Malformed, "an answer in which the key 'id' stands twice", False),
+    ("number_too_long", Malformed, "/issues/0/line: a number of 5,000 digits, which is too long", True),
     ("wrong_type", Malformed, "/issues/0/line: Input should be a valid integer", True),
     ("no_outcome", Malformed, "'outcome'", True),
     ("unknown_outcome", Malformed, "'valid'", True),
@@ -112,6 +115,12 @@ def test_a_late_answer_is_not_taken_for_that_to_the_next_request() -> None:
         time.sleep(0.6)  # by now it would have answered
         assert accepts(load(session, "next"), "next")
         assert accepts(load(session, "fault", timeout=5.0), "fault")
+
+
+def test_what_ends_before_it_is_greeted_has_answered_nothing() -> None:
+    with Session("cmd:sh -c 'exit 127'") as session, pytest.raises(NotStarted) as refusal:
+        _ = session.started
+    assert str(refusal.value).splitlines()[0] == "crashed: ended with exit code 127 without an answer"
 
 
 def test_a_crash_after_an_answer_is_told_at_the_next_request_and_said_to_be_from_before() -> None:

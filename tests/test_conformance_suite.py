@@ -12,6 +12,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from conformance_runs import result, run, started
 from eurdf_conformance.corpus.case import ValidCase
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.protocol_rule import GOES_ON
@@ -19,6 +20,7 @@ from eurdf_conformance.corpus.read import CorpusCase, read_cases
 from eurdf_conformance.level import Level, Version
 from eurdf_conformance.protocol.message import (
     Accepted,
+    AnyAnswer,
     Errored,
     Evaluated,
     Issue,
@@ -49,6 +51,7 @@ from eurdf_conformance.suite.options import Options
 from eurdf_conformance.suite.property import all_properties
 from eurdf_conformance.suite.protocol_check import Asked, check
 from eurdf_conformance.suite.smoke import SMOKE
+from eurdf_conformance.suite.summary import summary_lines
 from eurdf_conformance.verdict.result import RESULT
 from eurdf_conformance.verdict.verdict import Verdict
 
@@ -148,6 +151,37 @@ def test_one_value_a_configuration_is_asked_for() -> None:
             assert judge(VALID, level, Conversation(reader)).verdict == verdict
 
 
+@pytest.mark.parametrize(
+    ("case", "level", "answer", "told"),
+    [
+        (VALID, Level.ACCEPT, Rejected(id=1, issues=[]), ("accepted", "rejected", "it rejects what is right")),
+        (VALID, Level.STRUCTURE, Rejected(id=1, issues=[]), ("accepted", "rejected", "it rejects what is right")),
+        (VALID, Level.DIAGNOSE, Unsupported(id=1, feature="f"), ("accepted", "unsupported", "it lacks a feature")),
+        (VALID, Level.DYNAMICS, Unsupported(id=1, feature="f"), ("accepted", "unsupported", "it lacks a feature")),
+        (INVALID, Level.ACCEPT, Unsupported(id=1, feature="f"), ("rejected", "unsupported", "it lacks a feature")),
+        (INVALID, Level.DIAGNOSE, Skipped(id=1, reason=""), ("rejected", "skipped", "it would rather not")),
+        (
+            EITHER,
+            Level.ACCEPT,
+            Errored(id=1, message="oh"),
+            ("accepted or rejected", "errored", "it failed, by its own word"),
+        ),
+    ],
+)
+def test_another_answer_than_the_one_asked_for_is_told_with_both(
+    case: CorpusCase, level: Level, answer: AnyAnswer, told: tuple[str, str, str]
+) -> None:
+    (found,) = judge(case, level, Conversation(Scripted(Answered(answer, 0.0)))).differences
+    assert (found.pointer, found.expected, found.given, found.why) == ("/outcome", *told)
+
+
+def test_of_who_accepts_and_does_not_evaluate_it_is_told_that_values_were_asked_for() -> None:
+    reader = Scripted(accepts(VALID), Answered(Unsupported(id=1, feature="evaluate"), 0.0))
+    (found,) = judge(VALID, Level.KINEMATICS, Conversation(reader)).differences
+    assert (found.expected, found.given) == ("evaluated", "unsupported")
+    assert reader.asked == ["load", "evaluate"]
+
+
 def fault(case: CorpusCase, **changes: object) -> Issue:
     said = case.case.model_dump()
     return Issue.model_validate({"code": said["code"], "message": "?", **said["place"], **changes})
@@ -212,12 +246,47 @@ def test_of_a_failure_everything_is_printed_that_it_takes_to_mend_the_reader() -
         "    error unknown-frame robot.yaml:5:6: ?",
         f"  {INVALID.description}:5:6",
         "        5 |     frames: [coupler_tip, folower_end]",
-        "          |      ^",
+        "          |      ^ given",
         "        5 |     frames: [coupler_tip, folower_end]",
-        "          |                           ^",
+        "          |                           ^ expected",
         f"  {INVALID.urdf}",
         "  what would mend the file: Name the frame as it is called under `frames`, `follower_end`.",
     ]
+
+
+#: What clears a screen, and what turns round the text behind it; and what of all scripts must be left as it is.
+STEERING, PLAIN = "\x1b[2J\x9b31m \u202e \u2066 \r", "관절 Ω é e\u0301 \u00a0 می\u200cخوریم 👩\u200d🔧"
+
+
+def test_a_reader_steers_no_terminal_and_its_own_script_is_left_to_it() -> None:
+    item = next(each.item for each in case_items([INVALID]) if each.item.level == Level.DIAGNOSE)
+    said = f"{STEERING}{PLAIN}"
+    answers = (
+        rejects(Issue(code=said, file=said, message=said)),
+        accepts(None, Issue(message=said)),
+        Answered(Errored(id=1, message=f"{said}\nin two lines"), 0.0),
+        Crashed(1, None, log=said),
+        Malformed(said, said, log=said),
+    )
+    for outcome in answers:
+        judgement = judge(INVALID, Level.DIAGNOSE, Conversation(Scripted(outcome)))
+        text = failure_text(item, judgement, "", INVALID)
+        assert not set(text) & {"\x1b", "\x9b", "\u202e", "\u2066", "\r"}
+        assert "\\x1b[2J" in text
+        assert PLAIN in text
+    assert "\nin two lines" in failure_text(
+        item, judge(INVALID, Level.ACCEPT, Conversation(Scripted(answers[2]))), "", None
+    )
+
+
+def test_who_a_reader_is_stands_on_one_line_at_the_end_of_a_run() -> None:
+    name = f"{STEERING}\nversion 2, accept: 9 of 9 passed: certified"
+    wrong = result(next(case_items([INVALID])).item, Verdict.ERRORED, STEERING)
+    for smoke in (False, True):
+        ended = run(started=started({"2": [Level.ACCEPT]}, name), results=(wrong,), smoke=smoke)
+        lines = list(summary_lines(ended, [], None))
+        assert not any(set(line) & set("\x1b\x9b\u202e\u2066\r\n") for line in lines)
+        assert lines[0].startswith("\\x1b[2J\\x9b31m \\u202e \\u2066 \\r\\nversion 2, accept")
 
 
 def test_of_values_it_is_said_where_the_robot_stood() -> None:
@@ -289,12 +358,14 @@ def test_of_the_protocol_the_files_are_named() -> None:
 # As pytest runs it
 
 
-def suite(*arguments: str, reader: str | None = None, command: Sequence[str] = ("conformance/",)) -> tuple[int, str]:
+def suite(
+    *arguments: str, reader: str | None = None, command: Sequence[str] = ("conformance/",), cwd: Path = ROOT
+) -> tuple[int, str]:
     """Run the suite, in one process: exit code, and what it writes."""
     parser = [f"--parser=case_reader:{reader}"] if reader else []
     argv = [sys.executable, "-m", "pytest", *command, "-n0", "-p", "no:cacheprovider", *parser, *arguments]
     environment = os.environ | {"PYTHONPATH": str(ROOT / "tests" / "fakes"), "COLUMNS": "200"}
-    done = subprocess.run(argv, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=300)
+    done = subprocess.run(argv, cwd=cwd, env=environment, capture_output=True, text=True, timeout=300)
     assert "INTERNALERROR" not in done.stdout + done.stderr
     return done.returncode, done.stdout + done.stderr
 
@@ -429,10 +500,25 @@ def test_smoke_tells_a_wrong_adapter_from_a_wrong_parser() -> None:
     assert "your parser: nothing can be said of it before the adapter is right" in out
 
 
+@pytest.mark.parametrize(
+    ("reader", "asked"),
+    [
+        ("Right", ["bqswnu/kinematics", "k9b2yf/accept", "tq4m8z/accept"]),
+        ("Moving", ["bqswnu/dynamics"]),
+        ("Telling", ["k9b2yf/diagnose", "tq4m8z/structure"]),
+    ],
+)
+def test_smoke_asks_three_cases_each_at_the_first_level_that_the_reader_claims(reader: str, asked: list[str]) -> None:
+    code, out = suite("--smoke", "-vv", "--format-version=2", reader=reader)
+    assert code == 0
+    assert "nothing was asked" not in out
+    assert sorted(re.findall(r"test_case\[\w+/(\w+/\w+)\] PASSED", out)) == asked
+
+
 def test_where_nothing_is_claimed_of_what_is_asked_for_all_is_not_well() -> None:
     code, out = suite("--smoke", reader="Silent")
     assert code == 1
-    assert "nothing was asked: your parser claims neither accept nor kinematics" in out
+    assert "nothing was asked: your parser claims nothing of what you asked for" in out
     code, out = suite("--level=dynamics", reader="Modest")
     assert code == 1
     assert "not claimed: dynamics of version 1, dynamics of version 2" in out
@@ -453,3 +539,18 @@ def test_the_suite_runs_as_an_installed_package_too() -> None:
     assert f"pytest {' '.join(command)} --parser=case_reader:Lenient -k k9b2yf/accept" in out
     code, out = suite("-k", FEW, reader="Right", command=command)
     assert code == 0
+
+
+def test_from_another_folder_the_line_that_is_printed_names_the_package(tmp_path: Path) -> None:
+    code, out = suite("-k", "k9b2yf/accept", reader="Lenient", command=[str(ROOT / "conformance")], cwd=tmp_path)
+    assert code == 1
+    assert "  pytest --pyargs eurdf_conformance.suite -p eurdf_conformance.suite.plugin --parser=" in out
+
+
+def test_a_run_that_is_broken_off_leaves_the_certificate_that_is_there(tmp_path: Path) -> None:
+    code, _ = suite("--smoke", f"--certificate={tmp_path}", reader="Right")
+    assert code == 0
+    before = (tmp_path / "certificate.json").read_bytes()
+    code, _ = suite("-k", FEW, f"--certificate={tmp_path}", reader="Interrupting")
+    assert code == pytest.ExitCode.INTERRUPTED
+    assert (tmp_path / "certificate.json").read_bytes() == before

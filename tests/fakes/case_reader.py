@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -49,6 +50,14 @@ class Right:
 def issue(code: str, place: CasePlace, severity: str) -> Issue:
     said = {"code": code, "severity": severity, "message": "?", **place.model_dump()}
     return Issue.model_validate(said)
+
+
+class Interrupting(Right):
+    """Stands for a user who has enough of it."""
+
+    def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported | Skipped:
+        os.kill(os.getppid(), signal.SIGINT)
+        return super().load(description, urdf)
 
 
 class Lenient(Right):
@@ -102,6 +111,18 @@ class Modest(Right):
     """Claims to accept version 2, no more."""
 
     claims: Mapping[Version, Sequence[Level]] = {"2": (Level.ACCEPT,)}
+
+
+class Moving(Right):
+    """Claims nothing but to know how things move."""
+
+    claims: Mapping[Version, Sequence[Level]] = {"2": (Level.DYNAMICS,)}
+
+
+class Telling(Right):
+    """Claims to say what it reads, and what is wrong."""
+
+    claims: Mapping[Version, Sequence[Level]] = {"2": (Level.DIAGNOSE, Level.STRUCTURE)}
 
 
 class Silent(Right):

@@ -136,6 +136,19 @@ def member_missing(request):
     say(answer)
 
 
+def another_outcome_before(request):
+    """Rejects and accepts in one answer."""
+    write(json.dumps(accepted(request)).replace('"outcome"', '"outcome": "rejected", "outcome"') + "\n")
+
+
+def two_ids(request):
+    write(json.dumps(accepted(request)).replace('"id"', '"id": 7, "id"') + "\n")
+
+
+def number_too_long(request):
+    write(json.dumps({**accepted(request), "issues": [{"message": "m", "line": 7}]}).replace("7", "7" * 5000) + "\n")
+
+
 def wrong_type(request):
     say({**accepted(request), "issues": [{"message": "m", "line": "12"}]})
 

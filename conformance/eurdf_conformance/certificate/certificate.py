@@ -102,7 +102,7 @@ class Failure(_Part):
     clauses: tuple[str, ...]
     verdict: Verdict
     known: bool
-    """Whether it was expected."""
+    """Whether it was expected, by a file that the certificate does not hold."""
     difference: str | None
     """What is wrong, and the first of what differs from the expected answer."""
     reproduce: str
@@ -121,7 +121,7 @@ class Certificate(_Part):
     """null where it could not be started."""
     scope: Scope
     date: Annotated[str, Field(pattern=r"^\d{4}-\d{2}-\d{2}$")] | None
-    """Day of the run, where it is given."""
+    """Day of the run, where it is given: the word of whoever wrote the certificate, which no second run can verify."""
     certified: bool
     """Whether every level claimed and asked for is certified."""
     levels: tuple[LevelResult, ...]

@@ -9,6 +9,8 @@ from importlib.resources import files
 from lxml import html
 from lxml.etree import _Element
 
+from eurdf_conformance.visible import visible
+
 Element = _Element
 Content = str | Element
 
@@ -74,8 +76,3 @@ def marked_up(text: str) -> Iterator[Content]:
     """A sentence of the specification: what stands between backticks is code, and links are their texts."""
     for index, part in enumerate(_LINK.sub(r"\1", _ROLE.sub("", text)).split("`")):
         yield element("code", part) if index % 2 else part
-
-
-def visible(text: str) -> str:
-    """The text with every character that is not seen, but line feed and tab, as its escape."""
-    return "".join(c if c.isprintable() or c in "\n\t" else c.encode("unicode_escape").decode("ascii") for c in text)

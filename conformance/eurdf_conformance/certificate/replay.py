@@ -2,20 +2,31 @@
 
 from __future__ import annotations
 
+import re
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, ValidationError
 
-from eurdf_conformance.certificate.certificate import Certificate, Failure, LevelResult
+from eurdf_conformance.certificate.certificate import FILE, Certificate, Failure, LevelResult
 from eurdf_conformance.certificate.issue import installed_suite
 from eurdf_conformance.certificate.summary import level_words
 from eurdf_conformance.certificate.write import certificate_files
+from eurdf_conformance.corpus.read import read_cases
 from eurdf_conformance.json_schema import published, schema_text
 from eurdf_conformance.level import VERSIONS, Level
-from eurdf_conformance.verdict.result import Key
+from eurdf_conformance.protocol.json_text import read_json
+from eurdf_conformance.suite.item import planned_items
+from eurdf_conformance.suite.reproduce import Setting, is_command_line
+from eurdf_conformance.verdict.known_failures import KnownFailure, KnownFailures
+from eurdf_conformance.verdict.result import Key, Result
+from eurdf_conformance.verdict.verdict import Verdict
+
+# What `KnownFailures.unexpected` says of an entry: id, level, and verdict where that is said.
+_UNEXPECTED = re.compile(r"(.+)/([a-z]+): (?:known as '([a-z ]+)'|the suite has no such item)", re.DOTALL)
 
 
 class Replay(BaseModel):
@@ -42,8 +53,8 @@ def suite_differences(certificate: Certificate) -> list[str]:
 def replay_differences(certificate: Certificate, again: Certificate) -> list[str]:
     """In what a second run is not what a certificate says, one line each.
 
-    Neither the date nor the command that reached the reader matters, nor which failures were expected: all else that a
-    certificate says is to be the same.
+    Neither the date nor the command that reached the reader matters, nor which failures were expected (`own_faults`):
+    all else that a certificate says is to be the same.
     """
     found = [*_reader(certificate, again), *_levels(certificate, again), *_failures(certificate, again)]
     found = found or list(_clauses(certificate, again))
@@ -52,13 +63,98 @@ def replay_differences(certificate: Certificate, again: Certificate) -> list[str
     return ["what it says does not follow from what became of the cases"]
 
 
-def file_differences(folder: Path, certificate: Certificate) -> list[str]:
-    """Which of the files beside a certificate do not show what it says, one line each."""
-    return [
-        f"{name}: it does not show this certificate"
-        for name, text in certificate_files(certificate).items()
-        if (folder / name).is_file() and (folder / name).read_bytes() != text.encode()
+def own_faults(certificate: Certificate) -> list[str]:
+    """In what a certificate is none that the suite writes, whatever came of the cases, one line each.
+
+    A second run cannot tell which failures were expected, nor how the first was started. But what the certificate says
+    of it must agree with itself.
+    """
+    return [*_commands(certificate), *_known(certificate), *_unexpected(certificate)]
+
+
+def file_differences(path: Path, certificate: Certificate) -> list[str]:
+    """Which files do not show a certificate as the suite writes it, one line each.
+
+    Args:
+        path: The file that it was read from, or the folder, in which the files beside it are looked at too.
+        certificate: As it was read.
+    """
+    file = path / FILE if path.is_dir() else path
+    found = [] if file.read_bytes() == certificate.to_text().encode() else [f"{file.name}: {_otherwise(file)}"]
+    for name, text in certificate_files(certificate).items() if path.is_dir() else ():
+        if not (path / name).is_file():
+            found.append(f"{name}: it is missing")
+        elif (path / name).read_bytes() != text.encode():
+            found.append(f"{name}: it does not show this certificate")
+    return found
+
+
+def _otherwise(file: Path) -> str:
+    """How a file that is a certificate is written otherwise than the suite writes it."""
+    _, faults = read_json(file.read_bytes())
+    return faults[0] if faults else "it is not written as the suite writes it"
+
+
+def _commands(certificate: Certificate) -> Iterator[str]:
+    """Command lines that people may copy, and that do not run the item."""
+    scope = certificate.scope
+    setting = Setting(certificate.parser, explore=scope.explore, explore_seed=scope.explore_seed)
+    for failure in certificate.failures:
+        if failure.verdict == Verdict.NOT_RUN and not failure.reproduce:
+            continue
+        if not is_command_line(failure.reproduce, setting, failure.id, failure.level):
+            yield f"{_name(failure)}: the command that is to run it again is none of the suite: {failure.reproduce}"
+
+
+def _known(certificate: Certificate) -> Iterator[str]:
+    """Counts of known failures that are not those of the failures."""
+    for failure in certificate.failures:
+        if failure.known and failure.verdict == Verdict.NOT_RUN:
+            yield f"{_name(failure)}: known, but what was not run is not known to fail"
+    known = Counter((failure.version, failure.level) for failure in certificate.failures if failure.known)
+    for level in certificate.levels:
+        if level.known_failures != (count := known[level.version, level.level]):
+            name = f"version {level.version}, {level.level}"
+            yield f"{name}: known failures: {level.known_failures} by its count, {count} by its failures"
+
+
+def _unexpected(certificate: Certificate) -> Iterator[str]:
+    """What is said of the file of known failures, and cannot be said of any."""
+    if not certificate.unexpected:
+        return
+    items = {item.key: item for item in planned_items(read_cases())}
+    failed = {(failure.id, failure.level): failure.verdict for failure in certificate.failures}
+    asked = {(each.version, each.level) for each in certificate.levels if each.claimed and each.asked}
+    results = [
+        Result(item, failed.get(key, Verdict.PASSED))
+        for key, item in items.items()
+        if (item.version, item.level) in asked
     ]
+    expected = {(failure.id, failure.level) for failure in certificate.failures if failure.known}
+    for sentence in certificate.unexpected:
+        known = _entry(sentence)
+        if (
+            known is None
+            or (known.id, known.level) in expected
+            or KnownFailures((known,)).unexpected(results, items.values()) != [sentence]
+        ):
+            yield f"unexpected: of these failures no file of known ones makes it say: {sentence}"
+
+
+def _entry(sentence: str) -> KnownFailure | None:
+    """The known failure that a sentence on one is of."""
+    if (said := _UNEXPECTED.match(sentence)) is None:
+        return None
+    try:
+        return KnownFailure.model_validate(
+            {"id": said[1], "level": said[2], "verdict": said[3] or Verdict.FAILED, "reason": "?"}
+        )
+    except ValidationError:
+        return None
+
+
+def _name(failure: Failure) -> str:
+    return f"{failure.id}/{failure.level}"
 
 
 def _essence(certificate: Certificate) -> dict[str, Any]:

@@ -20,12 +20,13 @@ from typing import TYPE_CHECKING, Any
 from eurdf_conformance.certificate.certificate import Certificate, read_certificate
 from eurdf_conformance.level import Level, Version
 from eurdf_conformance.runner.session import NotStarted, Session
+from eurdf_conformance.visible import visible
 
 if TYPE_CHECKING:
     import pytest
 
 #: What the suite needs beside the package itself, which the extra ``conformance`` installs.
-REQUIRED = ("pytest", "hypothesis")
+REQUIRED = ("pytest", "hypothesis", "ruamel.yaml")
 
 _SUITE = "eurdf_conformance.suite"
 
@@ -37,11 +38,11 @@ class CannotRunSuite(Exception):  # noqa: N818 - said to the user as it stands
     """The suite has come to no result; its text says why.
 
     Attributes:
-        log: What pytest wrote, where that may help.
+        log: What pytest wrote, or the reader, where that may help.
     """
 
     def __init__(self, why: str, log: str = "") -> None:
-        self.log = log
+        self.log = visible(log)
         super().__init__(why)
 
 
@@ -78,7 +79,7 @@ def run_suite(run: SuiteRun, progress: Progress | None = None) -> Certificate:
         CannotRunSuite: A part of it is not installed, the reader does not start, or the suite broke off.
         KeyboardInterrupt: The user ended it.
     """
-    missing = [name for name in REQUIRED if find_spec(name) is None]
+    missing = [name for name in REQUIRED if not _is_installed(name)]
     if missing:
         raise CannotRunSuite(f"the suite needs {' and '.join(missing)}: pip install 'eurdf[conformance]'")
     import pytest
@@ -97,6 +98,15 @@ def run_suite(run: SuiteRun, progress: Progress | None = None) -> Certificate:
         return read_certificate(Path(scratch))
 
 
+def _is_installed(name: str) -> bool:
+    """Whether a module can be imported; a folder that an uninstalled package has left behind is none."""
+    try:
+        found = find_spec(name)
+    except ModuleNotFoundError:  # the package that it is in
+        return False
+    return found is not None and found.origin is not None
+
+
 def _greet(run: SuiteRun) -> None:
     """See whether the reader starts, before everything is asked of what does not."""
     session = Session(run.parser) if run.start_timeout is None else Session(run.parser, start_timeout=run.start_timeout)
@@ -110,7 +120,7 @@ def _greet(run: SuiteRun) -> None:
 
 def _arguments(run: SuiteRun, folder: str) -> list[str]:
     jobs = "auto" if run.jobs is None else str(run.jobs)
-    is_spread = find_spec("xdist") is not None and not run.smoke
+    is_spread = _is_installed("xdist") and not run.smoke
     package = Path(__file__).parents[1]
     return [
         *("--pyargs", _SUITE, "-p", f"{_SUITE}.plugin", "--noconftest"),
@@ -162,6 +172,9 @@ class _Listener:
 
     def pytest_xdist_node_collection_finished(self, node: object, ids: Sequence[str]) -> None:
         self._all = max(self._all, len(ids))
+
+    # Where pytest-xdist is not loaded, there is no such hook. This is what pytest's decorator, not imported here, sets.
+    pytest_xdist_node_collection_finished.pytest_impl = {"optionalhook": True}  # type: ignore[attr-defined]  # noqa: RUF012
 
     def pytest_runtest_logfinish(self, nodeid: str) -> None:
         self._done += 1

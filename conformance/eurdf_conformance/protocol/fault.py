@@ -15,7 +15,7 @@ from eurdf_conformance.json_pointer import step
 _MOST, _WIDTH = 3, 60
 
 # Of these the value says nothing: it is that around what is missing, or too much as a whole.
-_VALUE_APART = ("missing", "extra_forbidden", "union_tag_invalid", "union_tag_not_found")
+_VALUE_APART = ("missing", "extra_forbidden", "union_tag_invalid", "union_tag_not_found", "json_invalid")
 
 
 def faults(error: ValidationError, within: str = "", skip: int = 0) -> str:

@@ -18,6 +18,7 @@ from pydantic import ValidationError
 from eurdf_conformance.level import Level, Version
 from eurdf_conformance.protocol import message
 from eurdf_conformance.protocol.fault import faults
+from eurdf_conformance.protocol.json_text import may_be_faulty, read_json
 from eurdf_conformance.protocol.message import (
     FAULT,
     PROTOCOL,
@@ -169,6 +170,8 @@ def _answer_to(reader: ReaderObject, line: bytes) -> AnyAnswer | _NoAnswer:
         request = REQUEST.validate_json(line)
     except ValidationError as error:
         return Errored(id=_id_in(line), message=f"no request of protocol {PROTOCOL}: {faults(error)}")
+    if may_be_faulty(line, request) and (found := read_json(line)[1]):
+        return Errored(id=request.id, message=f"no request of protocol {PROTOCOL}: {found[0]}")
     return _answer(reader, request)
 
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from typing import Any
 
 from pydantic import ValidationError
 
-from eurdf_conformance.protocol.fault import faults, not_finite
+from eurdf_conformance.protocol.fault import faults
+from eurdf_conformance.protocol.json_text import Doubled, may_be_faulty, read_json
 from eurdf_conformance.protocol.message import ANSWER, FAULT, AnyAnswer, AnyRequest, Evaluate, Evaluated, Stop
 from eurdf_conformance.runner.outcome import Malformed, Misplaced
 
@@ -29,10 +29,10 @@ def read_answer(line: bytes, request: AnyRequest) -> AnyAnswer | Malformed | Mis
         answer = ANSWER.validate_json(line)
     except ValidationError as error:
         return _unfit(line, request, error)
-    if b"NaN" in line or b"Infinity" in line:  # pydantic takes them where any value may stand
-        value, constants = _parsed(line)
-        if constants:
-            return Malformed(shown(line), _no_json(value, constants), placed=answer.id == request.id)
+    if may_be_faulty(line, answer):  # pydantic takes the last of two values, and NaN where any value may stand
+        value, found = read_json(line)
+        if found:
+            return _elsewhere(value, line, request) or Malformed(shown(line), found[0], placed=True)
     return _placed(answer, line, request)
 
 
@@ -59,20 +59,15 @@ def _placed(answer: AnyAnswer, line: bytes, request: AnyRequest) -> AnyAnswer | 
 def _unfit(line: bytes, request: AnyRequest, error: ValidationError) -> AnyAnswer | Malformed | Misplaced:
     """Why a line does not fit the schema of any answer, or the answer that it is after all."""
     try:
-        value, constants = _parsed(line)
+        value, found = read_json(line)
     except (ValueError, RecursionError) as why:
         return Malformed(shown(line), _reason(why))
     if not isinstance(value, dict):
         return Malformed(shown(line), "a JSON value, but no object")
-    given_id = value.get("id")
-    if isinstance(given_id, float) and given_id.is_integer():
-        given_id = int(given_id)
-    if not isinstance(given_id, int) or isinstance(given_id, bool):
-        return Malformed(shown(line), "an answer without the 'id' of its request, which is a whole number")
-    if given_id != request.id:
-        return Misplaced(shown(line), request.id, given_id)
-    if constants:
-        return Malformed(shown(line), _no_json(value, constants), placed=True)
+    if elsewhere := _elsewhere(value, line, request):
+        return elsewhere
+    if found:
+        return Malformed(shown(line), found[0], placed=True)
     if isinstance(fault := value.get(FAULT), str):
         words = " ".join(fault.split()).encode("utf-8", "backslashreplace")
         return Malformed("", shown(words), placed=True)  # the line says no more
@@ -83,23 +78,16 @@ def _unfit(line: bytes, request: AnyRequest, error: ValidationError) -> AnyAnswe
         return Malformed(shown(line), f"it breaks the schema: {faults(error, skip=1)}", placed=True)
 
 
-def _parsed(line: bytes) -> tuple[Any, list[str]]:
-    """The value of a JSON text, and the constants in it that Python takes and JSON has not: NaN and Infinity."""
-    constants: list[str] = []
-
-    def constant(text: str) -> float:
-        constants.append(text)
-        return float(text)
-
-    return json.loads(line.decode("utf-8"), parse_constant=constant), constants
-
-
-def _no_json(value: Any, constants: Sequence[str]) -> str:
-    try:
-        where = f"{next(not_finite(value), 'the answer')}: "
-    except RecursionError:
-        where = ""
-    return f"{where}{constants[0]} is no JSON"
+def _elsewhere(value: dict[str, Any], line: bytes, request: AnyRequest) -> Malformed | Misplaced | None:
+    """Why an object is not to be placed: it has no id, or two, or that of another request."""
+    if isinstance(value, Doubled) and "id" in value.keys_twice:
+        return Malformed(shown(line), "an answer in which the key 'id' stands twice")
+    given_id = value.get("id")
+    if isinstance(given_id, float) and given_id.is_integer():
+        given_id = int(given_id)
+    if not isinstance(given_id, int) or isinstance(given_id, bool):
+        return Malformed(shown(line), "an answer without the 'id' of its request, which is a whole number")
+    return None if given_id == request.id else Misplaced(shown(line), request.id, given_id)
 
 
 def _whole(value: Any) -> Any:

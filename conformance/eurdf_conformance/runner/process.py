@@ -7,7 +7,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import replace
 
-from eurdf_conformance.protocol.message import AnyRequest
+from eurdf_conformance.protocol.message import AnyRequest, Start
 from eurdf_conformance.runner.answer import read_answer, shown
 from eurdf_conformance.runner.outcome import Answered, Chatter, Crashed, Malformed, Misplaced, Outcome, TimedOut
 from eurdf_conformance.runner.pipes import LINE_LIMIT, Pipes, Silence
@@ -66,7 +66,7 @@ class ReaderProcess:
         strays: list[bytes] = []  # lines that were written before anything was asked, ...
         while len(strays) < _MOST_LINES and (line := self._pipes.line(0.0)) is not Silence.TIME_OUT:
             if isinstance(line, Silence):
-                return self._silent(line, timeout, strays, before=True)
+                return self._silent(line, timeout, strays, before=not isinstance(request, Start))
             strays.append(line)
         others: list[bytes] = []  # ... and afterwards, and are no answers
         begin = time.perf_counter()

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from functools import cache
 
 import pytest
 
 from eurdf_conformance.corpus.read import CorpusCase, read_cases
+from eurdf_conformance.level import Level
 from eurdf_conformance.protocol.message import Started
 from eurdf_conformance.runner.session import NotStarted, Session
 from eurdf_conformance.suite.conversation import Conversation
@@ -18,6 +19,7 @@ from eurdf_conformance.suite.judge import Judgement
 from eurdf_conformance.suite.options import Options
 from eurdf_conformance.verdict.result import RESULT, Item, Result
 from eurdf_conformance.verdict.verdict import Verdict
+from eurdf_conformance.visible import visible
 
 #: Name under which what the reader said of itself stands among the user properties of a pytest report.
 STARTED = "eurdf_conformance.started"
@@ -57,7 +59,13 @@ class Asking:
         """A further session with the reader."""
         return new_session(self.options)
 
-    def settle(self, item: Item, ask: Callable[[], Judgement], case: CorpusCase | None = None) -> None:
+    def settle(
+        self,
+        item: Item,
+        ask: Callable[[], Judgement],
+        case: CorpusCase | None = None,
+        rather: Collection[Level] = (),
+    ) -> None:
         """Ask, keep what becomes of it, and fail the test that runs if it is no pass.
 
         An item of a level that the reader does not claim is skipped.
@@ -66,10 +74,15 @@ class Asking:
             item: What is asked.
             ask: Asks it.
             case: The case that it is about, if it is.
+            rather: Levels at which it is asked rather, where the reader claims one; it is skipped then.
         """
         started = self._started()
-        if started is not None and item.level not in started.claims.get(item.version, ()):
-            pytest.skip(f"{started.reader.name} does not claim level {item.level} for version {item.version}")
+        claimed = tuple(Level) if started is None else started.claims.get(item.version, ())
+        if started is not None and item.level not in claimed:
+            name = visible(started.reader.name, kept="")
+            pytest.skip(f"{name} does not claim level {item.level} for version {item.version}")
+        if asked := next((level for level in rather if level in claimed), None):
+            pytest.skip(f"it is asked at level {asked}")
         begin, before = time.perf_counter(), self._session.seconds_in_reader
         try:
             judgement = ask()
@@ -79,8 +92,8 @@ class Asking:
             judgement = Judgement(Verdict.FAILED, why, log=traceback.format_exc())
         seconds, in_reader = time.perf_counter() - begin, self._session.seconds_in_reader - before
         reproduce = self.options.reproduce(item)
-        told = [judgement.reason, *map(str, judgement.differences[:_KEPT])] if judgement.reason else []
-        result = Result(item, judgement.verdict, tuple(told), reproduce, seconds, in_reader)
+        told = tuple(filter(None, (judgement.reason, *map(str, judgement.differences[:_KEPT]))))
+        result = Result(item, judgement.verdict, told, reproduce, seconds, in_reader)
         self._keep(RESULT, result.to_json())
         self._tell(result, judgement, case)
 

@@ -17,6 +17,7 @@ from eurdf_conformance.protocol.message import Issue
 from eurdf_conformance.suite.judge import Judgement
 from eurdf_conformance.verdict.result import Item
 from eurdf_conformance.verdict.verdict import Verdict
+from eurdf_conformance.visible import visible
 
 #: So many differences, and issues, of one item are shown.
 _MOST = 12
@@ -26,7 +27,7 @@ _WIDTH = 100
 
 
 def failure_text(item: Item, judgement: Judgement, reproduce: str, case: CorpusCase | None) -> str:
-    """What is printed of an item that did not pass.
+    """What is printed of an item that did not pass; what a reader wrote steers no terminal.
 
     Args:
         item: The item.
@@ -34,7 +35,7 @@ def failure_text(item: Item, judgement: Judgement, reproduce: str, case: CorpusC
         reproduce: The command line that runs it alone.
         case: The case that it asks about, if it does.
     """
-    return "\n".join(_lines(item, judgement, reproduce, case))
+    return visible("\n".join(_lines(item, judgement, reproduce, case)))
 
 
 def _lines(item: Item, judgement: Judgement, reproduce: str, case: CorpusCase | None) -> Iterator[str]:
@@ -87,24 +88,27 @@ def _cut(lines: Sequence[str], what: str) -> Iterator[str]:
 
 def _files(case: CorpusCase, level: Level, judgement: Judgement) -> Iterator[str]:
     """The two files, and their lines that matter."""
-    places: list[CasePlace | Issue] = []
+    places: list[tuple[CasePlace | Issue, str]] = []
     if isinstance(case.case, InvalidCase):
-        places.append(case.case.place)
+        places.append((case.case.place, "expected"))
     elif isinstance(case.case, ValidCase) and level == Level.DIAGNOSE:
-        places += [warning.place for warning in case.case.warnings]
+        places += [(warning.place, "expected") for warning in case.case.warnings]
     if judgement.verdict == Verdict.FAILED:
-        places += judgement.issues
+        places += [(issue, "given") for issue in judgement.issues]
     for path in (case.description, case.urdf):
-        here = {(place.line, place.column) for place in places if place.file == path.name and place.line is not None}
-        lines = sorted(here, key=lambda place: (place[0] or 0, place[1] or 0))
+        here: dict[tuple[int, int | None], list[str]] = {}
+        for place, whose in places:
+            if place.file == path.name and place.line is not None:
+                here.setdefault((place.line, place.column), []).append(whose)
+        lines = sorted(here, key=lambda place: (place[0], place[1] or 0))
         first = "".join(f":{part}" for part in (lines[0] if lines else ()) if part is not None)
         missing = "" if path.is_file() else " (a folder)" if path.is_dir() else " (there is no such file)"
         yield f"  {path}{first}{missing}"
         for line, column in lines:
-            yield from _excerpt(path, line or 0, column)
+            yield from _excerpt(path, line, column, " and ".join(dict.fromkeys(here[line, column])))
 
 
-def _excerpt(path: Path, line: int, column: int | None) -> Iterator[str]:
+def _excerpt(path: Path, line: int, column: int | None, whose: str) -> Iterator[str]:
     lines = lines_of(path)
     if line > len(lines):
         return
@@ -112,4 +116,4 @@ def _excerpt(path: Path, line: int, column: int | None) -> Iterator[str]:
     start = max(0, (column or 0) - _WIDTH // 2) if len(text) > _WIDTH else 0
     yield f"    {line:5} | {text[start : start + _WIDTH]}"
     if column is not None and column <= len(text) + 1:
-        yield f"          | {' ' * (column - start - 1)}^"
+        yield f"          | {' ' * (column - start - 1)}^ {whose}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from eurdf_conformance.comparison.canonical import canonical_differences
 from eurdf_conformance.comparison.difference import Difference
@@ -75,11 +75,18 @@ def judge(case: CorpusCase, level: Level, conversation: Conversation) -> Judgeme
     return _LEVELS[level](case, conversation)
 
 
-def judge_outcome(outcome: Outcome) -> Judgement:
-    """EU-PRO-006: what becomes of an item whose outcome is none of the answers that it was asked for."""
+def judge_outcome(outcome: Outcome, expected: str = "") -> Judgement:
+    """EU-PRO-006: what becomes of an item whose outcome is none of the answers that it was asked for.
+
+    Args:
+        outcome: The outcome.
+        expected: The word that the answer should be, where it is told.
+    """
     match outcome:
         case Answered(answer=answer):
-            return _judge_answer(answer)
+            judgement, why = _judge_answer(answer)
+            wrong = Difference("/outcome", expected, answer.outcome, why)
+            return replace(judgement, differences=(wrong,)) if expected else judgement
         case Crashed(code=None, signal=None):
             verdict, why = Verdict.CRASHED, "the process closed its standard output, without an answer"
         case Crashed(code=code, signal=signal):
@@ -103,18 +110,28 @@ def judge_outcome(outcome: Outcome) -> Judgement:
     return Judgement(verdict, why, log=log)
 
 
-def _judge_answer(answer: AnyAnswer) -> Judgement:
+def _judge_answer(answer: AnyAnswer) -> tuple[Judgement, str]:
+    """What an answer comes to that is not the one asked for, and what it is, in words of the suite."""
     match answer:
         case Unsupported(feature=feature, reason=reason):
-            return Judgement(Verdict.UNSUPPORTED, f"{feature}: {reason}" if reason else feature)
+            return Judgement(Verdict.UNSUPPORTED, f"{feature}: {reason}" if reason else feature), "it lacks a feature"
         case Skipped(reason=reason):
-            return Judgement(Verdict.SKIPPED, reason)
+            return Judgement(Verdict.SKIPPED, reason), "it would rather not"
         case Errored(message=message):
-            return Judgement(Verdict.ERRORED, message)
+            return Judgement(Verdict.ERRORED, message), "it failed, by its own word"
         case Rejected(issues=issues):
-            return Judgement(Verdict.FAILED, "it rejects what is right", issues=tuple(issues))
+            why = "it rejects what is right"
+            return Judgement(Verdict.FAILED, why, issues=tuple(issues)), why
         case _:
-            return Judgement(Verdict.FAILED, f"the answer is '{answer.outcome}'")
+            why = f"the answer is '{answer.outcome}'"
+            return Judgement(Verdict.FAILED, why), why
+
+
+def _to_load(case: CorpusCase) -> str:
+    """The answer that a case is to be loaded with."""
+    if not isinstance(case.case, InvalidCase):
+        return "accepted"
+    return "accepted or rejected" if case.case.either else "rejected"
 
 
 def _judge_accept(case: CorpusCase, conversation: Conversation) -> Judgement:
@@ -131,7 +148,7 @@ def _judge_accept(case: CorpusCase, conversation: Conversation) -> Judgement:
             why = f"it accepts what is wrong: {code}"
             wrong = Difference("/outcome", "rejected", "accepted", why)
             return Judgement(Verdict.FAILED, why, (wrong,), tuple(issues))
-    return judge_outcome(outcome)
+    return judge_outcome(outcome, _to_load(case))
 
 
 def _judge_structure(case: CorpusCase, conversation: Conversation) -> Judgement:
@@ -143,11 +160,12 @@ def _judge_structure(case: CorpusCase, conversation: Conversation) -> Judgement:
         case Answered(answer=Accepted(robot=robot)) if robot is not None:
             found = canonical_differences(case.expected.robot, robot, case.expected.bodies)
             return _unless(found, "it has read another robot", "/robot")
-    return judge_outcome(outcome)
+    return judge_outcome(outcome, _to_load(case))
 
 
 def _judge_values(quantities: Sequence[Quantity]) -> Callable[[CorpusCase, Conversation], Judgement]:
     def judge_values(case: CorpusCase, conversation: Conversation) -> Judgement:
+        loaded = conversation.load(case)
         outcome = conversation.evaluate(case, quantities)
         match outcome:
             case Answered(answer=Evaluated(values=values)):
@@ -160,7 +178,7 @@ def _judge_values(quantities: Sequence[Quantity]) -> Callable[[CorpusCase, Conve
                     pointer = f"/values/{index}"
                     found += [each.within(pointer) for each in values_differences(_only(one, quantities), other, size)]
                 return _unless(found, "its values are others", "")
-        return judge_outcome(outcome)
+        return judge_outcome(outcome, _to_load(case) if outcome is loaded else "evaluated")
 
     return judge_values
 
@@ -176,7 +194,7 @@ def _judge_diagnose(case: CorpusCase, conversation: Conversation) -> Judgement:
             return _judge_accept(case, conversation)
         case Answered(answer=Accepted(issues=issues) | Rejected(issues=issues)), InvalidCase() as fault:
             return _unless(fault_differences(fault, issues), "it tells of another fault", "", issues)
-    return judge_outcome(outcome)
+    return judge_outcome(outcome, _to_load(case))
 
 
 def _unless(found: Sequence[Difference], reason: str, pointer: str, issues: Sequence[Issue] = ()) -> Judgement:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import math
 import random
-import shlex
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ from typing import Any
 import pytest
 
 from eurdf_conformance.level import VERSIONS, Level, Version
+from eurdf_conformance.suite.reproduce import FOLDER, PACKAGE, START_TIMEOUT, TIMEOUT, Setting, command_line
 from eurdf_conformance.verdict.known_failures import (
     NONE_KNOWN,
     KnownFailures,
@@ -26,12 +26,6 @@ OPTIONS: pytest.StashKey[Options] = pytest.StashKey()
 
 #: The parser that is tested where none is named.
 REFERENCE = "eurdf_conformance.adapters.reference:READER"
-
-_FOLDER = ("conformance/",)
-_PACKAGE = ("--pyargs", "eurdf_conformance.suite", "-p", "eurdf_conformance.suite.plugin")
-
-_TIMEOUT = 10.0
-_START_TIMEOUT = 30.0
 
 
 @dataclass(frozen=True)
@@ -53,9 +47,9 @@ class Options:
     """
 
     parser: str = REFERENCE
-    suite: tuple[str, ...] = _FOLDER
-    timeout: float = _TIMEOUT
-    start_timeout: float = _START_TIMEOUT
+    suite: tuple[str, ...] = FOLDER
+    timeout: float = TIMEOUT
+    start_timeout: float = START_TIMEOUT
     levels: tuple[Level, ...] = tuple(Level)
     versions: tuple[Version, ...] = VERSIONS
     known: KnownFailures = NONE_KNOWN
@@ -70,13 +64,8 @@ class Options:
 
     def reproduce(self, item: Item) -> str:
         """The command line that runs one item alone."""
-        name = item.id.split("/", 1)[-1]
-        settings = [f"--parser={self.parser}"]
-        settings += [f"--parser-timeout={self.timeout:g}"] * (self.timeout != _TIMEOUT)
-        settings += [f"--parser-start-timeout={self.start_timeout:g}"] * (self.start_timeout != _START_TIMEOUT)
-        if self.explore and item.id.startswith("properties/"):
-            settings += [f"--explore={self.explore}", f"--explore-seed={self.explore_seed}"]
-        return shlex.join(["pytest", *self.suite, *settings, "-k", f"{name}/{item.level}"])
+        setting = Setting(self.parser, self.suite, self.timeout, self.start_timeout, self.explore, self.explore_seed)
+        return command_line(setting, item.id, item.level)
 
 
 def add_options(parser: pytest.Parser) -> None:
@@ -84,14 +73,18 @@ def add_options(parser: pytest.Parser) -> None:
     group = parser.getgroup("eurdf", "conformance suite of Extended URDF")
     group.addoption("--parser", metavar="PARSER", help="package.module:object, or 'cmd:./my_parser --flag'")
     group.addoption(
-        "--parser-timeout", type=float, default=_TIMEOUT, metavar="S", help=f"for an answer (default: {_TIMEOUT:g} s)"
+        "--parser-timeout",
+        type=float,
+        default=TIMEOUT,
+        metavar="S",
+        help=f"for an answer (default: {TIMEOUT:g} s), which each that does not come takes; -x ends at the first",
     )
     group.addoption(
         "--parser-start-timeout",
         type=float,
-        default=_START_TIMEOUT,
+        default=START_TIMEOUT,
         metavar="S",
-        help=f"for a start (default: {_START_TIMEOUT:g} s)",
+        help=f"for a start (default: {START_TIMEOUT:g} s)",
     )
     group.addoption(
         "--level", action="append", choices=[level.value for level in Level], help="to test, may be repeated"
@@ -127,7 +120,7 @@ def read_options(config: pytest.Config) -> Options:
         failures = NONE_KNOWN if known is None else read_known_failures(known)
     except WrongKnownFailures as error:
         raise pytest.UsageError(str(error)) from None
-    timeout, start_timeout = said("--parser-timeout", _TIMEOUT), said("--parser-start-timeout", _START_TIMEOUT)
+    timeout, start_timeout = said("--parser-timeout", TIMEOUT), said("--parser-start-timeout", START_TIMEOUT)
     if not (0 < timeout < math.inf and 0 < start_timeout < math.inf):
         raise pytest.UsageError("a time-out is more than 0 s, and ends")
     explore = said("--explore", 0)
@@ -144,7 +137,7 @@ def read_options(config: pytest.Config) -> Options:
         raise pytest.UsageError("--parser names no parser")
     return Options(
         parser=parser,
-        suite=_PACKAGE if config.option.pyargs else _FOLDER,
+        suite=FOLDER if _is_beside(config.invocation_params.dir) and not config.option.pyargs else PACKAGE,
         timeout=timeout,
         start_timeout=start_timeout,
         levels=tuple(level for level in Level if level in said("--level", list(Level))),
@@ -155,6 +148,11 @@ def read_options(config: pytest.Config) -> Options:
         explore_seed=said("--explore-seed", 0),
         smoke=said("--smoke", False),
     )
+
+
+def _is_beside(folder: Path) -> bool:
+    """Whether ``pytest conformance/`` runs this suite from a folder: elsewhere it is named as a package."""
+    return (folder / FOLDER[0] / "eurdf_conformance").resolve() == Path(__file__).resolve().parents[1]
 
 
 def options_of(config: pytest.Config) -> Options:

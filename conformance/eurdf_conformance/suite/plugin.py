@@ -7,7 +7,9 @@ collects the reports, a worker or not, makes of them a `Run`.
 from __future__ import annotations
 
 import gc
+import os
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
@@ -22,6 +24,7 @@ from eurdf_conformance.suite.summary import summary_lines
 from eurdf_conformance.verdict.result import RESULT, Result
 from eurdf_conformance.verdict.run import Run
 from eurdf_conformance.verdict.standing import unclaimed
+from eurdf_conformance.visible import visible
 
 #: The session whose reader has started before anything is asked of it.
 GREETED: pytest.StashKey[Session] = pytest.StashKey()
@@ -51,6 +54,8 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     options, said = options_of(session.config), session.config.option
     if hasattr(session.config, "workerinput") or said.collectonly:
         return
+    if options.explore and not os.access(Path.cwd(), os.W_OK):
+        raise pytest.UsageError("--explore writes what it finds into explored/, and nothing can be written here")
     try:
         if options.certificate is not None:
             make_room(options.certificate)
@@ -63,7 +68,7 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     except NoRoom as reason:
         raise pytest.UsageError(str(reason)) from None
     except NotStarted as refusal:
-        raise pytest.UsageError(f"'{options.parser}' could not be started: {refusal}") from None
+        raise pytest.UsageError(visible(f"'{options.parser}' could not be started: {refusal}")) from None
 
 
 def pytest_collection_finish() -> None:
@@ -119,7 +124,9 @@ class Collector:
         # Where nothing was asked of what the user asked for, all is not well.
         if (self._unexpected or unclaimed(run)) and exitstatus == pytest.ExitCode.OK:
             session.exitstatus = pytest.ExitCode.TESTS_FAILED
-        if run_folder := options_of(self._config).certificate:
+        # Of a run that broke off there is none, and one that is there stays.
+        broke_off = exitstatus in (pytest.ExitCode.INTERRUPTED, pytest.ExitCode.INTERNAL_ERROR)
+        if (run_folder := options_of(self._config).certificate) and not broke_off:
             write_certificate(run_folder, issue(run))
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:

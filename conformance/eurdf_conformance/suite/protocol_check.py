@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 from eurdf_conformance.comparison.canonical import canonical_differences
+from eurdf_conformance.comparison.difference import Difference
 from eurdf_conformance.corpus.protocol_rule import GOES_ON, QUIET, START, STOP, ProtocolRule
 from eurdf_conformance.corpus.read import CorpusCase
 from eurdf_conformance.protocol.message import Accepted, Rejected, Started
@@ -52,7 +53,7 @@ def _start(asked: Asked) -> Judgement:
     match outcome:
         case Answered(answer=Started()):
             return PASSED
-    return judge_outcome(outcome)
+    return judge_outcome(outcome, "started")
 
 
 def _quiet(asked: Asked) -> Judgement:
@@ -71,9 +72,10 @@ def _goes_on(asked: Asked) -> Judgement:
         case Answered(answer=Rejected()):
             pass
         case Answered(answer=Accepted()):
-            return Judgement(Verdict.FAILED, "it accepts what is wrong")
+            why = "it accepts what is wrong"
+            return Judgement(Verdict.FAILED, why, (Difference("/outcome", "rejected", "accepted", why),))
         case _:
-            return judge_outcome(rejected)
+            return judge_outcome(rejected, "rejected")
     match first, again:
         case Answered(answer=Accepted(robot=None)), Answered(answer=Accepted(robot=None)):
             return PASSED
@@ -84,8 +86,8 @@ def _goes_on(asked: Asked) -> Judgement:
         case Answered(answer=Accepted()), Answered(answer=Accepted()):
             return Judgement(Verdict.FAILED, "of two times that it reads the same files, it says once what it has read")
         case Answered(answer=Accepted()), _:
-            return judge_outcome(again)
-    return judge_outcome(first)
+            return judge_outcome(again, "accepted")
+    return judge_outcome(first, "accepted")
 
 
 def _stop(asked: Asked) -> Judgement:
@@ -97,7 +99,7 @@ def _stop(asked: Asked) -> Judgement:
         stopping = time.perf_counter() - begin
     asked.session.seconds_in_reader += session.seconds_in_reader + stopping
     if outcome is None:
-        return judge_outcome(first)
+        return judge_outcome(first, "started")
     return PASSED if isinstance(outcome, Answered) else judge_outcome(outcome)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from eurdf_conformance.corpus.read import CorpusCase
@@ -29,19 +29,28 @@ SMOKE: dict[Version, Three] = {
 }
 
 
+_LEVELS: Mapping[str, tuple[Level, ...]] = {
+    case_id: levels
+    for three in SMOKE.values()
+    for case_id, levels in (
+        (three.valid, (Level.ACCEPT, Level.STRUCTURE, Level.DIAGNOSE)),
+        (three.invalid, (Level.ACCEPT, Level.DIAGNOSE)),
+        (three.evaluated, (Level.KINEMATICS, Level.DYNAMICS)),
+    )
+}
+
+
 def smoke_case(cases: Iterable[CorpusCase], case_id: str) -> CorpusCase:
     """The case of an id."""
     return next(case for case in cases if case.id == case_id)
 
 
-def is_smoke(item: CaseItem) -> bool:
-    """Whether an item is among the first to try."""
-    three, level = SMOKE[item.item.version], item.item.level
-    return (item.case.id, level) in {
-        (three.valid, Level.ACCEPT),
-        (three.invalid, Level.ACCEPT),
-        (three.evaluated, Level.KINEMATICS),
-    }
+def smoke_levels(item: CaseItem) -> tuple[Level, ...]:
+    """The levels at which the case of an item may be asked, where it is among the first to try.
+
+    It is asked at the first of them that the reader claims: who claims anything is asked something.
+    """
+    return _LEVELS.get(item.case.id, ())
 
 
 def smoke_lines(wrong: Sequence[Result], asked: bool) -> Iterator[str]:
@@ -52,7 +61,7 @@ def smoke_lines(wrong: Sequence[Result], asked: bool) -> Iterator[str]:
         asked: Whether there was anything to ask.
     """
     if not asked:
-        yield "nothing was asked: your parser claims neither accept nor kinematics"
+        yield "nothing was asked: your parser claims nothing of what you asked for"
         return
     adapter = [result for result in wrong if result.verdict in OF_THE_ADAPTER]
     parser = [result for result in wrong if result.verdict not in OF_THE_ADAPTER]
@@ -69,6 +78,6 @@ def _part(name: str, right: str, wrong: list[Result]) -> Iterator[str]:
         return
     yield f"your {name} is wrong:"
     for result in wrong:
-        why = f": {result.differences[0]}" if result.differences else ""
-        yield f"  {result.item.id}/{result.item.level}: {result.verdict}{why}"
+        why = "".join(result.differences[:1]).partition("\n")[0]
+        yield f"  {result.item.id}/{result.item.level}: {result.verdict}{f': {why}' if why else ''}"
         yield f"    {result.reproduce}"

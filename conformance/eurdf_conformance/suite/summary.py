@@ -9,6 +9,7 @@ from eurdf_conformance.suite.smoke import smoke_lines
 from eurdf_conformance.verdict.run import Run
 from eurdf_conformance.verdict.standing import Standing, standings
 from eurdf_conformance.verdict.verdict import Verdict
+from eurdf_conformance.visible import visible
 
 
 def summary_lines(run: Run, unexpected: Sequence[str], certificate: Path | None) -> Iterator[str]:
@@ -19,12 +20,16 @@ def summary_lines(run: Run, unexpected: Sequence[str], certificate: Path | None)
         unexpected: What is not as the known failures say.
         certificate: Folder that a certificate was written into.
     """
+    return map(visible, _lines(run, unexpected, certificate))
+
+
+def _lines(run: Run, unexpected: Sequence[str], certificate: Path | None) -> Iterator[str]:
     if run.started is None:
         why = next((result.differences[0] for result in run.results if result.differences), "")
         yield f"{run.parser} could not be started" + (f": {why}" if why else "")
     else:
         reader = run.started.reader
-        yield f"{reader.name} {reader.version} ({reader.language})"
+        yield visible(f"{reader.name} {reader.version} ({reader.language})", kept="")
     if run.smoke:
         wrong = [result for result in run.results if result.verdict != Verdict.PASSED]
         yield from smoke_lines(wrong, asked=bool(run.results))

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import pytest
 
+from eurdf_conformance.level import Level
 from eurdf_conformance.suite.asking import Asking, all_cases
 from eurdf_conformance.suite.item import CaseItem, case_items
 from eurdf_conformance.suite.judge import judge
-from eurdf_conformance.suite.options import options_of
-from eurdf_conformance.suite.smoke import is_smoke
+from eurdf_conformance.suite.options import Options, options_of
+from eurdf_conformance.suite.smoke import smoke_levels
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
@@ -16,7 +17,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     options = options_of(metafunc.config)
     items = [item for item in case_items(all_cases()) if options.wants(item.item)]
     if options.smoke:
-        items = [item for item in items if is_smoke(item)]
+        items = [item for item in items if item.item.level in smoke_levels(item)]
     # The levels of one case are asked one after the other of one reader, which loads it once.
     marked = [
         pytest.param(
@@ -29,9 +30,15 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 def test_case(case_item: CaseItem, asking: Asking) -> None:
     """The answers of the reader on the case are the expected ones."""
-    asking.settle(
-        case_item.item, lambda: judge(case_item.case, case_item.item.level, asking.conversation), case_item.case
-    )
+    item, case = case_item.item, case_item.case
+    asking.settle(item, lambda: judge(case, item.level, asking.conversation), case, _rather(case_item, asking.options))
+
+
+def _rather(item: CaseItem, options: Options) -> tuple[Level, ...]:
+    """The levels at which one of the first cases to try is asked rather than at that of the item."""
+    levels = smoke_levels(item) if options.smoke else ()
+    earlier = levels[: levels.index(item.item.level)] if levels else ()
+    return tuple(level for level in earlier if level in options.levels)
 
 
 def _group(item: CaseItem, smoke: bool) -> str:

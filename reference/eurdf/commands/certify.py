@@ -140,7 +140,13 @@ def _certify(args: argparse.Namespace) -> int:
 
 def _verify(args: argparse.Namespace) -> int:
     from eurdf_conformance.certificate.certificate import read_certificate
-    from eurdf_conformance.certificate.replay import Replay, file_differences, replay_differences, suite_differences
+    from eurdf_conformance.certificate.replay import (
+        Replay,
+        file_differences,
+        own_faults,
+        replay_differences,
+        suite_differences,
+    )
 
     certificate = read_certificate(args.verify)
     parser = args.parser or certificate.parser
@@ -148,8 +154,7 @@ def _verify(args: argparse.Namespace) -> int:
     write_lines([[("running ", ""), (visible(parser), "bold")]], sys.stderr)
     again = _run_suite(_suite_run(args, parser, certificate))
     found = [*suite_differences(certificate), *replay_differences(certificate, again)]
-    if args.verify.is_dir():
-        found += file_differences(args.verify, certificate)
+    found += [*own_faults(certificate), *file_differences(args.verify, certificate)]
     if args.json:
         write_json(Replay(same=not found, differences=tuple(found)).model_dump(mode="json"))
     else:

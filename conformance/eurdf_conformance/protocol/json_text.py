@@ -1,0 +1,92 @@
+"""A JSON text of whoever wrote it, and what is wrong with it that a parser may take in silence."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from pydantic import BaseModel
+
+from eurdf_conformance.json_pointer import step
+from eurdf_conformance.protocol.fault import not_finite
+
+
+class Doubled(dict[str, Any]):
+    """An object with a key that stands in it more than once, of which it has the last value.
+
+    Attributes:
+        keys_twice: These keys.
+    """
+
+    def __init__(self, members: Sequence[tuple[str, Any]]) -> None:
+        super().__init__(members)
+        counts = Counter(key for key, _ in members)
+        self.keys_twice = tuple(key for key in self if counts[key] > 1)
+
+
+def read_json(text: bytes) -> tuple[Any, list[str]]:
+    """The value of a JSON text in UTF-8, and what is wrong with it all the same, at which JSON pointer.
+
+    Told are a key that stands twice in an object, for one parser takes the first and another the last; NaN and
+    Infinity, which JSON has none of; and a whole number of more digits than Python reads, in whose place infinity is.
+
+    Raises:
+        ValueError: It is no JSON, or not in UTF-8.
+        RecursionError: It is nested too deep.
+    """
+    words: list[str] = []
+    doubled: list[Doubled] = []
+
+    def constant(word: str) -> float:
+        words.append(f"{word} is no JSON")
+        return float(word)
+
+    def whole(digits: str) -> float:
+        try:
+            return int(digits)
+        except ValueError:
+            words.append(f"a number of {len(digits):,} digits, which is too long")
+            return float("inf")
+
+    def made(members: list[tuple[str, Any]]) -> dict[str, Any]:
+        plain = dict(members)
+        if len(plain) == len(members):
+            return plain
+        doubled.append(Doubled(members))
+        return doubled[-1]
+
+    value = json.loads(text.decode("utf-8"), parse_constant=constant, parse_int=whole, object_pairs_hook=made)
+    found = [f"{pointer}: the key '{key}' stands twice in it" for pointer, key in _twice(value)] if doubled else []
+    if words:
+        found.append(f"{next(not_finite(value), '') or 'the whole'}: {words[0]}")
+    return value, found
+
+
+def may_be_faulty(text: bytes, read: BaseModel) -> bool:
+    """Whether `read_json` may find anything wrong with a text that was read as a message: a quick test.
+
+    A colon stands behind each key, and of a key that stands twice the message has one: it is written with fewer colons
+    than the text holds. No escape but one stands for a colon.
+
+    Args:
+        text: The text.
+        read: The message, as pydantic reads it, which takes the last value of a key.
+    """
+    if b"NaN" in text or b"Infinity" in text or b"\\u003" in text:
+        return True
+    return text.count(b":") != read.model_dump_json(exclude_unset=True).count(":")
+
+
+def _twice(value: Any, within: str = "") -> Iterator[tuple[str, str]]:
+    """The keys that stand twice, each with the pointer to its object."""
+    if isinstance(value, Doubled):
+        for key in value.keys_twice:
+            yield within or "the whole", key
+    if isinstance(value, dict):
+        for key, item in value.items():
+            yield from _twice(item, within + step(key))
+    elif isinstance(value, list):
+        for index, item in enumerate(value):
+            yield from _twice(item, within + step(index))

@@ -1,0 +1,81 @@
+"""The command line that runs one item alone, as it stands in a failure and in a certificate."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from dataclasses import dataclass, replace
+from itertools import product
+
+#: Time allowed where nothing else is said, s: for an answer, and for a start.
+TIMEOUT, START_TIMEOUT = 10.0, 30.0
+
+#: What pytest runs: in a checkout a folder, elsewhere a package, with its plug-in.
+FOLDER = ("conformance/",)
+PACKAGE = ("--pyargs", "eurdf_conformance.suite", "-p", "eurdf_conformance.suite.plugin")
+
+_TIMES = re.compile(r" --parser-(start-)?timeout=([0-9.e+-]+)")
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What of a run matters to an item of it.
+
+    Attributes:
+        parser: ``package.module:object`` or ``cmd:…``.
+        suite: What pytest runs.
+        timeout: Time allowed for an answer, s.
+        start_timeout: Time allowed for a start, s.
+        explore: Further random mechanisms to try for each property.
+        explore_seed: What these are drawn from.
+    """
+
+    parser: str
+    suite: tuple[str, ...] = FOLDER
+    timeout: float = TIMEOUT
+    start_timeout: float = START_TIMEOUT
+    explore: int = 0
+    explore_seed: int = 0
+
+
+def command_line(setting: Setting, item_id: str, level: str) -> str:
+    """The command line that runs one item alone.
+
+    Args:
+        setting: Of the run.
+        item_id: Id of the item.
+        level: Its level.
+    """
+    name = item_id.split("/", 1)[-1]
+    settings = [f"--parser={setting.parser}"]
+    settings += [f"--parser-timeout={setting.timeout:g}"] * (setting.timeout != TIMEOUT)
+    settings += [f"--parser-start-timeout={setting.start_timeout:g}"] * (setting.start_timeout != START_TIMEOUT)
+    if setting.explore and item_id.startswith("properties/"):
+        settings += [f"--explore={setting.explore}", f"--explore-seed={setting.explore_seed}"]
+    return shlex.join(["pytest", *setting.suite, *settings, "-k", f"{name}/{level}"])
+
+
+def is_command_line(text: str, setting: Setting, item_id: str, level: str) -> bool:
+    """Whether a text is such a command line, whatever its time-outs, from a checkout or elsewhere.
+
+    Args:
+        text: The text.
+        setting: Of the run, as far as it is known; neither `suite` nor the time-outs matter.
+        item_id: Id of the item.
+        level: Its level.
+    """
+    # The parser may have options of these names too: its own come first, and there may be no others.
+    times: dict[str, float | None] = {start: _seconds(value) for start, value in _TIMES.findall(text)}
+    choices = product((FOLDER, PACKAGE), {TIMEOUT, times.get("")}, {START_TIMEOUT, times.get("start-")})
+    return any(
+        text == command_line(replace(setting, suite=suite, timeout=one, start_timeout=other), item_id, level)
+        for suite, one, other in choices
+        if one is not None and other is not None
+    )
+
+
+def _seconds(text: str) -> float | None:
+    try:
+        return float(text)
+    except ValueError:
+        return None

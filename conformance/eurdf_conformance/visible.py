@@ -1,0 +1,27 @@
+"""Text of whoever wrote it, made fit to be looked at."""
+
+from __future__ import annotations
+
+import unicodedata
+
+# They join letters, or part them, as some scripts and many pictures need it.
+_JOINERS = "\u200c\u200d"
+
+
+def visible(text: str, kept: str = "\n\t") -> str:
+    r"""The text with every character that is not seen, or that steers a terminal, as its escape (``\x1b``).
+
+    So a reader can neither clear the screen nor turn round what stands beside its words. Letters, spaces and pictures
+    of all scripts stay as they are.
+
+    Args:
+        text: The text.
+        kept: What stays as well: where one line is to be one line, nothing.
+    """
+    if text.isprintable():
+        return text
+    return "".join(c if c in kept or _is_plain(c) else c.encode("unicode_escape").decode("ascii") for c in text)
+
+
+def _is_plain(character: str) -> bool:
+    return character.isprintable() or character in _JOINERS or unicodedata.category(character) == "Zs"
