@@ -159,7 +159,7 @@ def test_a_first_try_runs_on_a_terminal_too(folder: Path) -> None:
     command = [sys.executable, "-m", "eurdf.commands.main", "certify", "--parser", REFERENCE, "--smoke"]
     with subprocess.Popen(
         command, stdout=subprocess.DEVNULL, stderr=stream, env={**os.environ, "TERM": "xterm"}
-    ) as run:
+    ) as done:
         os.close(stream)
         shown = b""
         with contextlib.suppress(OSError):  # its other end is closed
