@@ -47,7 +47,8 @@ from eurdf_conformance.suite.conversation import Conversation
 from eurdf_conformance.suite.failure_text import failure_text
 from eurdf_conformance.suite.item import case_items, planned_items
 from eurdf_conformance.suite.judge import Judgement, judge
-from eurdf_conformance.suite.options import Options
+from eurdf_conformance.suite.options import OPTIONS, Options
+from eurdf_conformance.suite.plugin import Collector
 from eurdf_conformance.suite.property import all_properties
 from eurdf_conformance.suite.protocol_check import Asked, check
 from eurdf_conformance.suite.smoke import SMOKE
@@ -355,6 +356,18 @@ def test_of_the_protocol_the_files_are_named() -> None:
     assert {str(VALID.description), str(INVALID.urdf)} <= set(found.log.splitlines())
 
 
+@pytest.mark.parametrize("code", [pytest.ExitCode.INTERRUPTED, pytest.ExitCode.INTERNAL_ERROR])
+def test_a_run_that_is_broken_off_leaves_the_certificate_that_is_there(code: pytest.ExitCode, tmp_path: Path) -> None:
+    config = SimpleNamespace(stash={OPTIONS: Options(certificate=tmp_path)})
+    collector = Collector(config)  # type: ignore[arg-type]
+    collector._started = NoReader("cmd:nothing").started
+    session = SimpleNamespace(exitstatus=pytest.ExitCode.OK)
+    collector.pytest_sessionfinish(session, code)  # type: ignore[arg-type]
+    assert list(tmp_path.iterdir()) == []
+    collector.pytest_sessionfinish(session, pytest.ExitCode.OK)  # type: ignore[arg-type]
+    assert (tmp_path / "certificate.json").is_file()
+
+
 # As pytest runs it
 
 
@@ -545,12 +558,3 @@ def test_from_another_folder_the_line_that_is_printed_names_the_package(tmp_path
     code, out = suite("-k", "k9b2yf/accept", reader="Lenient", command=[str(ROOT / "conformance")], cwd=tmp_path)
     assert code == 1
     assert "  pytest --pyargs eurdf_conformance.suite -p eurdf_conformance.suite.plugin --parser=" in out
-
-
-def test_a_run_that_is_broken_off_leaves_the_certificate_that_is_there(tmp_path: Path) -> None:
-    code, _ = suite("--smoke", f"--certificate={tmp_path}", reader="Right")
-    assert code == 0
-    before = (tmp_path / "certificate.json").read_bytes()
-    code, _ = suite("-k", FEW, f"--certificate={tmp_path}", reader="Interrupting")
-    assert code == pytest.ExitCode.INTERRUPTED
-    assert (tmp_path / "certificate.json").read_bytes() == before

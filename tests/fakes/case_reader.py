@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import signal
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -50,14 +49,6 @@ class Right:
 def issue(code: str, place: CasePlace, severity: str) -> Issue:
     said = {"code": code, "severity": severity, "message": "?", **place.model_dump()}
     return Issue.model_validate(said)
-
-
-class Interrupting(Right):
-    """Stands for a user who has enough of it."""
-
-    def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported | Skipped:
-        os.kill(os.getppid(), signal.SIGINT)
-        return super().load(description, urdf)
 
 
 class Lenient(Right):
