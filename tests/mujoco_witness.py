@@ -160,7 +160,7 @@ class Witness:
                 case "helical":
                     block = np.array([[self._lead(joint)], [1.0]])
                 case "planar":  # slides along the axes of the joint, not of the child
-                    block[:2, :2] = _about_z(self._values(joint, q)[2])[:2, :2]
+                    block[:2, :2] = _of_angles((0.0, 0.0, self._values(joint, q)[2]))[:2, :2]
                 case "floating":
                     block[:3, :3] = _of_quaternion(self._values(joint, q)[3])
             if parts:
@@ -217,21 +217,25 @@ def mass_matrix(model: mujoco.MjModel, data: mujoco.MjData) -> Array:
 def _turned(inertia: Inertia) -> Array:
     """The moments along the axes of the link: MuJoCo takes those of a full matrix along no others."""
     xx, xy, xz, yy, yz, zz = inertia.moments
-    x, y, z = inertia.pose.rpy
-    R = _about_z(z) @ _about_z(y)[np.ix_((1, 2, 0), (1, 2, 0))] @ _about_z(x)[np.ix_((2, 0, 1), (2, 0, 1))]
+    R = _of_angles(inertia.pose.rpy)
     found = R @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ R.T
     return np.asarray(found[np.triu_indices(3)])
 
 
-def _about_z(angle: float) -> Array:
-    c, s = math.cos(angle), math.sin(angle)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+def _of_angles(rpy: Sequence[float]) -> Array:
+    wxyz = np.zeros(4)
+    mujoco.mju_euler2Quat(wxyz, np.asarray(rpy, dtype=float), "XYZ")
+    return _rotation(wxyz)
 
 
 def _of_quaternion(xyzw: Sequence[float]) -> Array:
     x, y, z, w = np.asarray(xyzw) / np.linalg.norm(xyzw)
+    return _rotation(np.array([w, x, y, z]))
+
+
+def _rotation(wxyz: Array) -> Array:
     R = np.zeros(9)
-    mujoco.mju_quat2Mat(R, np.array([w, x, y, z]))
+    mujoco.mju_quat2Mat(R, wxyz)
     return R.reshape(3, 3)
 
 

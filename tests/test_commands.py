@@ -2,12 +2,9 @@
 
 import json
 import os
-import pty
-import select as select_module
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -23,6 +20,7 @@ from eurdf.commands.output_schema import output_schemas
 from eurdf.commands.selection import select
 from eurdf.diagnostics import Diagnostic, Place
 from eurdf.diagnostics.report import Report
+from terminal import on_a_terminal
 
 URDF = """\
 <robot name="arm">
@@ -507,31 +505,9 @@ def test_a_fault_of_the_program_is_not_taken_for_one_of_the_robot(
     assert err.endswith("eurdf: this is a fault of eurdf itself, not of the robot\n")
 
 
-def on_a_terminal(argv: list[str], columns: int = 80) -> str:
-    """What a person sees who runs Python with these arguments."""
-    child, terminal = pty.fork()
-    if child == 0:
-        os.environ.update(TERM="xterm-256color", COLUMNS=str(columns), LINES="40", PYTHONIOENCODING="utf-8")
-        for name in ("NO_COLOR", "FORCE_COLOR"):
-            os.environ.pop(name, None)
-        os.execv(sys.executable, [sys.executable, *argv])
-    seen, end = b"", time.monotonic() + 60
-    while time.monotonic() < end and select_module.select([terminal], [], [], 30)[0]:
-        try:
-            some = os.read(terminal, 65536)
-        except OSError:  # the other end is closed
-            break
-        if not some:
-            break
-        seen += some
-    os.waitpid(child, 0)
-    os.close(terminal)
-    return seen.decode("utf-8")
-
-
 def test_a_person_sees_colours_and_no_line_of_the_file_wraps(folder: Path) -> None:
     robot(folder, ACTUATES_NOTHING + "x-note: " + "long " * 100 + "\n")
-    seen = on_a_terminal(["-m", "eurdf.commands.main", "check", "."])
+    _, seen = on_a_terminal(["-m", "eurdf.commands.main", "check", "."])
     assert "\x1b[1;31merror\x1b[0m" in seen
     assert "│" in seen
     piped = in_a_process("check", ".").stdout
@@ -542,7 +518,7 @@ def test_a_person_sees_colours_and_no_line_of_the_file_wraps(folder: Path) -> No
 def test_a_person_sees_how_far_the_check_of_many_robots_is(folder: Path) -> None:
     for name in "abcdef":
         robot(folder / name)
-    seen = on_a_terminal(["-c", _CHECK_QUICKLY, "."])
+    _, seen = on_a_terminal(["-c", _CHECK_QUICKLY, "."])
     assert "checking" in seen
     assert seen.index("checking") < seen.index("error")
 

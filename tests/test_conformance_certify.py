@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 import os
-import pty
 import re
 import shlex
 import subprocess
@@ -29,6 +27,7 @@ from eurdf_conformance.corpus.read import read_cases
 from eurdf_conformance.level import Level
 from eurdf_conformance.suite.smoke import smoke_lines
 from eurdf_conformance.verdict.verdict import Verdict
+from terminal import on_a_terminal
 
 REFERENCE = "eurdf_conformance.adapters.reference:READER"
 
@@ -155,18 +154,8 @@ def test_a_first_try_that_passes_certifies_nothing(folder: Path) -> None:
 
 
 def test_a_first_try_runs_on_a_terminal_too(folder: Path) -> None:
-    terminal, stream = pty.openpty()
-    command = [sys.executable, "-m", "eurdf.commands.main", "certify", "--parser", REFERENCE, "--smoke"]
-    with subprocess.Popen(
-        command, stdout=subprocess.DEVNULL, stderr=stream, env={**os.environ, "TERM": "xterm"}
-    ) as done:
-        os.close(stream)
-        shown = b""
-        with contextlib.suppress(OSError):  # its other end is closed
-            while chunk := os.read(terminal, 4096):
-                shown += chunk
-    os.close(terminal)
-    assert (done.returncode, b"certifying" in shown) == (0, True)
+    code, seen = on_a_terminal(["-m", "eurdf.commands.main", "certify", "--parser", REFERENCE, "--smoke"])
+    assert (code, "certifying" in seen) == (0, True)
 
 
 def test_whoever_explores_is_told_where_the_cases_are(capsys: pytest.CaptureFixture[str]) -> None:

@@ -640,6 +640,7 @@ def test_a_syntax_error_is_told_in_plain_words_at_its_place(
         ("a: |\n  b\n   ", {"a": "b\n \n"}),
         ("a: |\n  b\n   \n", {"a": "b\n \n"}),
         ("a: >-\n  b\n ", {"a": "b"}),
+        ("a: |\n  b\u2028   ", {"a": "b\u2028   "}),
         ("a: 'b\n  '\n ", {"a": "b "}),
         ("a: b\n  ", {"a": "b"}),
     ],

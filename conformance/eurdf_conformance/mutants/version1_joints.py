@@ -203,9 +203,4 @@ def split_that_is_claimed_is_lacked() -> Deviation:
 @mutant("EU-JNT-027", versions=("1",))
 def limits_of_the_second_half_lost() -> Deviation:
     """The second of the two joints that a universal one is split into has no position limits."""
-
-    def split(original: Any, self: Any, joint: Joint) -> Joint | None:
-        second: Joint | None = original(self, joint)
-        return second and replace(second, lower=(-math.inf,), upper=(math.inf,))
-
-    return around(_Replacement, "split", split)
+    return _halves(lambda _, first, second: (first, replace(second, lower=(-math.inf,), upper=(math.inf,))))

@@ -233,7 +233,8 @@ def _nearest_axes(chain: Chain) -> tuple[Joint, ...]:
     first, second, third = (tuple(map(abs, back.rotate(direction))) for direction in chain.directions)
     near = (first, second, third)
     sums = [near[x][0] + near[y][1] + near[z][2] for x, y, z in _ORDERS]
-    x, y, z = next(order for order, found in zip(_ORDERS, sums, strict=True) if found >= max(sums) - _AS_LARGE)
+    least = max(sums) - _AS_LARGE
+    x, y, z = next(order for order, found in zip(_ORDERS, sums, strict=True) if found >= least)
     return chain.joints[x], chain.joints[y], chain.joints[z]
 
 

@@ -25,7 +25,7 @@ from eurdf.diagnostics import Fault, Place
 from eurdf.reading.core_schema import TAG_PREFIX, resolve, resolve_tagged
 from eurdf.reading.source import YAML_LIMIT, Source, short, too_large
 from eurdf.reading.yaml_node import Alias, Collection, Node, Span, json_pointer
-from eurdf.reading.yaml_syntax import UNUSUAL_NAME, USUAL_NAME, syntax_fault
+from eurdf.reading.yaml_syntax import syntax_fault, unusual_name
 
 #: Mappings and lists that may be nested in one another, aliases expanded.
 DEPTH_LIMIT = 64
@@ -88,8 +88,9 @@ def read_yaml(source: Source) -> YamlDocument:
     if len(source.data) > YAML_LIMIT:
         raise too_large(source.file, f"{YAML_LIMIT:,} bytes")
     data, original = _without_other_breaks(source)
-    if source.text[-1:] == " " and not source.text.splitlines()[-1].strip(" "):
-        data += b"\n"  # without which a block scalar would lose the end of this line
+    text = source.text.rstrip(" ")
+    if text != source.text and text[-1:] in "\r\n":
+        data += b"\n"  # of a last line of blanks, without which libyaml would not see that it is one
     if data.count(b"\n%TAG") + data.count(b"\r%TAG") + data.startswith(b"%TAG") > DIRECTIVE_LIMIT:
         raise too_large(source.file, f"{DIRECTIVE_LIMIT} %TAG directives")
     try:
@@ -250,7 +251,7 @@ class _Reader:
         text, name = self._source.text, f"{sign}{event.anchor}"
         begin = text.find(name, event.start_mark.index)
         if text[begin + len(name) : begin + len(name) + 1].strip(" \t\r\n,[]{}"):
-            raise Fault("yaml-syntax", UNUSUAL_NAME, self._source.place(begin, begin + len(name)), USUAL_NAME)
+            raise unusual_name(self._source.place(begin, begin + len(name)))
 
     def _key(self, value: Any, event: Event) -> None:
         """Take a value as the next key of the innermost mapping."""

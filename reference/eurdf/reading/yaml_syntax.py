@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from yaml.error import MarkedYAMLError, YAMLError
 
-from eurdf.diagnostics import Fault
+from eurdf.diagnostics import Fault, Place
 from eurdf.reading.source import Source
 
 #: What may not stand in a YAML file even in quotes (YAML 1.2.2, section 5.1).
@@ -23,11 +23,8 @@ class _Meaning(NamedTuple):
     late: bool = False  # whether libyaml notices it only long after the place where the node around it begins
 
 
-#: Of an anchor or an alias, and what would be right.
-UNUSUAL_NAME = "this is no name for an anchor"
-USUAL_NAME = "name it by ASCII letters, digits, '-' and '_'"
-
 _AFTER_VALUE = _Meaning("this stands after the end of a value", "quote the value as a whole")
+_UNUSUAL_NAME = _Meaning("this is no name for an anchor", "name it by ASCII letters, digits, '-' and '_'")
 _TAB = _Meaning("a tab is used as indentation", "indent with spaces")
 _MEANINGS = {
     "mapping values are not allowed in this context": _Meaning(
@@ -62,7 +59,7 @@ _MEANINGS = {
     ),
     "did not find expected hexdecimal number": _Meaning("an escape lacks its hexadecimal digits"),
     "found invalid Unicode character escape code": _Meaning("an escape stands for no Unicode character"),
-    "did not find expected alphabetic or numeric character": _Meaning(UNUSUAL_NAME, USUAL_NAME),
+    "did not find expected alphabetic or numeric character": _UNUSUAL_NAME,
     "found unknown directive name": _Meaning("only the directives %YAML and %TAG are known", "leave the line out"),
     "found incompatible YAML document": _Meaning(
         "the %YAML directive asks for another version than 1.2", "leave the directive out", "yaml-version"
@@ -70,6 +67,11 @@ _MEANINGS = {
     "found undefined tag handle": _Meaning("the tag has an unknown prefix", None, "yaml-unknown-tag"),
 }
 _NOT_CONTINUED = ("did not find expected key", "did not find expected '-' indicator")
+
+
+def unusual_name(place: Place) -> Fault:
+    """The fault of an anchor or an alias whose name libyaml would end too early."""
+    return Fault(_UNUSUAL_NAME.code, _UNUSUAL_NAME.message, place, _UNUSUAL_NAME.hint)
 
 
 def syntax_fault(source: Source, error: YAMLError | UnicodeDecodeError) -> Fault:
