@@ -40,7 +40,7 @@ class Near:
 
 def agree(expected: Matrix, given: Matrix, near: float | Matrix) -> bool:
     """Whether two arrays of one shape are the same within a distance, or each entry within its own."""
-    return bool(np.all(np.abs(expected - given) <= near))
+    return bool((np.abs(expected - given) <= near).all())
 
 
 def worst(expected: Matrix, given: Matrix, near: float | Matrix) -> tuple[int, str]:

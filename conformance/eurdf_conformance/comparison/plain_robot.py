@@ -72,7 +72,9 @@ def plain_robot(robot: CanonicalRobot, bodies: Iterable[Iterable[str]], links: I
         bodies: For each body of the robot its links.
         links: The links of the URDF.
     """
-    first_link = {link: min(body, key=str.encode) for body in map(list, bodies) for link in body}
+    first_link: dict[str, str] = {}
+    for body in map(list, bodies):
+        first_link |= dict.fromkeys(body, min(body, key=str.encode))
     repeated: list[Difference] = []
     joints = _by_name(robot.joints, "/joints", lambda joint: joint.name, repeated)
     actuators = _by_name(robot.actuators, "/actuators", lambda actuator: actuator.joint, repeated)

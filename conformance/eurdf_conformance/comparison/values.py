@@ -60,11 +60,16 @@ def _pose_differences(
     expected: Mapping[str, Pose], given: Mapping[str, Pose], near: Near, pointer: str
 ) -> Iterator[Difference]:
     yield from name_differences(expected, given, pointer, "frame")
-    for name in both(expected, given):
-        one, other, where = expected[name], given[name], pointer + step(name)
-        origin, rotation = f"origin of frame '{name}' in the world, m", f"rotation of frame '{name}' in the world"
-        yield from array_differences(one.translation, other.translation, near.length, where + "/translation", origin)
-        yield from array_differences(one.rotation, other.rotation, near.angle, where + "/rotation", rotation)
+    names = both(expected, given)
+    for member, what, allowed in (
+        ("translation", "origin of frame '{}' in the world, m", near.length),
+        ("rotation", "rotation of frame '{}' in the world", near.angle),
+    ):
+        one, other = ([getattr(poses[name], member) for name in names] for poses in (expected, given))
+        if agree(np.array(one), np.array(other), allowed):
+            continue
+        for name, there, here in zip(names, one, other, strict=True):
+            yield from array_differences(there, here, allowed, f"{pointer}{step(name)}/{member}", what.format(name))
 
 
 def _residual_differences(expected: Rows, given: Rows, near: Near, pointer: str, twins: Rows) -> Iterator[Difference]:
