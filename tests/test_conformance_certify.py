@@ -305,6 +305,7 @@ def test_a_file_in_the_place_of_the_folder_is_told_before_the_run(
         (("--parser-timeout", "0"), "'0' is no time"),
         (("--parser-start-timeout", "nan"), "'nan' is no time"),
         (("--level", "everything"), "invalid choice"),
+        (("--certificate", ""), "it names no folder"),
     ],
 )
 def test_a_wrong_value_of_an_option_is_refused(

@@ -160,6 +160,11 @@ def test_a_reader_that_does_not_read_version_2_can_keep_what_both_versions_say(t
         assert tried(law_of("versions"), level, "1", Old(), tmp_path / level).verdict == Verdict.PASSED
 
 
+def test_an_answer_of_another_kind_stands_among_the_differences(tmp_path: Path) -> None:
+    (wrong_answer,) = tried(law_of("accepted"), Level.ACCEPT, "2", wrong.RejectsFloating(), tmp_path).differences
+    assert (wrong_answer.pointer, wrong_answer.expected, wrong_answer.given) == ("/outcome", "accepted", "rejected")
+
+
 def test_a_crash_is_no_departure_from_a_law_but_a_crash(tmp_path: Path) -> None:
     class Crashing(InProcess):
         def evaluate(self, *_: object) -> Outcome:  # type: ignore[override]

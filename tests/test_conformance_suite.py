@@ -487,6 +487,7 @@ def test_what_the_user_asks_for_and_cannot_be_is_said(tmp_path: Path) -> None:
         (["--explore=-1"], "--explore takes a count"),
         (["--smoke", "--explore=1"], "--smoke goes with neither --known-failures nor --explore"),
         ([f"--certificate={__file__}"], "is a file; a certificate is written into a folder"),
+        (["--certificate="], "it names no folder"),
         (["--level=everything"], "invalid choice"),
         (["--parser="], "--parser names no parser"),
         (["--parser=cmd:no-such-program-anywhere"], "'cmd:no-such-program-anywhere' could not be started: "),

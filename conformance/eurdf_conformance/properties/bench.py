@@ -24,10 +24,12 @@ class NotAnswered(Exception):  # noqa: N818 - it says what happened
     """A reader did not say what it was asked.
 
     Attributes:
+        expected: The word that the answer should be.
         outcome: What came of it instead.
     """
 
-    def __init__(self, outcome: Outcome) -> None:
+    def __init__(self, expected: str, outcome: Outcome) -> None:
+        self.expected = expected
         self.outcome = outcome
         super().__init__(str(outcome))
 
@@ -64,7 +66,7 @@ class Bench:
         if self._accepted is None:
             outcome = self._reader.load(*self._files[1])
             if not (isinstance(outcome, Answered) and isinstance(outcome.answer, Accepted)):
-                raise NotAnswered(outcome)
+                raise NotAnswered("accepted", outcome)
             self._accepted = outcome.answer
         return self._accepted
 
@@ -87,7 +89,7 @@ class Bench:
         outcome = self._reader.evaluate(asked.configurations, asked.frames, quantities)
         if not (isinstance(outcome, Answered) and isinstance(outcome.answer, Evaluated)):
             self._accepted = None  # the process that held the robot may be gone
-            raise NotAnswered(outcome)
+            raise NotAnswered("evaluated", outcome)
         given, count = outcome.answer.values, len(asked.configurations)
         if len(given) != count:
             raise WrongShape([Difference("/values", count, len(given), "how many configurations")])

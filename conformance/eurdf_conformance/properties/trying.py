@@ -54,7 +54,7 @@ def try_example(law: Law, level: Level, version: Version, bench: Bench, example:
     try:
         found = law.check(bench, example, version, level)
     except NotAnswered as failure:
-        return judge_outcome(failure.outcome)
+        return judge_outcome(failure.outcome, failure.expected)
     except WrongShape as wrong:
         return Judgement(Verdict.FAILED, "its values are not those asked for", wrong.differences)
     return Judgement(Verdict.FAILED, f"it is not so: {law.title}", tuple(found)) if found else PASSED

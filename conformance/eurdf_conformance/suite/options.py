@@ -12,6 +12,7 @@ from typing import Any
 import pytest
 
 from eurdf_conformance.level import VERSIONS, Level, Version
+from eurdf_conformance.named_folder import named_folder
 from eurdf_conformance.suite.reproduce import FOLDER, PACKAGE, START_TIMEOUT, TIMEOUT, Setting, command_line
 from eurdf_conformance.verdict.known_failures import (
     NONE_KNOWN,
@@ -91,7 +92,7 @@ def add_options(parser: pytest.Parser) -> None:
     )
     group.addoption("--format-version", choices=VERSIONS, help="version of the format to test (default: both)")
     group.addoption("--known-failures", type=Path, metavar="FILE", help="YAML list of {id, level, verdict, reason}")
-    group.addoption("--certificate", type=Path, metavar="DIR", help="write a certificate into this folder")
+    group.addoption("--certificate", type=named_folder, metavar="DIR", help="write a certificate into this folder")
     group.addoption("--explore", type=int, default=0, metavar="N", help="further random mechanisms for each property")
     group.addoption(
         "--explore-seed", type=int, metavar="SEED", help="what they are drawn from (default: another each time)"

@@ -16,6 +16,7 @@ from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.output import is_terminal, write_json, write_lines
 from eurdf.diagnostics.text import visible
 from eurdf_conformance.level import Level
+from eurdf_conformance.named_folder import named_folder
 
 if TYPE_CHECKING:
     from eurdf.diagnostics.text import Line
@@ -58,7 +59,9 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     parser.add_argument("--format-version", choices=("1", "2"), help="test this version of the format only")
     parser.add_argument("--known-failures", metavar="FILE", type=Path, help="YAML list of what is expected to fail")
-    parser.add_argument("--certificate", metavar="DIR", type=Path, help="write a certificate: JSON, a page and a badge")
+    parser.add_argument(
+        "--certificate", metavar="DIR", type=named_folder, help="write a certificate: JSON, a page and a badge"
+    )
     parser.add_argument("--date", metavar="YYYY-MM-DD", type=_date, help="the day that the certificate is to show")
     parser.add_argument(
         "--explore", metavar="N", type=_count, default=0, help="try N more random mechanisms a property"
