@@ -20,6 +20,7 @@ from eurdf_conformance.mutants import (
     joint_rules,
     joints,
     merging,
+    near_names,
     places,
     refusing,
     refusing_urdf,
@@ -60,6 +61,7 @@ _MODULES = (
     refusing,
     refusing_urdf,
     telling,
+    near_names,
     places,
     speaking,
 )

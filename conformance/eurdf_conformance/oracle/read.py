@@ -8,6 +8,7 @@ from pathlib import Path
 from eurdf_conformance.level import Version
 from eurdf_conformance.oracle.description import Description
 from eurdf_conformance.oracle.merging import with_merges_found
+from eurdf_conformance.oracle.near import is_near
 from eurdf_conformance.oracle.not_read import NotRead
 from eurdf_conformance.oracle.plain_value import text
 from eurdf_conformance.oracle.robot import OracleRobot
@@ -53,8 +54,10 @@ def described(path: Path) -> Description:
     if "extended_urdf" in document:
         text(document["extended_urdf"])
         return version2(document)
-    if document.keys() & set(KEYS_2) and not document.keys() & set(KEYS_1):
-        raise NotRead("keys of version 2 without its first")
+    if not document.keys() & set(KEYS_1):
+        misspelt = any(is_near(key, "extended_urdf") for key in document if not key.startswith("x-"))
+        if misspelt or document.keys() & set(KEYS_2):
+            raise NotRead("keys of version 2 without its first")
     return version1(document)
 
 

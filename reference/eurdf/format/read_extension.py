@@ -9,16 +9,14 @@ from pydantic import ValidationError
 from eurdf.diagnostics import Diagnostics
 from eurdf.format.extension import Extension
 from eurdf.format.field import is_own_key
+from eurdf.format.near import near
 from eurdf.format.normal_form import from_version1, from_version2
 from eurdf.format.version1 import Version1
 from eurdf.format.version2 import VERSION, Version2
-from eurdf.format.violation import described, nearest_key, quoted, violations
+from eurdf.format.violation import described, quoted, violations
 
 if TYPE_CHECKING:
     from eurdf.reading.yaml_reader import YamlDocument
-
-#: How alike two keys are that are taken for one misspelt, as difflib's ratio.
-NEAR = 0.8
 
 VERSION_KEY = "extended_urdf"
 
@@ -65,7 +63,7 @@ def _version(document: YamlDocument, diagnostics: Diagnostics) -> Literal["1", "
         return _written_version(document, diagnostics)
     if any(key in data for key in _VERSION1_KEYS):
         return "1"
-    misspelt = next((key for key in data if nearest_key(key, [VERSION_KEY], NEAR)), None)
+    misspelt = next((key for key in data if not is_own_key(key) and near(key, [VERSION_KEY])), None)
     if misspelt is not None:
         diagnostics.report(
             "missing-key",
@@ -74,7 +72,7 @@ def _version(document: YamlDocument, diagnostics: Diagnostics) -> Literal["1", "
             f"did you mean '{VERSION_KEY}'?",
         )
         return None
-    version2_key = next((key for key in (*_VERSION2_KEYS, "metadata") if key in data), None)
+    version2_key = next((key for key in data if key in (*_VERSION2_KEYS, "metadata")), None)
     if version2_key is not None:
         diagnostics.report(
             "missing-key",
@@ -117,9 +115,9 @@ def _warn_of_near_misses(document: YamlDocument, diagnostics: Diagnostics) -> No
         if key in _VERSION2_KEYS:
             message = f"'{key}' is a key of version {VERSION}; in this file of version 1 it is data of your own"
             hint = f'a file of version {VERSION} begins with {VERSION_KEY}: "{VERSION}" and has no key of version 1'
-        elif near := nearest_key(key, (*_VERSION1_KEYS, VERSION_KEY), NEAR):
-            message = f"{quoted(key)} is nearly '{near}', but is read as data of your own"
-            hint = f"did you mean '{near}'?"
+        elif meant := near(key, (*_VERSION1_KEYS, VERSION_KEY)):
+            message = f"{quoted(key)} is nearly '{meant}', but is read as data of your own"
+            hint = f"did you mean '{meant}'?"
         else:
             continue
         diagnostics.report("near-miss-key", message, document.place((key,), key=True), hint)

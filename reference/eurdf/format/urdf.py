@@ -7,6 +7,7 @@ before any C++ sees the file.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -16,6 +17,7 @@ from typing import Literal, NamedTuple, cast
 from lxml import etree
 
 from eurdf.diagnostics import Diagnostics, Hint, did_you_mean
+from eurdf.format.near import near
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Inertia, Mimic, Shape
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
@@ -40,15 +42,26 @@ URDF_JOINT_TYPES = {
 #: Elements by which other dialects state a closure or a coupling; a reader of this format would drop them.
 _CLOSURE_DIALECTS = frozenset({"loop", "loop_joint", "constraint", "coupling"})
 
+#: The elements that an element may have, but need not; of a joint that moves in a range, `limit` it must.
+_OPTIONAL_CHILDREN: dict[str, tuple[str, ...]] = {
+    "robot": ("link", "joint", "material"),
+    "link": ("inertial", "visual", "collision"),
+    "inertial": ("origin",),
+    "visual": ("origin", "material"),
+    "collision": ("origin",),
+    "joint": ("origin", "axis", "limit", "dynamics", "mimic"),
+    "material": ("color", "texture"),
+}
+
+_REQUIRED_CHILDREN: dict[str, tuple[str, ...]] = {
+    "inertial": ("mass", "inertia"),
+    "visual": ("geometry",),
+    "collision": ("geometry",),
+    "joint": ("parent", "child"),
+}
+
 _KNOWN_CHILDREN: dict[str, frozenset[str]] = {
-    "robot": frozenset({"link", "joint", "material", "gazebo", "transmission"}),
-    "link": frozenset({"inertial", "visual", "collision"}),
-    "inertial": frozenset({"origin", "mass", "inertia"}),
-    "visual": frozenset({"origin", "geometry", "material"}),
-    "collision": frozenset({"origin", "geometry"}),
-    "joint": frozenset(
-        {"origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "calibration", "safety_controller"}
-    ),
+    tag: frozenset((*optional, *_REQUIRED_CHILDREN.get(tag, ()))) for tag, optional in _OPTIONAL_CHILDREN.items()
 }
 
 _RANGED = frozenset({JointType.REVOLUTE, JointType.PRISMATIC})
@@ -63,14 +76,18 @@ _LIMIT = {"effort": None, "velocity": None, "lower": "0", "upper": "0"}
 _DYNAMICS = {"damping": "0", "friction": "0"}
 _MIMIC = {"multiplier": "1", "offset": "0"}
 
-# All attributes of elements that have some which may be left out.
-_ORIGIN = frozenset({"xyz", "rpy"})
-_MESH = frozenset({"filename", "scale"})
-_MIMIC_ATTRIBUTES = frozenset({"joint", *_MIMIC})
+#: The attributes that an element may have, but need not.
+_OPTIONAL_ATTRIBUTES: dict[str, tuple[str, ...]] = {
+    "origin": ("xyz", "rpy"),
+    "mesh": ("scale",),
+    "limit": ("lower", "upper"),
+    "dynamics": ("damping", "friction"),
+    "mimic": ("multiplier", "offset"),
+}
 
 _ZERO: Vector3 = (0.0, 0.0, 0.0)
 
-#: Of so many different elements that URDF lacks it is asked whether they are misspelt.
+#: Of so many different names that URDF lacks it is kept whether they are misspelt; of the rest it is asked again.
 _MOST_STRANGE = 200
 
 
@@ -207,7 +224,7 @@ class _Reader:
         self.floats: dict[str, tuple[float, ...] | None] = {}
         self.joined: dict[str, tuple[float, ...] | None] = {}
         self.poses: dict[tuple[str | None, str | None], Pose] = {}
-        self.strange: dict[tuple[str, frozenset[str]], str | None] = {}
+        self.strange: dict[tuple[str, tuple[str, ...]], str | None] = {}
         self.materials: dict[str, tuple[tuple[float, float, float, float] | None, str]] = {}
         self.nameless = False  # whether a material of the robot has no name
 
@@ -298,9 +315,10 @@ class _Reader:
 
     # -- elements -------------------------------------------------------------------------------------------------
 
-    def children(self, parent: Element, known: frozenset[str]) -> dict[str, Element]:
+    def children(self, parent: Element) -> dict[str, Element]:
         """EU-URD-006: the child elements that may stand once, by tag. Unknown ones are looked at for near misses."""
         found: dict[str, Element] = {}
+        known = _KNOWN_CHILDREN[str(parent.tag)]
         for child in parent:
             tag = child.tag
             if tag in found:
@@ -308,42 +326,51 @@ class _Reader:
             elif tag in known:
                 found[tag] = child
             else:
-                self.unknown(parent, child, known)
+                self.unknown(parent, child)
         return found
 
-    def unknown(self, parent: Element, child: Element, known: frozenset[str]) -> None:
-        """EU-URD-026, EU-URD-027: an element that this format lacks is left alone unless it looks like a mistake."""
+    def unknown(self, parent: Element, child: Element) -> None:
+        """EU-URD-026: an element that URDF lacks is left alone unless it is near one that may be left out."""
         tag = child.tag
         if not isinstance(tag, str):
             return
-        local = tag.rpartition("}")[2]
-        if local in _CLOSURE_DIALECTS or local.endswith(("_constraint", "loop_joint")):
-            self.report(
-                "urdf-closure-ignored",
-                f"<{local}> states a constraint that is not part of this format and has no effect",
-                child,
-                hint="state it under 'closures' in the YAML file",
-            )
-        elif "}" not in tag:
-            near = self.near_miss(tag, known)
-            if near:
-                self.report("urdf-unknown-element", f"<{parent.tag}> has an unknown element <{tag}>", child, hint=near)
+        optional = _OPTIONAL_CHILDREN[str(parent.tag)]
+        if parent.tag == "joint" and URDF_JOINT_TYPES.get(parent.get("type", "")) in _RANGED:
+            optional = tuple(other for other in optional if other != "limit")
+        if hint := self.near_miss(tag, optional):
+            self.report("urdf-unknown-element", f"<{parent.tag}> has an unknown element <{tag}>", child, hint=hint)
 
-    def attributes(self, element: Element, known: frozenset[str]) -> None:
+    def other_dialect(self, element: Element) -> bool:
+        """EU-URD-027: whether an element of the robot states a closure in another dialect, of which is told."""
+        local = re.split("[}:]", str(element.tag))[-1]
+        if local not in _CLOSURE_DIALECTS and not local.endswith("_constraint"):
+            return False
+        self.report(
+            "urdf-closure-ignored",
+            f"<{local}> states a constraint that is not part of this format and has no effect",
+            element,
+            hint="state it under 'closures' in the YAML file",
+        )
+        return True
+
+    def attributes(self, element: Element) -> None:
         """EU-URD-026: an attribute that may be left out is not misspelt, which would leave it out."""
+        optional = _OPTIONAL_ATTRIBUTES[str(element.tag)]
         for attribute in map(str, element.keys()):
-            near = None if attribute in known else self.near_miss(attribute, known)
-            if near:
+            hint = None if attribute in optional else self.near_miss(attribute, optional)
+            if hint:
                 message = f"{_named(element)} has an unknown attribute '{attribute}'"
-                self.report("urdf-unknown-element", message, element, hint=near)
+                self.report("urdf-unknown-element", message, element, hint=hint)
 
-    def near_miss(self, tag: str, known: frozenset[str]) -> str | None:
-        """The hint for an element or attribute that URDF lacks; mostly the same few stand in every joint of a file."""
-        if (tag, known) not in self.strange:
-            if len(self.strange) >= _MOST_STRANGE:
-                return None
-            self.strange[tag, known] = did_you_mean(tag, known)
-        return self.strange[tag, known]
+    def near_miss(self, name: str, optional: tuple[str, ...]) -> str | None:
+        """The hint for a name that URDF lacks, without a prefix; mostly the same few stand in each joint of a file."""
+        if (name, optional) in self.strange:
+            return self.strange[name, optional]
+        meant = None if "}" in name or ":" in name else near(name, optional)
+        hint = meant and f"did you mean '{meant}'?"
+        if len(self.strange) < _MOST_STRANGE:
+            self.strange[name, optional] = hint
+        return hint
 
     def need(self, parent: Element, found: Mapping[str, Element], tag: str) -> Element | None:
         """EU-URD-004: an element has the child elements that it must have."""
@@ -357,7 +384,7 @@ class _Reader:
             return IDENTITY
         text = (element.get("xyz"), element.get("rpy"))
         if len(element.keys()) > 2 - text.count(None):
-            self.attributes(element, _ORIGIN)
+            self.attributes(element)
         pose = self.poses.get(text)
         if pose is None:
             xyz = _ZERO if text[0] is None else self.numbers(element, "xyz", text[0], 3)
@@ -389,8 +416,8 @@ class _Reader:
             elif tag == "material":
                 if self.geometry_too:
                     self.robot_material(element)
-            elif tag not in _KNOWN_CHILDREN["robot"]:
-                self.unknown(root, element, _KNOWN_CHILDREN["robot"])
+            elif isinstance(tag, str) and not self.other_dialect(element):
+                self.unknown(root, element)
         complete = True
         for element in elements:
             if element.tag == "link":
@@ -429,7 +456,7 @@ class _Reader:
                 if shape is not None:
                     (visuals if tag == "visual" else collisions).append(shape)
             else:
-                self.unknown(element, child, _KNOWN_CHILDREN["link"])
+                self.unknown(element, child)
         if name is None:
             return None
         if name == "universe":
@@ -439,7 +466,7 @@ class _Reader:
         return UrdfLink(name, element, inertia, inertial, tuple(visuals), tuple(collisions))
 
     def inertial(self, element: Element) -> Inertia | None:
-        found = self.children(element, _KNOWN_CHILDREN["inertial"])
+        found = self.children(element)
         pose = self.origin(found.get("origin"))
         mass_element = self.need(element, found, "mass")
         inertia_element = self.need(element, found, "inertia")
@@ -453,10 +480,9 @@ class _Reader:
     # -- shapes ---------------------------------------------------------------------------------------------------
 
     def shape(self, element: Element, *, visual: bool) -> Shape | None:
-        tag = "visual" if visual else "collision"
         color: tuple[float, float, float, float] | None = None
         texture = ""
-        found = self.children(element, _KNOWN_CHILDREN[tag])
+        found = self.children(element)
         pose = self.origin(found.get("origin"))
         if visual and "material" in found:
             color, texture = self.material(found["material"])
@@ -481,7 +507,7 @@ class _Reader:
         if kind == "mesh":
             name = self.name(shape, "filename")
             scale = shape.get("scale")
-            self.attributes(shape, _MESH)
+            self.attributes(shape)
             size = (1.0, 1.0, 1.0) if scale is None else self.numbers(shape, "scale", scale, 3)
             if name is None or size is None:
                 return None
@@ -516,7 +542,7 @@ class _Reader:
         return Shape(cast(_Primitive, kind), size, pose, color=color, texture=texture)
 
     def color(self, element: Element) -> tuple[tuple[float, float, float, float] | None, str]:
-        found = self.children(element, frozenset({"color", "texture"}))
+        found = self.children(element)
         rgba: tuple[float, ...] | None = None
         if "color" in found:
             text = found["color"].get("rgba")
@@ -559,7 +585,7 @@ class _Reader:
 
     def joint(self, element: Element) -> UrdfJoint | None:
         name = self.name(element)
-        found = self.children(element, _KNOWN_CHILDREN["joint"])
+        found = self.children(element)
         kind = self.joint_type(element)
         parent_element, child_element = self.need(element, found, "parent"), self.need(element, found, "child")
         parent = self.name(parent_element, "link") if parent_element is not None else None
@@ -633,7 +659,7 @@ class _Reader:
                     hint="use type 'continuous' for a joint that turns without limits" if kind == "revolute" else None,
                 )
             return None
-        self.attributes(element, frozenset(_LIMIT))
+        self.attributes(element)
         values = self.several(element, _LIMIT)
         if values is None:
             return None
@@ -651,7 +677,7 @@ class _Reader:
         return Limit(lower, upper, velocity, effort)
 
     def dynamics(self, element: Element) -> tuple[float, ...]:
-        self.attributes(element, frozenset(_DYNAMICS))
+        self.attributes(element)
         damping, friction = self.several(element, _DYNAMICS) or (0.0, 0.0)
         if damping < 0.0 or friction < 0.0:
             self.negative(element, damping=damping, friction=friction)
@@ -666,7 +692,7 @@ class _Reader:
 
     def mimic(self, element: Element) -> Mimic | None:
         joint = self.name(element, "joint")
-        self.attributes(element, _MIMIC_ATTRIBUTES)
+        self.attributes(element)
         values = self.several(element, _MIMIC)
         return None if joint is None or values is None else Mimic(joint, *values)
 

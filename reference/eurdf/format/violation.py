@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from eurdf.diagnostics import Diagnostic, did_you_mean
 from eurdf.format.extension import Pointer
+from eurdf.format.near import near
 from eurdf.format.version2 import EXCLUDED, FROM_VERSION1, JOINT_TYPES, KEYS, TAGS
 
 if TYPE_CHECKING:
@@ -88,9 +89,9 @@ def violations(error: ValidationError, document: YamlDocument) -> list[Diagnosti
     meant: dict[Pointer, str] = {}  # for an unknown key, the required key that it misspells
     for violation in found:
         if violation.type == _UNKNOWN_KEY:
-            near = nearest_key(str(violation.pointer[-1]), lacking.get(violation.pointer[:-1], ()))
-            if near is not None:
-                meant[violation.pointer] = near
+            required = near(str(violation.pointer[-1]), lacking.get(violation.pointer[:-1], ()))
+            if required is not None:
+                meant[violation.pointer] = required
     misspelt = {(*pointer[:-1], key) for pointer, key in meant.items()}
     diagnostics = [
         _diagnostic(violation, meant.get(violation.pointer), document)
@@ -161,16 +162,15 @@ def _located(detail: ErrorDetails, data: Any) -> _Violation:
     return _Violation(detail["type"], detail["msg"], detail.get("ctx", {}), detail["input"], tuple(pointer), mapping)
 
 
-def nearest_key(key: str, keys: Iterable[str], likeness: float = 0.6) -> str | None:
-    """The key that another is most like, but for case and the kind of dash, or None if it is like none.
+def _likeliest_key(key: str, keys: Iterable[str]) -> str | None:
+    """The key that another is most like, for a hint: looser than `near`, and no dash or blank counts.
 
     Args:
         key: A key that is not known.
         keys: The known ones, in lower case and with underscores.
-        likeness: How alike they must be, as difflib's ratio: 1 for equal.
     """
     folded = key.casefold().replace("-", "_").replace(" ", "_")
-    return next(iter(difflib.get_close_matches(folded, list(keys), n=1, cutoff=likeness)), None)
+    return next(iter(difflib.get_close_matches(folded, list(keys), n=1)), None)
 
 
 def _alternatives(key: str | int) -> tuple[str, ...]:
@@ -247,11 +247,11 @@ def _unknown_key(violation: _Violation, meant: str | None, document: YamlDocumen
     if key in excluded:
         return Diagnostic("conflicting-keys", f"{subject(mapping)}: {excluded[key]}", place)
     keys = KEYS[violation.mapping]
-    near = meant or nearest_key(key, (*keys, *excluded))
+    likely = meant or _likeliest_key(key, (*keys, *excluded))
     if not mapping and key in FROM_VERSION1:
         hint = f"it is a key of version 1; version 2.0 says it under '{FROM_VERSION1[key]}'"
-    elif near is not None:
-        hint = f"did you mean '{near}'?"
+    elif likely is not None:
+        hint = f"did you mean '{likely}'?"
     else:
         known = ", ".join(f"'{known}'" for known in keys)
         hint = f"the keys here are {known}; a key of your own begins with 'x-'"

@@ -1,0 +1,46 @@
+"""Names that are near one another, and so mostly one misspelt (chapter Scope and terms)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from string import ascii_lowercase, ascii_uppercase
+
+#: Known names of fewer characters may be one edit away, others two.
+SHORT = 5
+
+_FOLD = str.maketrans(ascii_uppercase, ascii_lowercase)
+
+
+def near(name: str, known: Iterable[str]) -> str | None:
+    """The first of the known names that another is near, or None.
+
+    Args:
+        name: A name that is none of them.
+        known: Names of the format, of which none is long.
+    """
+    folded = name.translate(_FOLD)
+    return next((one for one in known if _is_near(folded, one.translate(_FOLD))), None)
+
+
+def _is_near(name: str, known: str) -> bool:
+    most = 1 if len(known) < SHORT else 2
+    if abs(len(name) - len(known)) > most or len({*name} ^ {*known}) > most:
+        return False  # told by the way: an edit changes the length, and the set of characters, by one at most
+    return edits(name, known) <= most
+
+
+def edits(one: str, other: str) -> int:
+    """How often a character is to be put in, taken out, or exchanged with the next, to make one name of another."""
+    before: list[int] = []
+    row = list(range(len(other) + 1))
+    for i, a in enumerate(one, 1):
+        above, row = row, [i]
+        for j, b in enumerate(other, 1):
+            least = min(above[j], row[j - 1]) + 1
+            if a == b:
+                least = min(least, above[j - 1])
+            if before and j > 1 and a == other[j - 2] and one[i - 2] == b:
+                least = min(least, before[j - 2] + 1)
+            row.append(least)
+        before = above
+    return row[-1]
