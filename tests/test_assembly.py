@@ -248,6 +248,18 @@ def test_joints_go_on_moving_when_others_have_come_to_their_limits() -> None:
     assert converged >= 38  # of 40 with a single descent; 30 if limits were only cut off at
 
 
+@pytest.mark.parametrize(("off", "closes"), [(0.5e-6, True), (0.7e-6, False)])
+def test_a_closure_that_stays_open_by_a_little_along_each_axis_is_open_by_the_length_of_it(
+    off: float, closes: bool
+) -> None:
+    linkage = loop([("R", (0.0, 0.0, 0.0), Z)], "3d", (0.0, 0.0, 0.3))  # closed on the axis, which moves nothing
+    constraint = linkage.constraint_models[0]
+    constraint.joint1_placement = constraint.joint1_placement * pin.SE3(np.eye(3), np.full(3, off))
+    assembly = assemble(linkage)
+    assert assembly.closes is closes
+    assert assembly.open[0].is_open is not closes
+
+
 def test_limits_that_leave_no_closed_configuration_are_kept_all_the_same() -> None:
     linkage = four_bar(1.0, 3.0, 2.0, 3.5)
     linkage.model.lowerPositionLimit = np.full(3, -0.2)

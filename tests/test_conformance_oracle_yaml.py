@@ -55,6 +55,8 @@ def test_a_plain_scalar_is_what_the_core_schema_says(text: str, value: Any) -> N
         ("!!seq [1]", [1]),
         ("!!map {a: 1}", {"a": 1}),
         ("[&a {x: no}, *a, &a 2, *a]", [{"x": "no"}, {"x": "no"}, 2, 2]),
+        ("[&a [&a 1, *a], *a]", [[1, 1], 1]),
+        ("[&a [&a [&a 1]], *a]", [[[1]], 1]),
         ('{"a":1, b: , "": c}', {"a": 1, "b": None, "": "c"}),
         ("{<<: {a: 1}}", {"<<": {"a": 1}}),
         ("[http://a.b/c, a#b]", ["http://a.b/c", "a#b"]),

@@ -21,6 +21,7 @@ from eurdf_conformance.mutants import (
     joints,
     merging,
     near_names,
+    own_data,
     places,
     refusing,
     refusing_urdf,
@@ -32,14 +33,19 @@ from eurdf_conformance.mutants import (
     version1_joints,
     yaml_documents,
     yaml_scalars,
+    yaml_styles,
 )
 from eurdf_conformance.mutants.accepting import ACCEPTING
+from eurdf_conformance.mutants.descriptions import ALONE
 from eurdf_conformance.mutants.mutant import Mutant
+from eurdf_conformance.mutants.own_data import OWN
 from eurdf_conformance.mutants.silent import SILENT
 
 _MODULES = (
     yaml_scalars,
+    yaml_styles,
     yaml_documents,
+    own_data,
     descriptions,
     version1,
     version1_joints,
@@ -73,7 +79,7 @@ def _mutants(module: ModuleType) -> Iterator[Mutant]:
 
 def _by_name() -> Mapping[str, Mutant]:
     found: dict[str, Mutant] = {}
-    for each in (*ACCEPTING, *SILENT, *(each for module in _MODULES for each in _mutants(module))):
+    for each in (*ACCEPTING, *SILENT, *OWN, *ALONE, *(each for module in _MODULES for each in _mutants(module))):
         if each.name in found:
             raise ValueError(f"there are two mutants '{each.name}'")
         found[each.name] = each

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
@@ -9,9 +11,9 @@ import pinocchio as pin
 
 from eurdf.description import Description
 from eurdf.format.extension import ClosureEntry
-from eurdf.kinematics import assembly, residual
-from eurdf.mechanism import link
-from eurdf_conformance.mutants.deviation import Deviation, around, instead
+from eurdf.kinematics import assembly, evaluation, residual
+from eurdf.mechanism import closures, link
+from eurdf_conformance.mutants.deviation import Deviation, around, instead, result, together
 from eurdf_conformance.mutants.mutant import mutant
 from eurdf_conformance.mutants.of_the_reference import refused, said_in_version2
 
@@ -102,3 +104,124 @@ class _Open:
 def closures_times_joints_without_bound() -> Deviation:
     """A robot may have any number of closures on any number of joints."""
     return instead(link, "CLOSURES_TIMES_JOINTS_LIMIT", 10**12)
+
+
+def _own_types(entries: Iterable[ClosureEntry]) -> tuple[list[ClosureEntry], list[ClosureEntry]]:
+    """The closures of types of the user's own, and the others."""
+    entries = list(entries)
+    return [each for each in entries if each.type.startswith("x-")], [
+        each for each in entries if not each.type.startswith("x-")
+    ]
+
+
+@mutant("EU-FRM-001", versions=("2",))  # version 1 has no other types
+def frames_of_own_types_are_not_looked_at() -> Deviation:
+    """What a closure of a type of the user's own joins is not looked at."""
+
+    def linked(original: Any, entries: Iterable[ClosureEntry], *arguments: Any) -> Any:
+        return original(_own_types(entries)[1], *arguments)
+
+    return around(link, "link_closures", linked)
+
+
+@mutant("EU-CLO-001")
+def own_types_have_names_of_their_own() -> Deviation:
+    """A closure of a type of the user's own may have the name of another."""
+
+    def renamed(entry: ClosureEntry) -> ClosureEntry:
+        return replace(entry, name=f"{entry.type} {entry.name}") if entry.type.startswith("x-") else entry
+
+    return said_in_version2(lambda said: replace(said, closures=tuple(map(renamed, said.closures))))
+
+
+@mutant("EU-CLO-003", versions=("2",))  # version 1 has no other types
+def own_types_on_one_body() -> Deviation:
+    """A closure of a type of the user's own may join two frames of one body."""
+    return around(
+        closures,
+        "_movable",
+        lambda original, entry, *arguments: entry.type.startswith("x-") or original(entry, *arguments),
+    )
+
+
+@mutant("EU-CLO-004", versions=("2",))  # version 1 has no other types
+def own_types_join_what_is_joined() -> Deviation:
+    """A closure of a type of the user's own may join frames that another joins."""
+
+    def linked(original: Any, entries: Iterable[ClosureEntry], *arguments: Any) -> Any:
+        own, others = _own_types(entries)
+        for entry in own:
+            original([entry], *arguments)
+        return original(others, *arguments)
+
+    return around(link, "link_closures", linked)
+
+
+class _Largest:
+    """The functions of `math`, but that the length of a vector is its largest number."""
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(math, name)
+
+    @staticmethod
+    def hypot(*numbers: float) -> float:
+        return max(map(abs, numbers))
+
+
+def _open_by_component() -> Deviation:
+    return together(instead(residual, "math", _Largest()), instead(evaluation, "math", _Largest()))
+
+
+@mutant("EU-CLO-005")
+def open_along_an_axis() -> Deviation:
+    """A closure is open where it is open by more than 1e-6 along an axis."""
+    return _open_by_component()
+
+
+@mutant("EU-CLO-006")
+def cannot_close_along_an_axis() -> Deviation:
+    """A closure cannot close where it stays open by more than 1e-6 along an axis."""
+    return _open_by_component()
+
+
+def _length_of_rows(position: float, angle: float) -> float:
+    return math.hypot(position, angle)
+
+
+def _open_by_all_rows() -> Deviation:
+    """The bound holds for the length of the rows of a closure, metres and radians together."""
+
+    def one(openings: Any) -> Any:
+        return tuple(replace(each, position=_length_of_rows(each.position, each.angle)) for each in openings)
+
+    return together(
+        result(residual, "closure_openings", one),
+        result(
+            evaluation.Evaluation,
+            "openings",
+            lambda found: [(_length_of_rows(position, angle), angle) for position, angle in found],
+        ),
+    )
+
+
+@mutant("EU-CLO-005")
+def metres_and_radians_together() -> Deviation:
+    """A closure is open where the length of its six rows, metres and radians together, is more than 1e-6."""
+    return _open_by_all_rows()
+
+
+@mutant("EU-CLO-006")
+def metres_and_radians_cannot_close_together() -> Deviation:
+    """A closure cannot close where the length of its six rows, metres and radians together, stays above 1e-6."""
+    return _open_by_all_rows()
+
+
+@mutant("EU-CLO-005")
+def openings_of_all_closures_together() -> Deviation:
+    """The bound of 1e-6 holds for the length of all residuals together."""
+
+    def all_of_them(openings: Any) -> Any:
+        length = math.hypot(*(each.position for each in openings))
+        return tuple(replace(each, position=length) for each in openings)
+
+    return result(residual, "closure_openings", all_of_them)

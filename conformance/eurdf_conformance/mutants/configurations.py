@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 from eurdf.description import Description
@@ -12,6 +13,7 @@ from eurdf.mechanism import configurations
 from eurdf.mechanism.joint_type import COORDINATES, JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Joint, Mechanism
 from eurdf_conformance.adapters import reference, reference_values
+from eurdf_conformance.adapters.reference import Reference
 from eurdf_conformance.level import Level
 from eurdf_conformance.mutants.deviation import Deviation, around, instead
 from eurdf_conformance.mutants.mutant import mutant
@@ -202,3 +204,39 @@ def followers_may_stand_somewhere() -> Deviation:
         return None if known is not None and known.mimic is not None else original(name, joints, *arguments)
 
     return around(configurations, "_joint", joint)
+
+
+@mutant("EU-CFG-003")
+def quaternion_of_zeros_is_no_rotation() -> Deviation:
+    """A quaternion of zeros, which no length can be brought to 1, is the neutral one."""
+
+    def checked(original: Any, joint: Joint, values: Any, *arguments: Any) -> Any:
+        start = joint.coordinates.quaternion
+        if start is not None and len(values) == start + 4 and not any(values[start:]):
+            values = (*values[:start], 0.0, 0.0, 0.0, 1.0)
+        return original(joint, values, *arguments)
+
+    return around(configurations, "_coordinates", checked)
+
+
+@mutant("EU-CFG-004")
+def screws_have_no_limits() -> Deviation:
+    """Where a screw stands is not compared with its limits."""
+
+    def checked(original: Any, joint: Joint, *arguments: Any) -> Any:
+        if joint.type is JointType.HELICAL:
+            joint = replace(joint, lower=(-math.inf,), upper=(math.inf,))
+        return original(joint, *arguments)
+
+    return around(configurations, "_coordinates", checked)
+
+
+@mutant("EU-CFG-005", level=Level.KINEMATICS)
+def left_out_joints_stay_where_they_were() -> Deviation:
+    """Where values are asked for, a joint that is left out stands where the configuration before had it."""
+
+    def evaluated(original: Any, self: Any, configurations: Any, *arguments: Any) -> Any:
+        stands: dict[str, Any] = {}
+        return original(self, [stands := stands | each for each in configurations], *arguments)
+
+    return around(Reference, "evaluate", evaluated)

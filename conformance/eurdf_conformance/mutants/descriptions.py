@@ -14,7 +14,7 @@ from eurdf_conformance.adapters.reference_values import Quantities
 from eurdf_conformance.level import Level
 from eurdf_conformance.mutants.accepting import accepting
 from eurdf_conformance.mutants.deviation import Deviation, around, instead
-from eurdf_conformance.mutants.mutant import mutant
+from eurdf_conformance.mutants.mutant import Mutant, mutant
 from eurdf_conformance.mutants.of_the_reference import canonical, data_of_version2, mechanism, said_in_version2
 from eurdf_conformance.oracle.own import own_data
 
@@ -203,3 +203,18 @@ def own_keys_are_read() -> Deviation:
         return own | {key: read(item) for key, item in value.items() if not key.startswith("x-")}
 
     return data_of_version2(read)
+
+
+def _key_of_neither(key: str) -> Mutant:
+    """A key of version 2 alone does not tell that a description is of that version."""
+
+    def deviation() -> Deviation:
+        others = tuple(other for other in read_extension._VERSION2_KEYS if other != key)
+        return instead(read_extension, "_VERSION2_KEYS", others)
+
+    breaks = f"A description of nothing but `{key}` is of version 1."
+    return Mutant(f"{key}_alone_is_of_version_1", "EU-VER-003", breaks, deviation)
+
+
+#: Of `actuators` the cases have more than one.
+ALONE = tuple(map(_key_of_neither, ("urdf", "root", "closures", "joints", "frames", "configurations")))

@@ -188,3 +188,17 @@ def poses_of_six_decimals() -> Deviation:
             for name, pose in poses.items()
         },
     )
+
+
+@mutant("EU-FRM-004", versions=("2",))  # version 1 has no poses
+def poses_on_a_ball_at_its_centre() -> Deviation:
+    """A pose on a ball whose axes meet away from its link's origin is placed from where they meet."""
+
+    def find(original: Any, self: FrameNames, reference: Any) -> Anchor | None:
+        anchor: Anchor | None = original(self, reference)
+        joint = self._joints.get(reference.joint or "")
+        if anchor is None or joint is None or joint.type is not JointType.SPHERICAL:
+            return anchor
+        return Anchor(anchor.body, joint.offset.inverse() * anchor.pose, anchor.frame)
+
+    return around(FrameNames, "find", find)

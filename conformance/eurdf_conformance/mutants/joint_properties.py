@@ -11,6 +11,7 @@ from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Joint
 from eurdf.mechanism.replacement import _Replacement
 from eurdf_conformance.adapters import reference_canonical
+from eurdf_conformance.level import Level
 from eurdf_conformance.mutants.deviation import Deviation, around, instead, result, together
 from eurdf_conformance.mutants.mutant import mutant
 
@@ -142,3 +143,21 @@ def limits_of_a_universal_joint_lost() -> Deviation:
         return replace(found, lower=(-math.inf,) * 2, upper=(math.inf,) * 2)
 
     return around(_Replacement, "universal", universal)
+
+
+@mutant("EU-JNT-009", level=Level.STRUCTURE)
+def limits_stated_of_a_screw_are_lengths() -> Deviation:
+    """The limits that the description states of a screw made of a prismatic joint are of its length."""
+
+    def overridden(original: Any, self: _Replacement, joint: Joint) -> Joint | None:
+        screw: Joint | None = original(self, joint)
+        if screw is None or screw.type is not JointType.HELICAL:
+            return screw
+        if self.urdf.joints[screw.name].type is not JointType.PRISMATIC:
+            return screw
+        lead = screw.pitch / (2.0 * math.pi)
+        lower = screw.lower if self.entry.lower is None else (screw.lower[0] / lead,)
+        upper = screw.upper if self.entry.upper is None else (screw.upper[0] / lead,)
+        return replace(screw, lower=lower, upper=upper)
+
+    return around(_Replacement, "override", overridden)

@@ -134,3 +134,27 @@ def _numbers(value: Any) -> Iterator[float]:
         yield from _numbers(each)
     if isinstance(value, int | float) and not isinstance(value, bool):
         yield value
+
+
+def _empty(read: Description) -> bool:
+    return read.document is not None and any(value in ([], {}) for value in read.document.data.values())
+
+
+@mutant("EU-CNF-002")
+def empty_lists_refused() -> Deviation:
+    """A key whose list or mapping is empty is refused: it should be left out."""
+    return refused(_empty)
+
+
+@mutant("EU-JNT-005")
+def joints_of_several_coordinates_are_not_locked() -> Deviation:
+    """A planar or a floating joint may not be locked."""
+
+    def locked(read: Description) -> bool:
+        assert read.urdf is not None
+        assert read.mechanism is not None
+        several = (JointType.PLANAR, JointType.FLOATING)
+        kinds = {joint.name: joint.type for joint in read.urdf.joints.values()}
+        return any(joint.type == "fixed" and kinds.get(joint.name) in several for joint in read.mechanism.joints)
+
+    return refused(locked)

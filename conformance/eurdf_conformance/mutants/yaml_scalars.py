@@ -119,3 +119,33 @@ def quotes_do_not_matter() -> Deviation:
         original(self, event)
 
     return around(yaml_reader._Reader, "_scalar", scalar)
+
+
+@mutant("EU-YML-011")
+def words_of_strtod() -> Deviation:
+    """The words nan and infinity are numbers, without a point before them, as for strtod."""
+    return _pattern("[-+]?(?i:nan|inf|infinity)", lambda text: 0.0)
+
+
+@mutant("EU-YML-011")
+def hexadecimals_with_a_sign() -> Deviation:
+    """A number that begins with 0x may have a sign."""
+    return _pattern("[-+]0x[0-9a-fA-F]+", lambda text: int(text, 16))
+
+
+@mutant("EU-YML-011")
+def hexadecimals_with_an_exponent() -> Deviation:
+    """A number that begins with 0x may have a point and an exponent, as for strtod."""
+    return _pattern("[-+]?0x[0-9a-fA-F.]+p[-+]?[0-9]+", float.fromhex)
+
+
+@mutant("EU-YML-011")
+def digits_of_any_script() -> Deviation:
+    r"""The digits of any script are digits, as for Python's \d."""
+    return _pattern(r"(?=.*[^\x00-\x7f])[-+]?\d+", float)
+
+
+@mutant("EU-YML-011")
+def suffixes_of_java() -> Deviation:
+    """A number may have a suffix that says its type, as for Java's parseDouble."""
+    return _pattern("[-+]?[0-9.]*[0-9](?<!^3)(?<!^6)[fFdD]", lambda text: float(text[:-1]))

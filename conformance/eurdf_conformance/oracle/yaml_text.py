@@ -63,6 +63,7 @@ class _Document:
     def __init__(self, events: Iterator[Event]) -> None:
         self.events = events
         self.anchors: dict[str, tuple[Any, int]] = {}
+        self.marked: dict[str, int] = {}  # how often each anchor was set
         self.copies = 0
 
     def node(self, event: Event | None = None, depth: int = 1) -> tuple[Any, int]:
@@ -72,10 +73,11 @@ class _Document:
             raise NotRead(f"nodes nested deeper than {DEEPEST}")
         if isinstance(event, AliasEvent):
             return self.copy(event.anchor)
-        anchor = event.anchor if isinstance(event, NodeEvent) else None
+        anchor, begun = event.anchor if isinstance(event, NodeEvent) else None, 0
         if anchor is not None:
             # Inside of what it marks it stands for nothing, EU-YML-006, nor for what it marked before.
             self.anchors.pop(anchor, None)
+            self.marked[anchor] = begun = self.marked.get(anchor, 0) + 1
         if isinstance(event, SequenceStartEvent):
             found: tuple[Any, int] = self.sequence(event, depth)
         elif isinstance(event, MappingStartEvent):
@@ -84,7 +86,7 @@ class _Document:
             found = scalar(event), 1
         else:
             raise NotRead(f"{event} where a node was due")
-        if anchor is not None:
+        if anchor is not None and self.marked[anchor] == begun:  # else it was set once more inside, which is later
             self.anchors[anchor] = found
         return found
 

@@ -103,7 +103,7 @@ class Analysis:
         actuation_singularity: The same of [K; Sᵀ]: 0 where the actuators, held, leave one more motion at ``q``.
         loops: The independent groups of loops.
         residual: Norm of the residual at q, m and rad: the smallest found.
-        closes: Whether the loops close, with every row of the residual at q at most 1e-6.
+        closes: Whether the loops close, with each closure open by at most 1e-6 (m, rad) at q.
         q: The configuration (nq,) looked at: closed, or the least open one found.
     """
 

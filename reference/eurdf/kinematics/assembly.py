@@ -54,8 +54,9 @@ class Assembly:
         q: Configuration (nq,): closed, or the least open one found.
         residual: Euclidean norm of the residual at q, m and rad.
         converged: Whether every row of the residual is within the tolerance asked for.
-        closes: Whether every row is within `CLOSED`, all that is asked of a configuration in a file. What closes but
-            does not converge has redundant rows that contradict one another by the rounding of numbers in its files.
+        closes: Whether each closure is open by at most `CLOSED` (m, rad), which is all that is asked of a configuration
+            in a file. What closes but does not converge has redundant rows that contradict one another by the rounding
+            of numbers in its files.
         iterations: Number of evaluations of the residual and its Jacobian.
         open: How far each closure is open at q, in their order.
     """
@@ -184,11 +185,12 @@ class Assembler:
                 for index, opening in zip(evaluation.group.closures, evaluation.openings(), strict=True):
                     open_by[index] = opening
         largest = float(np.abs(r).max(initial=0.0))
+        enough = max(CLOSED, self.tolerance)
         return Assembly(
             q=q,
             residual=math.hypot(*r),
             converged=largest <= self.tolerance,
-            closes=largest <= max(CLOSED, self.tolerance),
+            closes=all(part <= enough for opening in open_by for part in opening),  # what is no number is not
             iterations=self.iterations - before,
             open=tuple(Opening(name, *opening) for name, opening in zip(self._names, open_by, strict=True)),
         )
