@@ -290,7 +290,7 @@ def test_who_a_reader_is_stands_on_one_line_at_the_end_of_a_run() -> None:
         assert lines[0].startswith("\\x1b[2J\\x9b31m \\u202e \\u2066 \\r\\nversion 2, accept")
 
 
-def test_of_values_it_is_said_where_the_robot_stood() -> None:
+def test_of_values_it_is_said_where_the_robot_stood_and_what_they_are() -> None:
     item = next(each.item for each in case_items([VALID]) if each.item.level == Level.KINEMATICS)
     first, *_ = VALID.expected.values
     wrong = [first, *(each.model_copy(update={"residuals": {}}) for each in VALID.expected.values[1:])]
@@ -298,8 +298,11 @@ def test_of_values_it_is_said_where_the_robot_stood() -> None:
         VALID, Level.KINEMATICS, Conversation(Scripted(accepts(), Answered(Evaluated(id=1, values=wrong), 0)))
     )
     assert isinstance(VALID.case, ValidCase)
-    where = json.dumps(VALID.case.configurations[1])
-    assert f"  at configuration 1: {where}" in failure_text(item, judgement, "", VALID).splitlines()
+    where, lines = json.dumps(VALID.case.configurations[1]), failure_text(item, judgement, "", VALID).splitlines()
+    assert f"  at configuration 1: {where}" in lines
+    # Whatever the case is about, what the quantity is comes first.
+    clauses = [line.split(":")[0].strip() for line in lines if line.startswith("  EU-")]
+    assert clauses == list(dict.fromkeys(["EU-CLO-008", "EU-CLO-009", *item.clauses]))
 
 
 def test_an_item_tests_what_can_be_seen_at_its_level_and_no_more() -> None:

@@ -26,6 +26,17 @@ _MOST = 12
 _WIDTH = 100
 
 
+#: By quantity of a configuration, the clauses that say what it is, whatever the item is about.
+_SAYING: Mapping[str, Sequence[str]] = {
+    "poses": ("EU-JNT-025", "EU-FRM-006"),
+    "residuals": ("EU-CLO-008", "EU-CLO-009"),
+    "jacobian": ("EU-CLO-010", "EU-JNT-026"),
+    "mass_matrix": ("EU-INR-005", "EU-INR-006", "EU-JNT-026"),
+    "mass": ("EU-INR-005",),
+    "center_of_mass": ("EU-INR-005",),
+}
+
+
 def failure_text(item: Item, judgement: Judgement, reproduce: str, case: CorpusCase | None) -> str:
     """What is printed of an item that did not pass; what a reader wrote steers no terminal.
 
@@ -48,7 +59,7 @@ def _lines(item: Item, judgement: Judgement, reproduce: str, case: CorpusCase | 
     if case is not None and case.case.features:
         yield f"  It uses: {', '.join(case.case.features)}."
     clauses = read_clauses()
-    for name in item.clauses:
+    for name in dict.fromkeys((*_saying(judgement), *item.clauses)):
         yield f"  {name}: {clauses[name].text}" if name in clauses else f"  {name}"
     yield from _cut([_difference(each) for each in judgement.differences], "differences")
     if case is not None and isinstance(case.case, ValidCase):
@@ -65,6 +76,13 @@ def _lines(item: Item, judgement: Judgement, reproduce: str, case: CorpusCase | 
 
 def _difference(difference: Difference) -> str:
     return f"  {difference}"
+
+
+def _saying(judgement: Judgement) -> Iterator[str]:
+    """The clauses on the quantities that differ."""
+    for each in judgement.differences:
+        if found := re.match(r"/values/\d+/(\w+)", each.pointer):
+            yield from _SAYING.get(found[1], ())
 
 
 def where_it_stood(judgement: Judgement, configurations: Sequence[Mapping[str, Sequence[float]]]) -> Iterator[str]:
