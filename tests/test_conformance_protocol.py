@@ -290,14 +290,21 @@ def test_a_text_may_look_like_keys_that_stand_twice(text: str) -> None:
     ("short", "pointer"),
     [('"two"', "/robot/own/~1x-a/deep/1"), ("-7", "/issues/0/line"), ("50", "/robot/actuators/0/gear_ratio/0")],
 )
-def test_a_number_that_python_does_not_read_is_told_in_words_of_the_suite(short: str, pointer: str) -> None:
+@pytest.mark.parametrize("number", ["1" * 5000, "1" * 310, "1E+309", "-12.5e400", "1" * 250 + "e99"])
+def test_a_number_beyond_the_range_of_a_double_is_told(short: str, pointer: str, number: str) -> None:
     issue = {"message": "m", "line": -7}
     text = json.dumps({"id": 1, "outcome": "accepted", "robot": ROBOT, "issues": [issue]})
     assert text.count(short) == 1
-    found = read_answer(text.replace(short, "1" * 5000).encode(), REQUESTS["load"])
+    found = read_answer(text.replace(short, number).encode(), REQUESTS["load"])
     assert isinstance(found, Malformed)
     assert found.placed
-    assert found.why == f"{pointer}: a number of 5,000 digits, which is too long"
+    assert found.why == f"{pointer}: a number is beyond the range of a double"
+
+
+@pytest.mark.parametrize("number", ["1e308", "1" * 309, "1e-400", "0.1e+0308"])
+def test_a_number_within_the_range_of_a_double_is_one(number: str) -> None:
+    text = json.dumps({"id": 1, "outcome": "accepted", "robot": ROBOT})
+    assert not isinstance(read_answer(text.replace('"two"', number).encode(), REQUESTS["load"]), Malformed)
 
 
 def test_an_adapter_in_python_takes_no_request_in_which_a_key_stands_twice() -> None:

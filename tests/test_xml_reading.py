@@ -209,10 +209,10 @@ def test_an_undeclared_prefix_hides_no_other_fault() -> None:
     assert fault_of(f"<robot><xacro:macro/><a b='{'x' * 11_000_000}'/></robot>").code == "file-too-large"
 
 
-def test_a_default_namespace_is_taken_away_and_others_are_kept() -> None:
+def test_a_namespace_without_a_prefix_is_taken_away_and_others_are_kept() -> None:
     text = '<robot xmlns="http://www.ros.org" xmlns:g="urn:g"><link name="a"/><g:x/><y xmlns="urn:y"/></robot>'
     document = read(text)
-    assert [element.tag for element in document.root.iter()] == ["robot", "link", "{urn:g}x", "{urn:y}y"]
+    assert [element.tag for element in document.root.iter()] == ["robot", "link", "{urn:g}x", "y"]
     assert document.place(document.root[0], "name").pointer == "/robot/link/@name"
 
 

@@ -179,6 +179,14 @@ def not_a_number(request):
     say({**accepted(request), "robot": robot})
 
 
+def number_too_large(request):
+    robot = {
+        "name": "r", "version": "2", "root": "fixed", "links": [], "frames": [], "joints": [], "closures": [],
+        "actuators": [], "configurations": {}, "own": {"/x-a": "huge"},
+    }  # fmt: skip
+    write(json.dumps({**accepted(request), "robot": robot}).replace('"huge"', "1e400") + "\n")
+
+
 def nested_deep(request):
     write("[" * 100_000 + "\n")
 

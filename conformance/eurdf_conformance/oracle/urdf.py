@@ -107,7 +107,7 @@ class Element:
 
     def text(self, name: str) -> str:
         """An attribute that must be there."""
-        if not self.attributes.get(name, "").strip():
+        if not self.attributes.get(name, "").strip(" \t\r\n"):
             raise NotRead(f"an element {self.name!r} without {name!r}")
         return self.attributes[name]
 

@@ -26,7 +26,7 @@ from ruamel.yaml.events import (
 from eurdf_conformance.oracle.core_schema import CORE, plain, tagged
 from eurdf_conformance.oracle.not_read import NotRead
 
-#: Nodes that all aliases together may add, EU-YML-006, and how deep nodes may be nested, EU-YML-007.
+#: Nodes that all aliases together may add, EU-YML-006, and how deep mappings and lists may be nested, EU-YML-007.
 MOST_COPIES = 100_000
 DEEPEST = 64
 
@@ -64,15 +64,21 @@ class _Document:
         self.events = events
         self.anchors: dict[str, tuple[Any, int]] = {}
         self.marked: dict[str, int] = {}  # how often each anchor was set
+        #: Of each anchor, how many mappings and lists are nested in what it marks.
+        self.heights: dict[str, int] = {}
+        self.deepest = 0
         self.copies = 0
 
     def node(self, event: Event | None = None, depth: int = 1) -> tuple[Any, int]:
-        """The next node, and of how many it is made. `event` is its first, if it is taken already."""
+        """The next node, which would stand at a depth, and of how many it is made.
+
+        `event` is its first, if it is taken already.
+        """
         event = event or next(self.events)
-        if depth > DEEPEST:
-            raise NotRead(f"nodes nested deeper than {DEEPEST}")
         if isinstance(event, AliasEvent):
+            self.reach(depth - 1 + self.heights.get(event.anchor, 0))
             return self.copy(event.anchor)
+        before, self.deepest = self.deepest, depth - 1
         anchor, begun = event.anchor if isinstance(event, NodeEvent) else None, 0
         if anchor is not None:
             # Inside of what it marks it stands for nothing, EU-YML-006, nor for what it marked before.
@@ -88,7 +94,15 @@ class _Document:
             raise NotRead(f"{event} where a node was due")
         if anchor is not None and self.marked[anchor] == begun:  # else it was set once more inside, which is later
             self.anchors[anchor] = found
+            self.heights[anchor] = self.deepest - (depth - 1)
+        self.deepest = max(self.deepest, before)
         return found
+
+    def reach(self, depth: int) -> None:
+        """A mapping or list stands at a depth, EU-YML-007."""
+        self.deepest = max(self.deepest, depth)
+        if depth > DEEPEST:
+            raise NotRead(f"mappings and lists nested deeper than {DEEPEST}")
 
     def copy(self, anchor: str) -> tuple[Any, int]:
         """What an alias stands for."""
@@ -102,6 +116,7 @@ class _Document:
     def sequence(self, start: SequenceStartEvent, depth: int) -> tuple[list[Any], int]:
         """A sequence, from the event after its start to its end."""
         require_tag(start, "seq")
+        self.reach(depth)
         items, size = [], 1
         while not isinstance(event := next(self.events), SequenceEndEvent):
             item, nodes = self.node(event, depth + 1)
@@ -112,6 +127,7 @@ class _Document:
     def mapping(self, start: MappingStartEvent, depth: int) -> tuple[dict[str, Any], int]:
         """A mapping, from the event after its start to its end."""
         require_tag(start, "map")
+        self.reach(depth)
         members: dict[str, Any] = {}
         size = 1
         while not isinstance(event := next(self.events), MappingEndEvent):

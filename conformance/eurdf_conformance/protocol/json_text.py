@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import math
+import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -11,6 +13,9 @@ from pydantic import BaseModel
 
 from eurdf_conformance.json_pointer import step
 from eurdf_conformance.protocol.fault import not_finite
+
+#: What a number beyond the range of a double has: an exponent of three digits, or hundreds of digits before it.
+_MAY_BE_HUGE = re.compile(rb"[eE][+]?[0-9]{3}|[0-9]{200}")
 
 
 class Doubled(dict[str, Any]):
@@ -30,7 +35,7 @@ def read_json(text: bytes) -> tuple[Any, list[str]]:
     """The value of a JSON text in UTF-8, and what is wrong with it all the same, at which JSON pointer.
 
     Told are a key that stands twice in an object, for one parser takes the first and another the last; NaN and
-    Infinity, which JSON has none of; and a whole number of more digits than Python reads, in whose place infinity is.
+    Infinity, which JSON has none of; and a number beyond the range of a double, in whose place infinity is.
 
     Raises:
         ValueError: It is no JSON, or not in UTF-8.
@@ -43,12 +48,15 @@ def read_json(text: bytes) -> tuple[Any, list[str]]:
         words.append(f"{word} is no JSON")
         return float(word)
 
+    def real(text: str) -> float:
+        number = float(text)
+        if math.isinf(number):
+            words.append("a number is beyond the range of a double")
+        return number
+
     def whole(digits: str) -> float:
-        try:
-            return int(digits)
-        except ValueError:
-            words.append(f"a number of {len(digits):,} digits, which is too long")
-            return float("inf")
+        number = 0.0 if len(digits) < 300 else real(digits)
+        return int(digits) if math.isfinite(number) else number
 
     def made(members: list[tuple[str, Any]]) -> dict[str, Any]:
         plain = dict(members)
@@ -57,7 +65,9 @@ def read_json(text: bytes) -> tuple[Any, list[str]]:
         doubled.append(Doubled(members))
         return doubled[-1]
 
-    value = json.loads(text.decode("utf-8"), parse_constant=constant, parse_int=whole, object_pairs_hook=made)
+    value = json.loads(
+        text.decode("utf-8"), parse_constant=constant, parse_float=real, parse_int=whole, object_pairs_hook=made
+    )
     found = [f"{pointer}: the key '{key}' stands twice in it" for pointer, key in _twice(value)] if doubled else []
     if words:
         found.append(f"{next(not_finite(value), '') or 'the whole'}: {words[0]}")
@@ -74,7 +84,7 @@ def may_be_faulty(text: bytes, read: BaseModel) -> bool:
         text: The text.
         read: The message, as pydantic reads it, which takes the last value of a key.
     """
-    if b"NaN" in text or b"Infinity" in text or b"\\u003" in text:
+    if b"NaN" in text or b"Infinity" in text or b"\\u003" in text or _MAY_BE_HUGE.search(text):
         return True
     return text.count(b":") != read.model_dump_json(exclude_unset=True).count(":")
 

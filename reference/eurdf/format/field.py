@@ -86,16 +86,6 @@ def either(form: Callable[[Any], str | None], expected: str) -> Discriminator:
     return Discriminator(form, custom_error_type="wrong-type", custom_error_message=f"must be {expected}")
 
 
-def refuse_repeated(names: list[str]) -> list[str]:
-    """Pass the names on, which must all differ."""
-    for index, name in enumerate(names):
-        if name in names[:index]:
-            raise PydanticCustomError(
-                "wrong-value", "must be different names, but '{name}' stands twice", {"name": name}
-            )
-    return names
-
-
 def refuse_zero(number: float) -> float:
     """Pass the number on, which must not be 0."""
     if number == 0.0:

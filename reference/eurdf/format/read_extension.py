@@ -91,18 +91,22 @@ def _written_version(document: YamlDocument, diagnostics: Diagnostics) -> Litera
     quoted = f'write {VERSION_KEY}: "{VERSION}", in quotes'
     if value == VERSION:
         return VERSION
-    if value in ("1", "1.0") or (value == 1 and value is not True):
+    if value in ("1", "1.0"):
         message = f"'{VERSION_KEY}' cannot be {described(value)}: a file of version 1 does not state its version"
         diagnostics.report("unsupported-version", message, place, f"leave '{VERSION_KEY}' out")
         return None
-    if isinstance(value, str) or (isinstance(value, int | float) and not isinstance(value, bool) and value != 2):
+    if isinstance(value, str):
         hint = f"the version known is {VERSION}: {quoted}"
         diagnostics.report(
             "unsupported-version", f"version {described(value)} of Extended URDF is not known", place, hint
         )
         return None
-    shown = f"the number {value}" if isinstance(value, float) or value == 2 else described(value)
+    shown = (
+        f"the number {value}" if isinstance(value, int | float) and not isinstance(value, bool) else described(value)
+    )
     message = f"'{VERSION_KEY}' must be text, not {shown}"
+    if shown in ("the number 1", "the number 1.0"):
+        quoted = f"leave '{VERSION_KEY}' out: a file of version 1 does not state its version"
     diagnostics.report("wrong-type", message, place, quoted)
     return VERSION
 

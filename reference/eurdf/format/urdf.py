@@ -20,7 +20,7 @@ from eurdf.diagnostics import Diagnostics, Hint, did_you_mean
 from eurdf.format.near import near
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Inertia, Mimic, Shape
-from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
+from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, moderate
 from eurdf.reading.xml_reader import XmlDocument
 
 Element = etree._Element
@@ -86,6 +86,9 @@ _OPTIONAL_ATTRIBUTES: dict[str, tuple[str, ...]] = {
 }
 
 _ZERO: Vector3 = (0.0, 0.0, 0.0)
+
+#: White space of XML.
+_WHITE = " \t\r\n"
 
 #: Of so many different names that URDF lacks it is kept whether they are misspelt; of the rest it is asked again.
 _MOST_STRANGE = 200
@@ -308,7 +311,7 @@ class _Reader:
         if name is None:
             self._missing_attribute(element, attribute)
             return None
-        if not name or name.isspace():
+        if not name.strip(_WHITE):
             self.report("urdf-empty-name", f"'{attribute}' of <{element.tag}> is empty", element, attribute)
             return None
         return name
@@ -564,7 +567,7 @@ class _Reader:
     def material(self, element: Element) -> tuple[tuple[float, float, float, float] | None, str]:
         """EU-URD-029: a material is defined where it is used, in the robot, or at an earlier use."""
         name = element.get("name", "")
-        if len(element) == 0:
+        if element.find("color") is None and element.find("texture") is None:
             if name not in self.materials:
                 if self.nameless:  # it may be the one that lacks its name
                     return None, ""
@@ -623,7 +626,7 @@ class _Reader:
 
     def axis(self, name: str | None, kind: JointType, element: Element | None) -> Vector3 | None:
         """EU-URD-013, EU-URD-035: the axis of a joint that turns about or slides along it is a direction, or else x."""
-        if element is None or kind in _AXLESS:
+        if element is None:
             return (1.0, 0.0, 0.0)
         text = element.get("xyz")
         if text is None:
@@ -633,6 +636,8 @@ class _Reader:
         if axis is None:
             return None
         x, y, z = axis
+        if kind in _AXLESS:
+            return (1.0, 0.0, 0.0)
         if kind is JointType.PLANAR:
             if x != 0.0 or y != 0.0:
                 self.report(
@@ -645,7 +650,7 @@ class _Reader:
         elif x == y == z == 0.0:
             self.report("urdf-zero-axis", f"the axis of joint '{name}' has no direction", element, "xyz")
             return None
-        return (x, y, z)
+        return moderate((x, y, z))
 
     def limit(self, name: str | None, kind: JointType, joint: Element, element: Element | None) -> Limit | None:
         """EU-URD-004, EU-URD-019, EU-URD-020: what moves in a range says a range, lower before upper."""

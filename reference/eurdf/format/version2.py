@@ -20,7 +20,6 @@ from eurdf.format.field import (
     StrictMapping,
     UrdfJointName,
     either,
-    refuse_repeated,
     refuse_zero,
 )
 
@@ -264,9 +263,7 @@ class Spherical(JointProperties):
     type: Literal["spherical"] = Field(
         title="Type", description="A ball joint: three rotations, a unit quaternion.", examples=["spherical"]
     )
-    merges: MayLack[
-        Annotated[list[UrdfJointName], Field(min_length=3, max_length=3), AfterValidator(refuse_repeated)]
-    ] = Field(
+    merges: MayLack[Annotated[list[UrdfJointName], Field(min_length=3, max_length=3)]] = Field(
         default=None,
         title="Merged joints",
         description="Three different rotary joints of the URDF, each the only child of the one before, whose axes meet"

@@ -80,3 +80,10 @@ class Pose:
 
 
 IDENTITY = Pose()
+
+
+def moderate(axis: Vector3) -> Vector3:
+    """A direction, made so long that its square is a number, where it is very long or very short (EU-URD-035)."""
+    x, y, z = axis
+    largest = max(abs(x), abs(y), abs(z))
+    return axis if 1e-150 < largest < 1e150 or largest == 0.0 else (x / largest, y / largest, z / largest)

@@ -13,7 +13,7 @@ from eurdf.format.urdf import Urdf
 from eurdf.mechanism.joint_type import COORDINATES, JointType
 from eurdf.mechanism.mechanism import Body, Joint
 from eurdf.mechanism.merging import PARALLEL, NotMergeable, check_chain, find_chains, fixed, merge
-from eurdf.mechanism.pose import Vector3
+from eurdf.mechanism.pose import Vector3, moderate
 from eurdf.reading.yaml_reader import YamlDocument
 
 _ROTARY = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS})
@@ -191,6 +191,11 @@ class _Replacement:
                     self.document.place(pointer),
                 )
                 return None
+            if name in entry.merges[:index]:
+                self.diagnostics.report(
+                    "duplicate-replacement", f"joint '{name}' is to be merged twice", self.document.place(pointer)
+                )
+                return None
             joint = self.target(name, pointer)
             if joint is None or self.mimics(joint, pointer):
                 return None
@@ -276,6 +281,7 @@ class _Replacement:
                 message = f"an axis of universal joint '{joint.name}' has no direction"
                 self.report("joint-axis-zero", message, "axes", index)
                 return None
+        axes = tuple(map(moderate, axes))
         first, second = (tuple(part / math.hypot(*axis) for part in axis) for axis in axes)
         cross = (
             first[1] * second[2] - first[2] * second[1],

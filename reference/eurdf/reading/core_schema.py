@@ -70,6 +70,8 @@ def _integer(text: str) -> int | float:
         if len(digits) > float_info.max_10_exp + 1:
             return -inf if text[0] == "-" else inf
         value = -int(digits) if text[0] == "-" else int(digits)
-    if abs(value) > float_info.max:
+    try:
+        float(value)
+    except OverflowError:
         return inf if value > 0 else -inf
     return value

@@ -118,10 +118,9 @@ def read_xml(source: Source) -> XmlDocument:
         root = _read_with_namespace_errors(source)
     if _TOO_DEEP(root) and (fault := syntax_fault(source)) is not None:
         raise fault
-    if root.prefix is None and root.tag.startswith("{"):
-        namespace, _, _ = root.tag.rpartition("}")
-        for element in root.iter():
-            if element.prefix is None and element.tag.rpartition("}")[0] == namespace:
+    if "xmlns" in source.text:
+        for element in root.iter("{*}*"):
+            if element.prefix is None and element.tag.startswith("{"):
                 element.tag = element.tag.rpartition("}")[2]
     return XmlDocument(source, root)
 

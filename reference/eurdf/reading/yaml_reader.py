@@ -30,7 +30,7 @@ from eurdf.reading.yaml_syntax import syntax_fault, unusual_name
 #: Mappings and lists that may be nested in one another, aliases expanded.
 DEPTH_LIMIT = 64
 
-#: Nodes (mappings, lists, keys and values) that a file may have, aliases expanded.
+#: Nodes (mappings, lists, keys and values) that a file may have, and that all of its aliases may stand for.
 NODE_LIMIT = 100_000
 
 #: %TAG directives that a file may have; the time libyaml takes grows with the square of their number.
@@ -126,7 +126,9 @@ class _Reader:
         self._next_event = next_event
         self._original = original
         self._anchors: dict[str, tuple[Any, Span | Collection]] = {}
-        self._count = 0  # of nodes
+        self._count = 0  # of nodes, of which an alias is one
+        self._copies = 0  # of nodes that aliases stand for
+        self._aliases = 0
         self._file = Collection([], _span(next_event()), 0)  # whose one item is the top level
         self._open = [self._file]  # from the outermost to the innermost
 
@@ -164,10 +166,18 @@ class _Reader:
         place = Place(self._source.file) if span[0] == span[1] else self._source.place(*span)
         raise Fault("yaml-empty", f"{message}; it must be a mapping", place)
 
-    def _scalar(self, event: ScalarEvent) -> None:
+    def _next_node(self) -> None:
+        """EU-FIL-002: one more node."""
         self._count += 1
         if self._count > NODE_LIMIT:
             raise too_large(self._source.file, f"{NODE_LIMIT:,} keys and values")
+
+    def _size(self) -> int:
+        """Number of nodes so far, with what aliases stand for in the place of these."""
+        return self._count - self._aliases + self._copies
+
+    def _scalar(self, event: ScalarEvent) -> None:
+        self._next_node()
         text = event.value.translate(self._original) if self._original else event.value
         value: Any = text
         if event.tag is None:
@@ -200,10 +210,8 @@ class _Reader:
         if event.tag not in (None, "!", TAG_PREFIX + tag):
             raise self._tag_fault(event, _kind(data))
         start, end = _span(event)
-        collection = Collection(data, (start, end if event.flow_style else None), self._count)
-        self._count += 1
-        if self._count > NODE_LIMIT:
-            raise too_large(self._source.file, f"{NODE_LIMIT:,} keys and values")
+        collection = Collection(data, (start, end if event.flow_style else None), self._size())
+        self._next_node()
         if event.anchor is not None:
             self._check_name(event, "&")
             self._anchors[event.anchor] = data, collection
@@ -215,7 +223,7 @@ class _Reader:
         start, end = collection.span
         if end is not None:
             collection.span = start, _span(event)[1]
-        collection.size = self._count - collection.size
+        collection.size = self._size() - collection.size
         around = self._open[-1]
         around.height = max(around.height, collection.height + 1)
         around.add(collection.data, collection)
@@ -230,9 +238,11 @@ class _Reader:
         collection = target if isinstance(target, Collection) else None
         if collection is not None and collection.is_open:
             raise self._fault("yaml-alias", f"the alias '*{shown}' stands inside what it stands for", event)
-        self._count += 1 if collection is None else collection.size
-        if self._count > NODE_LIMIT:
-            message = f"with its aliases expanded, the file has more than {NODE_LIMIT:,} keys and values"
+        self._next_node()
+        self._aliases += 1
+        self._copies += 1 if collection is None else collection.size
+        if self._copies > NODE_LIMIT:
+            message = f"the aliases of the file stand for more than {NODE_LIMIT:,} keys and values"
             raise self._fault("yaml-alias", message, event)
         around = self._open[-1]
         if around.awaits_key:
