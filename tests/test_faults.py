@@ -51,6 +51,7 @@ FAULTS = [
     ("unknown-actuator", ONE, "name_mot: [motor, grip]", "name_mot: [motor, elbow]", "elbow]\njoint", "'elbow_Z' or 'elbow_X'"),
     ("actuator-merged", ONE, "name_mot: [motor, grip]", "name_mot: [motor, wrist_x]", "wrist_x", "'wrist_z'"),
     ("duplicate-replacement", ONE, "joint_name: [elbow, pivot]", "joint_name: [elbow, elbow]", "elbow]\njoint_type", ""),
+    ("duplicate-replacement", YAML, "[wrist_x, wrist_y, wrist_z]", "[wrist_x, wrist_x, wrist_z]", "wrist_x, wrist_z", "different"),
     # the URDF by itself
     ("xml-syntax", URDF, "</robot>", "</robo>", None, ""),
     ("xml-doctype", URDF, '<robot name="workbench">', '<!DOCTYPE robot><robot name="workbench">', None, ""),

@@ -123,6 +123,7 @@ def test_a_key_of_version_2_beside_one_of_version_1_is_warned_of() -> None:
         ("closures: []\n", "closures"),
         ("notes: 1\nactuators: [motor]\n", "actuators"),
         ("root: floating\n", "root"),
+        ("metadata: {}\nactuators: [motor]\n", "metadata"),
         ('extended-urdf: "2.0"\nclosures: []\n', "extended-urdf"),
         ('Extended_URDF: "2.0"\n', "Extended_URDF"),
     ],

@@ -13,6 +13,9 @@ from eurdf.description import Description
 from eurdf.format.extension import ClosureEntry
 from eurdf.kinematics import assembly, evaluation, residual
 from eurdf.mechanism import closures, link
+from eurdf.mechanism.mechanism import Anchor
+from eurdf.mechanism.pose import Pose
+from eurdf.pinocchio.placement import placement_of
 from eurdf_conformance.mutants.deviation import Deviation, around, instead, result, together
 from eurdf_conformance.mutants.mutant import mutant
 from eurdf_conformance.mutants.of_the_reference import refused, said_in_version2
@@ -225,3 +228,38 @@ def openings_of_all_closures_together() -> Deviation:
         return tuple(replace(each, position=length) for each in openings)
 
     return result(residual, "closure_openings", all_of_them)
+
+
+@mutant("EU-CLO-004")
+def frames_at_one_place_are_one() -> Deviation:
+    """Two frames are the same where they stand at one place of one body, on whatever links, to rounding."""
+
+    def repeated(read: Description) -> bool:
+        robot = read.mechanism
+        assert robot is not None
+        on = {robot.bodies[0].name: (robot.bodies[0].name, Pose())}
+        for joint in robot.joints:
+            body, pose = on[joint.parent]
+            held = joint.type == "fixed"
+            on[joint.child] = (body, pose * joint.placement * joint.offset) if held else (joint.child, Pose())
+
+        def frame(anchor: Anchor) -> tuple[Any, ...]:
+            body, pose = on[anchor.body]
+            M = placement_of(pose * anchor.pose).homogeneous
+            return body, *(M.round(9) + 0.0).ravel().tolist()
+
+        pairs = [frozenset((frame(each.a), frame(each.b))) for each in robot.closures]
+        return len(set(pairs)) < len(pairs)
+
+    return refused(repeated)
+
+
+@mutant("EU-CLO-006")
+def must_close_within_limits() -> Deviation:
+    """Loops that close only beyond the limits of joints are told not to close."""
+
+    def assemble(original: Any, robot: Any, *arguments: Any, **named: Any) -> Any:
+        found = original(robot, *arguments, **(named | {"limits": True}))
+        return found if found.closes else _Open(found.open)
+
+    return around(assembly, "assemble", assemble)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -172,3 +173,70 @@ def file_as_a_whole_at_its_beginning() -> Deviation:
         return {"line": 1, "column": 1} if issue.line is None else {}
 
     return each_issue(placed)
+
+
+def _elsewhere(where: Callable[[YamlDocument, str, int, Sequence[str | int], bool], int]) -> Deviation:
+    """What is told of the description begins at another character; given are its text, where it begins, and of what."""
+
+    def place(original: Any, self: YamlDocument, pointer: Sequence[str | int] = (), key: bool = False) -> Place:
+        found: Place = original(self, pointer, key)
+        if found.line is None or found.column is None:
+            return found
+        text = self.source.text
+        lines = [0, *(end.end() for end in re.finditer("\r\n?|\n", text))]
+        begins = lines[found.line - 1] + found.column - 1
+        return self.source.place(where(self, text, begins, pointer, key))
+
+    return around(YamlDocument, "place", place)
+
+
+def _passed_over(pattern: str) -> Deviation:
+    """What stands before a value, or begins it, is passed over."""
+    before = re.compile(pattern)
+
+    def where(document: YamlDocument, text: str, begins: int, pointer: Sequence[str | int], key: bool) -> int:
+        found = before.match(text, begins)
+        return found.end() if found else begins
+
+    return _elsewhere(where)
+
+
+@mutant("EU-DIA-009")
+def anchors_and_tags_are_passed_over() -> Deviation:
+    """A value begins after the anchor and the tag that stand before it on its line."""
+    return _passed_over(r"(?:[&!]\S*[ \t]+)+(?=\S)")
+
+
+@mutant("EU-DIA-009")
+def anchors_before_blocks_are_passed_over() -> Deviation:
+    """A mapping or list in block style begins at its first key or dash, whatever anchor or tag stands before that."""
+    return _passed_over(r"(?:[&!]\S*[ \t]*)+(?:#[^\n]*)?\n\s*")
+
+
+@mutant("EU-DIA-009")
+def anchors_before_tags_are_passed_over() -> Deviation:
+    """A value begins with its tag, after the anchor."""
+    return _passed_over(r"&\S*[ \t]+")
+
+
+@mutant("EU-DIA-009")
+def keys_begin_after_their_quote() -> Deviation:
+    """A key in quotes begins after the first of them."""
+    return _elsewhere(lambda document, text, begins, pointer, key: begins + (key and text[begins] in "\"'"))
+
+
+@mutant("EU-DIA-009")
+def blocks_begin_with_their_text() -> Deviation:
+    """A block scalar begins with its text."""
+    return _passed_over(r"[|>][^\n]*\n\s*")
+
+
+@mutant("EU-DIA-009")
+def nothing_stands_where_its_line_ends() -> Deviation:
+    """A value that is left empty stands where its line ends, after the comment."""
+
+    def where(document: YamlDocument, text: str, begins: int, pointer: Sequence[str | int], key: bool) -> int:
+        empty = text[begins - 1 : begins] in (":", "-") and not key
+        return begins + len(re.split("[\r\n]", text[begins:])[0]) if empty else begins
+
+    return _elsewhere(where)

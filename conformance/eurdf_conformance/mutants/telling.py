@@ -8,10 +8,13 @@ from typing import Any
 
 from eurdf import description
 from eurdf.description import Description
+from eurdf.diagnostics import Diagnostic
 from eurdf.diagnostics.registry import REGISTRY, Phase
+from eurdf.format import read_extension
 from eurdf.mechanism.frame_names import FrameNames
 from eurdf.mechanism.replacement import _Replacement
 from eurdf_conformance.adapters.reference import Reference
+from eurdf_conformance.level import Level
 from eurdf_conformance.mutants.deviation import Deviation, around, instead, result
 from eurdf_conformance.mutants.mutant import mutant
 from eurdf_conformance.mutants.of_the_reference import each_issue, has, issues, refused
@@ -190,3 +193,40 @@ def less_than_is_claimed() -> Deviation:
 def what_is_lacked_is_left_out() -> Deviation:
     """A reader that lacks universal joints leaves them as the URDF has them."""
     return around(_Replacement, "universal", lambda original, self, joint: joint)
+
+
+@mutant("EU-DIA-001", versions=("2",))  # of version 1 one key can be missing
+def each_missing_key_is_told() -> Deviation:
+    """Of a mapping that lacks several keys each is told, at one place, as by JSON Schema's validators."""
+
+    def each(found: list[Diagnostic]) -> list[Diagnostic]:
+        return [one for one in found for _ in range(1 + (one.code == "missing-key" and " and " in one.message))]
+
+    return result(read_extension, "violations", each)
+
+
+@mutant("EU-JNT-002", level=Level.DIAGNOSE, versions=("2",))  # version 1 has no merges
+def joint_twice_in_merges_is_a_wrong_value() -> Deviation:
+    """A joint that stands twice in `merges` is told as a wrong value of the list, as by JSON Schema's uniqueItems."""
+
+    def merge(original: Any, self: _Replacement) -> Any:
+        if len(set(self.entry.merges)) == len(self.entry.merges):
+            return original(self)
+        self.report("wrong-value", "the names must differ", "merges")
+        return None
+
+    return around(_Replacement, "merge", merge)
+
+
+@mutant("EU-SCH-001", level=Level.DIAGNOSE, versions=("2",))
+def lacking_version_is_told_of_any_key() -> Deviation:
+    """Where the version is lacking, this is told of a key of version 2, though another stands before it."""
+
+    def version(original: Any, document: Any, diagnostics: Any) -> Any:
+        keys = [key for key in (*read_extension._VERSION2_KEYS, "metadata") if key in document.data]
+        if {read_extension.VERSION_KEY, *read_extension._VERSION1_KEYS} & document.data.keys() or not keys:
+            return original(document, diagnostics)
+        diagnostics.report("missing-key", "the version is missing", document.place((keys[0],), key=True))
+        return None
+
+    return around(read_extension, "_version", version)

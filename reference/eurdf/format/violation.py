@@ -93,11 +93,15 @@ def violations(error: ValidationError, document: YamlDocument) -> list[Diagnosti
             if required is not None:
                 meant[violation.pointer] = required
     misspelt = {(*pointer[:-1], key) for pointer, key in meant.items()}
-    diagnostics = [
+    missing: dict[Pointer, list[str]] = {}
+    for mapping, keys in _grouped(violation.pointer for violation in found if violation.type == "missing").items():
+        lacked = [key for key in keys if misspelt.isdisjoint((*mapping, each) for each in _alternatives(key))]
+        missing |= {mapping: lacked} if lacked else {}
+    diagnostics = [_lacking(mapping, keys, document) for mapping, keys in missing.items()]
+    diagnostics += [
         _diagnostic(violation, meant.get(violation.pointer), document)
         for violation in found
         if violation.type != "missing"
-        or misspelt.isdisjoint((*violation.pointer[:-1], key) for key in _alternatives(violation.pointer[-1]))
     ]
     diagnostics.sort(key=lambda diagnostic: (diagnostic.line or 0, diagnostic.column or 0))
     if len(details) > MOST:
@@ -178,6 +182,21 @@ def _alternatives(key: str | int) -> tuple[str, ...]:
     return ("link", "joint") if key == "link" else (str(key),)
 
 
+def _grouped(pointers: Iterable[Pointer]) -> dict[Pointer, list[str]]:
+    """The keys that pointers end with, by the mappings that they lead to before."""
+    found: dict[Pointer, list[str]] = {}
+    for pointer in pointers:
+        found.setdefault(pointer[:-1], []).append(str(pointer[-1]))
+    return found
+
+
+def _lacking(mapping: Pointer, keys: Sequence[str], document: YamlDocument) -> Diagnostic:
+    """The diagnostic of a mapping that lacks keys, of which one or all are one fault (EU-DIA-001)."""
+    said = sorted((" or ".join(f"'{other}'" for other in _alternatives(key)) for key in keys), key=len)
+    listed = f"{', '.join(said[:-1])} and {said[-1]}" if len(said) > 1 else said[0]
+    return Diagnostic("missing-key", f"{subject(mapping)} lacks {listed}", document.place(mapping))
+
+
 def _diagnostic(violation: _Violation, meant: str | None, document: YamlDocument) -> Diagnostic:
     """The diagnostic of one violation.
 
@@ -189,9 +208,6 @@ def _diagnostic(violation: _Violation, meant: str | None, document: YamlDocument
     pointer, value, context = violation.pointer, violation.value, violation.context
     name, place = subject(pointer), document.place(pointer)
     match violation.type:
-        case "missing":
-            keys = " or ".join(f"'{key}'" for key in _alternatives(pointer[-1]))
-            return Diagnostic("missing-key", f"{subject(pointer[:-1])} lacks {keys}", document.place(pointer[:-1]))
         case violation_type if violation_type == _UNKNOWN_KEY:
             return _unknown_key(violation, meant, document)
         case "string_too_short" if pointer[-1] == "":

@@ -184,6 +184,14 @@ class _Replacement:
         chain = []
         for index, name in enumerate(entry.merges):
             pointer = (*entry.pointer, "merges", index)
+            if name in entry.merges[:index]:
+                self.diagnostics.report(
+                    "duplicate-replacement",
+                    f"joint '{name}' stands twice among those that are merged",
+                    self.document.place(pointer),
+                    "name three different joints",
+                )
+                return None
             if name in self.joints.merged:
                 self.diagnostics.report(
                     "duplicate-replacement",
