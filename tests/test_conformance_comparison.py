@@ -250,6 +250,14 @@ def test_columns_and_rows_of_k_that_are_too_many_or_too_few(columns: Any, matrix
     assert pointer in [difference.pointer for difference in found]
 
 
+def test_what_weighs_nothing_has_no_centre_of_mass() -> None:
+    nothing = Values(mass=0.0)
+    assert values_differences(nothing, Values(mass=0.0), 1.0) == []
+    (found,) = values_differences(nothing, Values(mass=0.0, center_of_mass=[0.0, 0.0, 0.0]), 1.0)
+    assert (found.pointer, found.given) == ("/center_of_mass", [0.0, 0.0, 0.0])
+    assert values_differences(Values(poses={}), Values(poses={}, center_of_mass=[0.0, 0.0, 0.0]), 1.0) == []
+
+
 def test_the_mass_matrix_is_compared_relative_to_its_largest_entry() -> None:
     M = np.diag([1e-6, 1.0, 100.0, 2.0])
     order = [3, 1, 0, 2]

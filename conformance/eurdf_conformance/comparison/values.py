@@ -17,7 +17,7 @@ Rows = Mapping[str, Sequence[float]]
 
 
 def values_differences(expected: Values, given: Values, size: float, tolerance: float = TOLERANCE) -> list[Difference]:
-    """Where values differ; what is not expected is not looked at.
+    """Where values differ; what is not expected is not looked at, but for the centre of mass of what weighs nothing.
 
     Args:
         expected: What it should be.
@@ -27,12 +27,16 @@ def values_differences(expected: Values, given: Values, size: float, tolerance: 
     """
     near = Near.of(size, tolerance)
     twins = _twins(expected.residuals or {}, given.residuals or {}, near)
-    return [
+    found = [
         difference
         for quantity in Values.model_fields
         if getattr(expected, quantity) is not None
         for difference in _quantity_differences(quantity, expected, given, near, twins)
     ]
+    if expected.mass == 0.0 and expected.center_of_mass is None and given.center_of_mass is not None:
+        why = "centre of mass of what has no mass"
+        found.append(Difference(step("center_of_mass"), ABSENT, given.center_of_mass, why))
+    return found
 
 
 def _quantity_differences(

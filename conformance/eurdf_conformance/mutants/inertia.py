@@ -201,3 +201,9 @@ def followers_weigh_nothing() -> Deviation:
         return replace(robot, bodies=tuple(bodies))
 
     return mechanism(changed)
+
+
+@mutant("EU-INR-005")
+def centre_of_mass_of_nothing() -> Deviation:
+    """The centre of mass of a robot that weighs nothing is said to be at the origin."""
+    return result(Quantities, "center_of_mass", lambda center: [0.0, 0.0, 0.0] if center is None else center)

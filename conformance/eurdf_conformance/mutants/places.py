@@ -240,3 +240,58 @@ def nothing_stands_where_its_line_ends() -> Deviation:
         return begins + len(re.split("[\r\n]", text[begins:])[0]) if empty else begins
 
     return _elsewhere(where)
+
+
+def _of_the_urdf(deviation: Callable[[], Deviation]) -> Deviation:
+    """Places are others in the URDF alone, whose parser is another library than that of the description."""
+
+    def position(original: Any, self: Source, index: int) -> tuple[int, int]:
+        if self.file.endswith(".urdf"):
+            with instead(Source, "position", original), deviation():
+                return Source(self.file, self.text, self.data).position(index)
+        line, column = original(self, index)
+        return line, column
+
+    return around(Source, "position", position)
+
+
+@mutant("EU-DIA-012")
+def columns_in_bytes_of_the_urdf() -> Deviation:
+    """In the URDF columns count bytes of UTF-8."""
+    return _of_the_urdf(columns_in_bytes.deviation)
+
+
+@mutant("EU-DIA-012")
+def columns_in_utf_16_of_the_urdf() -> Deviation:
+    """In the URDF columns count code units of UTF-16."""
+    return _of_the_urdf(columns_in_utf_16.deviation)
+
+
+@mutant("EU-DIA-012")
+def tabs_of_8_in_the_urdf() -> Deviation:
+    """In the URDF a tab counts up to the next multiple of 8."""
+    return _of_the_urdf(tabs_of_8.deviation)
+
+
+@mutant("EU-DIA-012")
+def byte_order_mark_of_the_urdf_is_a_column() -> Deviation:
+    """The byte order mark of the URDF counts as a character of its line."""
+    return _of_the_urdf(byte_order_mark_is_a_column.deviation)
+
+
+@mutant("EU-DIA-011")
+def carriage_return_in_the_urdf_ends_no_line() -> Deviation:
+    """In the URDF a carriage return alone ends no line."""
+    return _of_the_urdf(carriage_return_ends_no_line.deviation)
+
+
+@mutant("EU-DIA-011")
+def two_characters_in_the_urdf_end_two_lines() -> Deviation:
+    """In the URDF a carriage return and a line feed end a line each."""
+    return _of_the_urdf(carriage_return_and_line_feed_end_two_lines.deviation)
+
+
+@mutant("EU-DIA-011")
+def lines_of_unicode_in_the_urdf() -> Deviation:
+    """In the URDF a line ends also where Unicode has a separator."""
+    return _of_the_urdf(lines_of_unicode.deviation)

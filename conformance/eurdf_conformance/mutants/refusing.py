@@ -6,9 +6,10 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from eurdf.description import Description
+from eurdf.mechanism import link
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf_conformance.mutants.deviation import Deviation
+from eurdf_conformance.mutants.deviation import Deviation, around
 from eurdf_conformance.mutants.mutant import mutant
 from eurdf_conformance.mutants.of_the_reference import has, refused, refused_by_mechanism, refused_by_urdf
 
@@ -158,3 +159,23 @@ def joints_of_several_coordinates_are_not_locked() -> Deviation:
         return any(joint.type == "fixed" and kinds.get(joint.name) in several for joint in read.mechanism.joints)
 
     return refused(locked)
+
+
+#: Names that every object of JavaScript has.
+_OF_OBJECTS = frozenset({"__proto__", "constructor", "hasOwnProperty", "toString", "valueOf"})
+
+
+@mutant("EU-CNF-002")
+def names_of_objects_refused() -> Deviation:
+    """A link or joint may not have a name that every object of JavaScript has, which seems to be taken."""
+    return _refused_by_names(lambda name: name in _OF_OBJECTS)
+
+
+@mutant("EU-ACT-001")
+def names_of_objects_are_known() -> Deviation:
+    """A motor may be on what every object of JavaScript has, which seems to be there."""
+
+    def linked(original: Any, entries: Iterable[Any], *arguments: Any) -> Any:
+        return original([each for each in entries if each.joint != "valueOf"], *arguments)
+
+    return around(link, "link_actuators", linked)

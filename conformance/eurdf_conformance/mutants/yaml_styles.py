@@ -144,3 +144,16 @@ def anchors_are_set_at_the_end() -> Deviation:
         original(self, event, *arguments)
 
     return together(around(_Reader, "_begin", begin), around(_Reader, "_end", end))
+
+
+@mutant("EU-YML-011")
+def lines_of_text_end_as_in_the_file() -> Deviation:
+    """The lines of a text end as they do in the file, where that is not at a line feed."""
+
+    def scalar(original: Any, self: Any, event: Any) -> None:
+        written = self._source.text[event.start_mark.index : event.end_mark.index]
+        ends = re.search("\r\n?", written)
+        event.value = event.value.replace("\n", ends[0]) if ends else event.value
+        original(self, event)
+
+    return around(_Reader, "_scalar", scalar)
