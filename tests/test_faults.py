@@ -76,6 +76,7 @@ FAULTS = [
     ("urdf-bad-number", URDF, 'xyz="0.4 0 0"', 'xyz="0.4 0"', "0.4 0", "3 numbers"),
     ("urdf-bad-number", URDF, 'xyz="0.4 0 0"', 'xyz="${l} 0 0"', "${l}", "xacro"),
     ("urdf-empty-name", URDF, '<link name="rod_tip"/>', '<link name=""/>', None, ""),
+    ("urdf-empty-name", URDF, '<link name="rod_tip"/>', '<link name="&#9;"/>', None, ""),
     ("urdf-duplicate-link", URDF, '<link name="wrist_2"/>', '<link name="wrist_2"/>\n  <link name="wrist_2"/>', None, "'wrist_2'"),
     ("urdf-duplicate-joint", URDF, 'joint name="stage"', 'joint name="motor"', 'motor" type="prismatic"', "'motor'"),
     ("urdf-reserved-name", URDF, 'joint name="tip"', 'joint name="universe"', "universe", ""),

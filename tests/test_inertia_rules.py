@@ -103,6 +103,14 @@ def test_one_unphysical_link_is_told_once_though_it_is_a_leaf() -> None:
         assert codes(robot(link_element("base"), link_element("tip", _inertial(mass, moments)), joint)) == [found]
 
 
+@pytest.mark.parametrize("axis", ["0 0 1e-170", "0 0 5e-324", "1e200 0 1.7e308"])
+@pytest.mark.parametrize("mass", [0.0, 1.0])
+def test_what_a_leaf_resists_does_not_depend_on_the_length_of_its_axis(axis: str, mass: float) -> None:
+    joint = joint_element("j", "revolute", "base", "tip", f'<axis xyz="{axis}"/>{LIMIT}')
+    found = codes(robot(link_element("base"), link_element("tip", _inertial(mass, (mass, mass, mass))), joint))
+    assert found == ([] if mass else ["leaf-without-inertia"])
+
+
 def test_errors_of_inertia_do_not_keep_a_robot_from_being_loaded() -> None:
     joint = joint_element("j", "revolute", "base", "tip", f'<axis xyz="0 0 1"/>{LIMIT}')
     loaded = load(robot(link_element("base", _inertial(1, (1, 1, -1))), link_element("tip"), joint))

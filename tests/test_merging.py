@@ -177,6 +177,7 @@ X, Y, Z = "1 0 0", "0 1 0", "0 0 1"
         # The first two are both nearest to x; together, the second is nearer to y than the first is.
         (("1 0 0", "0.8 0.6 0", "0 0 1"), (1, 2, 3)),
         (("0.8 0.6 0", "1 0 0", "0 0 1"), (2, 1, 3)),
+        (("0 0 -5e-324", "0 3e-170 0", "1.7e308 0 1.7e308"), (3, 2, 1)),
     ],
 )
 def test_each_axis_of_a_ball_keeps_what_belonged_to_the_nearest_revolute(axes: Any, order: tuple[int, ...]) -> None:

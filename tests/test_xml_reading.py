@@ -209,11 +209,17 @@ def test_an_undeclared_prefix_hides_no_other_fault() -> None:
     assert fault_of(f"<robot><xacro:macro/><a b='{'x' * 11_000_000}'/></robot>").code == "file-too-large"
 
 
-def test_a_namespace_without_a_prefix_is_taken_away_and_others_are_kept() -> None:
+def test_default_namespaces_are_taken_away_and_those_of_prefixes_are_kept() -> None:
     text = '<robot xmlns="http://www.ros.org" xmlns:g="urn:g"><link name="a"/><g:x/><y xmlns="urn:y"/></robot>'
     document = read(text)
     assert [element.tag for element in document.root.iter()] == ["robot", "link", "{urn:g}x", "y"]
     assert document.place(document.root[0], "name").pointer == "/robot/link/@name"
+
+
+def test_a_prefix_that_is_not_declared_may_stand_in_a_default_namespace() -> None:
+    document = read('<robot xmlns="urn:a"><xacro:b/><link xmlns="" name="a"/></robot>')
+    assert [str(element.tag).rpartition("}")[2] for element in document.root.iter()] == ["robot", "xacro:b", "link"]
+    assert document.place(document.root[0]).pointer == "/robot/xacro:b"
 
 
 def test_a_namespace_that_is_no_uri_does_no_harm() -> None:

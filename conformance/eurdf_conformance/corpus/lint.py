@@ -7,6 +7,7 @@ tests of that reader to show.
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -128,13 +129,20 @@ def _twin(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
         yield from edit_faults((case.description, case.urdf), (twin.description, twin.urdf))
 
 
+def _named_files(urdf: Path) -> list[str]:
+    """The meshes and textures that a URDF names."""
+    text = urdf.read_text(encoding="utf-8", errors="replace") if urdf.is_file() else ""
+    return re.findall(r'filename="([^"]*)"', text)
+
+
 def _files(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
     files = [case.description, case.urdf]
     if isinstance(case.case, ValidCase):
         yield from (f"there is no file {path.name}" for path in files if not path.is_file())
     if case.case.robot is None:
         known = {CASE_FILE, case.case.description, Path(case.case.urdf).parts[0], "robot.urdf"}
-        known |= {EXPECTED_FILE} if isinstance(case.case, ValidCase) else set()
+        if isinstance(case.case, ValidCase):
+            known |= {EXPECTED_FILE, *_named_files(case.urdf)}
         for path in sorted(case.folder.iterdir()):
             if path.name not in known:
                 yield f"no one reads '{path.name}'"

@@ -22,6 +22,7 @@ from eurdf_conformance.mutants import (
     merging,
     near_names,
     odd_descriptions,
+    other_programs,
     own_data,
     places,
     refusing,
@@ -33,6 +34,7 @@ from eurdf_conformance.mutants import (
     velocities,
     version1,
     version1_joints,
+    xml_reading,
     yaml_bounds,
     yaml_documents,
     yaml_scalars,
@@ -43,6 +45,7 @@ from eurdf_conformance.mutants.descriptions import ALONE
 from eurdf_conformance.mutants.mutant import Mutant
 from eurdf_conformance.mutants.own_data import OWN
 from eurdf_conformance.mutants.silent import SILENT
+from eurdf_conformance.mutants.urdf_table import BUT_FOR_SOME
 
 _MODULES = (
     yaml_scalars,
@@ -53,8 +56,10 @@ _MODULES = (
     descriptions,
     version1,
     version1_joints,
+    xml_reading,
     urdf_reading,
     urdf_elements,
+    other_programs,
     frames,
     joint_properties,
     joint_rules,
@@ -85,7 +90,8 @@ def _mutants(module: ModuleType) -> Iterator[Mutant]:
 
 def _by_name() -> Mapping[str, Mutant]:
     found: dict[str, Mutant] = {}
-    for each in (*ACCEPTING, *SILENT, *OWN, *ALONE, *(each for module in _MODULES for each in _mutants(module))):
+    modules = (each for module in _MODULES for each in _mutants(module))
+    for each in (*ACCEPTING, *BUT_FOR_SOME, *SILENT, *OWN, *ALONE, *modules):
         if each.name in found:
             raise ValueError(f"there are two mutants '{each.name}'")
         found[each.name] = each

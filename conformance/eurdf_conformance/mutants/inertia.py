@@ -96,6 +96,12 @@ def mass_of_the_root_is_lost() -> Deviation:
     return instead(Quantities, "_masses", property(lambda self: masses(original, self)))
 
 
+@mutant("EU-INR-005")
+def nothing_has_its_centre_at_the_origin() -> Deviation:
+    """The centre of mass of what weighs nothing is the origin of the world."""
+    return around(Quantities, "center_of_mass", lambda original, self: original(self) or [0.0, 0.0, 0.0])
+
+
 @mutant("EU-INR-006", versions=("2",))  # version 1 has no armatures
 def armature_forgotten() -> Deviation:
     """M lacks the armatures."""

@@ -47,6 +47,20 @@ def links_between_without_mass() -> Deviation:
     return instead(merging, "MASSLESS", 1e-12)
 
 
+@mutant("EU-JNT-012")
+def links_between_weigh_together() -> Deviation:
+    """The two links between merged joints must together weigh less than 1e-5 kg."""
+
+    def check(original: Any, chain: Any, urdf: Any, links: Any, **named: Any) -> Chain:
+        found: Chain = original(chain, urdf, links, **named)
+        between = [urdf.links[joint.child].inertia for joint in chain[:2]]
+        if sum(inertia.mass for inertia in between if inertia is not None) >= merging.MASSLESS:
+            raise merging.NotMergeable("merge-inertia", "the links between them weigh too much together")
+        return found
+
+    return around(replacement, "check_chain", check)
+
+
 @mutant("EU-JNT-014")
 def axes_within_a_millimetre() -> Deviation:
     """Axes meet that pass a point within a millimetre."""

@@ -12,6 +12,7 @@ from eurdf.mechanism import replacement
 from eurdf.mechanism.joint_transform import joint_transform
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Joint
+from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio import configuration, joint_model
 from eurdf_conformance.adapters import reference_values
 from eurdf_conformance.mutants.deviation import Deviation, around, result, together
@@ -151,6 +152,20 @@ def locked_in_the_middle() -> Deviation:
 
 
 @mutant("EU-JNT-019")
+def locked_within_its_limits() -> Deviation:
+    """A joint that becomes fixed, and may not stand at its neutral, is locked at the limit nearest to that."""
+
+    def fixed(original: Any, joint: Joint) -> Joint:
+        locked: Joint = original(joint)
+        if joint.coordinates.nv != 1:
+            return locked
+        nearest = min(max(0.0, joint.lower[0]), joint.upper[0])
+        return replace(locked, placement=joint.placement * joint_transform(joint, (nearest,)))
+
+    return around(replacement, "fixed", fixed)
+
+
+@mutant("EU-JNT-019")
 def locked_on_its_parent() -> Deviation:
     """What a locked joint carries is put where its parent is."""
     return result(replacement, "fixed", lambda joint: replace(joint, placement=type(joint.placement)()))
@@ -172,6 +187,40 @@ def closures_lost_by_locking() -> Deviation:
 def revolute_the_other_way() -> Deviation:
     """A revolute joint turns clockwise."""
     return coordinates(JointType.REVOLUTE, lambda c: [-c[0]])
+
+
+@mutant("EU-JNT-025")
+def joints_stop_at_their_limits() -> Deviation:
+    """A joint that is asked to stand beyond a limit stands at it."""
+
+    def vector(original: Any, robot: Any, model: Any, given: Any, *at: Any) -> Any:
+        bounds = {joint.name: (joint.lower, joint.upper) for joint in robot.joints if joint.lower}
+
+        def within(name: str, coordinates: Any) -> Any:
+            if name not in bounds:
+                return coordinates
+            return [min(max(c, low), high) for c, low, high in zip(coordinates, *bounds[name], strict=True)]
+
+        return original(robot, model, {name: within(name, coordinates) for name, coordinates in given.items()}, *at)
+
+    return around(reference_values, "configuration_vector", vector)
+
+
+@mutant("EU-JNT-025")
+def planar_without_an_axis_about_x() -> Deviation:
+    """A planar joint whose axis is left out, and is therefore x, moves in the plane of y and z."""
+    left_out: set[str] = set()
+
+    def axis(original: Any, self: Any, name: str, kind: JointType, element: Any) -> Any:
+        if kind is JointType.PLANAR and element is None:
+            left_out.add(name)
+        return original(self, name, kind, element)
+
+    def turned(joint: Joint) -> Joint:
+        turn = Pose((0.0, 0.0, 0.0), (0.0, math.sqrt(0.5), 0.0, math.sqrt(0.5)))
+        return replace(joint, placement=joint.placement * turn) if joint.name in left_out else joint
+
+    return together(around(_Reader, "axis", axis), joints(turned))
 
 
 @mutant("EU-JNT-025")

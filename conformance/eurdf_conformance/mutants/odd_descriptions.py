@@ -66,12 +66,6 @@ def number_is_an_unknown_version() -> Deviation:
     )
 
 
-@mutant("EU-DIA-001", versions=("2",))
-def merged_twice_is_a_wrong_value() -> Deviation:
-    """A list in which a joint to merge stands twice is a wrong value."""
-    return each_issue(lambda issue: {"code": "wrong-value"} if "to be merged twice" in issue.message else {})
-
-
 def _with_root_joint(code: str) -> Deviation:
     def change(answer: Accepted | Rejected) -> Accepted | Rejected:
         if isinstance(answer, Rejected) and all(

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+import sys
 from collections.abc import Iterator
 from typing import Any
 
+from eurdf.format import urdf as urdf_format
 from eurdf.format.urdf import _KNOWN_CHILDREN, Urdf
 from eurdf.mechanism.joint_type import JointType
-from eurdf_conformance.mutants.deviation import Deviation
+from eurdf_conformance.mutants.deviation import Deviation, around
 from eurdf_conformance.mutants.mutant import mutant
 from eurdf_conformance.mutants.of_the_reference import refused_by_urdf
 
@@ -76,6 +79,23 @@ def numbers_without_exponent() -> Deviation:
     )
 
 
+@mutant("EU-URD-007")
+def numbers_nearly_zero_refused() -> Deviation:
+    """A number that is nearer to 0 than the numbers of full precision is out of range, as for std::stod."""
+
+    def floats(original: Any, text: str, separator: str | None = None) -> tuple[float, ...] | None:
+        found: tuple[float, ...] | None = original(text, separator)
+        words = text.split(separator)
+        return found if found is None or not any(map(_underflows, words, found)) else None
+
+    return around(urdf_format, "_floats", floats)
+
+
+def _underflows(word: str, value: float) -> bool:
+    zero = not set("123456789") & set(word.lower().partition("e")[0])
+    return abs(value) < sys.float_info.min and not zero
+
+
 @mutant("EU-URD-011")
 def root_joint_refused() -> Deviation:
     """Nothing may be named root_joint, be the root fixed."""
@@ -87,6 +107,14 @@ def short_axis_refused() -> Deviation:
     """An axis must be of unit length, to a thousandth."""
     return refused_by_urdf(
         lambda urdf: any(abs(sum(x * x for x in joint.axis) - 1.0) > 1e-3 for joint in urdf.joints.values())
+    )
+
+
+@mutant("EU-URD-013")
+def axis_whose_square_is_out_of_range_refused() -> Deviation:
+    """An axis is zero where the sum of its squares is, and none where that is infinite."""
+    return refused_by_urdf(
+        lambda urdf: any(not 0.0 < sum(x * x for x in joint.axis) < math.inf for joint in urdf.joints.values())
     )
 
 

@@ -110,10 +110,11 @@ def short_axis_is_zero() -> Deviation:
 def long_axis_is_x() -> Deviation:
     """An axis whose square is too large for a double is read as if there were none."""
 
-    def read(original: Any, axis: Any) -> Any:
-        return (1.0, 0.0, 0.0) if math.isinf(sum(each * each for each in axis)) else original(axis)
+    def axis(original: Any, self: Any, name: Any, kind: Any, element: Any) -> Any:
+        found = original(self, name, kind, element)
+        return (1.0, 0.0, 0.0) if found and math.isinf(sum(each * each for each in found)) else found
 
-    return around(urdf, "moderate", read)
+    return around(_Reader, "axis", axis)
 
 
 @mutant("EU-URD-030")

@@ -20,7 +20,7 @@ from eurdf.diagnostics import Diagnostics, Hint, did_you_mean
 from eurdf.format.near import near
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Inertia, Mimic, Shape
-from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, moderate
+from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 from eurdf.reading.xml_reader import XmlDocument
 
 Element = etree._Element
@@ -87,7 +87,7 @@ _OPTIONAL_ATTRIBUTES: dict[str, tuple[str, ...]] = {
 
 _ZERO: Vector3 = (0.0, 0.0, 0.0)
 
-#: White space of XML.
+#: White space of XML: a name of other blanks, such as one that does not break, is one like any other.
 _WHITE = " \t\r\n"
 
 #: Of so many different names that URDF lacks it is kept whether they are misspelt; of the rest it is asked again.
@@ -650,7 +650,7 @@ class _Reader:
         elif x == y == z == 0.0:
             self.report("urdf-zero-axis", f"the axis of joint '{name}' has no direction", element, "xyz")
             return None
-        return moderate((x, y, z))
+        return (x, y, z)
 
     def limit(self, name: str | None, kind: JointType, joint: Element, element: Element | None) -> Limit | None:
         """EU-URD-004, EU-URD-019, EU-URD-020: what moves in a range says a range, lower before upper."""

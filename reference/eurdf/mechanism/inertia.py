@@ -12,7 +12,7 @@ from eurdf.diagnostics import Diagnostics
 from eurdf.format.urdf import Urdf, UrdfLink
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Inertia, Joint, Mechanism
-from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
+from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, squarable
 from eurdf.mechanism.spanning_tree import rigid_roots
 
 #: A moment may be negative, and a sum of two below the third, by this part of the largest (rounding in files).
@@ -150,7 +150,7 @@ def _immaterial(joint: Joint, members: Sequence[Member]) -> str | None:
         return "has no inertia about one of the axes through its centre of mass"
     if kind in _TURNS:
         # Of a universal joint the first axis moves in the child: only mass on the second resists nothing for ever.
-        axis: Vector3 = (0.0, 0.0, 1.0) if kind is JointType.PLANAR else joint.axes[-1]
+        axis: Vector3 = (0.0, 0.0, 1.0) if kind is JointType.PLANAR else squarable(joint.axes[-1])
         squared = sum(value * value for value in axis)
         resists = sum(_about_axis(axis, pose, inertia) for pose, inertia in members) / squared
         if kind is JointType.HELICAL:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Joint
-from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion, Vector3
+from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion, Vector3, direction
 
 _HERE = (0.0, 0.0, 0.0)
 _Z = (0.0, 0.0, 1.0)
@@ -41,17 +41,17 @@ def joint_transform(joint: Joint, coordinates: Sequence[float]) -> Pose:
         return IDENTITY
     match joint.type:
         case JointType.REVOLUTE | JointType.CONTINUOUS:
-            return Pose(_HERE, _turn(_unit(joint.axes[0]), c[0]))
+            return Pose(_HERE, _turn(direction(joint.axes[0]), c[0]))
         case JointType.PRISMATIC:
-            return Pose(_along(_unit(joint.axes[0]), c[0]))
+            return Pose(_along(direction(joint.axes[0]), c[0]))
         case JointType.HELICAL:
-            axis = _unit(joint.axes[0])
+            axis = direction(joint.axes[0])
             return Pose(_along(axis, joint.pitch / (2.0 * math.pi) * c[0]), _turn(axis, c[0]))
         case JointType.CYLINDRICAL:
-            axis = _unit(joint.axes[0])
+            axis = direction(joint.axes[0])
             return Pose(_along(axis, c[0]), _turn(axis, c[1]))
         case JointType.UNIVERSAL:
-            first, second = (Pose(_HERE, _turn(_unit(a), angle)) for a, angle in zip(joint.axes, c, strict=True))
+            first, second = (Pose(_HERE, _turn(direction(a), angle)) for a, angle in zip(joint.axes, c, strict=True))
             return first * second
         case JointType.PLANAR:
             return Pose((c[0], c[1], 0.0), _turn(_Z, c[2]))
@@ -61,12 +61,6 @@ def joint_transform(joint: Joint, coordinates: Sequence[float]) -> Pose:
             return Pose((c[0], c[1], c[2]), _unit_quaternion(joint, c[3:]))
         case JointType.FIXED:
             return IDENTITY
-
-
-def _unit(axis: Vector3) -> Vector3:
-    x, y, z = axis
-    norm = math.hypot(x, y, z)
-    return x / norm, y / norm, z / norm
 
 
 def _along(unit: Vector3, length: float) -> Vector3:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from eurdf.format.urdf import Urdf
 from eurdf.mechanism.joint_type import COORDINATES, JointType
 from eurdf.mechanism.mechanism import Joint
-from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
+from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, squarable
 
 #: A link lighter than this, in kg, counts as being without inertia (EU-JNT-012).
 MASSLESS = 1e-5
@@ -180,7 +180,7 @@ def _lines(chain: tuple[Joint, Joint, Joint]) -> tuple[Pose, list[tuple[Vector3,
     lines = []
     for joint in chain:
         pose = pose * joint.placement
-        x, y, z = pose.rotate(joint.axes[0])
+        x, y, z = pose.rotate(squarable(joint.axes[0]))
         norm = math.sqrt(x * x + y * y + z * z)
         lines.append((pose.xyz, (x / norm, y / norm, z / norm)))
     return pose, lines

@@ -82,8 +82,17 @@ class Pose:
 IDENTITY = Pose()
 
 
-def moderate(axis: Vector3) -> Vector3:
-    """A direction, made so long that its square is a number, where it is very long or very short (EU-URD-035)."""
+def squarable(axis: Vector3) -> Vector3:
+    """The axis as it is, or of another length where the square of its own is out of range."""
     x, y, z = axis
+    if 1e-290 < x * x + y * y + z * z < 1e290:
+        return axis
     largest = max(abs(x), abs(y), abs(z))
-    return axis if 1e-150 < largest < 1e150 or largest == 0.0 else (x / largest, y / largest, z / largest)
+    return x / largest, y / largest, z / largest
+
+
+def direction(axis: Vector3) -> Vector3:
+    """EU-URD-035: the unit vector along an axis of any length but zero."""
+    x, y, z = squarable(axis)
+    norm = math.hypot(x, y, z)
+    return x / norm, y / norm, z / norm

@@ -13,7 +13,7 @@ from eurdf.format.urdf import Urdf
 from eurdf.mechanism.joint_type import COORDINATES, JointType
 from eurdf.mechanism.mechanism import Body, Joint
 from eurdf.mechanism.merging import PARALLEL, NotMergeable, check_chain, find_chains, fixed, merge
-from eurdf.mechanism.pose import Vector3, moderate
+from eurdf.mechanism.pose import Vector3, direction
 from eurdf.reading.yaml_reader import YamlDocument
 
 _ROTARY = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS})
@@ -289,8 +289,7 @@ class _Replacement:
                 message = f"an axis of universal joint '{joint.name}' has no direction"
                 self.report("joint-axis-zero", message, "axes", index)
                 return None
-        axes = tuple(map(moderate, axes))
-        first, second = (tuple(part / math.hypot(*axis) for part in axis) for axis in axes)
+        first, second = map(direction, axes)
         cross = (
             first[1] * second[2] - first[2] * second[1],
             first[2] * second[0] - first[0] * second[2],

@@ -9,7 +9,7 @@ import pinocchio as pin
 
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Joint
-from eurdf.mechanism.pose import Vector3
+from eurdf.mechanism.pose import Vector3, squarable
 
 # Pinocchio takes an axis for a coordinate axis within this distance (Eigen's isApprox).
 _ALIGNED = 1e-12
@@ -58,7 +58,7 @@ def joint_model(joint: Joint, *, counts_turns: bool = False) -> pin.JointModel:
 
 def unit(axis: Vector3) -> Vector3:
     """The axis at unit length, rounded as Eigen rounds it."""
-    x, y, z = _squarable(axis)
+    x, y, z = squarable(axis)
     norm = math.sqrt(x * x + y * y + z * z)
     return x / norm, y / norm, z / norm
 
@@ -72,15 +72,6 @@ def aligned(axis: Vector3) -> int | None:
             square = first * first + second * second + along * along
             return index if off <= _ALIGNED * _ALIGNED * min(square, 1.0) else None
     return None
-
-
-def _squarable(axis: Vector3) -> Vector3:
-    """The axis as it is, or of another length where the square of its own is out of range."""
-    x, y, z = axis
-    if 1e-290 < x * x + y * y + z * z < 1e290:
-        return axis
-    largest = max(abs(x), abs(y), abs(z))
-    return x / largest, y / largest, z / largest
 
 
 def _revolute(axis: Vector3) -> pin.JointModel:
@@ -98,7 +89,7 @@ def _continuous(axis: Vector3) -> pin.JointModel:
     if index is not None:
         return _CONTINUOUS[index]
     # Python cannot give JointModelRevoluteUnboundedUnaligned its axis; Pinocchio's URDF parser can.
-    xyz = " ".join(map(repr, _squarable(axis)))
+    xyz = " ".join(map(repr, squarable(axis)))
     return pin.JointModel(pin.buildModelFromXML(_ONE_CONTINUOUS_JOINT.format(xyz)).joints[1])
 
 

@@ -30,8 +30,8 @@ class XmlDocument:
 
     Attributes:
         source: The text.
-        root: Its root element, without comments and processing instructions. Where the root is in a default namespace,
-            that namespace is taken away, since no reader of URDF heeds it.
+        root: Its root element, without comments and processing instructions. Names are as they are written, in no
+            default namespace, since no reader of URDF heeds one.
     """
 
     __slots__ = ("_ordinals", "_starts", "_totals", "root", "source")
@@ -120,8 +120,9 @@ def read_xml(source: Source) -> XmlDocument:
         raise fault
     if "xmlns" in source.text:
         for element in root.iter("{*}*"):
-            if element.prefix is None and element.tag.startswith("{"):
-                element.tag = element.tag.rpartition("}")[2]
+            local = element.tag.rpartition("}")[2]
+            if element.prefix is None and ":" not in local:  # which lxml would not take for a name
+                element.tag = local
     return XmlDocument(source, root)
 
 
