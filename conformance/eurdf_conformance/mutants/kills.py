@@ -34,15 +34,19 @@ from eurdf_conformance.verdict.verdict import Verdict
 #: Of the frozen examples of a property so many are tried on a mutant: the suite tries all.
 EXAMPLES = 3
 
+#: Of what catches a mutant so many cases and properties are looked for in each version.
+ENOUGH = 5
+
 
 def kills(mutant: Mutant) -> list[str]:
-    """The items of the suite at its level that cite the clause of a mutant, and that it does not pass.
+    """The items of the suite at its level that cite the clause of a mutant, and that it does not pass: the first ones.
 
     Such an item is one that the reference passes; else it would catch anything.
     """
     if mutant.as_process:
         return list(_by_protocol(mutant))
-    return [*_by_protocol(mutant), *_by_cases(mutant), *_by_properties(mutant)]
+    left: dict[Version, int] = dict.fromkeys(VERSIONS, ENOUGH)
+    return [*_by_protocol(mutant), *_by_cases(mutant, left), *_by_properties(mutant, left)]
 
 
 def by_version(mutant: Mutant, items: Iterable[str]) -> dict[Version, list[str]]:
@@ -63,22 +67,25 @@ def _version_of() -> Mapping[str, Version]:
     return {f"{item.id}/{item.level}": item.version for item in planned_items(all_cases())}
 
 
-def _by_cases(mutant: Mutant) -> Iterator[str]:
+def _by_cases(mutant: Mutant, left: dict[Version, int]) -> Iterator[str]:
     conversation, level = Conversation(InProcess(mutant)), mutant.level
     for case in all_cases():
-        if mutant.clause not in case.case.clauses or level not in case.levels:
+        version = case.case.version
+        if not left[version] or mutant.clause not in case.case.clauses or level not in case.levels:
             continue
         if judge(case, level, conversation).verdict in mutant.caught_by and _REFERENCE.passes_case(case, level):
+            left[version] -= 1
             yield f"{case.path}/{level}"
 
 
-def _by_properties(mutant: Mutant) -> Iterator[str]:
+def _by_properties(mutant: Mutant, left: dict[Version, int]) -> Iterator[str]:
     level, cited_in = mutant.level, read_clauses()[mutant.clause].versions
     for law in LAWS:
         if mutant.clause not in law.clauses or level not in law.levels:
             continue
-        for version in (each for each in law.versions if each in cited_in):
+        for version in (each for each in law.versions if each in cited_in and left[each]):
             if _try(law, level, version, mutant) in mutant.caught_by and _REFERENCE.passes_law(law, level, version):
+                left[version] -= 1
                 yield f"properties/{law.name}-{version}/{level}"
 
 

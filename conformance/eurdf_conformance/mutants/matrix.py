@@ -10,7 +10,7 @@ from pathlib import Path
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.level import VERSIONS, Version
 from eurdf_conformance.mutants.catalogue import MUTANTS
-from eurdf_conformance.mutants.kills import EXAMPLES, by_version, kills
+from eurdf_conformance.mutants.kills import ENOUGH, EXAMPLES, by_version, kills
 from eurdf_conformance.mutants.mutant import Mutant
 from eurdf_conformance.mutants.unbroken import UNBROKEN
 
@@ -29,9 +29,9 @@ certified apart, so a mutant must be caught in each version of its clause in whi
 that survives in a version fails the tests.
 
 A case is named by topic, id and level, a property by name, version and level. A row says how many catch a mutant in
-each version, with a dash where none has to, and names the first {_NAMED} of each. Of a property {EXAMPLES} examples are
-tried; the suite tries more. Rules of the protocol are put to a process of the mutant's, as the suite does, for version
-{VERSIONS[-1]} alone, and count for both.
+each version, with a dash where none has to, and names the first {_NAMED} of each; cases, and after them properties, are
+tried until {ENOUGH} have caught it. Of a property {EXAMPLES} examples are tried; the suite tries more. Rules of the
+protocol are put to a process of the mutant's, as the suite does, for version {VERSIONS[-1]} alone, and count for both.
 
 Written by `python -m eurdf_conformance.mutants.matrix`.
 """
