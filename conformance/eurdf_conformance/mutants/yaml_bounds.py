@@ -56,7 +56,7 @@ def tags_convert_numbers() -> Deviation:
     return _tagged(converted)
 
 
-@mutant("EU-YML-005", versions=("2",))
+@mutant("EU-YML-005")
 def tags_of_collections_have_no_effect() -> Deviation:
     """Whatever tag of the core schema a mapping or a list has, it is one."""
 
