@@ -140,12 +140,20 @@ def _files(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
     if isinstance(case.case, ValidCase):
         yield from (f"there is no file {path.name}" for path in files if not path.is_file())
     if case.case.robot is None:
-        known = {CASE_FILE, case.case.description, Path(case.case.urdf).parts[0], "robot.urdf"}
-        if isinstance(case.case, ValidCase):
-            known |= {EXPECTED_FILE, *_named_files(case.urdf)}
+        named = _named_files(case.urdf)
+        known = {CASE_FILE, case.case.description, Path(case.case.urdf).parts[0], "robot.urdf", *named}
+        known |= {EXPECTED_FILE} if isinstance(case.case, ValidCase) else set()
         for path in sorted(case.folder.iterdir()):
             if path.name not in known:
                 yield f"no one reads '{path.name}'"
+        # A file that is missing is a fault of its own, which a reader tells beside that of the case.
+        told = {case.case.code} if isinstance(case.case, InvalidCase) else {each.code for each in case.case.warnings}
+        if not told & {"urdf-mesh-missing", "urdf-texture-missing"}:
+            yield from (f"there is no file {name}" for name in named if not _is_there(case.urdf.parent, name))
+
+
+def _is_there(folder: Path, name: str) -> bool:
+    return not name.strip() or "://" in name or (folder / name).is_file()
 
 
 def _place(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
