@@ -199,11 +199,6 @@ class _Replacement:
                     self.document.place(pointer),
                 )
                 return None
-            if name in entry.merges[:index]:
-                self.diagnostics.report(
-                    "duplicate-replacement", f"joint '{name}' is to be merged twice", self.document.place(pointer)
-                )
-                return None
             joint = self.target(name, pointer)
             if joint is None or self.mimics(joint, pointer):
                 return None
