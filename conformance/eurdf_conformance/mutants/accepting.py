@@ -35,7 +35,7 @@ def accepting(code: str, clause: str | None = None, name: str | None = None) -> 
     rule = REGISTRY[code]
     name = name or f"accepts_{code.replace('-', '_')}"
     breaks = f"Accepts, without a robot, what is told as `{code}`: {rule.title[0].lower()}{rule.title[1:]}"
-    return Mutant(name, clause or rule.clause, breaks, partial(_forgiving, code), only_accepts=True)
+    return Mutant(name, clause or rule.clause, breaks, partial(_forgiving, code))
 
 
 ACCEPTING = tuple(

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import shlex
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
-from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -25,79 +24,68 @@ from eurdf_conformance.runner.session import Session
 from eurdf_conformance.suite.asking import all_cases
 from eurdf_conformance.suite.conversation import Conversation
 from eurdf_conformance.suite.in_process import InProcess
-from eurdf_conformance.suite.item import ProtocolItem, planned_items, protocol_items
+from eurdf_conformance.suite.item import ProtocolItem, protocol_items
 from eurdf_conformance.suite.judge import judge
 from eurdf_conformance.suite.protocol_check import Asked, check
 from eurdf_conformance.suite.smoke import SMOKE, smoke_case
 from eurdf_conformance.verdict.verdict import Verdict
 
-#: Of the frozen examples of a property so many are tried on a mutant: the suite tries all.
+#: How many of the frozen examples of a property are tried on a mutant; the suite tries all of them.
 EXAMPLES = 3
 
-#: Of what catches a mutant so many cases and properties are looked for in each version.
-ENOUGH = 5
+#: The items that catch a mutant, as they are found: the version that each counts for, and its name.
+Catches = Iterator[tuple[Version, str]]
 
 
-def kills(mutant: Mutant) -> list[str]:
-    """The items of the suite at its level that cite the clause of a mutant, and that it does not pass: the first ones.
+def kills(mutant: Mutant) -> dict[Version, str]:
+    """The first item of the suite, in each version, that catches a mutant; a version in which none does is left out.
 
-    Such an item is one that the reference passes; else it would catch anything.
+    An item catches a mutant if it cites the clause that the mutant breaks, is asked at the mutant's level, does not
+    pass, and passes for the reference (an item that the reference fails would catch anything). Each version is
+    certified apart, so the search goes on until there is an item in each.
     """
-    if mutant.as_process:
-        return list(_by_protocol(mutant))
-    left: dict[Version, int] = dict.fromkeys(VERSIONS, ENOUGH)
-    return [*_by_protocol(mutant), *_by_cases(mutant, left), *_by_properties(mutant, left)]
-
-
-def by_version(mutant: Mutant, items: Iterable[str]) -> dict[Version, list[str]]:
-    """In which version each item catches a mutant: those in which the mutant is to be caught, and any others.
-
-    Each version is certified apart. A rule of the protocol is put to a mutant in one version alone, for it does not
-    depend on it, and counts for each.
-    """
-    found: dict[Version, list[str]] = {version: [] for version in mutant.versions}
-    for item in items:
-        for version in mutant.versions if item.startswith("protocol/") else (_version_of()[item],):
-            found.setdefault(version, []).append(item)
+    found: dict[Version, str] = {}
+    for version, name in _by_protocol(mutant):
+        found.setdefault(version, name)
+    if not mutant.as_process:
+        for search in (_by_cases, _by_properties):
+            for version, name in search(mutant, found):
+                found.setdefault(version, name)
     return found
 
 
-@cache
-def _version_of() -> Mapping[str, Version]:
-    return {f"{item.id}/{item.level}": item.version for item in planned_items(all_cases())}
-
-
-def _by_cases(mutant: Mutant, left: dict[Version, int]) -> Iterator[str]:
+def _by_cases(mutant: Mutant, found: Collection[Version]) -> Catches:
     conversation, level = Conversation(InProcess(mutant)), mutant.level
     for case in all_cases():
         version = case.case.version
-        if not left[version] or mutant.clause not in case.case.clauses or level not in case.levels:
+        if version in found or mutant.clause not in case.case.clauses or level not in case.levels:
             continue
         if judge(case, level, conversation).verdict in mutant.caught_by and _REFERENCE.passes_case(case, level):
-            left[version] -= 1
-            yield f"{case.path}/{level}"
+            yield version, f"{case.path}/{level}"
 
 
-def _by_properties(mutant: Mutant, left: dict[Version, int]) -> Iterator[str]:
+def _by_properties(mutant: Mutant, found: Collection[Version]) -> Catches:
     level, cited_in = mutant.level, read_clauses()[mutant.clause].versions
     for law in LAWS:
         if mutant.clause not in law.clauses or level not in law.levels:
             continue
-        for version in (each for each in law.versions if each in cited_in and left[each]):
+        for version in (each for each in law.versions if each in cited_in and each not in found):
             if _try(law, level, version, mutant) in mutant.caught_by and _REFERENCE.passes_law(law, level, version):
-                left[version] -= 1
-                yield f"properties/{law.name}-{version}/{level}"
+                yield version, f"properties/{law.name}-{version}/{level}"
 
 
-def _by_protocol(mutant: Mutant) -> Iterator[str]:
-    """Rules of the protocol, put to a process as the suite does; of one version, for it takes its time."""
+def _by_protocol(mutant: Mutant) -> Catches:
+    """Rules of the protocol, asked of a process as the suite does.
+
+    A rule does not depend on the version: it is asked in one, because a process takes time, and counts for all.
+    """
     asked_for = [found for found in _protocol_items() if mutant.clause in found.rule.clauses]
     if not asked_for:
         return
     with _asking(_parser(mutant)) as asked:
         for found in asked_for:
             if check(found.rule, asked).verdict in mutant.caught_by and _REFERENCE.passes_rule(found.rule):
-                yield f"{found.item.id}/{found.item.level}"
+                yield from ((version, f"{found.item.id}/{found.item.level}") for version in mutant.versions)
 
 
 def _protocol_items() -> list[ProtocolItem]:

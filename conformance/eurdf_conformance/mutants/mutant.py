@@ -28,7 +28,6 @@ class Mutant(Reference):
         versions: The versions in which it is to be caught: those of the clause in which its deviation can be seen.
         caught_by: The verdicts that count as catching it.
         as_process: Whether it is broken in how it speaks, which is seen only where it runs as a process of its own.
-        only_accepts: Whether all that it does is to accept, without a robot, what it should reject.
     """
 
     def __init__(
@@ -42,7 +41,6 @@ class Mutant(Reference):
         versions: tuple[Version, ...] | None = None,
         caught_by: frozenset[Verdict] = _WRONG,
         as_process: bool = False,
-        only_accepts: bool = False,
     ) -> None:
         super().__init__()
         self.name = name
@@ -53,7 +51,6 @@ class Mutant(Reference):
         self.versions = versions or said_in(read_clauses()[clause])
         self.caught_by = caught_by
         self.as_process = as_process
-        self.only_accepts = only_accepts
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
         """As the reference would, were it so broken."""
@@ -78,7 +75,6 @@ def mutant(
     versions: tuple[Version, ...] | None = None,
     caught_by: frozenset[Verdict] = _WRONG,
     as_process: bool = False,
-    only_accepts: bool = False,
 ) -> Callable[[Callable[[], Deviation]], Mutant]:
     """Make a mutant of a function that returns its deviation; its name and docstring are the mutant's.
 
@@ -88,7 +84,6 @@ def mutant(
         versions: The versions in which it is to be caught, where its deviation cannot be seen in all of the clause.
         caught_by: The verdicts that count as catching it.
         as_process: Whether it is broken in how it speaks.
-        only_accepts: Whether all that it does is to accept what it should reject.
     """
 
     def made(deviation: Callable[[], Deviation]) -> Mutant:
@@ -102,7 +97,6 @@ def mutant(
             versions=versions,
             caught_by=caught_by,
             as_process=as_process,
-            only_accepts=only_accepts,
         )
 
     return made

@@ -77,19 +77,19 @@ def _with_root_joint(code: str) -> Deviation:
     return result(Reference, "load", change)
 
 
-@mutant("EU-ACT-001", versions=("2",), only_accepts=True)
+@mutant("EU-ACT-001", versions=("2",))
 def motor_on_the_floating_root() -> Deviation:
     """The joint of a floating root may have a motor."""
     return _with_root_joint("unknown-actuator")
 
 
-@mutant("EU-JNT-001", versions=("2",), only_accepts=True)
+@mutant("EU-JNT-001", versions=("2",))
 def floating_root_is_changed() -> Deviation:
     """The joint of a floating root may have properties."""
     return _with_root_joint("unknown-joint")
 
 
-@mutant("EU-FRM-001", versions=("2",), only_accepts=True)
+@mutant("EU-FRM-001", versions=("2",))
 def frame_on_the_floating_root() -> Deviation:
     """The joint of a floating root is the name of a frame."""
     return _with_root_joint("unknown-frame")

@@ -34,13 +34,13 @@ def _phases(answer: _Answer) -> set[Phase]:
     return {REGISTRY[issue.code or ""].phase for issue in answer.issues if issue.severity == "error"}
 
 
-@mutant("EU-CNF-001", only_accepts=True)
+@mutant("EU-CNF-001")
 def everything_accepted() -> Deviation:
     """Whatever is wrong, the answer is accepted, with the errors beside it."""
     return _answers(lambda answer: accepted(None, answer.issues) if isinstance(answer, Rejected) else answer)
 
 
-@mutant("EU-CNF-001", only_accepts=True)
+@mutant("EU-CNF-001")
 def semantic_errors_accepted() -> Deviation:
     """Errors of phase semantic are told beside an acceptance, as those of inertia may be."""
 

@@ -187,6 +187,6 @@ _RULES: dict[str, tuple[str, _Where, str]] = {
 }
 
 BUT_FOR_SOME = tuple(
-    Mutant(name, REGISTRY[code].clause, breaks, partial(_forgiving, code, where), only_accepts=True)
+    Mutant(name, REGISTRY[code].clause, breaks, partial(_forgiving, code, where))
     for name, (code, where, breaks) in _RULES.items()
 )
