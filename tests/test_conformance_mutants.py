@@ -82,7 +82,7 @@ def test_each_clause_with_a_must_is_broken_by_a_mutant_or_it_is_said_why_none_ca
 
 def test_each_diagnostic_but_that_of_meshes_has_a_reader_that_does_not_tell_it() -> None:
     names = {mutant.name for mutant in (*ACCEPTING, *SILENT)}
-    told = {code.replace("-", "_") for code in REGISTRY}
+    told = {code.replace("-", "_") for code, rule in REGISTRY.items() if rule.clause is not None}
     assert told - {name.removeprefix("accepts_").removeprefix("silent_of_") for name in names} == {
         "urdf_mesh_unreadable"
     }

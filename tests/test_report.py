@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from eurdf.commands.output_schema import output_schemas, schema_text
-from eurdf.diagnostics import REGISTRY, Diagnostic, Place
+from eurdf.diagnostics import REGISTRY, Diagnostic, Phase, Place, Rule, Severity
 from eurdf.diagnostics.report import Report, report_schema, reports_to_json
 from eurdf.diagnostics.text import cells, report_lines, summary_line, total_line, visible
 
@@ -254,6 +254,29 @@ def test_every_rule_fits_the_schema_of_the_report() -> None:
     found = tuple(Diagnostic(code, "it is wrong", Place("r.yaml")) for code in REGISTRY)
     document = reports_to_json([Report("r", found)], strict=True)
     jsonschema.Draft202012Validator(report_schema()).validate(document)
+
+
+@pytest.fixture
+def own_code(monkeypatch: pytest.MonkeyPatch) -> str:
+    """A code of this parser alone."""
+    monkeypatch.setitem(REGISTRY, "x-worn", Rule("x-worn", Phase.ADVICE, Severity.WARNING, None, "A joint is worn."))
+    return "x-worn"
+
+
+def test_advice_has_no_clause(own_code: str) -> None:
+    report = Report("r", (Diagnostic(own_code, "joint 'knee' is worn", Place("r.yaml", 3)),))
+    document = reports_to_json([report])
+    jsonschema.Draft202012Validator(report_schema()).validate(document)
+    found = document["robots"][0]["diagnostics"][0]
+    assert (found["clause"], found["phase"], found["severity"]) == (None, "advice", "warning")
+    assert text_of(report) == ["r.yaml:3: warning: joint 'knee' is worn [x-worn]"]
+
+
+def test_only_advice_is_without_a_clause_and_it_is_a_warning() -> None:
+    own = {code for code in REGISTRY if code.startswith("x-")}
+    assert own == {code for code, rule in REGISTRY.items() if rule.clause is None}
+    assert own == {code for code, rule in REGISTRY.items() if rule.phase is Phase.ADVICE}
+    assert {REGISTRY[code].severity for code in own} <= {Severity.WARNING}
 
 
 @given(st.text(), st.text(), st.one_of(st.none(), st.text()), st.text())

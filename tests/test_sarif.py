@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from eurdf.diagnostics import REGISTRY, Diagnostic, Place
+from eurdf.diagnostics import REGISTRY, Diagnostic, Phase, Place, Rule, Severity
 from eurdf.diagnostics.report import Report
 from eurdf.diagnostics.sarif import sarif_log
 
@@ -89,6 +89,12 @@ def test_the_tool_tells_the_rules_that_were_broken_and_their_clauses() -> None:
     }
     for result in run["results"]:
         assert driver["rules"][result["ruleIndex"]]["id"] == result["ruleId"]
+
+
+def test_advice_has_no_clause(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(REGISTRY, "x-worn", Rule("x-worn", Phase.ADVICE, Severity.WARNING, None, "A joint is worn."))
+    run = run_of(Diagnostic("x-worn", "joint 'knee' is worn", Place("r.yaml", 3)))
+    assert run["tool"]["driver"]["rules"][0]["properties"] == {"phase": "advice"}
 
 
 def test_every_code_of_the_registry_makes_a_valid_log() -> None:

@@ -25,7 +25,10 @@ def _beside(fixture: Path, suffix: str) -> Path:
 
 def _codes(path: Path) -> dict[str, Rule]:
     rows = [line.split(maxsplit=3) for line in path.read_text(encoding="utf-8").splitlines()]
-    return {row[0]: Rule(row[0], Phase.LINK, Severity(row[2]), row[1], row[3]) for row in rows}
+    return {
+        code: Rule(code, Phase.LINK, Severity(severity), None if clause == "-" else clause, title)
+        for code, clause, severity, title in rows
+    }
 
 
 def _specification(fixture: Path) -> Specification:

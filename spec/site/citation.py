@@ -119,7 +119,8 @@ def citations_in(path: Path, package: Path) -> list[Citation]:
     tree = ast.parse(path.read_text(encoding="utf-8"), str(path))
     citations = []
     for name, definition in _definitions(tree, ".".join(parts)):
-        clauses = [*cited(ast.get_docstring(definition) or ""), *(REGISTRY[code].clause for code in _codes(definition))]
+        of_codes = (REGISTRY[code].clause for code in _codes(definition))
+        clauses = [*cited(ast.get_docstring(definition) or ""), *(clause for clause in of_codes if clause is not None)]
         citations += [Citation(clause, name, path, definition.lineno) for clause in dict.fromkeys(clauses)]
     return citations
 

@@ -166,7 +166,8 @@ class DiagnosticDirective(SpecificationDirective):
         rule = REGISTRY[shown.code]
         head = _line("eu-head", _permalink(shown.code), *_badge(rule.severity, f"eu-severity-{rule.severity}"))
         head += _badge(f"phase {rule.phase}")
-        head += [nodes.Text(" "), self.reference("clause", rule.clause)]
+        if rule.clause is not None:
+            head += [nodes.Text(" "), self.reference("clause", rule.clause)]
         block = self.anchored("code", shown.code, rule.title, head, _line("eu-title", nodes.Text(rule.title)))
         block += _fact("Points at", self.parse_inline(shown.place)[0])
         if shown.unshown is not None:
@@ -234,7 +235,7 @@ class AllDiagnosticsDirective(SpecificationDirective):
                 nodes.paragraph("", "", self.reference("code", rule.code)),
                 nodes.paragraph("", f"{rule.severity}, {rule.phase}"),
                 nodes.paragraph("", rule.title),
-                nodes.paragraph("", "", self.reference("clause", rule.clause)),
+                nodes.paragraph("", "", *([] if rule.clause is None else [self.reference("clause", rule.clause)])),
             ]
             for rule in sorted(REGISTRY.values(), key=lambda rule: rule.code)
         ]

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import urlsplit
 
-from eurdf.diagnostics import Severity
+from eurdf.diagnostics import Rule, Severity
+from eurdf.diagnostics.registry import OWN_PREFIX
 from spec.site.blocks import Code, Directive, read_blocks, walk
 from spec.site.citation import Citation
 from spec.site.clause import (
@@ -171,7 +172,7 @@ def codes(spec: Specification) -> Iterator[Finding]:
             if rule is None:
                 yield _at(spec, clause, f"{clause.id} names '{code}', which is no diagnostic", "code-unknown")
             elif rule.clause != clause.id:
-                message = f"{clause.id} names '{code}', which cites {rule.clause}"
+                message = f"{clause.id} names '{code}', which cites {rule.clause or 'no clause'}"
                 yield _at(spec, clause, message, "code-elsewhere")
             else:
                 word = "MUST" if rule.severity is Severity.ERROR else "SHOULD"
@@ -179,12 +180,25 @@ def codes(spec: Specification) -> Iterator[Finding]:
                     message = f"'{code}' is of severity {rule.severity}, but {clause.id} is no {word}"
                     yield _at(spec, clause, message, "code-severity")
     for code, rule in spec.codes.items():
+        if code.startswith(OWN_PREFIX) or rule.clause is None:
+            yield from _own_code(spec, code, rule)
+            continue
         cites = spec.by_id.get(rule.clause)
         if cites is None:
             message = f"'{code}' cites {rule.clause}, which is no clause"
             yield Finding(spec.codes_path, _line_of(spec.codes_path, code), message, "code-clause")
         elif code not in cites.codes:
             yield _at(spec, cites, f"{cites.id} does not name '{code}', which cites it", "code-unnamed")
+
+
+def _own_code(spec: Specification, code: str, rule: Rule) -> Iterator[Finding]:
+    """A code that begins with ``x-`` is a warning without a clause; any other code has a clause."""
+    line = _line_of(spec.codes_path, code)
+    if not code.startswith(OWN_PREFIX):
+        yield Finding(spec.codes_path, line, f"'{code}' cites no clause", "code-clause")
+    elif rule.clause is not None or rule.severity is not Severity.WARNING:
+        message = f"'{code}' is advice of the parser itself: it must be a warning that cites no clause"
+        yield Finding(spec.codes_path, line, message, "code-own")
 
 
 def enforced(spec: Specification) -> Iterator[Finding]:

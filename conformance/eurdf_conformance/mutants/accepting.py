@@ -11,6 +11,7 @@ from eurdf.diagnostics.registry import REFUSED_PHASES, REGISTRY, Severity
 from eurdf_conformance.adapters.reference import Reference
 from eurdf_conformance.mutants.deviation import Deviation, result
 from eurdf_conformance.mutants.mutant import Mutant
+from eurdf_conformance.mutants.of_the_reference import clause_of
 from eurdf_conformance.mutants.unbroken import UNBROKEN
 from eurdf_conformance.protocol.message import Accepted, Rejected
 from eurdf_conformance.protocol.reply import accepted
@@ -35,7 +36,7 @@ def accepting(code: str, clause: str | None = None, name: str | None = None) -> 
     rule = REGISTRY[code]
     name = name or f"accepts_{code.replace('-', '_')}"
     breaks = f"Accepts, without a robot, what is told as `{code}`: {rule.title[0].lower()}{rule.title[1:]}"
-    return Mutant(name, clause or rule.clause, breaks, partial(_forgiving, code))
+    return Mutant(name, clause or clause_of(code), breaks, partial(_forgiving, code))
 
 
 ACCEPTING = tuple(

@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from eurdf.description import Description
+from eurdf.diagnostics.registry import REGISTRY
 from eurdf.format import read_extension
 from eurdf.format.extension import Extension
 from eurdf.format.urdf import Urdf
@@ -19,6 +20,13 @@ from eurdf_conformance.adapters import reference
 from eurdf_conformance.adapters.reference import Reference
 from eurdf_conformance.mutants.deviation import Deviation, around, instead, result
 from eurdf_conformance.protocol.message import CanonicalJoint, CanonicalRobot, Issue, Values
+
+
+def clause_of(code: str) -> str:
+    """The clause that a code of this specification enforces: advice of the reference alone is never broken."""
+    clause = REGISTRY[code].clause
+    assert clause is not None, code
+    return clause
 
 
 class _Changed:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from functools import partial
 
-from eurdf.diagnostics.registry import REGISTRY
 from eurdf_conformance.mutants.deviation import Deviation
 from eurdf_conformance.mutants.mutant import Mutant
-from eurdf_conformance.mutants.of_the_reference import issues
+from eurdf_conformance.mutants.of_the_reference import clause_of, issues
 
 #: By the code that is not told.
 _UNTOLD = {
@@ -35,6 +34,6 @@ def _silence(code: str) -> Deviation:
 
 
 SILENT = tuple(
-    Mutant(f"silent_of_{code.replace('-', '_')}", REGISTRY[code].clause, breaks, partial(_silence, code))
+    Mutant(f"silent_of_{code.replace('-', '_')}", clause_of(code), breaks, partial(_silence, code))
     for code, breaks in _UNTOLD.items()
 )

@@ -6,11 +6,11 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from eurdf.diagnostics.registry import REGISTRY
 from eurdf.format.urdf import _Reader
 from eurdf_conformance.adapters.reference import Reference
 from eurdf_conformance.mutants.deviation import Deviation, around, together
 from eurdf_conformance.mutants.mutant import Mutant
+from eurdf_conformance.mutants.of_the_reference import clause_of
 from eurdf_conformance.protocol.message import Accepted, Rejected
 from eurdf_conformance.protocol.reply import accepted
 
@@ -187,6 +187,6 @@ _RULES: dict[str, tuple[str, _Where, str]] = {
 }
 
 BUT_FOR_SOME = tuple(
-    Mutant(name, REGISTRY[code].clause, breaks, partial(_forgiving, code, where))
+    Mutant(name, clause_of(code), breaks, partial(_forgiving, code, where))
     for name, (code, where, breaks) in _RULES.items()
 )

@@ -84,8 +84,8 @@ class Diagnostic:
         return REGISTRY[self.code].phase
 
     @property
-    def clause(self) -> str:
-        """Id of the clause of the specification that is not met."""
+    def clause(self) -> str | None:
+        """Id of the clause of the specification that is not met; None for advice of this parser (EU-DIA-006)."""
         return REGISTRY[self.code].clause
 
     @property

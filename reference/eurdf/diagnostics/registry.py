@@ -1,6 +1,7 @@
 """Every diagnostic code there is: its phase, its severity, the clause it enforces, what it says in general.
 
-A code is permanent: once published it is never renamed and never used for another fault.
+A code is permanent: once published it is never renamed and never used for another fault. A code that begins with ``x-``
+is advice of this parser alone (EU-DIA-006): a warning that no clause asks for.
 """
 
 from __future__ import annotations
@@ -19,14 +20,18 @@ class Phase(StrEnum):
     SEMANTIC = "semantic"
     INERTIA = "inertia"
     CLOSURE = "closure"
+    ADVICE = "advice"
 
+
+#: What the codes of this parser's own warnings begin with (EU-DIA-006).
+OWN_PREFIX = "x-"
 
 #: Errors of these phases leave nothing that could be built without guessing: ``eurdf.load`` refuses them.
 REFUSED_PHASES = frozenset({Phase.YAML, Phase.SCHEMA, Phase.URDF, Phase.LINK, Phase.SEMANTIC})
 
 
 class Severity(StrEnum):
-    """How bad a finding is: an error is against a MUST of the specification, a warning against a SHOULD."""
+    """How bad a finding is: an error is against a MUST of the specification, a warning against a SHOULD or advice."""
 
     ERROR = "error"
     WARNING = "warning"
@@ -34,12 +39,20 @@ class Severity(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """What one diagnostic code stands for."""
+    """What one diagnostic code stands for.
+
+    Attributes:
+        code: Its permanent name.
+        phase: The phase that finds it.
+        severity: Error or warning.
+        clause: Id of the clause of the specification that is not met; None for advice of this parser.
+        title: What it says in general, as one sentence.
+    """
 
     code: str
     phase: Phase
     severity: Severity
-    clause: str
+    clause: str | None
     title: str
 
 
@@ -49,6 +62,12 @@ def _rules(phase: Phase, rows: str) -> list[Rule]:
         code, clause, severity, title = row.split(maxsplit=3)
         rules.append(Rule(code, phase, Severity(severity), clause, title))
     return rules
+
+
+def _advice(rows: str) -> list[Rule]:
+    """Warnings of this parser alone: a code with `OWN_PREFIX`, and a title (EU-DIA-006)."""
+    pairs = (row.split(maxsplit=1) for row in rows.strip().splitlines())
+    return [Rule(code, Phase.ADVICE, Severity.WARNING, None, title) for code, title in pairs]
 
 
 _TABLE = [
@@ -179,6 +198,10 @@ leaf-without-inertia       EU-INR-004 error   A moving leaf of the tree has no m
         """
 assembled-open             EU-CLO-005 error   A closure is open at the assembled configuration.
 closure-cannot-close       EU-CLO-006 error   No configuration closes the loops.
+""",
+    ),
+    *_advice(
+        """
 """,
     ),
 ]

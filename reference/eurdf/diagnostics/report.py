@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from eurdf.diagnostics.diagnostic import Diagnostic
-from eurdf.diagnostics.registry import Phase, Severity
+from eurdf.diagnostics.registry import OWN_PREFIX, Phase, Severity
 
 #: Version of the JSON form; it grows by one when a field changes its meaning or goes.
 REPORT_VERSION = 1
@@ -95,21 +95,22 @@ def report_schema() -> dict[str, Any]:
             "code": {
                 "type": "string",
                 "pattern": "^[a-z0-9]+(-[a-z0-9]+)*$",
-                "description": "What kind of fault it is: a permanent name, never used for another fault.",
+                "description": "What is wrong: a permanent name, never used for anything else. One that begins with "
+                f"'{OWN_PREFIX}' is advice of this parser, which no clause of the specification asks for.",
                 "examples": ["unknown-frame"],
             },
             "severity": {
                 "enum": [severity.value for severity in Severity],
-                "description": "An error is against a MUST of the specification, a warning against a SHOULD.",
+                "description": "An error is against a MUST of the specification, a warning against a SHOULD or advice.",
             },
             "phase": {
                 "enum": [phase.value for phase in Phase],
                 "description": "Where in the reading it was found; an error keeps later phases from being judged.",
             },
             "clause": {
-                "type": "string",
+                "type": ["string", "null"],
                 "pattern": "^EU-[A-Z]{3}-[0-9]{3}$",
-                "description": "Id of the clause of the specification that is not met.",
+                "description": "Id of the clause of the specification that is not met; null for advice.",
                 "examples": ["EU-FRM-001"],
             },
             "message": {

@@ -45,11 +45,12 @@ def sarif_log(reports: Iterable[Report], version: str, folder: str | None = None
 
 def _rule(code: str) -> dict[str, Any]:
     rule = REGISTRY[code]
+    properties = {"clause": rule.clause} if rule.clause else {}
     return {
         "id": code,
         "shortDescription": {"text": rule.title},
         "defaultConfiguration": {"level": rule.severity.value},
-        "properties": {"clause": rule.clause, "phase": rule.phase.value},
+        "properties": {**properties, "phase": rule.phase.value},
     }
 
 

@@ -98,7 +98,7 @@ def _headline(found: Diagnostic, path: str) -> Line:
         (f"{visible(where)}: ", "bold"),
         (found.severity.value, f"bold {_COLOR[found.severity]}"),
         (f": {message} ", ""),
-        (f"[{found.code} {found.clause}]", "dim"),
+        (f"[{found.code} {found.clause}]" if found.clause else f"[{found.code}]", "dim"),
     ]
 
 
