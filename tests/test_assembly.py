@@ -273,6 +273,44 @@ def test_limits_that_leave_no_closed_configuration_are_kept_all_the_same() -> No
     assert assembly.residual <= np.linalg.norm(end - [3.5, 0.0]) + 1e-6
 
 
+def test_limits_that_keep_a_loop_open_are_named() -> None:
+    linkage = n_bar(4, away=0.7)
+    linkage.model.lowerPositionLimit, linkage.model.upperPositionLimit = np.full(4, -0.1), np.full(4, 0.2)
+    assembly = assemble(linkage, limits=True)
+    assert (assembly.closes, assembly.reason) == (False, "joint limits")
+    for found in assembly.at_limits:
+        index = int(found.joint.removeprefix("j"))
+        assert found.limit == (0.2 if found.side == "upper" else -0.1)
+        assert assembly.q[index] == pytest.approx(found.limit, abs=1e-9)
+    assert f"at their limits: '{assembly.at_limits[0].joint}' (" in repr(assembly)
+    free = assemble(linkage)
+    assert (free.reason, free.at_limits) == (None, ())
+    assert repr(free).startswith("<Assembly: closed; residual")
+
+
+def test_a_loop_that_cannot_close_at_all_is_not_put_down_to_limits() -> None:
+    linkage = four_bar(1.0, 1.0, 1.0, 9.0)
+    linkage.model.lowerPositionLimit, linkage.model.upperPositionLimit = np.full(3, -3.0), np.full(3, 3.0)
+    assembly = assemble(linkage, limits=True)
+    assert (assembly.closes, assembly.reason, assembly.at_limits) == (False, "not closed", ())
+
+
+def test_a_range_of_zero_width_is_no_range_unless_strict() -> None:
+    linkage = n_bar(4, away=0.7)
+    linkage.model.lowerPositionLimit = linkage.model.upperPositionLimit = np.zeros(4)
+    assert assemble(linkage, limits=True).converged
+    strict = assemble(linkage, limits="strict")
+    assert (strict.closes, strict.reason) == (False, "joint limits")
+    np.testing.assert_array_equal(strict.q, np.zeros(4))
+    with pytest.raises(ValueError, match="limits is 'none'; it must be True, False or 'strict'"):
+        assemble(linkage, limits="none")  # type: ignore[arg-type]
+
+
+def test_redundant_rows_that_contradict_one_another_are_a_reason() -> None:
+    assembly = assemble(sarrus(away=(0.3, -0.2, 0.4, 0.1, 0.2, 0.3), decimals=7))
+    assert (assembly.converged, assembly.closes, assembly.reason) == (False, True, "rounding")
+
+
 def test_limits_do_not_hold_back_balls_and_turning_wheels() -> None:
     model = pin.Model()
     wheel = model.addJoint(0, pin.JointModelRUBZ(), pin.SE3.Identity(), "wheel")

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from scipy.optimize import nnls
 
 from actuated import ROBOTS, actuated, closed_near, robot_called
-from eurdf.kinematics.assembly import assemble
+from eurdf.kinematics.assembly import assemble, start
 from eurdf.kinematics.bounded_step import bounded_step
 from eurdf.kinematics.forward_kinematics import forward_kinematics
 from eurdf.kinematics.inverse_kinematics import inverse_kinematics
@@ -23,16 +23,15 @@ from eurdf.kinematics.sensitivity import actuated_jacobian
 from eurdf.kinematics.split import split_configuration
 from linkage import Linkage, Z, loop, n_bar, stewart, translation
 
-# For each robot a frame to lead, and whether the limits of its joints are of use: published files that give no range
-# hold their joints at zero.
-LED: dict[str, tuple[str, bool]] = {
-    "digit_leg": ("foot", True),
-    "four_bar": ("coupler", True),
-    "wild/5bar_linkage": ("effector", False),
-    "wild/5bar_linkage_iso3d": ("effector", False),
-    "wild/cassie_like": ("foot", False),
-    "wild/digit_like": ("foot", False),
-    "wild/talos_like": ("foot", False),
+# For each robot a frame to lead.
+LED = {
+    "digit_leg": "foot",
+    "four_bar": "coupler",
+    "wild/5bar_linkage": "effector",
+    "wild/5bar_linkage_iso3d": "effector",
+    "wild/cassie_like": "foot",
+    "wild/digit_like": "foot",
+    "wild/talos_like": "foot",
 }
 
 
@@ -62,18 +61,18 @@ def arm(*lengths: float, limit: float = np.inf) -> Any:
 @pytest.mark.parametrize("name", [name for name in LED if name in ROBOTS])
 @pytest.mark.parametrize("as_pose", [True, False])
 def test_what_forward_kinematics_reaches_inverse_kinematics_finds_again(name: str, as_pose: bool) -> None:
-    robot, (frame, limits) = robot_called(name), LED[name]
-    random, q0 = np.random.default_rng(0), assemble(robot_called(name), limits=limits).q
+    robot, frame = robot_called(name), LED[name]
+    random, q0 = np.random.default_rng(0), assemble(robot_called(name), limits=True).q
     found = 0
     for _ in range(8):
-        wanted = closed_near(robot, random, 0.5, limits=limits)
+        wanted = closed_near(robot, random, 0.5, limits=True)
         q_actuated, _ = split_configuration(robot, wanted)
         reached = forward_kinematics(robot, q_actuated, wanted)
         target = pose(robot, reached, frame)
-        answer = inverse_kinematics(robot, {frame: target if as_pose else target.translation}, q0, limits)
+        answer = inverse_kinematics(robot, {frame: target if as_pose else target.translation}, q0)
         assert np.abs(residual(robot, answer.q)).max() <= 1e-10
         assert max(max(opening.position, opening.angle) for opening in answer.open) <= 1e-9
-        assert not limits or outside_limits(robot, answer.q) == 0.0
+        assert outside_limits(robot, answer.q) == 0.0
         at = pose(robot, answer.q, frame)
         (error,) = answer.errors
         off = np.linalg.norm(at.translation - target.translation)
@@ -82,6 +81,25 @@ def test_what_forward_kinematics_reaches_inverse_kinematics_finds_again(name: st
         assert answer.converged == (max(off, turned) <= 1e-8)
         found += answer.converged
     assert found == 8
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_a_target_that_is_the_current_pose_takes_no_step(name: str) -> None:
+    robot = robot_called(name)
+    q = assemble(robot).q
+    frame = next(found.name for found in robot.model.frames if found.parentJoint == robot.model.njoints - 1)
+    answer = inverse_kinematics(robot, {frame: pose(robot, q, frame)}, q)
+    assert (answer.converged, answer.iterations, answer.reason, answer.at_limits) == (True, 0, None, ())
+    np.testing.assert_array_equal(answer.q, start(robot, q))
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_a_pose_near_by_is_reached_with_the_default_limits(name: str) -> None:
+    robot = robot_called(name)
+    q = assemble(robot, limits=True).q
+    frame = next(found.name for found in robot.model.frames if found.parentJoint == robot.model.njoints - 1)
+    target = pose(robot, closed_near(robot, np.random.default_rng(2), 0.1, limits=True), frame)
+    assert inverse_kinematics(robot, {frame: target}, q).converged
 
 
 @given(seed=st.integers(0, 2**32 - 1))
@@ -134,7 +152,7 @@ def test_a_foot_follows_a_trajectory_without_leaps() -> None:
 
 @pytest.mark.parametrize("name", [name for name in ("digit_leg", "four_bar", "wild/talos_like") if name in ROBOTS])
 def test_a_target_out_of_reach_ends_in_bounded_time_as_near_as_can_be(name: str) -> None:
-    robot, (frame, _) = robot_called(name), LED[name]
+    robot, frame = robot_called(name), LED[name]
     q0 = assemble(robot).q
     target = pose(robot, q0, frame).translation + np.array([0.0, 0.4, -3.0])
     begin = time.process_time()
@@ -175,6 +193,58 @@ def test_limits_are_hard_and_what_they_cost_is_said() -> None:
     best = np.array([np.cos(0.5) + np.cos(1.0), np.sin(0.5) + np.sin(1.0)])
     assert answer.errors[0].position == pytest.approx(np.linalg.norm(best - [0.0, 2.0]), abs=1e-9)
     assert inverse_kinematics(robot, {"end": [0.0, 2.0, 0.0]}, np.zeros(2), limits=False).converged
+
+
+def test_a_range_of_zero_width_is_no_range_unless_strict() -> None:
+    robot = arm(1.0, 1.0, limit=0.0)
+    assert inverse_kinematics(robot, {"end": [0.0, 1.5, 0.0]}, np.zeros(2)).converged
+    strict = inverse_kinematics(robot, {"end": [0.0, 1.5, 0.0]}, np.zeros(2), "strict")
+    np.testing.assert_array_equal(strict.q, np.zeros(2))
+    assert (strict.converged, strict.reason) == (False, "joint limits")
+    assert [(found.joint, found.limit) for found in strict.at_limits] == [("j0", 0.0), ("j1", 0.0)]
+    with pytest.raises(ValueError, match="limits is 'all'; it must be True, False or 'strict'"):
+        inverse_kinematics(robot, {}, limits="all")  # type: ignore[arg-type]
+
+
+def test_the_joints_at_their_limits_are_the_reason() -> None:
+    answer = inverse_kinematics(arm(1.0, 1.0, limit=0.5), {"end": [0.0, 2.0, 0.0]}, np.zeros(2))
+    assert answer.reason == "joint limits"
+    assert [(found.joint, found.side, found.limit) for found in answer.at_limits] == [
+        ("j0", "upper", 0.5),
+        ("j1", "upper", 0.5),
+    ]
+    assert "at their limits: 'j0' (upper limit 0.5), 'j1' (upper limit 0.5)" in repr(answer)
+
+
+def test_a_joint_at_its_limit_that_does_not_matter_is_no_reason() -> None:
+    robot = arm(1.0, limit=0.5)
+    answer = inverse_kinematics(robot, {"end": [2.0 * np.cos(0.3), 2.0 * np.sin(0.3), 1.0]}, np.array([0.5]))
+    assert answer.q[0] == pytest.approx(0.3, abs=1e-4)
+    assert (answer.reason, answer.at_limits) == ("out of reach", ())
+    assert "no motion of the mechanism brings the frames nearer" in repr(answer)
+
+
+def test_an_arm_that_is_too_short_is_singular_where_it_ends() -> None:
+    answer = inverse_kinematics(arm(1.0, 0.7), {"end": [3.0, 4.0, 0.0]}, np.array([0.3, 0.8]))
+    assert (answer.reason, answer.at_limits) == ("singular", ())
+    assert "'end' by 3.3e+03 mm" in repr(answer)
+
+
+def test_a_descent_that_has_no_steps_left_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("eurdf.kinematics.inverse_kinematics._MOST_STEPS", 1)
+    answer = inverse_kinematics(arm(1.0, 0.7), {"end": [0.0, 1.2, 0.0]}, np.array([0.3, 0.8]), restarts=0)
+    assert (answer.converged, answer.reason) == (False, "steps")
+
+
+def test_loops_that_limits_keep_open_are_the_reason() -> None:
+    linkage = n_bar(4, away=0.7)
+    linkage.model.lowerPositionLimit, linkage.model.upperPositionLimit = np.full(4, -0.1), np.full(4, 0.2)
+    linkage.model.addFrame(pin.Frame("tip", 2, 0, translation(0.1, 0.0, 0.0), pin.FrameType.OP_FRAME))
+    answer = inverse_kinematics(actuated(linkage), {"tip": [1.0, 0.0, 0.0]})
+    assert (answer.converged, answer.reason) == (False, "closures open")
+    assert answer.at_limits
+    assert {found.joint for found in answer.at_limits} <= {"j0", "j1", "j2", "j3"}
+    assert "closures stay open; open: 'end' by" in repr(answer)
 
 
 def test_a_joint_that_was_at_its_limit_leaves_it_when_it_should() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from eurdf.kinematics.assembly import Assembler, start
 from eurdf.kinematics.evaluation import Evaluation
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.sparse_basis import sparse_basis
+from eurdf.kinematics.velocity_names import velocity_names
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -150,7 +151,7 @@ def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
     assembler = Assembler(robot)
     assembly = assembler.assemble(start(robot, q))
     nv, nc = model.nv, sum(len(evaluation.group.rows) for evaluation in assembler.evaluations)
-    names = _names_of_velocities(model)
+    names = velocity_names(model)
     loops: tuple[LoopAnalysis, ...] = ()
     motions: list[Motion] = []
     if assembly.closes:
@@ -292,18 +293,6 @@ def _motions(
 
 def _unit_motion(names: Sequence[str], velocity: int) -> Motion:
     return Motion((names[velocity],), np.array([velocity]), np.ones(1))
-
-
-def _names_of_velocities(model: Any) -> list[str]:
-    """For each velocity the name of its joint."""
-    names = [""] * model.nv
-    for name, first, width in zip(model.names, model.idx_vs, model.nvs, strict=True):
-        names[first : first + width] = [name] * width
-    # The coordinate of a joint that comes after one which follows it belongs to a joint of its own.
-    return [
-        name.removesuffix("/coordinate") if name.endswith("/coordinate") and model.existJointName(name[:-11]) else name
-        for name in names
-    ]
 
 
 def _distinct(names: Iterable[str]) -> tuple[str, ...]:

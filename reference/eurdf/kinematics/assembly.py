@@ -13,7 +13,7 @@ import math
 import weakref
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import pinocchio as pin
@@ -22,7 +22,7 @@ from eurdf.kinematics.array import Vector
 from eurdf.kinematics.descent import Descent
 from eurdf.kinematics.evaluation import Evaluation, evaluations
 from eurdf.kinematics.loop import LoopGroup, find_loops, independent_groups
-from eurdf.kinematics.position_limit import position_limits
+from eurdf.kinematics.position_limit import JointAtLimit, Limits, PositionLimits, chosen_limits
 from eurdf.kinematics.residual import CLOSED, Opening
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
 
@@ -46,7 +46,12 @@ _SPREADS = (0.1, 0.3, 1.0, 2.0, 3.0)
 _MOST_KEPT = 2
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+#: Why an assembly did not converge: joints at their limits keep the loops open; the loops were not closed, though no
+#: limit keeps them open; or they close, but redundant rows contradict one another by the rounding of numbers in files.
+AssemblyReason = Literal["joint limits", "not closed", "rounding"]
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Assembly:
     """What `assemble` found.
 
@@ -59,6 +64,9 @@ class Assembly:
             of numbers in its files.
         iterations: Number of evaluations of the residual and its Jacobian.
         open: How far each closure is open at q, in their order.
+        reason: Why it did not converge; None where it did.
+        at_limits: The joints that are at their limits at q, and would have to go beyond them to close the loops
+            farther; none where the loops close.
     """
 
     q: Vector
@@ -67,6 +75,17 @@ class Assembly:
     closes: bool
     iterations: int
     open: tuple[Opening, ...]
+    reason: AssemblyReason | None = None
+    at_limits: tuple[JointAtLimit, ...] = ()
+
+    def __repr__(self) -> str:
+        is_open = ", ".join(str(found) for found in self.open if found.is_open)
+        parts = [f"open: {is_open}" if is_open else "closed", f"residual {self.residual:.3g}"]
+        if self.reason == "rounding":
+            parts.append("not converged: redundant rows contradict one another by rounding")
+        if self.at_limits:
+            parts.append(f"at their limits: {', '.join(map(str, self.at_limits))}")
+        return f"<Assembly: {'; '.join(parts)}; {self.iterations} iterations>"
 
 
 def assemble(
@@ -75,7 +94,7 @@ def assemble(
     hold: Iterable[str] = (),
     *,
     tolerance: float = 1e-10,
-    limits: bool = False,
+    limits: Limits = False,
     restarts: int = 20,
 ) -> Assembly:
     """Find a closed configuration near the one given: r(q) = 0.
@@ -94,7 +113,8 @@ def assemble(
         hold: Names of joints that stay where they are. A joint that mimics another is held with that one.
         tolerance: What each row of the residual may be, m or rad, where the loops are closed.
         limits: Whether to stay within the position limits of the joints whose coordinates are plain angles or lengths;
-            where the start is outside of them it is brought to the nearest limit first.
+            where the start is outside of them it is brought to the nearest limit first. A range of zero width counts as
+            no range (`urdf-no-range`), unless it is ``"strict"``.
         restarts: How often to start again, at most, where loops are still open by more than `CLOSED`.
 
     Returns:
@@ -109,7 +129,7 @@ def assemble(
     if known is None or not known.fits(robot):
         known = _Known(robot, held)
     known.assembler.tolerance = tolerance
-    known.assembler.limits = position_limits(robot.model) if limits else None
+    known.assembler.limits = chosen_limits(robot.model, limits)
     assembly = known.assembler.assemble(q, restarts)
     known.keep(robot, held)
     return assembly
@@ -148,7 +168,7 @@ class Assembler:
     """
 
     def __init__(
-        self, robot: Robot, hold: Iterable[str] = (), *, tolerance: float = 1e-10, limits: bool = False
+        self, robot: Robot, hold: Iterable[str] = (), *, tolerance: float = 1e-10, limits: Limits = False
     ) -> None:
         """For the arguments see `assemble`."""
         # Not the robot: it would be kept alive by what is kept with it.
@@ -172,7 +192,7 @@ class Assembler:
         self.iterations = 0
         self._work = 0.0  # of the assembly under way, in multiplications
         self.tolerance = tolerance
-        self.limits = position_limits(model) if limits else None
+        self.limits = chosen_limits(model, limits)
 
     def assemble(self, q: Vector, restarts: int = 20) -> Assembly:
         """Close the loops, starting from q (nq,) and then, up to ``restarts`` times, from around it."""
@@ -186,13 +206,18 @@ class Assembler:
                     open_by[index] = opening
         largest = float(np.abs(r).max(initial=0.0))
         enough = max(CLOSED, self.tolerance)
+        converged = largest <= self.tolerance
+        closes = all(part <= enough for opening in open_by for part in opening)  # what is no number is not
+        at_limits = () if closes or self.limits is None else self._pressed(q, self.limits)
         return Assembly(
             q=q,
             residual=math.hypot(*r),
-            converged=largest <= self.tolerance,
-            closes=all(part <= enough for opening in open_by for part in opening),  # what is no number is not
+            converged=converged,
+            closes=closes,
             iterations=self.iterations - before,
             open=tuple(Opening(name, *opening) for name, opening in zip(self._names, open_by, strict=True)),
+            reason=None if converged else "rounding" if closes else "joint limits" if at_limits else "not closed",
+            at_limits=at_limits,
         )
 
     @np.errstate(over="ignore", invalid="ignore")  # lengths such as 1e200 m overflow, and so never close
@@ -260,6 +285,14 @@ class Assembler:
             for evaluation in going:
                 q = self.limits.clip(q, evaluation.group.velocities)
         return q
+
+    def _pressed(self, q: Vector, limits: PositionLimits) -> tuple[JointAtLimit, ...]:
+        """The joints at their limits that -Kᵀ r, down the residual, would move beyond them."""
+        down = np.zeros(self._model.nv)
+        for evaluation in self._whole:
+            b = evaluation.row_scale * evaluation.residual(q)
+            down[evaluation.group.velocities] = -evaluation.jacobian().T @ b
+        return limits.pressed(q, down)
 
     def _room(self, q: Vector, evaluation: Evaluation) -> tuple[Vector, Vector] | None:
         """How far the velocities of a group may go down and up, in rad and characteristic lengths."""

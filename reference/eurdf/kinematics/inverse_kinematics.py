@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import pinocchio as pin
@@ -15,8 +15,9 @@ from eurdf.kinematics.assembly import Assembler, start
 from eurdf.kinematics.bounded_step import bounded_step
 from eurdf.kinematics.frame_index import frame_index
 from eurdf.kinematics.metric import orthonormal
-from eurdf.kinematics.position_limit import position_limits
-from eurdf.kinematics.residual import Opening, residual_and_jacobian
+from eurdf.kinematics.position_limit import BEYOND, JointAtLimit, Limits, chosen_limits
+from eurdf.kinematics.rank import numerical_rank
+from eurdf.kinematics.residual import Opening, closure_openings, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
 
 if TYPE_CHECKING:
@@ -32,6 +33,10 @@ _IDLE_AT_LAST = 1e-8
 _LEAST_GAIN = 1e-12
 # How far from the start further descents begin (rad, or characteristic lengths); the last one is repeated.
 _SPREADS = (0.2, 0.5, 1.0, 2.0)
+# The squared error has no slope where it is below this part of what it may be, |A| |e|.
+_FLAT = 0.02
+# A configuration is singular where the smallest singular value of A is below this part of what it was elsewhere.
+_SINGULAR = 0.05
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,8 +53,26 @@ class FrameError:
     position: float
     angle: float
 
+    def __str__(self) -> str:
+        angle = f" and {math.degrees(self.angle):.3g} degrees" if self.angle else ""
+        return f"'{self.frame}' by {self.position * 1e3:.3g} mm{angle}"
 
-@dataclass(frozen=True, slots=True, eq=False)
+
+#: Why inverse kinematics did not converge: closures stay open; joints at their limits keep the frames off target; the
+#: configuration is singular, at the edge of what the mechanism reaches; no motion of the mechanism brings the frames
+#: nearer; or the steps ended on the way.
+InverseKinematicsReason = Literal["closures open", "joint limits", "singular", "out of reach", "steps"]
+
+_SENTENCES: dict[InverseKinematicsReason, str] = {
+    "closures open": "closures stay open",
+    "joint limits": "joints are at their limits",
+    "singular": "the configuration is singular, at the edge of what the mechanism reaches",
+    "out of reach": "no motion of the mechanism brings the frames nearer",
+    "steps": "the steps ended on the way; start nearer, or allow more restarts",
+}
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class InverseKinematics:
     """What `inverse_kinematics` found.
 
@@ -59,6 +82,8 @@ class InverseKinematics:
         errors: How far each frame is from its target, in the order of the targets.
         open: How far each closure is open at q, in their order.
         iterations: Number of steps tried.
+        reason: Why it did not converge; None where it did.
+        at_limits: The joints that are at their limits at q, and would have to go beyond them to come nearer.
     """
 
     q: Vector
@@ -66,13 +91,24 @@ class InverseKinematics:
     errors: tuple[FrameError, ...]
     open: tuple[Opening, ...]
     iterations: int
+    reason: InverseKinematicsReason | None = None
+    at_limits: tuple[JointAtLimit, ...] = ()
+
+    def __repr__(self) -> str:
+        parts = ["converged" if self.reason is None else f"not converged: {_SENTENCES[self.reason]}"]
+        if self.reason is not None:
+            is_open = ", ".join(str(found) for found in self.open if found.is_open)
+            parts += [f"open: {is_open}"] if is_open else []
+            parts += [f"at their limits: {', '.join(map(str, self.at_limits))}"] if self.at_limits else []
+            parts += [f"off target: {', '.join(map(str, self.errors))}"]
+        return f"<InverseKinematics: {'; '.join(parts)}; {self.iterations} iterations>"
 
 
 def inverse_kinematics(
     robot: Robot,
     targets: Mapping[str, Any],
     q0: Vector | None = None,
-    limits: bool = True,
+    limits: Limits = True,
     *,
     tolerance: float = 1e-8,
     restarts: int = 10,
@@ -94,10 +130,11 @@ def inverse_kinematics(
             description, where it is wanted in the world: a pose (`pin.SE3`), or a position (3,), m, that leaves its
             orientation free.
         q0: Where to start (nq,): of all solutions, it ends at one near by. It is closed first, and brought within the
-            limits. The `assembled` configuration by default, or else the neutral one.
+            limits, unless its closures are open by no more than 1e-6 and its frames at their targets: then it is the
+            answer. The `assembled` configuration by default, or else the neutral one.
         limits: Whether to keep the position limits of the joints whose coordinates are plain angles or lengths. Those
-            of a joint that mimics another are not looked at. A joint whose URDF gives no range has one of zero width
-            (`urdf-no-range`), and does not move.
+            of a joint that mimics another are not looked at. A range of zero width counts as no range
+            (`urdf-no-range`), unless it is ``"strict"``: then such a joint does not move.
         tolerance: How far a frame may be from its target, m and rad; loops are closed to 1e-10 where they can be.
         restarts: How often to start again, at most, where frames are off target. The time is bounded by
             ``restarts`` + 2 descents of at most 60 steps.
@@ -116,7 +153,7 @@ def inverse_kinematics(
 class _Search:
     """The descents of one question."""
 
-    def __init__(self, robot: Robot, targets: Mapping[str, Any], limits: bool, tolerance: float) -> None:
+    def __init__(self, robot: Robot, targets: Mapping[str, Any], limits: Limits, tolerance: float) -> None:
         self.robot = robot
         self.model = robot.model
         self.data = robot.model.createData()
@@ -127,10 +164,14 @@ class _Search:
         self.spaces = TangentSpaces(robot)
         self.tolerance = tolerance
         self.iterations = 0
-        self.limits = position_limits(robot.model) if limits else None
+        self.limits = chosen_limits(robot.model, limits)
         self.velocities = np.arange(robot.model.nv)
+        self.rank, self.smallest = 0, 0.0  # of E Z where it was the farthest from singular
 
     def run(self, q: Vector, restarts: int) -> InverseKinematics:
+        openings = closure_openings(self.robot, q)
+        if not any(found.is_open for found in openings) and self._within(q) and self._reached(q):
+            return InverseKinematics(q, True, self._errors(q), openings, 0)
         assembly = self.assembler.assemble(self._clipped(q))
         q = best = assembly.q
         if assembly.closes:
@@ -149,13 +190,40 @@ class _Search:
                     best, cost = end, reached
             best, _ = self._descend(best, _IDLE_AT_LAST)
         closed = self.assembler.assemble(best, restarts=0)
+        reason: InverseKinematicsReason | None = None
+        at_limits: tuple[JointAtLimit, ...] = ()
+        if not assembly.closes:
+            reason, at_limits = "closures open", assembly.at_limits
+        elif not self._reached(best):
+            reason, at_limits = self._why_off_target(best)
         return InverseKinematics(
             q=best,
-            converged=assembly.closes and self._reached(best),
+            converged=reason is None,
             errors=self._errors(best),
             open=closed.open,
             iterations=self.iterations,
+            reason=reason,
+            at_limits=at_limits,
         )
+
+    def _why_off_target(self, q: Vector) -> tuple[InverseKinematicsReason, tuple[JointAtLimit, ...]]:
+        """Why no descent goes on from a closed configuration at which frames are off their targets."""
+        e, E = self._error_and_jacobian(q)
+        Z = self._free_motions(q)
+        A = E @ Z
+        slope, size = A.T @ e, np.linalg.norm(A, 2) * np.linalg.norm(e) if A.size else 0.0
+        at_limits = () if self.limits is None else self.limits.pressed(q, -Z @ slope)
+        if np.linalg.norm(slope) <= _FLAT * size:
+            values = _singular_values(A)
+            singular = self.rank > 0 and not values[self.rank - 1] > _SINGULAR * self.smallest
+            return ("singular" if singular else "out of reach"), ()
+        if at_limits:
+            G, h = self._bounds(q, Z)
+            at_bounds = h <= BEYOND
+            down = bounded_step(np.eye(len(slope)), slope, G[at_bounds], np.zeros(int(at_bounds.sum())))
+            if np.linalg.norm(down) <= _FLAT * size:
+                return "joint limits", at_limits
+        return "steps", at_limits
 
     def _descend(self, q: Vector, least: float = _IDLE) -> tuple[Vector, float]:
         """Where a descent from a closed configuration leads to, and the squared error there.
@@ -165,6 +233,7 @@ class _Search:
             least: Part of the squared error that a step must take off it not to be idle.
         """
         e, E = self._error_and_jacobian(q)
+        self._look_at_rank(E @ self._free_motions(q))
         cost, damping, idle = float(e @ e), 1e-3, 0
         for _ in range(_MOST_STEPS):
             if idle > _MOST_IDLE_STEPS or self._reached(q):
@@ -188,15 +257,26 @@ class _Search:
 
     def _step(self, q: Vector, e: Vector, E: Matrix, damping: float) -> Vector:
         """The v (nv,) of ker K that minimises |E v + e|² + λ|v|² within the limits, of at most 1 rad or length."""
-        scale = self.spaces.scale
-        _, K = residual_and_jacobian(self.robot, q, self.data)
-        Z = orthonormal(self.spaces.at(K).basis, np.diag(scale**-2.0))
+        scale, Z = self.spaces.scale, self._free_motions(q)
         A = E @ Z
         H = A.T @ A
         np.einsum("ii->i", H)[:] += max(damping, 1e-13 * float(np.trace(H)), 1e-300)
         G, h = self._bounds(q, Z)
         v = Z @ bounded_step(H, A.T @ e, G, h)
         return np.asarray(v / np.abs(v / scale).max(initial=1.0), dtype=np.float64)
+
+    def _free_motions(self, q: Vector) -> Matrix:
+        """Basis Z (nv, m) of the motions that keep the loops closed, orthonormal in the units of the velocities."""
+        _, K = residual_and_jacobian(self.robot, q, self.data)
+        return orthonormal(self.spaces.at(K).basis, np.diag(self.spaces.scale**-2.0))
+
+    def _look_at_rank(self, A: Matrix) -> None:
+        """Keep the largest rank of A = E Z that was met, and with it the largest of its smallest singular values."""
+        values = _singular_values(A)
+        rank = numerical_rank(values, values.max(initial=0.0))
+        smallest = float(values[rank - 1]) if rank else 0.0
+        if (rank, smallest) > (self.rank, self.smallest):
+            self.rank, self.smallest = rank, smallest
 
     def _bounds(self, q: Vector, Z: Matrix) -> tuple[Matrix, Vector]:
         """G and h such that v = Z y keeps the limits where G y ≤ h: those that a step of 1 rad or length can reach."""
@@ -211,6 +291,9 @@ class _Search:
 
     def _moved(self, q: Vector, v: Vector) -> Vector:
         return self._clipped(np.asarray(pin.normalize(self.model, pin.integrate(self.model, q, v))))
+
+    def _within(self, q: Vector) -> bool:
+        return self.limits is None or not self.limits.beyond(q)
 
     def _clipped(self, q: Vector) -> Vector:
         return q if self.limits is None else self.limits.clip(q, self.velocities)
@@ -246,6 +329,10 @@ class _Search:
 
     def _reached(self, q: Vector) -> bool:
         return all(max(error.position, error.angle) <= self.tolerance for error in self._errors(q))
+
+
+def _singular_values(A: Matrix) -> Vector:
+    return np.asarray(np.linalg.svd(A, compute_uv=False) if A.size else np.empty(0), dtype=np.float64)
 
 
 def _target(name: str, target: Any) -> Any:

@@ -1,13 +1,40 @@
-"""The position limits that an assembly can be asked to keep."""
+"""The position limits that kinematics can be asked to keep."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from eurdf.kinematics.array import Indices, Vector
+from eurdf.kinematics.velocity_names import velocity_names
+
+#: Which position limits to keep: all but the ranges of zero width (True), none (False), or all (``"strict"``).
+Limits = bool | Literal["strict"]
+
+#: How far a coordinate may be beyond its limit, rad or m, as in EU-CFG-004.
+BEYOND = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class JointAtLimit:
+    """A coordinate of a joint that is at its limit, or beyond it.
+
+    Attributes:
+        joint: Name of the joint.
+        limit: Its limit, rad or m.
+        side: Which of its two limits this is.
+        beyond: How far the coordinate is beyond it, rad or m; 0 where it is at it.
+    """
+
+    joint: str
+    limit: float
+    side: Literal["lower", "upper"]
+    beyond: float = 0.0
+
+    def __str__(self) -> str:
+        return f"'{self.joint}' ({self.side} limit {self.limit:.6g})"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -17,11 +44,13 @@ class PositionLimits:
     The coordinates of quaternions, and of cosine and sine, have none; neither has a joint that mimics another.
 
     Attributes:
+        joints: For each velocity (nv) the name of its joint.
         coordinates: Index (nv,) in q of the coordinate that each velocity drives; 0 where there is no such one.
         lower: Lower limits (nv,), rad or m; -inf where there is none.
         upper: Upper limits (nv,); inf where there is none.
     """
 
+    joints: tuple[str, ...]
     coordinates: Indices
     lower: Vector
     upper: Vector
@@ -39,9 +68,32 @@ class PositionLimits:
         at = q[self.coordinates[velocities]]
         return np.minimum(self.lower[velocities] - at, 0.0), np.maximum(self.upper[velocities] - at, 0.0)
 
+    def beyond(self, q: Vector) -> tuple[JointAtLimit, ...]:
+        """The coordinates that are beyond a limit at q, by more than `BEYOND`."""
+        at = q[self.coordinates]
+        below, above = self.lower - at, at - self.upper
+        found = [self._at(v, "lower", below[v]) for v in np.flatnonzero(below > BEYOND).tolist()]
+        return (*found, *(self._at(v, "upper", above[v]) for v in np.flatnonzero(above > BEYOND).tolist()))
 
-def position_limits(model: Any) -> PositionLimits:
-    """Position limits of a model."""
+    def pressed(self, q: Vector, v: Vector) -> tuple[JointAtLimit, ...]:
+        """The coordinates that are at a limit at q, or within 1e-9 of it, and that v (nv,) would move beyond it."""
+        at, least = q[self.coordinates], 1e-6 * float(np.abs(v).max(initial=0.0))
+        low = (at - self.lower <= BEYOND) & (v < -least)
+        high = (self.upper - at <= BEYOND) & (v > least)
+        found = [self._at(index, "lower") for index in np.flatnonzero(low).tolist()]
+        return (*found, *(self._at(index, "upper") for index in np.flatnonzero(high).tolist()))
+
+    def _at(self, velocity: int, side: Literal["lower", "upper"], beyond: float = 0.0) -> JointAtLimit:
+        limit = (self.lower if side == "lower" else self.upper)[velocity]
+        return JointAtLimit(self.joints[velocity], float(limit), side, float(beyond))
+
+
+def position_limits(model: Any, *, strict: bool = False) -> PositionLimits:
+    """Position limits of a model.
+
+    A range whose lower and upper limits are both zero is what URDF makes of a range that is left out (`urdf-no-range`).
+    It counts as no range, and the coordinate as unlimited, unless ``strict``.
+    """
     coordinates = np.zeros(model.nv, dtype=np.intp)
     lower, upper = np.full(model.nv, -np.inf), np.full(model.nv, np.inf)
     for joint in model.joints[1:]:
@@ -50,4 +102,18 @@ def position_limits(model: Any) -> PositionLimits:
         v, q = slice(joint.idx_v, joint.idx_v + joint.nv), slice(joint.idx_q, joint.idx_q + joint.nq)
         coordinates[v] = np.arange(q.start, q.stop)
         lower[v], upper[v] = model.lowerPositionLimit[q], model.upperPositionLimit[q]
-    return PositionLimits(coordinates, lower, upper)
+    if not strict:
+        left_out = (lower == 0.0) & (upper == 0.0)
+        lower[left_out], upper[left_out] = -np.inf, np.inf
+    return PositionLimits(tuple(velocity_names(model)), coordinates, lower, upper)
+
+
+def chosen_limits(model: Any, limits: Limits) -> PositionLimits | None:
+    """The position limits of a model that are to be kept, if any.
+
+    Raises:
+        ValueError: ``limits`` is none of True, False and ``"strict"``.
+    """
+    if isinstance(limits, str) and limits != "strict":
+        raise ValueError(f"limits is {limits!r}; it must be True, False or 'strict'")
+    return position_limits(model, strict=limits == "strict") if limits else None
