@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import sys
 from pathlib import Path
 
@@ -14,6 +15,7 @@ sys.path.insert(0, str(Path(__file__).parent.parent))
 
 import eurdf
 from robots.builder import Cylinder, Drawing, Motor, ball, revolute, write
+from wild import WILD, needs_wild
 
 LEFT = (0.0, 1.0, 0.0)
 MOTOR = Motor(effort=1.0, velocity=1.0)
@@ -189,6 +191,63 @@ def test_what_has_no_stops_to_be_swept_between_is_refused(tmp_path):
     description.write_text(description.read_text() + "actuators: [shoulder]\n")
     with pytest.raises(ValueError, match="'shoulder' has 3 velocities"):
         eurdf.sweep(eurdf.load(tmp_path), "shoulder")
+
+
+def without_ranges(folder):
+    """The robot in a folder, with no range in its URDF."""
+    urdf = folder / "robot.urdf"
+    urdf.write_text(re.sub(r'(lower|upper)="[^"]*" ?', "", urdf.read_text()))
+    return eurdf.load(folder)
+
+
+def test_an_actuator_without_a_range_turns_as_far_as_it_goes(tmp_path):
+    linkage(tmp_path, CRANK_AND_ROCKER, stops=(-40.0, 90.0), passive_stops=(-180.0, 1.0))
+    robot = without_ranges(tmp_path)
+    q0 = eurdf.forward_kinematics(robot, {"crank": 0.3})
+    found = eurdf.sweep(robot, "crank", q0)
+    assert (found.lower.end, found.upper.end, found.comes_round) == ("half turn", "half turn", True)
+    assert found.stops == pytest.approx((0.3 - math.pi, 0.3 + math.pi))
+    assert (found.lower.reached, found.upper.reached) == pytest.approx(found.stops)
+    strict = eurdf.sweep(robot, "crank", q0, limits="strict")
+    assert strict.stops == (0.0, 0.0)
+
+
+def test_without_limits_stops_are_passed(tmp_path):
+    robot = linkage(tmp_path, CRANK_AND_ROCKER, stops=(-40.0, 90.0), passive_stops=(-180.0, 1.0))
+    found = eurdf.sweep(robot, "crank", limits=False)
+    assert (found.lower.end, found.upper.end, found.comes_round) == ("half turn", "half turn", True)
+
+
+def test_a_slide_without_a_range_goes_as_far_as_the_loops_reach(tmp_path):
+    (tmp_path / "robot.urdf").write_text(SCREW)
+    (tmp_path / "robot.yaml").write_text('extended_urdf: "2.0"\nactuators: [slide]\n')
+    found = eurdf.sweep(without_ranges(tmp_path), "slide")
+    assert (found.lower.end, found.upper.end) == ("characteristic length", "characteristic length")
+    assert (found.lower.reached, found.upper.reached, found.comes_round) == (-1.0, 1.0, None)
+
+
+def test_a_passive_joint_beyond_its_stop_may_come_back_but_not_go_farther(tmp_path):
+    robot = linkage(tmp_path, CRANK_AND_ROCKER, passive_stops=(-180.0, 180.0))
+    rocker = robot.model.idx_qs[robot.model.getJointId("rocker")]
+    whole = eurdf.sweep(robot, "crank", steps=50)
+    back = [way for way in (whole.lower, whole.upper) if way.configurations[1, rocker] < 0.0]
+    assert len(back) == 1
+    upper = robot.model.upperPositionLimit
+    upper[rocker] = -0.1  # it starts at 0
+    robot.model.upperPositionLimit = upper
+    found = eurdf.sweep(robot, "crank", steps=50)
+    ends = {way.configurations[-1, rocker] < -0.05: way for way in (found.lower, found.upper)}
+    assert all(way.configurations[:, rocker].max() <= 1e-9 for way in ends.values())
+    assert any(way.configurations[:, rocker].min() < -0.1 for way in (found.lower, found.upper))
+
+
+@needs_wild
+def test_sweeps_of_a_published_robot_divide_by_nothing():
+    # Warnings are errors here. Its balls are three revolutes, one of which a hip does not move.
+    robot = eurdf.load(WILD / "digit_like_2legs", geometry=False)
+    for limits in (True, "strict"):
+        found = eurdf.sweep(robot, "motor_hip_y", steps=20, limits=limits)
+        assert found.lower.end == ("half turn" if limits is True else "stop")
 
 
 def test_loops_that_cannot_be_closed_are_said_to_be_open(tmp_path):

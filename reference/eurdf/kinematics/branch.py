@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pinocchio as pin
 
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.kinematics.array import Mask, Matrix, Vector
 from eurdf.kinematics.evaluation import evaluations
 from eurdf.kinematics.loop import independent_groups
-from eurdf.kinematics.position_limit import position_limits
+from eurdf.kinematics.position_limit import BEYOND, PositionLimits
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
 
@@ -37,7 +37,6 @@ _CLOSED = 1e-13  # what each row of the residual is brought to, m or rad, ...
 _ROUNDING = 1e-14  # ... unless the corrections come to this (rad, or characteristic lengths), as with redundant rows
 
 _SAME = 1e-6  # how far apart configurations may be that count as one (rad, or characteristic lengths)
-_BEYOND = 1e-9  # how far a joint may be beyond its stop, rad or m, as in EU-CFG-004
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,8 +65,15 @@ class Point:
 class Branch:
     """Takes steps of one actuator of one robot."""
 
-    def __init__(self, robot: Robot, actuator: int, data: Any = None) -> None:
-        """``actuator`` is the index in v of the one that is led; ``data`` is a `pin.Data` to compute in."""
+    def __init__(self, robot: Robot, actuator: int, limits: PositionLimits | None, data: Any = None) -> None:
+        """Prepare the loops that an actuator moves.
+
+        Args:
+            robot: The robot.
+            actuator: Index in v of the actuator that is led.
+            limits: The position limits at which passive joints stop, if any.
+            data: A `pin.Data` to compute in.
+        """
         model = self._model = robot.model
         held = set(robot.actuation.idx_v.tolist()) - {actuator}
         groups = [group for group in independent_groups(robot, held) if actuator in group.velocities]
@@ -82,10 +88,8 @@ class Branch:
         self._velocities = groups[0].velocities if groups else np.array([actuator])
         self._unit = unit[self._velocities]
         self._passive = self._velocities != actuator
-        limits = position_limits(model)
-        self._coordinates = limits.coordinates[self._velocities]
-        self._lower = np.where(self._passive, limits.lower[self._velocities] - _BEYOND, -np.inf)
-        self._upper = np.where(self._passive, limits.upper[self._velocities] + _BEYOND, np.inf)
+        self._limits = limits
+        self._turns = _whole_turns(model)[self._velocities]
 
     def at(self, q: Vector, correction: float = 0.0) -> Point:
         """The point that is the closed configuration q (nq,)."""
@@ -123,22 +127,32 @@ class Branch:
         return there if change <= here.smallest + there.smallest else None
 
     def passive_stop(self, here: Point, there: Point) -> tuple[str, float] | None:
-        """The passive joint that comes first to its stop between two points, and after what part of the step."""
-        before, after = here.q[self._coordinates], there.q[self._coordinates]
-        over = np.maximum(after - self._upper, self._lower - after)
-        if not over.max() > 0.0:
+        """The passive joint that comes first to its stop between two points, and after what part of the step.
+
+        A joint that is beyond its stop already, as it may be at the start, may come back, but not go farther.
+        """
+        if self._limits is None:
             return None
-        part = np.full(len(over), np.inf)
-        np.divide(over, np.abs(after - before), out=part, where=over > 0.0)
-        first = int(np.argmax(np.where(over > 0.0, part, -np.inf)))
-        model, velocity = self._model, self._velocities[first]
-        ends = zip(model.names, model.idx_vs, model.nvs, strict=True)
-        joint = next(name for name, start, width in ends if start <= velocity < start + width)
-        return joint, max(1.0 - float(part[first]), 0.0)
+        passive = self._velocities[self._passive]
+        coordinates, lower, upper = (
+            values[passive] for values in (self._limits.coordinates, self._limits.lower, self._limits.upper)
+        )
+        before, after = here.q[coordinates], there.q[coordinates]
+        over = np.maximum(after - np.maximum(upper, before), np.minimum(lower, before) - after) - BEYOND
+        if not over.max(initial=0.0) > 0.0:
+            return None
+        part = np.full(len(over), -np.inf)
+        np.divide(over, np.abs(after - before), out=part, where=over > 0.0)  # what goes farther has moved
+        first = int(np.argmax(part))
+        return self._limits.joints[passive[first]], 1.0 - float(part[first])
 
     def same(self, one: Point, other: Point) -> bool:
-        """Whether two points with the actuator in one place are one, but for motions that the actuators leave free."""
-        apart = np.asarray(pin.difference(self._model, one.q, other.q))[self._velocities] / self._unit
+        """Whether two points with the actuator in one place are one, but for motions that the actuators leave free.
+
+        An angle is in one place with all that differ from it by whole turns.
+        """
+        apart = np.asarray(pin.difference(self._model, one.q, other.q))[self._velocities]
+        apart = np.where(self._turns, np.remainder(apart + math.pi, 2.0 * math.pi) - math.pi, apart) / self._unit
         # K_p⁺ K takes out of it what K_p lets move.
         return bool(np.abs(one.inverse @ (one.K @ apart)).max() <= _SAME)
 
@@ -151,3 +165,18 @@ class Branch:
         v[self._velocities] = self._unit * step
         # Pinocchio brings quaternions back to unit length to first order alone.
         return np.asarray(pin.normalize(self._model, pin.integrate(self._model, q, v)))
+
+
+def _whole_turns(model: Any) -> Mask:
+    """Which velocities (nv,) drive a plain angle that whole turns leave where it is: nothing counts its turns."""
+    turns: Mask = np.zeros(model.nv, dtype=bool)
+    neutral = pin.neutral(model)
+    for joint in model.joints[1:]:
+        if joint.nv and joint.nq == joint.nv:
+            data = joint.createData()
+            joint.calc(data, neutral)
+            S = data.S.reshape(6, -1)
+            turns[joint.idx_v : joint.idx_v + joint.nv] = ~S[:3].any(axis=0)
+    for joint in model.mimicking_joints:  # one that follows by half an angle does count them
+        turns[model.joints[joint].idx_v] = False
+    return turns
