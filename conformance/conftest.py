@@ -2,14 +2,29 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
+
+from eurdf_conformance.needed import REQUIRED, missing, needs
+
+_ROOT = Path(__file__).parents[1]
+
+# Of eurdf the reference parser is made, and its dependencies are those of the suite; pyproject.toml asks for xdist.
+_NEEDED = ("eurdf", *REQUIRED, "xdist")
 
 # All tests are in `suite`: to look for some in every folder of the corpus takes longer than to read it.
 collect_ignore = [str(path) for path in (Path(__file__).parent / "eurdf_conformance").iterdir() if path.name != "suite"]
 
 
 def pytest_addoption(parser: pytest.Parser, pluginmanager: pytest.PytestPluginManager) -> None:
-    """Load the plug-in, if the command line has not done so."""
+    """Load the plug-in, if the command line has not done so.
+
+    Raises:
+        pytest.UsageError: A package that it imports is not installed.
+    """
+    if lacking := missing(_NEEDED):
+        here = "." if Path.cwd() == _ROOT else os.fspath(_ROOT)
+        raise pytest.UsageError(f'{needs(lacking)}; install them with: pip install "{here}[conformance]"')
     pluginmanager.import_plugin("eurdf_conformance.suite.plugin")

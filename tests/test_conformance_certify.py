@@ -21,7 +21,6 @@ from eurdf_conformance.certificate import suite_run
 from eurdf_conformance.certificate.certificate import certificate_schema, read_certificate
 from eurdf_conformance.certificate.issue import issue
 from eurdf_conformance.certificate.replay import replay_schema
-from eurdf_conformance.certificate.suite_run import CannotRunSuite, SuiteRun, run_suite
 from eurdf_conformance.corpus.case import InvalidCase
 from eurdf_conformance.corpus.read import read_cases
 from eurdf_conformance.level import Level
@@ -219,10 +218,15 @@ def test_a_level_that_was_asked_for_and_is_not_claimed_is_not_certified(folder: 
     assert done.stdout.endswith("always_rejected 1: Not certified at any level\n")
 
 
-def test_without_pytest_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(suite_run, "REQUIRED", ("pytest", "no_such_package"))
-    with pytest.raises(CannotRunSuite, match=r"needs no_such_package: pip install 'eurdf\[conformance\]'"):
-        run_suite(SuiteRun(ACCEPTS))
+def test_without_the_suites_packages_it_says_what_to_install(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(suite_run, "missing", lambda: ["hypothesis"])
+    assert main(["certify", "--parser", ACCEPTS]) == 2
+    said = capsys.readouterr().err
+    assert "packages that are not installed (hypothesis); install them with: " in said
+    assert said.endswith('pip install "eurdf[conformance]"\n')
+    assert said.count("\n") == 1
 
 
 def test_the_users_own_settings_of_pytest_have_no_part_in_it(folder: Path) -> None:

@@ -13,20 +13,17 @@ import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, date, datetime, time
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from eurdf_conformance.certificate.certificate import Certificate, read_certificate
 from eurdf_conformance.level import Level, Version
+from eurdf_conformance.needed import is_installed, missing, needs
 from eurdf_conformance.runner.session import NotStarted, Session
 from eurdf_conformance.visible import visible
 
 if TYPE_CHECKING:
     import pytest
-
-#: What the suite needs beside the package itself, which the extra ``conformance`` installs.
-REQUIRED = ("pytest", "hypothesis", "ruamel.yaml")
 
 _SUITE = "eurdf_conformance.suite"
 
@@ -44,6 +41,10 @@ class CannotRunSuite(Exception):  # noqa: N818 - said to the user as it stands
     def __init__(self, why: str, log: str = "") -> None:
         self.log = visible(log)
         super().__init__(why)
+
+
+class MissingPackages(CannotRunSuite):
+    """Packages of the extra ``conformance`` are not installed."""
 
 
 @dataclass(frozen=True)
@@ -76,12 +77,12 @@ def run_suite(run: SuiteRun, progress: Progress | None = None) -> Certificate:
         progress: Called after each item.
 
     Raises:
-        CannotRunSuite: A part of it is not installed, the reader does not start, or the suite broke off.
+        MissingPackages: The extra ``conformance`` is not installed.
+        CannotRunSuite: The reader does not start, or the suite broke off.
         KeyboardInterrupt: The user ended it.
     """
-    missing = [name for name in REQUIRED if not _is_installed(name)]
-    if missing:
-        raise CannotRunSuite(f"the suite needs {' and '.join(missing)}: pip install 'eurdf[conformance]'")
+    if lacking := missing():
+        raise MissingPackages(needs(lacking))
     import pytest
 
     _greet(run)
@@ -98,15 +99,6 @@ def run_suite(run: SuiteRun, progress: Progress | None = None) -> Certificate:
         return read_certificate(Path(scratch))
 
 
-def _is_installed(name: str) -> bool:
-    """Whether a module can be imported; a folder that an uninstalled package has left behind is none."""
-    try:
-        found = find_spec(name)
-    except ModuleNotFoundError:  # the package that it is in
-        return False
-    return found is not None and found.origin is not None
-
-
 def _greet(run: SuiteRun) -> None:
     """See whether the reader starts, before everything is asked of what does not."""
     session = Session(run.parser) if run.start_timeout is None else Session(run.parser, start_timeout=run.start_timeout)
@@ -120,7 +112,7 @@ def _greet(run: SuiteRun) -> None:
 
 def _arguments(run: SuiteRun, folder: str) -> list[str]:
     jobs = "auto" if run.jobs is None else str(run.jobs)
-    is_spread = _is_installed("xdist") and not run.smoke
+    is_spread = is_installed("xdist") and not run.smoke
     package = Path(__file__).parents[1]
     return [
         *("--pyargs", _SUITE, "-p", f"{_SUITE}.plugin", "--noconftest"),

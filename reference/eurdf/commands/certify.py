@@ -87,7 +87,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def run(args: argparse.Namespace) -> int:
     """Do what was asked, and return the exit code."""
     from eurdf_conformance.certificate.certificate import NoCertificate
-    from eurdf_conformance.certificate.suite_run import CannotRunSuite
+    from eurdf_conformance.certificate.suite_run import CannotRunSuite, MissingPackages
     from eurdf_conformance.verdict.known_failures import WrongKnownFailures
 
     try:
@@ -105,6 +105,10 @@ def run(args: argparse.Namespace) -> int:
         if args.parser is None:
             raise CannotRun("--parser says which parser to certify, such as --parser='cmd:./my_parser'")
         return _certify(args)
+    except MissingPackages as reason:
+        from eurdf.extras import install_command
+
+        raise CannotRun(f"{reason}; install them with: {install_command('conformance')}") from None
     except CannotRunSuite as reason:
         sys.stderr.write(reason.log)
         raise CannotRun(str(reason)) from reason

@@ -1,0 +1,31 @@
+"""What the suite needs beside the dependencies of eurdf; the extra ``conformance`` installs it.
+
+Nothing but the standard library is imported here, so that what is missing can be said before an import fails.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from importlib.util import find_spec
+
+#: Modules of the extra without which there is no run.
+REQUIRED = ("pytest", "hypothesis", "ruamel.yaml")
+
+
+def missing(names: Iterable[str] = REQUIRED) -> list[str]:
+    """Those of some modules that cannot be imported."""
+    return [name for name in names if not is_installed(name)]
+
+
+def is_installed(name: str) -> bool:
+    """Whether a module can be imported; a folder that an uninstalled package has left behind is none."""
+    try:
+        found = find_spec(name)
+    except ModuleNotFoundError:  # the package that it is in
+        return False
+    return found is not None and found.origin is not None
+
+
+def needs(names: Iterable[str]) -> str:
+    """What is missing, as a sentence that a command to install it may follow."""
+    return f"the conformance suite needs packages that are not installed ({', '.join(names)})"
