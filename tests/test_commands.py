@@ -466,29 +466,55 @@ eurdf.check = lambda path, urdf=None: Report(path, (Diagnostic("wrong-type", "it
 sys.exit(main(["check", *sys.argv[1:]]))
 """
 
-_CHECK_FOREVER = """
-import sys, time
-import eurdf
-from eurdf.commands.main import main
-def check(path, urdf=None):
-    sys.stdout.write("checking\\n")
-    sys.stdout.flush()
-    time.sleep(60)
-eurdf.check = check
-sys.exit(main(["check", *sys.argv[1:]]))
+_INTERRUPT_AT_IMPORT = """
+import atexit, os, signal, sys
+from eurdf.commands.start import start
+moment = sys.argv.pop(1)
+def interrupt():
+    os.kill(os.getpid(), signal.SIGINT)
+class Finder:
+    def find_spec(name, path, target=None):
+        if name == moment:
+            interrupt()
+if moment == "the end":
+    atexit.register(interrupt)
+sys.meta_path.insert(0, Finder)
+sys.exit(start())
 """
 
 
-def test_an_interrupt_ends_the_command_quietly(folder: Path) -> None:
-    robot(folder)
-    process = subprocess.Popen(
-        [sys.executable, "-c", _CHECK_FOREVER, "."], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+def interrupted(moment: str, handler: Any) -> subprocess.CompletedProcess[str]:
+    """A check that is interrupted when it imports a module; SIGINT is first as whoever starts it leaves it."""
+    return subprocess.run(
+        [sys.executable, "-c", _INTERRUPT_AT_IMPORT, moment, "check", "."],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, handler),
     )
-    assert process.stdout is not None
-    assert process.stdout.readline() == "checking\n"
-    process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=120)
-    assert (process.returncode, out, err) == (130, "", "")
+
+
+@pytest.mark.parametrize("moment", ["eurdf.commands.main", "eurdf.checking", "lxml", "the end"])
+def test_an_interrupt_ends_the_command_quietly(folder: Path, moment: str) -> None:
+    robot(folder)
+    ended = interrupted(moment, signal.SIG_DFL)
+    assert ended.returncode in (130, -signal.SIGINT)  # a shell reports both as 130
+    assert ended.stderr == ""
+
+
+def test_a_command_that_was_started_with_interrupts_ignored_goes_on(folder: Path) -> None:
+    robot(folder)
+    ended = interrupted("lxml", signal.SIG_IGN)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, ".: sound\n", "")
+
+
+def test_an_interrupt_of_main_is_an_exit_code(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted_check(path: str, urdf: str | None = None) -> Report:
+        raise KeyboardInterrupt
+
+    robot(folder)
+    monkeypatch.setitem(vars(eurdf), "check", interrupted_check)
+    assert run("check", ".") == (130, "", "")
 
 
 def test_a_fault_of_the_program_is_not_taken_for_one_of_the_robot(

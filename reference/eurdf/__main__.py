@@ -2,7 +2,7 @@
 
 import sys
 
-from eurdf.commands.main import main
+from eurdf.commands.start import start
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(start())

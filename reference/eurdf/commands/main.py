@@ -17,12 +17,12 @@ from typing import TextIO
 from eurdf import __version__
 from eurdf.commands import certify, check, generate, info, migrate, robots, schema
 from eurdf.commands.cannot_run import CannotRun
+from eurdf.commands.start import INTERRUPTED, start
 
 #: The commands, in the order in which the help shows them.
 COMMANDS = (check, info, robots, migrate, generate, schema, certify)
 
-# What a shell reports of a program that a signal ended: 128 and the signal's number.
-_INTERRUPTED = 130
+# What a shell reports of a program that SIGPIPE ended: 128 and the signal's number.
 _BROKEN_PIPE = 141
 
 # Half of the time of a check is start-up. The matrices are too small for a pool of threads to pay, and no plugin of
@@ -51,7 +51,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         code: int = args.run(args)
         sys.stdout.flush()
     except KeyboardInterrupt:
-        return _INTERRUPTED
+        return INTERRUPTED
     except BrokenPipeError:
         # Nobody reads any more. The interpreter flushes once more at its end: let that go nowhere.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -87,4 +87,4 @@ def _write_any_character(stream: TextIO) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(start())

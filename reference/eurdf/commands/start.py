@@ -1,0 +1,39 @@
+"""Where the process of a command starts, and how an interrupt (Ctrl-C, SIGINT) ends it: quietly, at any moment.
+
+This module imports nothing that takes time: it handles an interrupt before the command itself is imported. A process
+that was started with interrupts ignored, such as a background job of a script, keeps ignoring them.
+"""
+
+from __future__ import annotations
+
+import signal
+from types import FrameType
+
+#: What a shell reports of a program that SIGINT ended: 128 and the signal's number.
+INTERRUPTED = 128 + signal.SIGINT
+
+
+def start() -> int:
+    """Run the command line of this process.
+
+    Returns:
+        The exit code of `eurdf.commands.main.main`.
+    """
+    try:
+        handled = signal.getsignal(signal.SIGINT) is signal.default_int_handler
+        if handled:
+            signal.signal(signal.SIGINT, _interrupt)
+        from eurdf.commands.main import main
+
+        code = main()
+        if handled:
+            signal.signal(signal.SIGINT, signal.SIG_DFL)  # nothing is left to clean up
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    return code
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    """Raise KeyboardInterrupt, once: the next interrupt ends the process at once."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    raise KeyboardInterrupt
