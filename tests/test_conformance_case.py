@@ -15,6 +15,7 @@ import yaml
 from pydantic import ValidationError
 
 from eurdf_conformance.adapters.reference import READER
+from eurdf_conformance.comparison.text import same_text
 from eurdf_conformance.corpus import archive, expect, read
 from eurdf_conformance.corpus.case import CASE, SCHEMA_FILE, InvalidCase, ValidCase, case_schema, schema_text
 from eurdf_conformance.corpus.clause import read_clauses
@@ -291,13 +292,16 @@ def test_an_expectation_is_written_where_it_is_missing_or_stale_and_by_hand_it_i
 
     path.unlink()
     assert main("--check") == (1, "")
-    assert main(case.id) == (0, right)
+    code, written = main(case.id)
+    assert code == 0
+    # What the oracle computes may have other last digits on this processor; they are rounded to 12.
+    assert same_text(written, right, relative=1e-9, absolute=1e-11)
     path.write_text(right + "\n", encoding="utf-8")
     assert main() == (0, right + "\n")
     path.write_text(wrong, encoding="utf-8")
     assert main("--check") == (1, wrong)
     assert "/values/0/mass" in capsys.readouterr().out
-    assert main() == (0, right)
+    assert main() == (0, written)
     said = (case.folder / CASE_FILE).read_text(encoding="utf-8").replace("expectation: oracle", "expectation: hand")
     (case.folder / CASE_FILE).write_text(said, encoding="utf-8")
     path.write_text(wrong, encoding="utf-8")

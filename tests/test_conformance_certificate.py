@@ -320,6 +320,16 @@ def test_a_second_run_that_came_to_something_else_is_told_line_by_line(failed: C
     ]
 
 
+@pytest.mark.parametrize(("given", "same"), [("0.3000000002", True), ("0.30001", False)])
+def test_a_second_run_on_another_processor_has_other_last_digits(failed: Certificate, given: str, same: bool) -> None:
+    def failing(number: str) -> Certificate:
+        difference = f"/values/0/mass: the mass: expected 0.25, given {number}"
+        return forged(failed, failures=[each.model_dump() | {"difference": difference} for each in failed.failures])
+
+    found = replay_differences(failing("0.3"), failing(given))
+    assert [": fails otherwise: " in each for each in found] == [True] * (not same)
+
+
 def forged(certificate: Certificate, **changes: object) -> Certificate:
     """What somebody made of a certificate by hand."""
     return Certificate.model_validate(certificate.model_dump() | changes)

@@ -14,12 +14,33 @@ from eurdf_conformance.comparison.coordinates import COORDINATES, neutral, same_
 from eurdf_conformance.comparison.difference import ABSENT, Difference
 from eurdf_conformance.comparison.half_turn import twin_residual, twin_rows
 from eurdf_conformance.comparison.issues import fault_differences, warning_differences
+from eurdf_conformance.comparison.text import same_text
 from eurdf_conformance.comparison.values import values_differences
 from eurdf_conformance.corpus.case import CasePlace, ExpectedWarning
 from eurdf_conformance.oracle.logarithm import log6
 from eurdf_conformance.protocol.message import CanonicalRobot, Issue, Values
 
 slow = settings(suppress_health_check=[HealthCheck.too_slow], deadline=None, max_examples=60)
+
+
+# Texts
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "same"),
+    [
+        ("xyz='0.1 -2e-5 3'", "xyz='0.10000000001\n  -0.00002 3.'", True),
+        ("[0, 1.5]", "[-1e-13, 1.5]", True),
+        ("[0, 1.5]", "[1e-11, 1.5]", False),
+        ("mass: 2.0", "mass: 2.00001", False),
+        ("mass: 2.0", "weight: 2.0", False),
+        ("rod_1 at 2", "rod_2 at 2", False),
+        ("1 2", "1 2 3", False),
+    ],
+)
+def test_two_texts_are_the_same_but_for_rounding_and_white_space(one: str, other: str, same: bool) -> None:
+    assert same_text(one, other, relative=1e-9, absolute=1e-12) is same
+    assert same_text(other, one, relative=1e-9, absolute=1e-12) is same
 
 
 # The canonical description

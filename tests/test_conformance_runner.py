@@ -441,7 +441,12 @@ def test_a_reader_ends_with_a_runner_that_is_killed(end: signal.Signals, tmp_pat
     pids = tmp_path / "pids"
     environment = os.environ | {"FAKE_PIDS": str(pids), "PYTHONPATH": str(FAKES.parent)}
     with subprocess.Popen(
-        [sys.executable, "-c", RUNNER], env=environment, stderr=subprocess.DEVNULL, start_new_session=True
+        [sys.executable, "-c", RUNNER],
+        env=environment,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+        # Where the tests run as a background job of a script, SIGINT is ignored, also by what they start.
+        preexec_fn=lambda: signal.signal(end, signal.SIG_DFL) if end != signal.SIGKILL else None,
     ) as runner:
         for _ in range(300):
             if pids.exists():

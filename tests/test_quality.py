@@ -217,6 +217,14 @@ def test_a_version_1_with_a_fault_of_its_own_is_named(copy):
     assert "motor_krank" in only_fault(folder, "version 1")
 
 
+@pytest.mark.parametrize(("number", "is_built"), [("1.57079632679488", True), ("1.5707964", False)])
+def test_the_last_digits_of_a_built_file_may_be_those_of_another_processor(number, is_built, tmp_path):
+    folder = tmp_path / "four_bar"
+    shutil.copytree(ROOT / "robots" / "four_bar", folder)
+    replace(folder / "robot.urdf", "1.5707963267949", number)
+    assert faults(folder).get("built") == (None if is_built else ["robot.urdf is not what build.py writes"])
+
+
 def test_a_file_that_its_builder_does_not_write_is_named(tmp_path):
     folder = tmp_path / "four_bar"
     shutil.copytree(ROOT / "robots" / "four_bar", folder)

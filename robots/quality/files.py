@@ -14,11 +14,16 @@ import eurdf
 from eurdf.description import describe
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.same_model import differences, with_universal_joints
+from eurdf_conformance.comparison.text import same_text
 from robots.quality.candidate import Candidate
 
 _CHECKOUT = Path(__file__).parents[2]
 _WRITTEN = ("robot.urdf", "robot.yaml", "robot.v1.yaml")
 _LONGEST_BUILD = 60.0  # s
+# How far a number in a file may be from the one that build.py writes, relative and absolute (m, rad, kg). Numbers are
+# written to 14 decimals or 12 digits, of which the last few depend on the processor: positions are sums of some dozen
+# products of lengths of a metre, rounded to 1e-16 each.
+_RELATIVE, _ABSOLUTE = 1e-9, 1e-12
 _PNG = b"\x89PNG\r\n\x1a\n"
 
 
@@ -28,7 +33,7 @@ def is_sound(candidate: Candidate) -> list[str]:
 
 
 def is_built(candidate: Candidate) -> list[str] | None:
-    """The files are byte for byte what build.py writes beside itself; None without a build.py."""
+    """The files are what build.py writes beside itself, but for the rounding of numbers; None without a build.py."""
     if not (candidate.folder / "build.py").is_file():
         return None
     with tempfile.TemporaryDirectory() as place:
@@ -54,8 +59,16 @@ def is_built(candidate: Candidate) -> list[str] | None:
         return [
             f"{name} is not what build.py writes"
             for name in _WRITTEN
-            if _bytes(candidate.folder / name) != _bytes(copy / name)
+            if not _is_written(candidate.folder / name, copy / name)
         ]
+
+
+def _is_written(file: Path, copy: Path) -> bool:
+    """Whether a file says what the one that build.py has written says."""
+    if not (file.is_file() and copy.is_file()):
+        return file.is_file() == copy.is_file()
+    texts = [path.read_text(encoding="utf-8", errors="surrogateescape") for path in (file, copy)]
+    return same_text(*texts, relative=_RELATIVE, absolute=_ABSOLUTE)
 
 
 def is_pictured(candidate: Candidate) -> list[str]:

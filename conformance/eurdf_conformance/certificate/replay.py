@@ -15,6 +15,7 @@ from eurdf_conformance.certificate.certificate import FILE, Certificate, Failure
 from eurdf_conformance.certificate.issue import installed_suite
 from eurdf_conformance.certificate.summary import level_words
 from eurdf_conformance.certificate.write import certificate_files
+from eurdf_conformance.comparison.text import same_text
 from eurdf_conformance.corpus.read import read_cases
 from eurdf_conformance.json_schema import published, schema_text
 from eurdf_conformance.level import VERSIONS, Level
@@ -24,6 +25,10 @@ from eurdf_conformance.suite.reproduce import Setting, is_command_line
 from eurdf_conformance.verdict.known_failures import KnownFailure, KnownFailures
 from eurdf_conformance.verdict.result import Key, Result
 from eurdf_conformance.verdict.verdict import Verdict
+
+# How far numbers in what is said of a failure may be apart, relative and absolute: those of answers may have been
+# computed on another processor. What they are compared with has tolerances of 1e-9 and more.
+_RELATIVE, _ABSOLUTE = 1e-6, 1e-9
 
 # What `KnownFailures.unexpected` says of an entry: id, level, and verdict where that is said.
 _UNEXPECTED = re.compile(r"(.+)/([a-z]+): (?:known as '([a-z ]+)'|the suite has no such item)", re.DOTALL)
@@ -53,8 +58,8 @@ def suite_differences(certificate: Certificate) -> list[str]:
 def replay_differences(certificate: Certificate, again: Certificate) -> list[str]:
     """In what a second run is not what a certificate says, one line each.
 
-    Neither the date nor the command that reached the reader matters, nor which failures were expected (`own_faults`):
-    all else that a certificate says is to be the same.
+    Neither the date nor the command that reached the reader matters, nor which failures were expected (`own_faults`),
+    nor the last digits of numbers that a reader has computed: all else that a certificate says is to be the same.
     """
     found = [*_reader(certificate, again), *_levels(certificate, again), *_failures(certificate, again)]
     found = found or list(_clauses(certificate, again))
@@ -161,7 +166,7 @@ def _essence(certificate: Certificate) -> dict[str, Any]:
     """All that a second run is to come to again."""
     value = certificate.model_dump(exclude={"suite", "parser", "date", "unexpected"})
     for failure in value["failures"]:
-        del failure["known"], failure["reproduce"]
+        del failure["known"], failure["reproduce"], failure["difference"]
     for level in value["levels"]:
         del level["known_failures"]
     return value
@@ -207,8 +212,12 @@ def _failures(before: Certificate, now: Certificate) -> Iterator[str]:
             yield f"{name}: no failure then, {given[key].verdict} now"
         elif was[key].verdict != given[key].verdict:
             yield f"{name}: {was[key].verdict} then, {given[key].verdict} now"
-        elif was[key].difference != given[key].difference:
+        elif not _same_difference(was[key].difference, given[key].difference):
             yield f"{name}: fails otherwise: {_line(was[key])} then, {_line(given[key])} now"
+
+
+def _same_difference(one: str | None, other: str | None) -> bool:
+    return same_text(one or "", other or "", relative=_RELATIVE, absolute=_ABSOLUTE)
 
 
 def _line(failure: Failure) -> str:

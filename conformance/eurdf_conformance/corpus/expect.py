@@ -26,8 +26,8 @@ from eurdf_conformance.protocol.message import Quantity, Values
 KINEMATICS: tuple[Quantity, ...] = ("poses", "residuals", "jacobian")
 DYNAMICS: tuple[Quantity, ...] = ("mass_matrix", "mass", "center_of_mass")
 
-#: Digits kept of a number, relative to the largest of its kind: what is below is rounding of the machine.
-_DIGITS = 13
+#: Digits kept of a number, relative to the largest of its kind: those below depend on the processor.
+_DIGITS = 12
 
 
 def expect(case: CorpusCase) -> Expected:

@@ -21,8 +21,8 @@ def sparse_basis(vectors: Matrix) -> Matrix:
         vectors: A basis (k, n), one vector a row.
 
     Returns:
-        The basis (k, n), one vector a row, the largest entry of each 1, in the order of the first entries that are not
-        zero.
+        The basis (k, n), one vector a row, in the order of the first entries that are not zero. An entry of each is 1:
+        the first of those that are the largest to within 0.1 %, so that rounding does not choose among equal ones.
     """
     basis = np.array(vectors, dtype=np.float64)
     for row in range(len(basis)):
