@@ -194,6 +194,7 @@ def edits(document: Any, under: str | None = None) -> Iterator[Any]:
             yield with_edit(document, path, lambda holder, step, junk=junk: holder.__setitem__(step, junk))
         if path and isinstance(path[-1], int):
             yield with_edit(document, path, lambda holder, step: holder.append(copy.deepcopy(holder[step])))
+            yield with_edit(document, path, lambda holder, step: holder.__setitem__(step, copy.deepcopy(holder[0])))
         for key in KEYS if path and isinstance(path[-1], str) else ():
             yield with_edit(document, path, lambda holder, step, key=key: holder.update({key: holder.pop(step)}))
             yield with_edit(document, path, lambda holder, step, key=key: holder.setdefault(key, holder[step]))
@@ -250,7 +251,7 @@ frame_references = st.one_of(names, mapping({"link": names}, **pose), mapping({"
 joints = st.one_of(
     st.sampled_from(["spherical", "cylindrical", "fixed"]),
     mapping({"type": st.sampled_from(["spherical", "cylindrical", "fixed"])}, **overrides),
-    mapping({"type": st.just("spherical"), "merges": st.lists(names, min_size=3, max_size=3, unique=True)}),
+    mapping({"type": st.just("spherical"), "merges": st.lists(names, min_size=3, max_size=3)}),
     mapping({"type": st.just("universal"), "axes": axes}, **overrides),
     mapping({"type": st.just("helical"), "pitch": numbers}, **overrides),
     mapping({"limits": limits}, damping=magnitude, armature=magnitude),
@@ -324,12 +325,14 @@ def mutants(draw: st.DrawFn, version: str) -> Any:
                     holder.pop(step)
                 case "lengthen" if isinstance(holder[step], list):
                     holder[step].append(copy.deepcopy(holder[step][-1] if holder[step] else junk))
+                case "repeat" if isinstance(holder[step], list) and holder[step]:
+                    holder[step][-1] = copy.deepcopy(holder[step][0])
                 case "add" if isinstance(holder[step], dict):
                     holder[step][key] = copy.deepcopy(junk)
                 case "rename" if isinstance(holder, dict) and step != "":
                     holder[key] = holder.pop(step)
 
-        kind = draw(st.sampled_from(["replace", "drop", "lengthen", "add", "rename"]))
+        kind = draw(st.sampled_from(["replace", "drop", "lengthen", "repeat", "add", "rename"]))
         document = with_edit(document, path, lambda holder, step, kind=kind, edit=edit: edit(holder, step, kind))
     return document
 

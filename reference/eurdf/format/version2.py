@@ -269,7 +269,6 @@ class Spherical(JointProperties):
         description="Three different rotary joints of the URDF, each the only child of the one before, whose axes meet"
         " in one point: together they are this joint.",
         examples=[["toe_rx", "toe_ry", "toe_rz"]],
-        json_schema_extra={"uniqueItems": True},
     )
 
 
