@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
-import sys
+import re
+import shutil
 from pathlib import Path
 
 import pytest
 
 pytest.importorskip("pygls", reason="pygls is not installed: pip install -e '.[test]'")
 
+from eurdf.commands.main import main
 from language_server import MISSING, Editor, in_editor
 
 ROOT = Path(__file__).parent.parent
@@ -118,10 +118,7 @@ def test_a_fault_of_the_schema_is_underlined_where_it_is(
 
 def test_the_names_of_a_robot_are_completed_from_its_own_schema(tmp_path: Path) -> None:
     robot = ROOT / "robots" / "four_bar" / "robot.urdf"
-    command = [sys.executable, "-m", "eurdf.commands.main", "schema", "--for", str(robot)]
-    schema = tmp_path / "four_bar.schema.json"
-    schema.write_bytes(subprocess.run(command, check=True, capture_output=True).stdout)
-    assert json.loads(schema.read_text())
+    assert main(["schema", "--for", str(robot), "-o", str(tmp_path / "four_bar.schema.json")]) == 0
     assert "motor_crank" in completed(tmp_path, "actuators:\n  - |\n", schema="four_bar.schema.json")
     assert "rocker_pin_a" in completed(
         tmp_path, "closures:\n  - name: pin\n    type: 3d\n    frames:\n      - |\n", schema="four_bar.schema.json"
@@ -137,3 +134,63 @@ def test_the_robots_of_the_collection_are_opened_without_an_underline() -> None:
 
     assert len(robots) >= 4
     assert in_editor(session) == {path: [] for path in robots}
+
+
+#: Commands that write a description in a folder that has a URDF, and a description of version 1, alone.
+WRITING = {
+    "generate": ["generate", "robot.urdf", "-o", "leg.yaml"],
+    "migrate": ["migrate", "old.yaml", "-o", "leg.yaml"],
+}
+
+
+@pytest.mark.parametrize("choice", ["format", "robot"])
+@pytest.mark.parametrize("command", sorted(WRITING))
+def test_what_a_command_wrote_is_completed_without_another_step(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str, choice: str
+) -> None:
+    robot = ROOT / "robots" / "four_bar"
+    shutil.copy(robot / "robot.urdf", tmp_path)
+    (tmp_path / "old.yaml").write_text("closed_loop: [[rocker_pin_a, rocker_pin_b]]\nname_mot: [motor_crank]\n")
+    monkeypatch.chdir(tmp_path)
+    assert main([*WRITING[command], "--schema", choice]) == 0
+    path = tmp_path / "leg.yaml"
+    text = path.read_text(encoding="utf-8")
+    first = "leg.schema.json" if choice == "robot" else "extended-urdf-2.0.schema.json"
+    assert text.splitlines()[0] == f"# yaml-language-server: $schema=./{first}"
+    path.write_text(text + "frames: [{name: tip, link: }]\n\n", encoding="utf-8")
+    line = text.count("\n") + 1
+
+    async def session(editor: Editor) -> tuple[list[tuple[int, int, str]], list[str], list[str]]:
+        underlined = await editor.open(path)
+        keys = await editor.completions(path, line + 1, 1)
+        links = await editor.completions(path, line, len("frames: [{name: tip, link: ") + 1)
+        return underlined, keys, links
+
+    underlined, keys, links = in_editor(session)
+    assert {at for at, _, _ in underlined} == {line}  # the link that is not written yet
+    assert {"root", "configurations", "metadata"} <= set(keys)
+    assert ("coupler" in links) == (choice == "robot")
+
+
+def test_the_schema_that_the_readme_shows_is_found_by_the_first_line_that_it_shows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shutil.copy(ROOT / "robots" / "four_bar" / "robot.urdf", tmp_path)
+    monkeypatch.chdir(tmp_path)
+    shown = re.findall(
+        r"^eurdf (schema .*?) +# line 1: (# yaml-language-server: .*)$", (ROOT / "README.md").read_text(), re.M
+    )
+    assert len(shown) == 2
+    for command, first_line in shown:
+        assert main(command.split()) == 0
+        path = tmp_path / f"{len(command)}.yaml"
+        path.write_text(f'{first_line}\nextended_urdf: "2.0"\nactuators: []\nframes: []\n\n', encoding="utf-8")
+
+        async def session(editor: Editor, path: Path = path) -> tuple[list[tuple[int, int, str]], list[str], list[str]]:
+            underlined = await editor.open(path)
+            return underlined, await editor.completions(path, 5, 1), await editor.completions(path, 3, 13)
+
+        underlined, keys, motors = in_editor(session)
+        assert underlined == []
+        assert "closures" in keys
+        assert ("motor_crank" in motors) == ("--for" in command)

@@ -293,7 +293,6 @@ def test_the_patterns_that_are_given_stand_in_place_of_the_published_ones() -> N
 # -- text ---------------------------------------------------------------------------------------------------------
 
 LEG_TEXT = """\
-# yaml-language-server: $schema=extended-urdf-2.0.schema.json
 extended_urdf: "2.0"
 urdf: robot.urdf
 closures:
@@ -315,10 +314,7 @@ def test_long_lists_stand_a_line_each() -> None:
 
 def test_version_1_is_written_as_well() -> None:
     generation = generate(read(urdf_text(*LEG)), conventions(), "1")
-    assert generation.text == (
-        "# yaml-language-server: $schema=extended-urdf-1.schema.json\n"
-        "closed_loop: [[closedloop1_A, closedloop1_B]]\ntype: [6d]\nname_mot: [motor_hip]\n"
-    )
+    assert generation.text == ("closed_loop: [[closedloop1_A, closedloop1_B]]\ntype: [6d]\nname_mot: [motor_hip]\n")
 
 
 def test_a_urdf_without_names_of_any_meaning_gives_a_sound_description() -> None:

@@ -19,7 +19,7 @@ from eurdf.commands.main import main
 from eurdf.description import Description, describe
 from eurdf.diagnostics import Diagnostics, Fault
 from eurdf.format.comments import comments_of
-from eurdf.format.migrate import NotMigratable, own_keys
+from eurdf.format.migrate import NotMigratable, own_keys, schema_named
 from eurdf.format.read_extension import read_extension
 from eurdf.format.urdf import Urdf, read_urdf
 from eurdf.kinematics.residual import residual
@@ -301,7 +301,7 @@ def test_no_comment_is_lost_or_doubled(data: st.DataObject) -> None:
     assert description.document is not None
     before = sorted(comment.text for comment in comments_of(description.document.source))
     source = Source("", migration.text, migration.text.encode())
-    after = [comment.text for comment in comments_of(source)][1:]  # the first is the editor's
+    after = [comment.text for comment in comments_of(source)]
     assert sorted(piece for comment in after for piece in pieces(comment)) == before
 
 
@@ -372,11 +372,15 @@ x-masses:
 
 
 def test_comments_go_with_what_they_speak_of_and_own_data_stay_as_written() -> None:
-    assert migrated(COMMENTED).text == MIGRATED
+    description = described(COMMENTED)
+    assert description.document is not None
+    assert migrate(description, schema=schema_named(description.document)).text == MIGRATED
 
 
 def test_windows_line_ends_change_nothing() -> None:
-    assert migrated(COMMENTED.replace("\n", "\r\n")).text == MIGRATED
+    description = described(COMMENTED.replace("\n", "\r\n"))
+    assert description.document is not None
+    assert migrate(description, schema=schema_named(description.document)).text == MIGRATED
 
 
 def test_what_was_done_is_told() -> None:
@@ -481,7 +485,9 @@ def test_the_command_replaces_a_file_only_by_force(folder: Path, capsys: pytest.
     assert "--force" in capsys.readouterr().err
     assert file.read_text(encoding="utf-8") == COMMENTED
     assert main(["migrate", str(file), "-o", str(file), "--force"]) == 0
-    assert file.read_text(encoding="utf-8") == MIGRATED
+    # The schema is not where the old first line looks for it.
+    assert file.read_text(encoding="utf-8") == MIGRATED.replace("../schema/", "./")
+    assert (folder / "extended-urdf-2.0.schema.json").is_file()
 
 
 def test_the_new_file_names_the_urdf_from_where_it_is(folder: Path) -> None:

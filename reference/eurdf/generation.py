@@ -41,6 +41,7 @@ def generate(
     version: Literal["1", "2"] = "2",
     root: Root = "fixed",
     urdf_path: str = "robot.urdf",
+    schema: str | None = None,
 ) -> Generation:
     """Describe a robot by the names in its URDF.
 
@@ -53,12 +54,13 @@ def generate(
         version: Version of the description.
         root: Whether the root is fixed or floating; version 1 can only say fixed.
         urdf_path: Path of the URDF from the folder of the description; version 1 cannot say it.
+        schema: Path of the schema from the folder of the description, for its first line; None for no such line.
     """
     if version == "1" and root != "fixed":
         raise ValueError("version 1 cannot say that the root floats")
     found = find(urdf, conventions)
     merges = _merges(urdf, found, version)
-    text = version1_text(found) if version == "1" else version2_text(found, merges, root, urdf_path)
+    text = version1_text(found, schema) if version == "1" else version2_text(found, merges, root, urdf_path, schema)
     mechanism, diagnostics = reread(text, urdf, "the description")
     return Generation(text, found, merges, mechanism, diagnostics)
 

@@ -28,7 +28,7 @@ class Migration:
     mechanism: Mechanism
 
 
-def migrate(description: Description, urdf_path: str = "robot.urdf") -> Migration:
+def migrate(description: Description, urdf_path: str = "robot.urdf", schema: str | None = None) -> Migration:
     """Write a robot's description of version 1 in version 2.
 
     What version 1 does by itself is said; the user's own data and the comments are kept. The text is read once more,
@@ -37,6 +37,7 @@ def migrate(description: Description, urdf_path: str = "robot.urdf") -> Migratio
     Args:
         description: Of version 1, with a mechanism.
         urdf_path: Path of the URDF from the folder of the new file.
+        schema: Path of the schema from the folder of the new file, for its first line; None for no such line.
 
     Raises:
         NotMigratable: Version 2 cannot say the same.
@@ -51,7 +52,7 @@ def migrate(description: Description, urdf_path: str = "robot.urdf") -> Migratio
     assert document is not None
     assert urdf is not None
     assert before is not None
-    result = migrated(document, extension, urdf, merged_by_rule(description), urdf_path)
+    result = migrated(document, extension, urdf, merged_by_rule(description), urdf_path, schema)
     after, diagnostics = reread(result.text, urdf, document.source.file)
     if after is None:
         raise NotMigratable(f"version 2 does not allow it: {diagnostics.errors[0].message}", ())

@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from eurdf.commands.cannot_run import CannotRun
-from eurdf.commands.migrate import show_refusal, tell, urdf_from, write_yaml
+from eurdf.commands.editor_schema import NOT_BESIDE, EditorSchema, add_schema_option, schema_beside, write_schema
+from eurdf.commands.migrate import show_refusal, tell, tell_schema, urdf_from, write_yaml
 from eurdf.commands.output import write_json
-from eurdf.commands.output_file import write_new
+from eurdf.commands.output_file import refuse_to_replace, write_new
 
 if TYPE_CHECKING:
     from eurdf.generation import Generation
@@ -44,7 +45,8 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     parser.add_argument("urdf", metavar="URDF", help="the URDF")
     parser.add_argument("-o", "--output", metavar="OUT", help="the file to write; default: the standard output")
-    parser.add_argument("--force", action="store_true", help="replace OUT if it is there already")
+    parser.add_argument("--force", action="store_true", help="replace OUT, and its schema, if they are there already")
+    add_schema_option(parser)
     for option, what in (
         ("--closure", "the frames of closures"),
         ("--motor", "actuated joints"),
@@ -85,25 +87,36 @@ def run(args: argparse.Namespace) -> int:
     if urdf is None:
         show_refusal(args.urdf, tuple(diagnostics), args.json)
         return 1
-    urdf_path = urdf_from(args.output, args.urdf) if args.output is not None else Path(args.urdf).name
-    generation = generate(urdf, convention, args.version, args.root, urdf_path)
+    urdf_path, schema = Path(args.urdf).name, None
+    if args.output is not None:
+        urdf_path = urdf_from(args.output, args.urdf)
+        refuse_to_replace(args.output, args.force)
+        schema = schema_beside(args.output, args.version, args.schema, urdf, args.force)
+    reference = None if schema is None else schema.reference
+    generation = generate(urdf, convention, args.version, args.root, urdf_path, reference)
     if generation.mechanism is None:
         show_refusal(args.urdf, tuple(generation.diagnostics), args.json)
         tell(["nothing was written: what the names say cannot be"])
         return 1
     if args.output is not None:
         write_new(args.output, generation.text, args.force)
+        if schema is not None:
+            write_schema(schema)
     warnings = [*generation.found.warnings]
     if args.version == "1" and urdf_path != "robot.urdf":
         warnings.append(f"version 1 cannot name its URDF: it is robot.urdf beside the description, not '{urdf_path}'")
     if args.json:
-        write_json(_result(generation, args.output, warnings))
+        write_json(_result(generation, args.output, schema, warnings))
         return 0
     if args.output is None:
         write_yaml(generation.text)
     tell([*_summary(generation), *(f"warning: {warning}" for warning in warnings)])
     if args.output is not None:
         tell([f"wrote '{args.output}'"])
+    elif args.schema != "none":
+        tell([NOT_BESIDE])
+    if schema is not None:
+        tell_schema(schema)
     return 0
 
 
@@ -123,12 +136,15 @@ def _count(what: str, names: Collection[str], more: str = "") -> str:
     return many + (f": {', '.join(names)}" if names else "")
 
 
-def _result(generation: Generation, output: str | None, warnings: list[str]) -> dict[str, Any]:
+def _result(
+    generation: Generation, output: str | None, schema: EditorSchema | None, warnings: list[str]
+) -> dict[str, Any]:
     from eurdf.diagnostics.report import encodable
 
     found = generation.found
     return {
         "output": None if output is None else encodable(output),
+        "schema": None if schema is None else encodable(os.fspath(schema.path)),
         "closures": [
             {"name": closure.name, "type": closure.type, "frames": list(closure.frames)} for closure in found.closures
         ],

@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from eurdf.commands.cannot_run import CannotRun
+from eurdf.commands.editor_schema import NOT_BESIDE, EditorSchema, add_schema_option, schema_beside, write_schema
 from eurdf.commands.output import write_json, write_text
-from eurdf.commands.output_file import write_new
+from eurdf.commands.output_file import refuse_to_replace, write_new
 from eurdf.commands.selection import select_one
 
 if TYPE_CHECKING:
@@ -38,7 +39,8 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     parser.add_argument("path", metavar="PATH", help="a robot: its folder, its .yaml, or a collection name")
     parser.add_argument("-o", "--output", metavar="OUT", help="the file to write; default: the standard output")
-    parser.add_argument("--force", action="store_true", help="replace OUT if it is there already")
+    parser.add_argument("--force", action="store_true", help="replace OUT, and its schema, if they are there already")
+    add_schema_option(parser)
     parser.add_argument("--urdf", metavar="FILE", help="the URDF, where it is not robot.urdf beside the description")
     parser.add_argument("--json", action="store_true", help="write one JSON object: the text, and what was done")
     parser.set_defaults(run=run)
@@ -47,7 +49,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def run(args: argparse.Namespace) -> int:
     """Migrate, write, tell what was done, and return the exit code."""
     from eurdf.description import describe
-    from eurdf.format.migrate import NotMigratable
+    from eurdf.format.migrate import NotMigratable, schema_named
     from eurdf.migration import migrate
 
     path = select_one(args.path)
@@ -60,13 +62,20 @@ def run(args: argparse.Namespace) -> int:
     if description.document is None or description.extension is None:
         raise CannotRun(f"'{path}' is a bare URDF, which has nothing to migrate; `eurdf generate` writes a description")
     source = description.document.source
+    schema: EditorSchema | None = None
     if description.extension.version != "1":
         text, output = source.text, None
         notes: tuple[str, ...] = (f"'{source.file}' is of version 2.0 already: nothing to do",)
     else:
         output = args.output
+        reference = schema_named(description.document) if args.schema == "format" else None
+        if output is not None and not _leads_to_a_schema(reference, output):
+            assert description.urdf is not None
+            refuse_to_replace(output, args.force)
+            schema = schema_beside(output, "2", args.schema, description.urdf, args.force)
+            reference = None if schema is None else schema.reference
         try:
-            migration = migrate(description, urdf_from(output or source.file, _urdf_of(description)))
+            migration = migrate(description, urdf_from(output or source.file, _urdf_of(description)), reference)
         except NotMigratable as reason:
             line = description.document.place(reason.pointer).line if reason.pointer else None
             where = f"{source.file}:{line}" if line else source.file
@@ -74,8 +83,12 @@ def run(args: argparse.Namespace) -> int:
         text, notes = migration.text, migration.notes
         if output is not None:
             write_new(output, text, args.force)
+            if schema is not None:
+                write_schema(schema)
+        elif reference is None and args.schema != "none":
+            notes = (*notes, NOT_BESIDE)
     if args.json:
-        write_json(_result(path, description.extension.version, output, notes, text))
+        write_json(_result(path, description.extension.version, output, schema, notes, text))
         return 0
     if args.output is None:
         write_yaml(text)
@@ -83,7 +96,22 @@ def run(args: argparse.Namespace) -> int:
     tell([str(found) for found in description.diagnostics if found.code == "near-miss-key"])
     if output is not None:
         tell([f"wrote '{output}'"])
+    if schema is not None:
+        tell_schema(schema)
     return 0
+
+
+def tell_schema(schema: EditorSchema) -> None:
+    """Say that a schema was written, where it was."""
+    if schema.is_new:
+        tell([f"wrote '{schema.path}', the schema that editors complete it with"])
+
+
+def _leads_to_a_schema(reference: str | None, output: str) -> bool:
+    """Whether a schema is where the first line of a description looks for it."""
+    if reference is None:
+        return False
+    return reference.startswith(("http://", "https://")) or os.path.isfile(os.path.join(Path(output).parent, reference))
 
 
 def write_yaml(text: str) -> None:
@@ -130,7 +158,9 @@ def _urdf_of(description: Description) -> str:
     return description.urdf.document.source.file
 
 
-def _result(path: str, version: str, output: str | None, notes: tuple[str, ...], text: str) -> dict[str, Any]:
+def _result(
+    path: str, version: str, output: str | None, schema: EditorSchema | None, notes: tuple[str, ...], text: str
+) -> dict[str, Any]:
     from eurdf.diagnostics.report import encodable
 
     return {
@@ -138,6 +168,7 @@ def _result(path: str, version: str, output: str | None, notes: tuple[str, ...],
         "from": version,
         "to": "2.0",
         "output": None if output is None else encodable(output),
+        "schema": None if schema is None else encodable(os.fspath(schema.path)),
         "notes": [encodable(note) for note in notes],
         "text": text,
     }

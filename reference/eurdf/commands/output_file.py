@@ -8,6 +8,12 @@ from pathlib import Path
 from eurdf.commands.cannot_run import CannotRun
 
 
+def refuse_to_replace(path: str | os.PathLike[str], force: bool) -> None:
+    """Raise `CannotRun` where a file is there already and not to be replaced."""
+    if not force and os.path.exists(path):
+        raise CannotRun(f"'{os.fspath(path)}' exists already; --force replaces it")
+
+
 def write_new(path: str | os.PathLike[str], text: str, force: bool = False) -> None:
     """Write a text file in UTF-8, whole or not at all.
 
@@ -20,8 +26,7 @@ def write_new(path: str | os.PathLike[str], text: str, force: bool = False) -> N
         CannotRun: The file is there already and not to be replaced, or it cannot be written.
     """
     target = Path(os.path.realpath(path))
-    if not force and target.exists():
-        raise CannotRun(f"'{path}' exists already; --force replaces it")
+    refuse_to_replace(path, force)
     scratch = target.with_name(f".{target.name}.{os.getpid()}.tmp")
     try:
         if target.is_dir():

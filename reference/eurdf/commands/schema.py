@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.check import write_reports
-from eurdf.commands.output import write_json
+from eurdf.commands.migrate import tell
+from eurdf.commands.output import write_text
+from eurdf.commands.output_file import write_new
 
 if TYPE_CHECKING:
     from eurdf.diagnostics import Diagnostics
@@ -21,7 +23,8 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser = subparsers.add_parser(
         "schema",
         help="write the JSON Schema that an editor completes and checks a description with",
-        description="Write the JSON Schema (2020-12) of Extended URDF.",
+        description="Write the JSON Schema (2020-12) of Extended URDF. The first line of a description names it: "
+        "# yaml-language-server: $schema=./robot.schema.json",
         epilog="Exit codes: 0 written, 1 the URDF has errors, 2 the command cannot run.",
     )
     parser.add_argument("--version", choices=("1", "2"), default="2", help="version of the format; default: 2")
@@ -31,6 +34,8 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         metavar="URDF",
         help="name the links and joints of this robot, so that an editor completes them",
     )
+    parser.add_argument("-o", "--output", metavar="OUT", help="the file to write; default: the standard output")
+    parser.add_argument("--force", action="store_true", help="replace OUT if it is there already")
     parser.set_defaults(run=run)
 
 
@@ -38,23 +43,25 @@ def run(args: argparse.Namespace) -> int:
     """Write the schema and return the exit code."""
     from eurdf.diagnostics import Diagnostics
     from eurdf.diagnostics.report import Report
-    from eurdf.format.schema import Names, json_schema
-    from eurdf.mechanism.joint_type import JointType
+    from eurdf.format.schema import json_schema, names_of, schema_text
 
-    if args.urdf is None:
-        write_json(json_schema(args.version))
-        return 0
-    if not os.path.exists(args.urdf):
-        raise CannotRun(f"'{args.urdf}' does not exist")
-    diagnostics = Diagnostics()
-    urdf = _read(args.urdf, diagnostics)
-    if urdf is None:
-        # The standard output is for a schema.
-        write_reports([Report(args.urdf, tuple(diagnostics))], stream=sys.stderr)
-        return 1
-    movable = tuple(name for name, joint in urdf.joints.items() if joint.type is not JointType.FIXED)
-    names = Names(tuple(urdf.links), tuple(urdf.joints), movable)
-    write_json(json_schema(args.version, names))
+    names = None
+    if args.urdf is not None:
+        if not os.path.exists(args.urdf):
+            raise CannotRun(f"'{args.urdf}' does not exist")
+        diagnostics = Diagnostics()
+        urdf = _read(args.urdf, diagnostics)
+        if urdf is None:
+            # The standard output is for a schema.
+            write_reports([Report(args.urdf, tuple(diagnostics))], stream=sys.stderr)
+            return 1
+        names = names_of(urdf)
+    text = schema_text(json_schema(args.version, names))
+    if args.output is None:
+        write_text(text)
+    else:
+        write_new(args.output, text, args.force)
+        tell([f"wrote '{args.output}'"])
     return 0
 
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import cast
 
 from eurdf.format.field import is_own_key
-from eurdf.format.schema import FILES
 from eurdf.format.urdf import Urdf
 from eurdf.format.version2 import VERSION
 from eurdf.format.yaml_text import Entry, Value, item_of_mapping, lines_of, modeline, section, text_of
@@ -239,7 +238,11 @@ def _sphericals(urdf: Urdf, patterns: Sequence[re.Pattern[str]], warnings: list[
 
 
 def version2_text(
-    found: Found, merges: Mapping[str, Sequence[str]], root: Root = "fixed", urdf_path: str = "robot.urdf"
+    found: Found,
+    merges: Mapping[str, Sequence[str]],
+    root: Root = "fixed",
+    urdf_path: str = "robot.urdf",
+    schema: str | None = None,
 ) -> str:
     """The description in version 2.
 
@@ -248,9 +251,10 @@ def version2_text(
         merges: For each spherical joint made of three revolutes, their names.
         root: Whether the root is fixed or floating.
         urdf_path: Path of the URDF from the folder of the description.
+        schema: Path of the schema from the folder of the description, for editors; no line names it where it is None.
     """
     entries = [
-        Entry(lines_of("extended_urdf", VERSION), (modeline(FILES["2"]),)),
+        Entry(lines_of("extended_urdf", VERSION), _schema_line(schema)),
         Entry(lines_of("urdf", urdf_path)),
     ]
     if root != "fixed":
@@ -270,8 +274,8 @@ def version2_text(
     return text_of(entries)
 
 
-def version1_text(found: Found) -> str:
-    """The description in version 1, which merges revolutes by itself."""
+def version1_text(found: Found, schema: str | None = None) -> str:
+    """The description in version 1, which merges revolutes by itself; `schema` as in `version2_text`."""
     values: dict[str, Value] = {
         "closed_loop": [closure.frames for closure in found.closures],
         "type": [closure.type for closure in found.closures],
@@ -282,4 +286,8 @@ def version1_text(found: Found) -> str:
     # Without any key of the format, it would still be a description of version 1: of nothing.
     entries = [Entry(lines_of(key, value)) for key, value in values.items() if value or key in ("closed_loop", "type")]
     first, *rest = entries
-    return text_of([Entry(first.lines, (modeline(FILES["1"]),)), *rest])
+    return text_of([Entry(first.lines, _schema_line(schema)), *rest])
+
+
+def _schema_line(schema: str | None) -> tuple[str, ...]:
+    return () if schema is None else (modeline(schema),)

@@ -65,6 +65,7 @@ def migrated(
     urdf: Urdf,
     merged: Mapping[str, Sequence[str]],
     urdf_path: str = "robot.urdf",
+    schema: str | None = None,
 ) -> Migrated:
     """Write a description of version 1 in version 2.
 
@@ -74,11 +75,20 @@ def migrated(
         urdf: Its URDF.
         merged: The joints that version 1 merges by rule: for each spherical joint, the three it is made of.
         urdf_path: Path of the URDF from the new file.
+        schema: Path of the schema from the new file, for its first line; None for no such line.
 
     Raises:
         NotMigratable: Version 2 cannot say the same.
     """
-    return _Migration(document, extension, urdf, merged, urdf_path).migrated()
+    return _Migration(document, extension, urdf, merged, urdf_path, schema).migrated()
+
+
+def schema_named(document: YamlDocument) -> str | None:
+    """Path of the schema of version 2, where a file of version 1 names that of version 1; None where it names none."""
+    for match in map(_MODELINE.match, document.source.text.splitlines()):
+        if match and match[1].strip().endswith(FILES["1"]):
+            return match[1].strip().removesuffix(FILES["1"]) + FILES["2"]
+    return None
 
 
 def own_keys(data: Iterable[str]) -> dict[str, str]:
@@ -116,12 +126,14 @@ class _Migration:
         urdf: Urdf,
         merged: Mapping[str, Sequence[str]],
         urdf_path: str,
+        schema: str | None,
     ) -> None:
         self.document = document
         self.extension = extension
         self.urdf = urdf
         self.merged = merged
         self.urdf_path = urdf_path
+        self.schema = schema
         self.halves = split_halves(extension)
         self.notes: list[str] = []
 
@@ -131,13 +143,14 @@ class _Migration:
         attached = attach(comments, self.pointers(), self.document)
         top = attached[()].above
         head = [text for text in top if not _MODELINE.match(text)]
+        line = [] if self.schema is None else [modeline(self.schema)]
         items = {
             "closures": list(self.closures(attached)),
             "joints": list(self.joints(attached)),
             "actuators": list(self.actuators(attached)),
         }
         entries = [
-            Entry(lines_of("extended_urdf", VERSION), (_modeline(top), *head)),
+            Entry(lines_of("extended_urdf", VERSION), (*line, *head)),
             Entry(lines_of("urdf", self.urdf_path)),
         ]
         foot = attached[()].beside
@@ -304,10 +317,3 @@ def _together(attached: Mapping[Pointer, Attached], pointers: Iterable[Pointer])
     several = [attached[pointer] for pointer in pointers if pointer in attached]
     above = tuple(comment for one in several for comment in one.above if not _MODELINE.match(comment))
     return above, " ".join(dict.fromkeys(comment for one in several for comment in one.beside))
-
-
-def _modeline(comments: Iterable[str]) -> str:
-    """The comment by which an editor finds the schema, which is sought where that of version 1 is."""
-    old = (match[1] for match in map(_MODELINE.match, comments) if match)
-    where = next((path.removesuffix(FILES["1"]) for path in old if path.endswith(FILES["1"])), "")
-    return modeline(where + FILES["2"])

@@ -10,8 +10,10 @@ from pathlib import Path
 from typing import Any, Literal
 
 from eurdf.format.field import OWN_KEY, is_own_key
+from eurdf.format.urdf import Urdf
 from eurdf.format.version1 import Version1
 from eurdf.format.version2 import Version2
+from eurdf.mechanism.joint_type import JointType
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
@@ -38,6 +40,12 @@ class Names:
     links: Sequence[str]
     joints: Sequence[str]
     movable_joints: Sequence[str]
+
+
+def names_of(urdf: Urdf) -> Names:
+    """The names that a URDF has."""
+    movable = tuple(name for name, joint in urdf.joints.items() if joint.type is not JointType.FIXED)
+    return Names(tuple(urdf.links), tuple(urdf.joints), movable)
 
 
 def json_schema(version: Literal["1", "2"], names: Names | None = None) -> Schema:
