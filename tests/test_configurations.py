@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,12 +12,18 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+import by_hand
 import eurdf
 from by_hand import rotation
 from described import at, codes, link_poses, load
+from eurdf.mechanism.mechanism import Root
+from eurdf.pinocchio.configuration import configuration_vector
+from eurdf.pinocchio.robot import Robot, build_robot
 from test_actuation import STAR
 
 HALF = math.sqrt(0.5)
+
+WORKBENCH = Path(__file__).parent / "data" / "workbench.yaml"
 
 JOINTS = "joints: {d: spherical}\n"
 
@@ -133,7 +140,53 @@ def test_the_root_of_the_description_holds_unless_the_caller_says_otherwise() ->
 def test_a_joint_that_follows_stands_in_the_same_place_where_it_is_loaded_free() -> None:
     places = []
     for mimic in (True, False):
-        robot = eurdf.load(Path(__file__).parent / "data" / "workbench.yaml", geometry=False, mimic=mimic)
+        robot = eurdf.load(WORKBENCH, geometry=False, mimic=mimic)
         pin.framesForwardKinematics(robot.model, robot.data, robot.configurations["ready"])
         places.append(robot.data.oMf[robot.model.getFrameId("thumb")].homogeneous)
     np.testing.assert_allclose(places[1], places[0], rtol=0.0, atol=1e-15)
+
+
+def some_configuration(robot: Robot, data: st.DataObject) -> np.ndarray:
+    """Any configuration, angles beyond a turn and quaternions of both signs among them."""
+    velocity = st.lists(st.floats(-10.0, 10.0), min_size=robot.model.nv, max_size=robot.model.nv)
+    return np.array(pin.integrate(robot.model, pin.neutral(robot.model), np.array(data.draw(velocity))))
+
+
+@settings(max_examples=50, deadline=None)
+@given(data=st.data(), seed=st.integers(0, 1000), root=st.sampled_from(["fixed", "floating"]))
+def test_coordinates_invert_configurations_for_all_joint_types(data: st.DataObject, seed: int, root: Root) -> None:
+    mechanism = replace(by_hand.tree_of_all_types(np.random.default_rng(seed)), root=root)
+    robot = build_robot(mechanism, geometry=False)
+    q = some_configuration(robot, data)
+    coordinates = robot.coordinates(q)
+    assert ("root_joint" in coordinates) == (root == "floating")
+    for joint in mechanism.joints:
+        assert len(coordinates.get(joint.name, ())) == len(joint.coordinates.names)
+    np.testing.assert_allclose(configuration_vector(mechanism, robot.model, coordinates), q, rtol=0.0, atol=1e-12)
+
+
+@pytest.mark.parametrize("mimic", [True, False])
+@pytest.mark.parametrize("root", ["fixed", "floating"])
+@settings(max_examples=20, deadline=None)
+@given(data=st.data())
+def test_coordinates_name_mimic_joints_only_where_these_are_free(data: st.DataObject, root: Root, mimic: bool) -> None:
+    robot = eurdf.load(WORKBENCH, root=root, geometry=False, mimic=mimic)
+    q = some_configuration(robot, data)
+    coordinates = robot.coordinates(q)
+    assert ("follow" in coordinates) != mimic
+    back = configuration_vector(robot.mechanism, robot.model, coordinates)
+    np.testing.assert_allclose(back, q, rtol=0.0, atol=1e-12)
+
+
+def test_coordinates_of_a_named_configuration_are_those_in_the_file() -> None:
+    robot = eurdf.load(WORKBENCH, geometry=False)
+    coordinates = robot.coordinates(robot.configurations["ready"])
+    stated = {name: values for name, values in coordinates.items() if name in ("motor", "grip", "hand_ball", "elbow")}
+    assert stated == {"motor": (0.5,), "elbow": (0.0,), "hand_ball": (0.0, 0.0, 0.0, 1.0), "grip": (0.1,)}
+
+
+@pytest.mark.parametrize("shape", [(0,), (3,), (1, 12)])
+def test_coordinates_of_a_vector_of_another_shape_are_refused(shape: tuple[int, ...]) -> None:
+    robot = eurdf.load(WORKBENCH, geometry=False)
+    with pytest.raises(ValueError, match="a configuration of this robot has the shape"):
+        robot.coordinates(np.zeros(shape))

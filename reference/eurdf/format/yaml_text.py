@@ -56,7 +56,9 @@ def scalar(value: str | float | bool | None) -> str:
         return "null"
     if isinstance(value, bool):
         return "true" if value else "false"
-    return repr(value)
+    text = repr(value)
+    # "1e-05" is a number by the core schema, but a text to readers of YAML 1.1.
+    return text.replace("e", ".0e") if "e" in text and "." not in text else text
 
 
 def flow(value: Value) -> str:

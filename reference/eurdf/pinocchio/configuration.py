@@ -59,6 +59,38 @@ def configuration_vector(
     return q
 
 
+def own_coordinates(mechanism: Mechanism, model: pin.Model, q: Vector) -> dict[str, tuple[float, ...]]:
+    """The coordinates, as files have them, of every joint that has coordinates of its own, by its name (EU-CFG-001).
+
+    It is the inverse of `configuration_vector`.
+
+    Args:
+        mechanism: The mechanism.
+        model: What `build_model` made of it.
+        q: Configuration, of shape (nq,).
+
+    Returns:
+        In the order of the mechanism's joints, ``root_joint`` first where the root floats. An angle that Pinocchio has
+        as (cos, sin) is from -pi to pi.
+
+    Raises:
+        ValueError: q does not have the shape (nq,).
+    """
+    values = np.asarray(q, dtype=float)
+    if values.shape != (model.nq,):
+        raise ValueError(f"a configuration of this robot has the shape ({model.nq},), not {values.shape}")
+    numbers = values.tolist()
+    found: dict[str, tuple[float, ...]] = {}
+    if mechanism.root == "floating":
+        found[ROOT_JOINT] = tuple(numbers[:7])
+    for name, slot in slots(mechanism, model).items():
+        own = numbers[slot.idx_q : slot.idx_q + slot.nq]
+        if slot.nq > len(slot.joint.coordinates.names):
+            own[-2:] = [math.atan2(own[-1], own[-2])]
+        found[name] = tuple(own)
+    return found
+
+
 def joint_coordinates(mechanism: Mechanism, model: pin.Model, q: Vector) -> dict[str, tuple[float, ...]]:
     """The coordinates, as files have them, of every joint that is not fixed, by its name.
 
@@ -68,28 +100,18 @@ def joint_coordinates(mechanism: Mechanism, model: pin.Model, q: Vector) -> dict
         q: Configuration, of shape (nq,).
 
     Returns:
-        In the order of the mechanism's joints, ``root_joint`` first where the root floats. An angle that Pinocchio has
-        as (cos, sin) is from -pi to pi. A joint that follows another has the coordinate that follows.
+        Those of `own_coordinates`, and for each joint that mimics another the coordinate that follows from that one's;
+        in the order of the mechanism's joints, ``root_joint`` first where the root floats.
     """
-    values = np.asarray(q, dtype=float).tolist()
-    found: dict[str, tuple[float, ...]] = {}
-    if mechanism.root == "floating":
-        found[ROOT_JOINT] = tuple(values[:7])
-    at = slots(mechanism, model)
-
-    def own(slot: Slot) -> tuple[float, ...]:
-        numbers = values[slot.idx_q : slot.idx_q + slot.nq]
-        if slot.nq > len(slot.joint.coordinates.names):
-            numbers[-2:] = [math.atan2(numbers[-1], numbers[-2])]
-        return tuple(numbers)
-
+    own = own_coordinates(mechanism, model, q)
+    found = {ROOT_JOINT: own[ROOT_JOINT]} if mechanism.root == "floating" else {}
     laws = following(mechanism).laws
     for joint in mechanism.joints:
-        if joint.name in at:
-            found[joint.name] = own(at[joint.name])
+        if joint.name in own:
+            found[joint.name] = own[joint.name]
         elif joint.name in laws:
             law = laws[joint.name]
-            found[joint.name] = (law.multiplier * own(at[law.joint])[0] + law.offset,)
+            found[joint.name] = (law.multiplier * own[law.joint][0] + law.offset,)
     return found
 
 

@@ -10,7 +10,7 @@ import pinocchio as pin
 from eurdf.diagnostics import Diagnostic
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.actuation import Actuation, build_actuation
-from eurdf.pinocchio.configuration import Vector, configuration_vector
+from eurdf.pinocchio.configuration import Vector, configuration_vector, own_coordinates
 from eurdf.pinocchio.constraint import build_constraint_models
 from eurdf.pinocchio.coordinates import slots
 from eurdf.pinocchio.geometry import Meshes, Resolve, build_geometry
@@ -75,6 +75,24 @@ class Robot:
     def defer_diagnostics(self, find: Callable[[], tuple[Diagnostic, ...]]) -> None:
         """Let the diagnostics be found when first asked for."""
         self._diagnostics = find
+
+    def coordinates(self, q: Vector) -> dict[str, tuple[float, ...]]:
+        """The coordinates of a configuration as a file states them: the inverse of what makes `configurations`.
+
+        Args:
+            q: Configuration, of shape (nq,).
+
+        Returns:
+            For each joint that has coordinates of its own, by name: an angle (rad) or a length (m); of a universal
+            joint two angles, of a cylindrical one length and angle, of a planar one x, y and angle; of a spherical one
+            a quaternion x, y, z, w, of a floating one x, y, z and a quaternion. The joint of a floating root is
+            ``root_joint``. Fixed joints and those that mimic another have none (EU-CFG-001). The angle of a joint
+            without limits that Pinocchio has as (cos, sin) is from -pi to pi.
+
+        Raises:
+            ValueError: q does not have the shape (nq,).
+        """
+        return own_coordinates(self.mechanism, self.model, q)
 
     def __iter__(self) -> Iterator[Any]:
         return iter((self.model, self.constraint_models, self.actuation, self.visual_model, self.collision_model))
