@@ -12,7 +12,8 @@ from eurdf.diagnostics import Fault, Place
 
 BOM = b"\xef\xbb\xbf"
 
-_BREAK = re.compile("\r\n?|\n")
+#: Where a line ends.
+BREAK = re.compile("\r\n?|\n")
 
 #: Bytes that the YAML file may have.
 YAML_LIMIT = 4 << 20
@@ -46,7 +47,7 @@ class Source:
         """
         if not self._starts:
             # str.splitlines would break at form feeds, U+2028 and more as well.
-            self._starts[:] = [0, *(found.end() for found in _BREAK.finditer(self.text))]
+            self._starts[:] = [0, *(found.end() for found in BREAK.finditer(self.text))]
         line = bisect_right(self._starts, index)
         return line, index - self._starts[line - 1] + 1
 

@@ -45,16 +45,17 @@ class YamlDocument:
 
     Attributes:
         source: The text.
+        root: The top level, with the place of everything in it.
         data: ``dict`` with string keys, ``list``, ``str``, ``int``, ``float``, ``bool`` and ``None``. What has several
             aliases is one object in several places.
     """
 
-    __slots__ = ("_root", "data", "source")
+    __slots__ = ("data", "root", "source")
 
     def __init__(self, source: Source, root: Collection) -> None:
         self.source = source
         self.data: dict[str, Any] = root.data
-        self._root = root
+        self.root = root
 
     def place(self, pointer: Sequence[str | int] = (), key: bool = False) -> Place:
         """Place of a value, or of its key.
@@ -66,7 +67,7 @@ class YamlDocument:
                 innermost value on the way that exists.
             key: Whether the key is meant rather than the value. An item of a list has no key.
         """
-        node: Node = self._root
+        node: Node = self.root
         key_span: Span | None = None
         for step in pointer:
             collection = node.target if isinstance(node, Alias) else node

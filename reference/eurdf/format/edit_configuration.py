@@ -1,0 +1,198 @@
+"""A named configuration written into the text of a description; all else stays character by character."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from itertools import takewhile
+from typing import Any
+
+from eurdf.diagnostics import Fault
+from eurdf.format.version2 import Version2
+from eurdf.format.yaml_text import Value, flow, lines_of
+from eurdf.reading.source import BREAK, Source
+from eurdf.reading.yaml_node import Collection, Node, Span
+from eurdf.reading.yaml_reader import YamlDocument, read_yaml
+
+# The keys that come before the configurations.
+_BEFORE = tuple(takewhile(lambda key: key != "configurations", Version2.model_fields))
+
+
+class NotEditable(Exception):  # noqa: N818 - said to the user as it is
+    """The file is written in a way in which the configuration cannot be changed without changing something else."""
+
+
+def with_configuration(document: YamlDocument, name: str, coordinates: Mapping[str, Sequence[float]]) -> str:
+    """The text of a description of version 2 with a named configuration added, or its coordinates replaced.
+
+    Comments, also those inside a configuration that is replaced, and the rest of the text stay as they are. A joint
+    that the file states and ``coordinates`` does not is an error: where it is at its neutral, state that.
+
+    Args:
+        document: The description.
+        name: Name of the configuration.
+        coordinates: For each joint to state, its coordinates as files have them.
+
+    Raises:
+        NotEditable: The result does not read back as it should, such as where an anchor is involved.
+    """
+    value: dict[str, Value] = {joint: _plain(values) for joint, values in coordinates.items()}
+    text = _Edit(document).stated(name, value)
+    if not _says(text, document.data, name, value):
+        raise NotEditable(f"configuration '{name}' cannot be written without changing other parts of the file")
+    return text
+
+
+class _Edit:
+    """One text and the changes to it."""
+
+    def __init__(self, document: YamlDocument) -> None:
+        self._text = document.source.text
+        self._root = document.root
+        self._json = _is_flow(document.root)
+        found = BREAK.search(self._text)
+        self._break = found.group() if found else "\n"
+        self._changes: list[tuple[int, int, str]] = []
+
+    def stated(self, name: str, value: dict[str, Value]) -> str:
+        configurations = self._root.nodes.get("configurations")
+        if configurations is None:
+            last = [key for key in self._root.nodes if key in _BEFORE][-1]
+            self._add(self._root, last, {"configurations": {name: value}})
+        elif not isinstance(configurations, Collection):
+            raise NotEditable("'configurations' is an alias")
+        elif name in configurations.nodes:
+            self._replace(configurations, name, value)
+        elif configurations.nodes:
+            self._add(configurations, list(configurations.nodes)[-1], {name: value})
+        else:
+            self._fill(self._root, "configurations", {name: value})
+        text = self._text
+        for start, end, new in sorted(self._changes, reverse=True):
+            text = text[:start] + new + text[end:]
+        return text
+
+    def _replace(self, configurations: Collection, name: str, value: dict[str, Value]) -> None:
+        """Give a configuration that is there its new coordinates, joint by joint, for comments may be between them."""
+        old = configurations.nodes[name]
+        if isinstance(old, Collection) and not old.nodes:
+            self._fill(configurations, name, value)
+            return
+        if not isinstance(old, Collection):  # an alias of a configuration
+            self._change(_start(old), _end(old), self._flow(value))
+            return
+        for joint, coordinates in value.items():
+            if joint in old.nodes and not _same(old.data[joint], coordinates):
+                self._change(_start(old.nodes[joint]), _end(old.nodes[joint]), self._flow(coordinates))
+        new = {joint: coordinates for joint, coordinates in value.items() if joint not in old.nodes}
+        if new:
+            self._add(old, list(old.nodes)[-1], new)
+
+    def _add(self, mapping: Collection, last: str | int, entries: Mapping[str, Value]) -> None:
+        """Add entries behind one that a mapping has."""
+        key_start, key_end = mapping.keys[last]
+        end = max(_end(mapping.nodes[last]), key_end or 0)
+        indent = self._indent(key_start)
+        if _is_flow(mapping):
+            # On a line of its own where that one is.
+            separator = ", " if indent is None else f",{self._break}{indent}"
+            text = "".join(f"{separator}{self._flow({key: value})[1:-1]}" for key, value in entries.items())
+            self._change(end, end, text)
+            return
+        if indent is None:
+            raise NotEditable("a key does not begin its line")
+        lines = [line for key, value in entries.items() for line in _lines(key, value)]
+        at = self._line_after(end)
+        text = "".join(f"{indent}{line}{self._break}" for line in lines)
+        begins_line = at == 0 or self._text[at - 1] in "\r\n"
+        self._change(at, at, text if begins_line else self._break + text)
+
+    def _fill(self, around: Collection, key: str, value: Mapping[str, Value]) -> None:
+        """Give an empty mapping its entries: between its braces, or in lines below its key."""
+        lines = _lines(key, value)[1:]
+        start, end = _start(around.nodes[key]), _end(around.nodes[key])
+        indent = self._indent(around.keys[key][0])
+        if not lines or _is_flow(around) or indent is None:
+            self._change(start, end, self._flow(value))
+            return
+        while self._text[start - 1] == " ":  # behind the colon
+            start -= 1
+        self._change(start, end, (self._break + indent).join(("", *lines)))
+
+    def _flow(self, value: Value) -> str:
+        return json.dumps(value, ensure_ascii=False) if self._json else flow(value)
+
+    def _change(self, start: int, end: int, new: str) -> None:
+        self._changes.append((start, end, new))
+
+    def _indent(self, index: int) -> str | None:
+        """What is before a character on its line, where that is blanks alone."""
+        begin = max(self._text.rfind("\n", 0, index), self._text.rfind("\r", 0, index)) + 1
+        before = self._text[begin:index]
+        return before if not before.strip(" ") else None
+
+    def _line_after(self, index: int) -> int:
+        """Where the line after a character begins; a block scalar ends there itself."""
+        if index and self._text[index - 1] in "\r\n":
+            return index
+        found = BREAK.search(self._text, index)
+        return found.end() if found else len(self._text)
+
+
+def _lines(key: str, value: Value) -> Sequence[str]:
+    """The lines of an entry; each configuration begins one."""
+    if key == "configurations" and isinstance(value, Mapping):
+        return f"{key}:", *(f"  {line}" for name, inner in value.items() for line in lines_of(name, inner))
+    return lines_of(key, value)
+
+
+def _plain(values: Sequence[float]) -> Value:
+    """Coordinates as a file has them: whole numbers without a point, one alone without brackets."""
+    numbers: list[int | float] = [int(value) if value == int(value) else value for value in map(float, values)]
+    return numbers[0] if len(numbers) == 1 else numbers
+
+
+def _same(old: object, new: Value) -> bool:
+    """Whether coordinates are the same numbers, whatever way they are written."""
+    as_list = [value if isinstance(value, list) else [value] for value in (old, new)]
+    return as_list[0] == as_list[1]
+
+
+def _says(text: str, before: Mapping[str, Any], name: str, value: Mapping[str, Value]) -> bool:
+    """Whether a text says what was said before, and in the configuration the coordinates."""
+    try:
+        after = read_yaml(Source("", text, text.encode())).data
+    except Fault:
+        return False
+    found = after["configurations"].pop(name)
+    others = {key: other for key, other in before.get("configurations", {}).items() if key != name}
+    same_rest = _canonical({**before, "configurations": others}) == _canonical(after)
+    return same_rest and found.keys() == value.keys() and all(_same(found[joint], value[joint]) for joint in value)
+
+
+def _canonical(value: object) -> str:
+    """Plain data as text: 1, 1.0 and true differ in it, the order of keys does not."""
+    return json.dumps(value, sort_keys=True)
+
+
+def _is_flow(mapping: Collection) -> bool:
+    return mapping.span[1] is not None
+
+
+def _span(node: Node) -> Span:
+    return node if isinstance(node, tuple) else node.span
+
+
+def _start(node: Node) -> int:
+    return _span(node)[0]
+
+
+def _end(node: Node) -> int:
+    """Behind the last character of a node; of a block, that of its last entry."""
+    end = _span(node)[1]
+    if end is not None:
+        return end
+    assert isinstance(node, Collection)
+    last, inner = list(node.nodes.items())[-1]
+    _, key_end = node.keys.get(last, (0, 0))
+    return max(_end(inner), key_end or 0)
