@@ -15,12 +15,12 @@ from collections.abc import Sequence
 from typing import TextIO
 
 from eurdf import __version__
-from eurdf.commands import certify, check, generate, info, migrate, robots, schema
+from eurdf.commands import assemble, certify, check, generate, info, migrate, robots, schema
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.start import INTERRUPTED, start
 
 #: The commands, in the order in which the help shows them.
-COMMANDS = (check, info, robots, migrate, generate, schema, certify)
+COMMANDS = (check, info, assemble, robots, migrate, generate, schema, certify)
 
 # What a shell reports of a program that SIGPIPE ended: 128 and the signal's number.
 _BROKEN_PIPE = 141

@@ -49,7 +49,7 @@ class _Edit:
     def __init__(self, document: YamlDocument) -> None:
         self._text = document.source.text
         self._root = document.root
-        self._json = _is_flow(document.root)
+        self._as_json = _is_flow(document.root)
         found = BREAK.search(self._text)
         self._break = found.group() if found else "\n"
         self._changes: list[tuple[int, int, str]] = []
@@ -83,7 +83,10 @@ class _Edit:
             return
         for joint, coordinates in value.items():
             if joint in old.nodes and not _same(old.data[joint], coordinates):
-                self._change(_start(old.nodes[joint]), _end(old.nodes[joint]), self._flow(coordinates))
+                start = _start(old.nodes[joint])
+                # The items of a list may be below their key, which nothing else may.
+                deeper = "  " if self._indent(start) is not None and self._text[start] == "-" else ""
+                self._change(start, _end(old.nodes[joint]), deeper + self._flow(coordinates))
         new = {joint: coordinates for joint, coordinates in value.items() if joint not in old.nodes}
         if new:
             self._add(old, list(old.nodes)[-1], new)
@@ -120,7 +123,7 @@ class _Edit:
         self._change(start, end, (self._break + indent).join(("", *lines)))
 
     def _flow(self, value: Value) -> str:
-        return json.dumps(value, ensure_ascii=False) if self._json else flow(value)
+        return _json(value) if self._as_json else flow(value)
 
     def _change(self, start: int, end: int, new: str) -> None:
         self._changes.append((start, end, new))
@@ -144,6 +147,12 @@ def _lines(key: str, value: Value) -> Sequence[str]:
     if key == "configurations" and isinstance(value, Mapping):
         return f"{key}:", *(f"  {line}" for name, inner in value.items() for line in lines_of(name, inner))
     return lines_of(key, value)
+
+
+def _json(value: Value) -> str:
+    """A value in JSON, in which YAML too takes every character."""
+    text = json.dumps(value, ensure_ascii=False)
+    return "".join(one if one.isprintable() or ord(one) > 0xFFFF else f"\\u{ord(one):04x}" for one in text)
 
 
 def _plain(values: Sequence[float]) -> Value:

@@ -1,0 +1,245 @@
+"""``eurdf assemble``: a configuration in which every loop is closed, shown and written to the description."""
+
+from __future__ import annotations
+
+import argparse
+import difflib
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from eurdf.commands.cannot_run import CannotRun
+from eurdf.commands.migrate import show_refusal, tell
+from eurdf.commands.output import cell, new_table, write_json, write_rendered
+from eurdf.commands.output_file import write_new
+from eurdf.commands.selection import select_one
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from eurdf.assembled import BeyondLimit
+    from eurdf.commands.assembly_info import AssemblyInfo, JointPosition
+    from eurdf.description import Description
+    from eurdf.kinematics.array import Vector
+    from eurdf.kinematics.assembly import Assembly
+    from eurdf.pinocchio.robot import Robot
+
+_DESCRIPTION = """\
+Find a configuration in which every loop is closed, and show it: for each joint its coordinates as files have them.
+
+The search begins at the configuration 'assembled', or else at the neutral one. It stays within the limits of the joints
+where it can. With --write, the configuration goes into the description as 'assembled'; comments and all else stay.
+
+  eurdf assemble my_robot --hold motor_knee --write
+"""
+
+#: Where to start, where no configuration of that name is in the file.
+_NEUTRAL = "neutral"
+
+# What each row of the residual is brought to, m or rad; a file is to be closed to 1e-12.
+_TOLERANCE = 1e-13
+
+
+def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the parser."""
+    parser = subparsers.add_parser(
+        "assemble",
+        help="find a configuration that closes the loops, and write it to the description",
+        description=_DESCRIPTION,
+        epilog="Exit codes: 0 the loops close, 1 they do not or the robot has errors, 2 the command cannot run.",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("path", metavar="PATH", help="a robot: its folder, its .yaml, or a collection name")
+    parser.add_argument("--write", action="store_true", help="write it to the description as 'assembled'")
+    parser.add_argument("--force", action="store_true", help="replace a different 'assembled' that is there already")
+    parser.add_argument(
+        "--hold", metavar="JOINT", action="append", default=[], help="keep a joint where it is; may be repeated"
+    )
+    parser.add_argument("--limits", action="store_true", help="never leave the limits of the joints")
+    parser.add_argument(
+        "--from",
+        dest="start",
+        metavar="CONFIGURATION",
+        help=f"configuration to start from: one of the description, or {_NEUTRAL}",
+    )
+    parser.add_argument("--json", action="store_true", help="write one JSON object")
+    parser.add_argument("--urdf", metavar="FILE", help="the URDF, where it is not the one that the description names")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Assemble, show, write, and return the exit code."""
+    from eurdf.description import describe
+
+    path = select_one(args.path)
+    if args.urdf is not None and not os.path.exists(args.urdf):
+        raise CannotRun(f"'{args.urdf}' does not exist")
+    description = describe(path, args.urdf, geometry=False)
+    if description.diagnostics.refused or description.mechanism is None:
+        show_refusal(path, tuple(description.diagnostics), args.json)
+        return 1
+    file = _file_to_write(args.path, description) if args.write else None
+    if description.extension is None:
+        raise CannotRun(f"'{path}' is a bare URDF, which has no loops; `eurdf generate` writes a description with them")
+
+    from eurdf.assembled import beyond_limits
+    from eurdf.commands.assembly_info import assembly_info
+    from eurdf.pinocchio.robot import build_robot
+
+    robot = build_robot(description.mechanism, geometry=False)
+    start, q0 = _start(robot, args.start)
+    assembly = _assemble(robot, q0, args.hold, args.limits)
+    beyond = beyond_limits(robot.mechanism, robot.coordinates(assembly.q))
+    info = assembly_info(robot, assembly, start, args.hold, {found.joint for found in beyond})
+    if not args.json:
+        _show(info)
+    code = 0 if assembly.closes else 1
+    if file is not None:
+        info = info.model_copy(update={"file": file})
+        if code == 0 and not beyond:
+            info = info.model_copy(update={"written": _write(file, description, robot, assembly.q, args.force)})
+        else:
+            code = 1
+    if args.json:
+        write_json(info.model_dump(mode="json"))
+    tell(_told(info, assembly, beyond))
+    return code
+
+
+def _file_to_write(path: str, description: Description) -> str:
+    """The file that can have a configuration."""
+    if description.extension is None or description.document is None:
+        raise CannotRun(f"'{path}' is a bare URDF, which has no configurations; `eurdf generate` writes a description")
+    file = description.document.source.file
+    if description.extension.version == "1":
+        raise CannotRun(
+            f"'{file}' is of version 1, which has no configurations; `eurdf migrate` writes it in version 2"
+        )
+    if not os.path.lexists(path):
+        raise CannotRun(f"'{path}' is a robot of the collection: copy its folder '{Path(file).parent}' to change it")
+    return file
+
+
+def _start(robot: Robot, name: str | None) -> tuple[str, Vector]:
+    """The configuration to start from, and its name."""
+    import pinocchio as pin
+
+    from eurdf.assembled import NAME
+
+    if name is None:
+        name = NAME if NAME in robot.configurations else _NEUTRAL
+    if name in robot.configurations:
+        return name, robot.configurations[name]
+    if name == _NEUTRAL:
+        return name, pin.neutral(robot.model)
+    known = [*robot.configurations, _NEUTRAL]
+    near = difflib.get_close_matches(name, known, n=1)
+    hint = f"did you mean '{near[0]}'?" if near else f"there are: {', '.join(known)}"
+    raise CannotRun(f"there is no configuration '{name}'; {hint}")
+
+
+def _assemble(robot: Robot, q0: Vector, hold: list[str], limits: bool) -> Assembly:
+    """A closed configuration, within the limits of the joints where there is one."""
+    from eurdf.assembled import beyond_limits
+    from eurdf.kinematics.assembly import assemble
+
+    try:
+        assembly = assemble(robot, q0, hold, tolerance=_TOLERANCE, limits=limits)
+    except ValueError as reason:
+        raise CannotRun(str(reason)) from None
+    if not limits and assembly.closes and beyond_limits(robot.mechanism, robot.coordinates(assembly.q)):
+        within = assemble(robot, q0, hold, tolerance=_TOLERANCE, limits=True)
+        if within.closes:
+            return within
+    return assembly
+
+
+def _write(file: str, description: Description, robot: Robot, q: Vector, force: bool) -> bool:
+    """Write the configuration to the description; tell whether it was not there already."""
+    from eurdf.assembled import NAME, is_stated, with_assembled
+    from eurdf.format.edit_configuration import NotEditable
+    from eurdf.reading.source import BOM
+
+    if is_stated(robot, q):
+        return False
+    if NAME in robot.configurations and not force:
+        raise CannotRun(f"'{file}' has a different configuration '{NAME}' already; --force replaces it")
+    assert description.document is not None
+    source = description.document.source
+    try:
+        text, diagnostics = with_assembled(description, robot, q)
+    except NotEditable as reason:
+        raise CannotRun(f"cannot write to '{file}': {reason}; write it by hand") from None
+    errors = diagnostics.errors
+    if errors:
+        raise CannotRun(f"cannot write to '{file}': {errors[0]}")
+    before = Path(file).read_bytes()
+    if before.removeprefix(BOM) != source.data:
+        raise CannotRun(f"'{file}' was changed by another program in the meantime; nothing was written")
+    write_new(file, text if before == source.data else BOM.decode() + text, force=True)
+    return True
+
+
+def _told(info: AssemblyInfo, assembly: Assembly, beyond: list[BeyondLimit]) -> list[str]:
+    """What is said beside the table."""
+    nothing_written = [f"nothing was written to '{info.file}'"] if info.file is not None else []
+    if not info.closes:
+        wide = [opening for opening in assembly.open if opening.is_open]
+        first = f"no configuration was found that closes the loops; at the best, {'; '.join(map(str, wide))}"
+        return [first, *nothing_written]
+    if beyond:
+        return [f"the loops close only beyond the limits of joints: {'; '.join(map(str, beyond))}", *nothing_written]
+    if info.written:
+        return [f"wrote the configuration 'assembled' to '{info.file}'"]
+    if info.file is not None:
+        return [f"'{info.file}' has this configuration as 'assembled' already: nothing to do"]
+    return []
+
+
+def _show(info: AssemblyInfo) -> None:
+    from rich.text import Text
+
+    from eurdf.diagnostics.text import visible
+
+    word, style = ("closed", "green") if info.closes else ("open", "red")
+    residual = "" if info.residual is None else f", residual {info.residual:.1e}"
+    heading = Text.assemble((visible(info.name), "bold"), "  ", (word, style), f"{residual}, from {info.start}")
+    write_rendered(heading, *([_joints(info)] if info.joints else []), *([] if info.closes else [_closures(info)]))
+
+
+def _joints(info: AssemblyInfo) -> Table:
+    table = new_table("joint", "type", "coordinates", "unit", "")
+    for joint in info.joints:
+        numbers = "  ".join(f"{round(coordinate.value, 15) + 0.0:.10g}" for coordinate in joint.coordinates)
+        notes = [
+            word
+            for word, holds in (
+                ("held", joint.held),
+                ("beyond its limits", joint.beyond_limits),
+                ("actuated", joint.actuated),
+            )
+            if holds
+        ]
+        style = "red" if joint.beyond_limits else "cyan"
+        table.add_row(cell(joint.name, "bold"), joint.type.value, numbers, _units(joint), cell(", ".join(notes), style))
+    return table
+
+
+def _units(joint: JointPosition) -> str:
+    """The unit of each coordinate, once where all have the same; of a quaternion the order of its numbers."""
+    units = [coordinate.unit for coordinate in joint.coordinates if coordinate.unit]
+    words = list(dict.fromkeys(units)) if len(set(units)) == 1 else units
+    quaternion = [coordinate.name for coordinate in joint.coordinates if not coordinate.unit]
+    return "  ".join([*words, *(["quaternion " + " ".join(quaternion)] if quaternion else [])])
+
+
+def _closures(info: AssemblyInfo) -> Table:
+    table = new_table("closure", "m", "rad", "")
+    for column in table.columns[1:3]:
+        column.justify = "right"
+    for closure in info.closures:
+        numbers = ("-" if number is None else f"{number:.1e}" for number in (closure.position, closure.angle))
+        table.add_row(
+            cell(closure.name, "bold"), *numbers, cell("closed", "green") if closure.closed else cell("open", "red")
+        )
+    return table
