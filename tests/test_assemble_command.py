@@ -302,3 +302,19 @@ def test_a_file_that_another_program_changed_is_left_alone(
     code, _, err = run("robot.yaml", "--write")
     assert (code, file.read_text()) == (2, "changed\n")
     assert err == "eurdf: 'robot.yaml' was changed by another program in the meantime; nothing was written\n"
+
+
+@pytest.mark.parametrize(
+    ("stated", "told"),
+    [
+        ("", "residual 0; `eurdf assemble` shows a configuration"),
+        ("configurations: {assembled: {}}\n", "residual 0"),
+    ],
+)
+def test_info_names_the_command_where_no_configuration_is_stated(
+    folder: Path, capsys: pytest.CaptureFixture[str], stated: str, told: str
+) -> None:
+    bench(folder, DESCRIPTION + stated)
+    assert main(["info", "robot.yaml"]) == 0
+    (line,) = re.findall(r"^loops +close  (.*)$", capsys.readouterr().out, re.MULTILINE)
+    assert re.sub(r"\d\.\de[-+]\d\d", "0", line) == told

@@ -21,7 +21,7 @@ TUTORIAL = SPEC / "tutorial.md"
 ROBOT = SPEC / "examples" / "tutorial"
 
 # What is zero but for rounding is another number on each machine.
-_NOISE = re.compile(r"\b\d(?:\.\d+)?e-1[0-9]\b")
+_NOISE = re.compile(r"\b\d(?:\.\d+)?e-1[0-9]\b|\b0\.0e\+00\b")
 
 
 @dataclass

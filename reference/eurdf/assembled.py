@@ -55,7 +55,7 @@ class BeyondLimit:
 
 
 def beyond_limits(mechanism: Mechanism, coordinates: Mapping[str, Sequence[float]]) -> list[BeyondLimit]:
-    """The coordinates that a configuration in a file must not have, EU-CFG-004."""
+    """The coordinates that a configuration in a file must not have."""
     return [
         BeyondLimit(joint.name, name, value, lower, upper)
         for joint in mechanism.joints

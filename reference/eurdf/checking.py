@@ -82,7 +82,7 @@ def assembled_diagnostics(description: Description, robot: Robot) -> Diagnostics
             "assembled-open",
             f"the loops are open at the assembled configuration: {_told(openings)}",
             description.place_of_configuration("assembled"),
-            "`eurdf.assemble` finds a configuration that closes them",
+            "`eurdf assemble` finds a configuration that closes them; --write states it",
         )
     return diagnostics
 

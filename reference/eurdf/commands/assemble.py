@@ -210,7 +210,7 @@ def _show(info: AssemblyInfo) -> None:
 def _joints(info: AssemblyInfo) -> Table:
     table = new_table("joint", "type", "coordinates", "unit", "")
     for joint in info.joints:
-        numbers = "  ".join(f"{round(coordinate.value, 15) + 0.0:.10g}" for coordinate in joint.coordinates)
+        numbers = "  ".join(_number(coordinate.value) for coordinate in joint.coordinates)
         notes = [
             word
             for word, holds in (
@@ -223,6 +223,12 @@ def _joints(info: AssemblyInfo) -> Table:
         style = "red" if joint.beyond_limits else "cyan"
         table.add_row(cell(joint.name, "bold"), joint.type.value, numbers, _units(joint), cell(", ".join(notes), style))
     return table
+
+
+def _number(value: float) -> str:
+    """A coordinate to 9 decimals, which is closer than a closure in a file has to be closed."""
+    rounded = round(value, 9) + 0.0  # no negative zero
+    return f"{rounded:.9f}".rstrip("0").rstrip(".") if abs(rounded) < 1e9 else repr(rounded)
 
 
 def _units(joint: JointPosition) -> str:

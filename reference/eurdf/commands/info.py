@@ -112,10 +112,12 @@ def _dimensions(info: RobotInfo) -> Table:
     if not info.closures:
         verdict = ("loops", "none", "a tree")
     elif info.closes:
-        verdict = ("loops", "close", f"residual {info.residual:.1e}")
+        stated = any(configuration.name == "assembled" for configuration in info.configuration_list)
+        more = "" if stated else "; `eurdf assemble` shows a configuration"
+        verdict = ("loops", "close", f"residual {info.residual:.1e}{more}")
     else:
-        smallest = "" if info.residual is None else f"smallest residual found {info.residual:.1e}"
-        verdict = ("loops", "open", smallest)
+        smallest = "" if info.residual is None else f"smallest residual found {info.residual:.1e}; "
+        verdict = ("loops", "open", f"{smallest}`eurdf assemble` shows how far each closure is")
     types = [closure.type for closure in info.closure_list]
     kinds = ", ".join(f"{types.count(kind)} of {kind}" for kind in ("3d", "6d") if kind in types)
     rows: list[tuple[str, int | str | None, str]] = [

@@ -60,7 +60,7 @@ def configuration_vector(
 
 
 def own_coordinates(mechanism: Mechanism, model: pin.Model, q: Vector) -> dict[str, tuple[float, ...]]:
-    """The coordinates, as files have them, of every joint that has coordinates of its own, by its name (EU-CFG-001).
+    """The coordinates, as files have them, of every joint that has coordinates of its own, by its name.
 
     It is the inverse of `configuration_vector`.
 

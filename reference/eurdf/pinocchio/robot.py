@@ -86,7 +86,7 @@ class Robot:
             For each joint that has coordinates of its own, by name: an angle (rad) or a length (m); of a universal
             joint two angles, of a cylindrical one length and angle, of a planar one x, y and angle; of a spherical one
             a quaternion x, y, z, w, of a floating one x, y, z and a quaternion. The joint of a floating root is
-            ``root_joint``. Fixed joints and those that mimic another have none (EU-CFG-001). The angle of a joint
+            ``root_joint``. Fixed joints and those that mimic another have none. The angle of a joint
             without limits that Pinocchio has as (cos, sin) is from -pi to pi.
 
         Raises:
