@@ -246,6 +246,16 @@ def test_a_folder_with_a_urdf_alone_is_a_robot(folder: Path) -> None:
     assert select(["."]) == ["."]
 
 
+def test_a_folder_without_robots_is_an_error_unless_none_are_allowed(folder: Path, run: Run) -> None:
+    (folder / "mkdocs.yml").write_text("site_name: A site\n", encoding="utf-8")
+    assert run("check", ".")[0] == 1  # the one YAML file of a folder is its description
+    assert run("check", "--allow-none", ".") == (0, ".: no robot\n", "")
+    assert json.loads(run("check", "--allow-none", ".", "--format", "json")[1])["robots"] == []
+    robot(folder / "arm")
+    assert run("check", "--allow-none", ".")[1] == "./arm: sound\n"
+    assert run("check", "--allow-none", "nowhere")[0] == 2
+
+
 # --- info ------------------------------------------------------------------------------------------------------------
 
 

@@ -42,15 +42,46 @@ def test_the_hook_is_one_that_pre_commit_takes() -> None:
     subprocess.run(pre_commit, check=True)
 
 
-@pytest.mark.parametrize("broken", [False, True], ids=["sound", "broken"])
-def test_the_hook_passes_where_every_robot_of_the_repository_is_sound(tmp_path: Path, broken: bool) -> None:
+def run_the_hook(folder: Path) -> subprocess.CompletedProcess[str]:
     (hook,) = yaml.safe_load(HOOKS.read_text())
     command = [*hook["entry"].split(), *hook["args"]]
-    found = subprocess.run(
-        command, cwd=repository(tmp_path, broken=broken), env=environment(), capture_output=True, text=True, check=False
-    )
+    return subprocess.run(command, cwd=folder, env=environment(), capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize("broken", [False, True], ids=["sound", "broken"])
+def test_the_hook_passes_where_every_robot_of_the_repository_is_sound(tmp_path: Path, broken: bool) -> None:
+    found = run_the_hook(repository(tmp_path, broken=broken))
     assert found.returncode == (1 if broken else 0), found.stdout + found.stderr
     assert ("unknown-frame" in found.stdout) == broken
+
+
+#: Files of repositories without robots.
+OTHERS = {
+    "no file": [],
+    "one YAML file": ["mkdocs.yml"],
+    "several YAML files": [".github/workflows/ci.yml", "mkdocs.yml", "config.yaml", "deep/er/settings.yaml"],
+}
+
+
+def other_repository(folder: Path, files: list[str]) -> Path:
+    folder.mkdir(exist_ok=True)
+    for name in files:
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text("site_name: A site\n")
+    return folder
+
+
+@pytest.mark.parametrize("files", OTHERS.values(), ids=OTHERS)
+def test_the_hook_passes_in_a_repository_without_robots(tmp_path: Path, files: list[str]) -> None:
+    found = run_the_hook(other_repository(tmp_path, files))
+    assert (found.returncode, found.stdout, found.stderr) == (0, ".: no robot\n", "")
+
+
+def test_the_hook_still_checks_a_bare_urdf(tmp_path: Path) -> None:
+    (tmp_path / "arm.urdf").write_text("<robot")
+    found = run_the_hook(tmp_path)
+    assert found.returncode == 1
+    assert found.stdout.startswith("arm.urdf:1:1: error: ")
 
 
 def test_the_action_is_one_that_github_takes() -> None:
@@ -58,23 +89,43 @@ def test_the_action_is_one_that_github_takes() -> None:
     subprocess.run(check, check=True)
 
 
-@pytest.mark.parametrize("broken", [False, True], ids=["sound", "broken"])
-def test_the_action_writes_its_findings_as_sarif_and_fails_where_the_check_does(tmp_path: Path, broken: bool) -> None:
+def run_the_action(folder: Path, paths: str, sarif: Path, output: Path) -> subprocess.CompletedProcess[str]:
     (step,) = (step for step in yaml.safe_load(ACTION.read_text())["runs"]["steps"] if step.get("id") == "check")
-    sarif, output = tmp_path / "found.sarif", tmp_path / "output"
-    found = subprocess.run(
+    return subprocess.run(
         ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", step["run"]],
-        cwd=repository(tmp_path / "repository", broken=broken),
-        env=environment(PATHS="robots deep", SARIF=str(sarif), GITHUB_OUTPUT=str(output)),
+        cwd=folder,
+        env=environment(PATHS=paths, SARIF=str(sarif), GITHUB_OUTPUT=str(output)),
         capture_output=True,
         text=True,
         check=False,
     )
+
+
+@pytest.mark.parametrize("broken", [False, True], ids=["sound", "broken"])
+def test_the_action_writes_its_findings_as_sarif_and_fails_where_the_check_does(tmp_path: Path, broken: bool) -> None:
+    sarif, output = tmp_path / "found.sarif", tmp_path / "output"
+    found = run_the_action(repository(tmp_path / "repository", broken=broken), "robots deep", sarif, output)
     assert found.returncode == (1 if broken else 0), found.stdout + found.stderr
     assert output.read_text() == f"sarif={sarif}\n"
     results: list[dict[str, Any]] = json.loads(sarif.read_text())["runs"][0]["results"]
     assert [result["ruleId"] for result in results] == (["unknown-frame"] if broken else [])
     assert ("unknown-frame" in found.stdout) == broken
+
+
+@pytest.mark.parametrize("files", OTHERS.values(), ids=OTHERS)
+def test_the_action_passes_in_a_repository_without_robots(tmp_path: Path, files: list[str]) -> None:
+    sarif, output = tmp_path / "found.sarif", tmp_path / "output"
+    found = run_the_action(other_repository(tmp_path / "repository", files), ".", sarif, output)
+    assert (found.returncode, found.stdout) == (0, ".: no robot\n"), found.stderr
+    assert json.loads(sarif.read_text())["runs"][0]["results"] == []
+
+
+def test_the_action_uploads_nothing_where_a_path_does_not_exist(tmp_path: Path) -> None:
+    output = tmp_path / "output"
+    found = run_the_action(other_repository(tmp_path / "repository", []), "robtos", tmp_path / "found.sarif", output)
+    assert found.returncode == 2
+    assert "there is no 'robtos'" in found.stderr
+    assert not output.exists()
 
 
 def test_the_catalogue_entry_names_each_version_of_the_schema_and_claims_no_file_of_others() -> None:

@@ -40,12 +40,17 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument("--urdf", metavar="FILE", help="the URDF, where it is not the one that the description names")
     parser.add_argument("--format", choices=("text", "json", "sarif"), default="text", help="default: text")
     parser.add_argument("--strict", action="store_true", help="let warnings count as errors")
+    parser.add_argument(
+        "--allow-none",
+        action="store_true",
+        help="succeed where a folder holds no robot (for hooks)",
+    )
     parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
     """Check, write what was found, and return the exit code."""
-    robots = select(args.paths)
+    robots = select(args.paths, args.allow_none)
     if args.urdf is not None and not os.path.exists(args.urdf):
         raise CannotRun(f"'{args.urdf}' does not exist")
     reports = [_check(robot, args.urdf) for robot in _with_progress(robots)]
@@ -58,8 +63,12 @@ def run(args: argparse.Namespace) -> int:
         from eurdf.diagnostics.sarif import sarif_log
 
         write_json(sarif_log(reports, __version__))
-    else:
+    elif reports:
         write_reports(reports, args.strict)
+    else:
+        from eurdf.diagnostics.text import visible
+
+        write_lines([[(f"{visible(path)}: no robot", "")] for path in args.paths], sys.stdout)
     return 0 if all(report.passes(args.strict) for report in reports) else 1
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from eurdf.collection import find_robot
 from eurdf.commands.cannot_run import CannotRun
+from eurdf.exceptions import RobotNotFound
 
 _DESCRIPTIONS = ("robot.yaml", "robot.yml")
 _YAML_SUFFIXES = (".yaml", ".yml")
@@ -18,7 +19,7 @@ _FORMAT_KEY = re.compile(rb"""^(["']?)(?:extended_urdf|closed_loop)\1[ \t]*:""",
 _LARGEST_DESCRIPTION = 4 * 2**20
 
 
-def select(paths: Iterable[str]) -> list[str]:
+def select(paths: Iterable[str], allow_none: bool = False) -> list[str]:
     """The robots that paths stand for, each once, in the order given.
 
     A folder with a ``robot.yaml`` or ``robot.yml`` is one robot. Any other folder is searched: each folder in it with
@@ -28,12 +29,13 @@ def select(paths: Iterable[str]) -> list[str]:
 
     Args:
         paths: As the user gave them.
+        allow_none: Whether a folder may hold no robot. A YAML file in it is then one only if it says so.
 
     Raises:
         RobotNotFound: There is no such path, or no robot in it.
         CannotRun: A folder cannot be read.
     """
-    return list(dict.fromkeys(robot for path in paths for robot in _robots_at(path)))
+    return list(dict.fromkeys(robot for path in paths for robot in _robots_at(path, allow_none)))
 
 
 def select_one(path: str) -> str:
@@ -49,13 +51,23 @@ def select_one(path: str) -> str:
     return robots[0]
 
 
-def _robots_at(path: str) -> list[str]:
+def _robots_at(path: str, allow_none: bool) -> list[str]:
     if os.path.isdir(path) and not any(os.path.isfile(os.path.join(path, name)) for name in _DESCRIPTIONS):
         found = _robots_below(path)
         if found:
             return found
+        if allow_none:
+            return [path] if _holds_urdf(path) else []
     find_robot(path)
     return [path]
+
+
+def _holds_urdf(folder: str) -> bool:
+    """Whether a folder without a description is a robot, for the URDF in it."""
+    try:
+        return find_robot(folder).description is None
+    except RobotNotFound:
+        return False
 
 
 def _robots_below(folder: str) -> list[str]:
