@@ -1,6 +1,9 @@
 """Findings as a SARIF log."""
 
 import json
+import re
+from collections.abc import Callable, Iterator
+from email.message import Message
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -11,6 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from eurdf.diagnostics import REGISTRY, Diagnostic, Phase, Place, Rule, Severity
+from eurdf.diagnostics.help_uri import _site, help_uri
 from eurdf.diagnostics.report import Report
 from eurdf.diagnostics.sarif import sarif_log
 
@@ -84,6 +88,7 @@ def test_the_tool_tells_the_rules_that_were_broken_and_their_clauses() -> None:
     assert driver["rules"][0] == {
         "id": "near-miss-key",
         "shortDescription": {"text": "A key of the user's own is nearly a key of the format."},
+        "helpUri": help_uri("near-miss-key"),
         "defaultConfiguration": {"level": "warning"},
         "properties": {"clause": "EU-ONE-002", "phase": "schema"},
     }
@@ -97,9 +102,48 @@ def test_advice_has_no_clause(monkeypatch: pytest.MonkeyPatch) -> None:
     assert run["tool"]["driver"]["rules"][0]["properties"] == {"phase": "advice"}
 
 
+@pytest.fixture
+def _no_site_known() -> Iterator[None]:
+    _site.cache_clear()
+    yield
+    _site.cache_clear()
+
+
+def metadata_with(*urls: str) -> Callable[[str], Message]:
+    message = Message()
+    for url in urls:
+        message["Project-URL"] = url
+    return lambda name: message
+
+
+@pytest.mark.usefixtures("_no_site_known")
+@pytest.mark.parametrize(
+    ("urls", "uri"),
+    [
+        ([], "urn:extended-urdf:diagnostic:unknown-frame"),
+        (["Source, https://a.example/b"], "urn:extended-urdf:diagnostic:unknown-frame"),
+        (["Source, https://a.example", "Documentation, https://b.example/spec/"],
+         "https://b.example/spec/diagnostics.html#unknown-frame"),
+    ],
+)  # fmt: skip
+def test_a_rule_links_to_its_code_on_the_site_of_the_package(
+    monkeypatch: pytest.MonkeyPatch, urls: list[str], uri: str
+) -> None:
+    monkeypatch.setattr("eurdf.diagnostics.help_uri.metadata", metadata_with(*urls))
+    (rule,) = run_of(UNKNOWN)["tool"]["driver"]["rules"]
+    assert rule["helpUri"] == uri
+
+
+def test_the_page_of_the_site_has_every_code_at_the_anchor_of_its_name() -> None:
+    page = (Path(__file__).parents[1] / "spec" / "diagnostics.md").read_text(encoding="utf-8")
+    assert set(re.findall(r"^:::\{diagnostic\} (\S+)$", page, re.MULTILINE)) == set(REGISTRY)
+
+
 def test_every_code_of_the_registry_makes_a_valid_log() -> None:
     found = [Diagnostic(code, "it is wrong", Place("robot.yaml", 1, 1, 2, "/a")) for code in REGISTRY]
-    assert len(run_of(*found)["results"]) == len(REGISTRY)
+    run = run_of(*found)
+    assert len(run["results"]) == len(REGISTRY)
+    assert len({rule["helpUri"] for rule in run["tool"]["driver"]["rules"]}) == len(REGISTRY)
 
 
 def test_robots_without_findings_make_an_empty_run() -> None:

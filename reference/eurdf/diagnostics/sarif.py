@@ -10,6 +10,7 @@ from typing import Any
 from urllib.parse import quote
 
 from eurdf.diagnostics.diagnostic import Diagnostic, Place
+from eurdf.diagnostics.help_uri import help_uri
 from eurdf.diagnostics.registry import REGISTRY
 from eurdf.diagnostics.report import Report, encodable
 
@@ -49,6 +50,7 @@ def _rule(code: str) -> dict[str, Any]:
     return {
         "id": code,
         "shortDescription": {"text": rule.title},
+        "helpUri": help_uri(code),
         "defaultConfiguration": {"level": rule.severity.value},
         "properties": {**properties, "phase": rule.phase.value},
     }
