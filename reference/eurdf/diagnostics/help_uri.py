@@ -22,7 +22,7 @@ def help_uri(code: str) -> str:
 @cache
 def _site() -> str | None:
     try:
-        urls = metadata("eurdf").get_all("Project-URL") or []
+        urls: list[str] = metadata("eurdf").get_all("Project-URL") or []
     except PackageNotFoundError:
         return None
     for url in urls:
