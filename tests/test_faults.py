@@ -46,10 +46,10 @@ FAULTS = [
     ("wrong-value", ONE, "UJOINT_ZX", "UJOINT_XX", "UJOINT_XX", ""),
     ("near-miss-key", ONE, "note: kept", "name_mots: kept", "name_mots", "did you mean 'name_mot'?"),
     ("unknown-frame", ONE, "[rod_tip, slider]", "[rod_tpi, slider]", "rod_tpi", "did you mean 'rod_tip'?"),
-    ("unknown-actuator", ONE, "name_mot: [motor, grip]", "name_mot: [motr, grip]", "motr", "did you mean 'motor'?"),
+    ("unknown-actuator", ONE, "name_mot: [motor, grip,", "name_mot: [motr, grip,", "motr", "did you mean 'motor'?"),
     ("unknown-joint", ONE, "joint_name: [elbow,", "joint_name: [ellbow,", "ellbow", "did you mean 'elbow'?"),
-    ("unknown-actuator", ONE, "name_mot: [motor, grip]", "name_mot: [motor, elbow]", "elbow]\njoint", "'elbow_Z' or 'elbow_X'"),
-    ("actuator-merged", ONE, "name_mot: [motor, grip]", "name_mot: [motor, wrist_x]", "wrist_x", "'wrist_z'"),
+    ("unknown-actuator", ONE, "name_mot: [motor, grip,", "name_mot: [motor, elbow,", "elbow, pivot", "'elbow_Z' or 'elbow_X'"),
+    ("actuator-merged", ONE, "name_mot: [motor, grip,", "name_mot: [motor, wrist_x,", "wrist_x", "'wrist_z'"),
     ("duplicate-replacement", ONE, "joint_name: [elbow, pivot]", "joint_name: [elbow, elbow]", "elbow]\njoint_type", ""),
     ("duplicate-replacement", YAML, "[wrist_x, wrist_y, wrist_z]", "[wrist_x, wrist_x, wrist_z]", "wrist_x, wrist_z", "different"),
     # the URDF by itself
@@ -283,6 +283,8 @@ def test_a_joint_whose_name_begins_like_the_users_own_keys_is_warned_of(tmp_path
     )
     urdf = folder / URDF
     urdf.write_text(urdf.read_text(encoding="utf-8").replace('"stage"', '"x-stage"'), encoding="utf-8")
+    yaml = folder / YAML
+    yaml.write_text(yaml.read_text(encoding="utf-8").replace("- stage", "- x-stage"), encoding="utf-8")
     report = eurdf.check(folder / YAML)
     assert [(found.code, found.line) for found in report.diagnostics] == [("own-key-is-joint", 9)]
 

@@ -147,7 +147,7 @@ def test_a_robot_unpacks_as_from_the_published_loader() -> None:
     model, constraint_models, actuation, visual_model, collision_model = loaded
     assert model is loaded.model
     assert [found.name for found in constraint_models] == ["pin"]
-    assert actuation.joints == ("motor", "grip")
+    assert actuation.joints == ("motor", "grip", "hand_ball", "stage")
     assert (visual_model.ngeoms, collision_model.ngeoms) == (1, 1)
     assert loaded.data.M.shape == (model.nv, model.nv)
 

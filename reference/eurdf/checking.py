@@ -11,7 +11,9 @@ from eurdf.diagnostics import Diagnostics
 from eurdf.diagnostics.report import Report
 
 if TYPE_CHECKING:
+    from eurdf.kinematics.assembly import Assembly
     from eurdf.kinematics.residual import Opening
+    from eurdf.mechanism.mechanism import Mechanism
     from eurdf.pinocchio.robot import Robot
 
 
@@ -33,18 +35,39 @@ def check(path: str | os.PathLike[str], urdf: str | os.PathLike[str] | None = No
     if description.urdf is not None:
         for found in find_meshes(description)[1]:
             diagnostics.add(found)
-    if not diagnostics.refused:
-        for found in closure_diagnostics(description):
+    mechanism = description.mechanism
+    if mechanism is not None and mechanism.closures and not diagnostics.refused:
+        for found in _loop_diagnostics(description, mechanism):
             diagnostics.add(found)
     return Report(description.path, tuple(diagnostics))
 
 
-def closure_diagnostics(description: Description, robot: Robot | None = None) -> Diagnostics:
+def _loop_diagnostics(description: Description, mechanism: Mechanism) -> Diagnostics:
+    """What needs a simulator: whether the loops close and, where there is no error, advice on how they move."""
+    # Only now: a description without closures is checked without a simulator.
+    from eurdf.advice.actuation import advise_on_actuation
+    from eurdf.kinematics.assembly import assemble
+    from eurdf.pinocchio.robot import build_robot
+
+    robot = build_robot(mechanism, geometry=False)
+    assembled = robot.configurations.get("assembled")
+    assembly = assemble(robot) if assembled is None else None
+    diagnostics = closure_diagnostics(description, robot, assembly)
+    if not description.diagnostics.error_count + diagnostics.error_count:
+        q = assembled if assembly is None else assembly.q
+        advise_on_actuation(description, robot, q, diagnostics)
+    return diagnostics
+
+
+def closure_diagnostics(
+    description: Description, robot: Robot | None = None, assembly: Assembly | None = None
+) -> Diagnostics:
     """EU-CLO-005, EU-CLO-006: the loops close, at the assembled configuration where there is one.
 
     Args:
         description: The robot as read, with a mechanism.
         robot: The robot built from it, where there already is one.
+        assembly: What `assemble` found of it, where it was asked already.
     """
     diagnostics = Diagnostics()
     mechanism = description.mechanism
@@ -58,7 +81,7 @@ def closure_diagnostics(description: Description, robot: Robot | None = None) ->
         robot = build_robot(mechanism, geometry=False)
     if "assembled" in mechanism.configurations:
         return assembled_diagnostics(description, robot)
-    assembly = assemble(robot)
+    assembly = assemble(robot) if assembly is None else assembly
     if not assembly.closes:
         worst = max(assembly.open, key=_width)
         closure = next(closure for closure in mechanism.closures if closure.name == worst.name)

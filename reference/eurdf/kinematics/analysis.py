@@ -31,11 +31,13 @@ class Motion:
         joints: Names of the joints that it moves.
         velocities: Indices (k,) in v of their velocities that are not zero.
         values: These velocities (k,), rad/s and m/s; the largest is 1, lengths counted in characteristic lengths.
+        q: The closed configuration (nq,) at which it is a motion.
     """
 
     joints: tuple[str, ...]
     velocities: Indices
     values: Vector
+    q: Vector
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -157,16 +159,16 @@ def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
     if assembly.closes:
         closures = [constraint.name for constraint in robot.constraint_models]
         loops = tuple(
-            _analyze(evaluation, jacobians, actuated[evaluation.group.velocities], names, closures)
-            for evaluation, jacobians in zip(
-                assembler.evaluations, _generic_jacobians(assembler, assembly.q), strict=True
-            )
+            _analyze(evaluation, at, actuated[evaluation.group.velocities], names, closures)
+            for evaluation, at in zip(assembler.evaluations, _generic_jacobians(assembler, assembly.q), strict=True)
         )
         outside = np.ones(nv, dtype=bool)
         for evaluation in assembler.evaluations:
             outside[evaluation.group.velocities] = False
         motions = [motion for loop in loops for motion in loop.motions]
-        motions += [_unit_motion(names, velocity) for velocity in np.flatnonzero(outside & ~actuated).tolist()]
+        motions += [
+            _unit_motion(names, velocity, assembly.q) for velocity in np.flatnonzero(outside & ~actuated).tolist()
+        ]
     closes, count = assembly.closes, int(actuated.sum())
     rank = sum(loop.rank for loop in loops)
     return Analysis(
@@ -191,41 +193,46 @@ def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
     )
 
 
-def _generic_jacobians(assembler: Assembler, q: Vector) -> list[list[Matrix]]:
-    """For each group the blocks of K (m, n), free of unit, at a closed configuration and at some around it."""
+def _generic_jacobians(assembler: Assembler, q: Vector) -> list[list[tuple[Vector, Matrix]]]:
+    """For each group a closed configuration (nq,) and some around it, each with the block of K (m, n), free of unit."""
     evaluations = assembler.evaluations
     open_by = [_size(evaluation.residual(q)) for evaluation in evaluations]
-    found = [[evaluation.jacobian()] for evaluation in evaluations]
-    bases = [_null_space(blocks[0]) for blocks in found]
+    found = [[(q, evaluation.jacobian())] for evaluation in evaluations]
+    bases = [_null_space(blocks[0][1]) for blocks in found]
     random = np.random.default_rng(0)
     for length in _MOVES:
         steps = [_free_step(basis, random, length) for basis in bases]
         near, _ = assembler.close(assembler.moved(q, evaluations, steps), restarts=0)
         for evaluation, blocks, error in zip(evaluations, found, open_by, strict=True):
             if _size(evaluation.residual(near)) <= max(10.0 * error, 1e-8):
-                blocks.append(evaluation.jacobian())
+                blocks.append((near, evaluation.jacobian()))
     return found
 
 
 def _analyze(
-    evaluation: Evaluation, jacobians: Sequence[Matrix], actuated: Mask, names: Sequence[str], closures: Sequence[str]
+    evaluation: Evaluation,
+    at: Sequence[tuple[Vector, Matrix]],
+    actuated: Mask,
+    names: Sequence[str],
+    closures: Sequence[str],
 ) -> LoopAnalysis:
     """Analyse one group of loops.
 
     Args:
         evaluation: The group.
-        jacobians: Its blocks of K, free of unit, the first of them at the configuration looked at.
+        at: Closed configurations, each with its block of K, free of unit; the first is the one looked at.
         actuated: Which of its velocities (n,) are actuated.
         names: For each velocity of the robot, the name of its joint.
         closures: Names of the robot's closures.
     """
     group = evaluation.group
-    ranks = [_ranks(A, actuated) for A in jacobians]
+    ranks = [_ranks(A, actuated) for _, A in at]
     rank, held = max(rank for rank, _ in ranks), max(held for _, held in ranks)
-    A = next(block for block, found in zip(jacobians, ranks, strict=True) if found[1] == held)
+    q, A = next(place for place, found in zip(at, ranks, strict=True) if found[1] == held)
+    looked_at = at[0][1]
     nv, nc = len(group.velocities), len(group.rows)
     members = [names[velocity] for velocity in group.velocities.tolist()]
-    stacked = np.vstack([jacobians[0], np.eye(nv)[actuated]])
+    stacked = np.vstack([looked_at, np.eye(nv)[actuated]])
     return LoopAnalysis(
         closures=tuple(closures[index] for index in group.closures),
         joints=_distinct(members),
@@ -237,10 +244,10 @@ def _analyze(
         uncontrolled=nv - held,
         actuated=int(actuated.sum()),
         controlled=held - rank,
-        singularity=_nth(_singular_values(jacobians[0]), rank),
+        singularity=_nth(_singular_values(looked_at), rank),
         actuation_singularity=_nth(_singular_values(stacked), held),
         fighting=_fighting(A, rank, held - rank, actuated, members),
-        motions=_motions(A, held, actuated, evaluation, members),
+        motions=_motions(A, held, actuated, evaluation, members, q),
     )
 
 
@@ -277,9 +284,9 @@ def _fighting(
 
 
 def _motions(
-    A: Matrix, held: int, actuated: Mask, evaluation: Evaluation, members: Sequence[str]
+    A: Matrix, held: int, actuated: Mask, evaluation: Evaluation, members: Sequence[str], q: Vector
 ) -> tuple[Motion, ...]:
-    """The motions of a group that its actuators, held, leave."""
+    """The motions of a group that its actuators, held, leave at q (nq,), where its block of K is A."""
     free = np.flatnonzero(~actuated)
     basis = _right_vectors(A[:, free])[held - int(actuated.sum()) :]
     motions = []
@@ -287,12 +294,12 @@ def _motions(
         moving = free[np.flatnonzero(row)]
         values = row[np.flatnonzero(row)] * evaluation.unit[moving]
         joints = _distinct(members[index] for index in moving.tolist())
-        motions.append(Motion(joints, evaluation.group.velocities[moving], values))
+        motions.append(Motion(joints, evaluation.group.velocities[moving], values, q))
     return tuple(motions)
 
 
-def _unit_motion(names: Sequence[str], velocity: int) -> Motion:
-    return Motion((names[velocity],), np.array([velocity]), np.ones(1))
+def _unit_motion(names: Sequence[str], velocity: int, q: Vector) -> Motion:
+    return Motion((names[velocity],), np.array([velocity]), np.ones(1), q)
 
 
 def _distinct(names: Iterable[str]) -> tuple[str, ...]:

@@ -62,7 +62,7 @@ def residual_and_jacobian(robot: Robot, q: Vector, data: Any = None) -> tuple[Ve
     """
     loops = find_loops(robot)
     if data is None:
-        placements, J = _jacobian_along(robot, q)
+        placements, J = jacobian_along(robot, q)
     else:
         J = pin.computeJointJacobians(robot.model, data, q).reshape(6, -1)  # (6,) where nv is 1
         placements = data.oMi
@@ -159,8 +159,12 @@ def _placements(robot: Robot, q: Vector, data: Any) -> Any:
     return data.oMi
 
 
-def _jacobian_along(robot: Robot, q: Vector) -> tuple[dict[int, Any], Matrix]:
-    """World placements by joint, and the world Jacobian (6, nvExtended), zero but in the columns of the loops."""
+def jacobian_along(robot: Robot, q: Vector) -> tuple[dict[int, Any], Matrix]:
+    """World placements by joint, and the world Jacobian (6, nvExtended), zero but in the columns of the loops.
+
+    Rows are linear, of the point at the origin of the world, and angular. A joint that mimics another has columns of
+    its own, those from ``model.idx_vExtendeds[joint]``.
+    """
     model = robot.model
     placements, J = {}, np.zeros((6, model.nvExtended))
     first_column, width = model.idx_vExtendeds, model.nvExtendeds
