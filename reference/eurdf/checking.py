@@ -50,11 +50,10 @@ def _loop_diagnostics(description: Description, mechanism: Mechanism) -> Diagnos
     from eurdf.pinocchio.robot import build_robot
 
     robot = build_robot(mechanism, geometry=False)
-    assembled = robot.configurations.get("assembled")
-    assembly = assemble(robot) if assembled is None else None
+    assembly = None if "assembled" in robot.configurations else assemble(robot)
     diagnostics = closure_diagnostics(description, robot, assembly)
     if not description.diagnostics.error_count + diagnostics.error_count:
-        q = assembled if assembly is None else assembly.q
+        q = robot.configurations["assembled"] if assembly is None else assembly.q
         advise_on_actuation(description, robot, q, diagnostics)
     return diagnostics
 
