@@ -24,6 +24,7 @@ from test_actuation import STAR
 HALF = math.sqrt(0.5)
 
 WORKBENCH = Path(__file__).parent / "data" / "workbench.yaml"
+HALF_LIMITED = "{d: {type: universal, axes: xy, limits: {lower: [0, 0], upper: [0, 1]}}}"
 
 JOINTS = "joints: {d: spherical}\n"
 
@@ -103,6 +104,15 @@ def test_a_quaternion_of_nearly_unit_length_is_normalised_and_any_other_refused(
         ("{a: {limits: {upper: 1}}}", "a: 1.5", "configuration-limits"),
         ("{a: {limits: {upper: 3}}}", "a: 2.5", ""),
         ("{d: {type: universal, axes: xy}}", "d: [0, 2.1]", "configuration-limits"),
+        ("{a: {limits: {lower: 0, upper: 0}}}", "a: 1.5", ""),
+        ("{a: {limits: {lower: 0, upper: 0.1}}}", "a: -0.1", "configuration-limits"),
+        ("{a: {limits: {lower: 0.1, upper: 0.1}}}", "a: 0.2", "configuration-limits"),
+        ("{d: {type: universal, axes: xy, limits: {lower: [0, 0], upper: [0, 1]}}}", "d: [2, 0.5]", ""),
+        (
+            "{d: {type: universal, axes: xy, limits: {lower: [0, 0], upper: [0, 1]}}}",
+            "d: [2, 1.5]",
+            "configuration-limits",
+        ),
         ("{d: cylindrical}", "d: [2.1, 0]", ""),
         ("{d: cylindrical}", "d: [0, 2.1]", "configuration-limits"),
         ("{c: cylindrical}", "c: [0, 2.1]", ""),

@@ -158,6 +158,48 @@ def limits_of_the_first_coordinate() -> Deviation:
     return around(configurations, "_coordinates", checked)
 
 
+@mutant("EU-CFG-004")
+def ranges_of_zero_are_ranges() -> Deviation:
+    """A coordinate whose limits are both 0 must be 0."""
+    return _with_limits(lambda lower, upper: (lower or -1e-300, upper or 1e-300))
+
+
+@mutant("EU-CFG-004")
+def ranges_of_zero_width_are_none() -> Deviation:
+    """Limits that are equal are no limits, whatever they are."""
+    return _with_limits(lambda lower, upper: (-math.inf, math.inf) if lower == upper else (lower, upper))
+
+
+@mutant("EU-CFG-004")
+def limits_of_zero_are_none() -> Deviation:
+    """A limit of 0 is no limit, whatever the other is."""
+    return _with_limits(lambda lower, upper: (lower or -math.inf, upper or math.inf))
+
+
+@mutant("EU-CFG-004")
+def one_coordinate_without_a_range_frees_the_others() -> Deviation:
+    """A joint has no limits where those of one of its coordinates are both 0."""
+
+    def checked(original: Any, joint: Joint, *arguments: Any) -> Any:
+        if any(lower == upper == 0.0 for lower, upper in zip(joint.lower, joint.upper, strict=True)):
+            count = len(joint.lower)
+            joint = replace(joint, lower=(-math.inf,) * count, upper=(math.inf,) * count)
+        return original(joint, *arguments)
+
+    return around(configurations, "_coordinates", checked)
+
+
+def _with_limits(limits: Callable[[float, float], tuple[float, float]]) -> Deviation:
+    """Coordinates are compared with other limits than those of their joint."""
+
+    def checked(original: Any, joint: Joint, *arguments: Any) -> Any:
+        pairs = [limits(lower, upper) for lower, upper in zip(joint.lower, joint.upper, strict=True)]
+        changed = replace(joint, lower=tuple(low for low, _ in pairs), upper=tuple(high for _, high in pairs))
+        return original(changed, *arguments)
+
+    return around(configurations, "_coordinates", checked)
+
+
 @mutant("EU-CFG-002")
 def quaternion_may_lack_w() -> Deviation:
     """Of a quaternion three numbers may be given, w being what makes its length 1."""

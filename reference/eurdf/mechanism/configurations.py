@@ -115,6 +115,8 @@ def _coordinates(
             return None
         return (*values[:start], *(value / norm for value in values[start : start + 4]))
     for value, lower, upper, name in zip(values, joint.lower, joint.upper, coordinates.names, strict=True):
+        if lower == upper == 0.0:  # EU-CFG-004: no range was given
+            continue
         if not lower - LIMIT_TOLERANCE <= value <= upper + LIMIT_TOLERANCE:
             diagnostics.report(
                 "configuration-limits",
