@@ -193,6 +193,18 @@ def test_an_invalid_robot_carries_everything_found(tmp_path: Path) -> None:
     assert isinstance(caught.value, eurdf.EurdfError)
 
 
+def test_the_text_of_an_invalid_robot_has_the_errors_first(tmp_path: Path) -> None:
+    stuck = joint_element("j", "revolute", "base", "arm", '<limit effort="1" velocity="1"/>')
+    urdf = robot(link_element("base"), body("arm"), stuck)
+    folder = _write(tmp_path, urdf, YAML + "closures: [{name: c, type: 3d, frames: [base, amr]}]\n")
+    with pytest.raises(eurdf.InvalidRobot) as caught:
+        eurdf.load(folder)
+    assert [found.severity for found in caught.value.diagnostics] == ["warning", "error"]
+    first, second = str(caught.value).splitlines()[1:]
+    assert "error: " in first
+    assert "warning: " in second
+
+
 LOOSE = robot(
     link_element("base", inertial()),
     body("arm"),

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from eurdf.diagnostics import Diagnostic
+from eurdf.diagnostics.registry import Severity
 
 if TYPE_CHECKING:
     from eurdf.kinematics.array import Vector
@@ -22,13 +23,14 @@ class InvalidRobot(EurdfError, ValueError):  # noqa: N818 - part of the public i
 
     Attributes:
         path: As the caller gave it.
-        diagnostics: Everything found, warnings too.
+        diagnostics: Everything found, warnings too, in the order found; the text has the errors first.
     """
 
     def __init__(self, path: str, diagnostics: tuple[Diagnostic, ...], reason: str = "") -> None:
         self.path = path
         self.diagnostics = diagnostics
-        lines = [reason or f"{path} is not a valid robot", *(f"  {found}" for found in diagnostics)]
+        errors_first = sorted(diagnostics, key=lambda found: found.severity is not Severity.ERROR)
+        lines = [reason or f"{path} is not a valid robot", *(f"  {found}" for found in errors_first)]
         super().__init__("\n".join(lines))
 
 
