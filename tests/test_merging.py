@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import tempfile
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,8 +13,9 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+import eurdf
 from by_hand import rotation
-from described import at, body, codes, frame_poses, link_poses, load, mass_matrix, origin, q_of, revolute
+from described import at, body, codes, frame_poses, link_poses, load, mass_matrix, origin, q_of, revolute, written
 from plain_urdf import inertial, joint_element, link_element, robot
 
 ANGLES = st.floats(-3.0, 3.0)
@@ -411,3 +414,29 @@ def test_links_before_and_beyond_a_ball_away_from_the_last_origin_stand_as_in_th
     np.testing.assert_allclose(found["l3"][:3, :3], rotation((1, 0, 0), math.pi / 2), atol=1e-14)
     np.testing.assert_allclose(found["l2"][:3, 3], (1, 3, 0), atol=1e-14)
     assert merged.model.jointPlacements[1].translation == pytest.approx(np.array((1, 0, 0)), abs=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("yaml", "without"),
+    [
+        ("", ["x", "y", "z", "grip"]),
+        ("joints: {ball: {type: spherical, merges: [x, y, z]}}\n", ["grip"]),
+        ("joints: {grip: fixed}\n", ["x", "y", "z"]),
+        ("joints: {grip: {limits: {lower: -1, upper: 1}}, x: spherical}\n", ["y", "z"]),
+        ("joints: {ball: {type: spherical, merges: [x, y, z]}, grip: {type: universal, axes: xy}}\n", []),
+        ("name_mot: [grip]\n", ["grip"]),  # version 1 merges by itself
+        ("name_mot: []\njoint_name: [grip]\njoint_type: [UJOINT_XY]\n", []),
+    ],
+)
+def test_ranges_are_asked_for_of_the_joints_that_are_left(yaml: str, without: list[str]) -> None:
+    wrist = Wrist([pin.SE3.Identity()] * 3, [np.eye(3)[k] for k in range(3)])
+    urdf = wrist.urdf.replace('lower="-3" upper="3" ', "")
+    with tempfile.TemporaryDirectory() as folder:
+        found = eurdf.check(written(Path(folder), urdf, yaml)).diagnostics
+        told = [each.message for each in found if each.code == "urdf-no-range"]
+    if not without:
+        assert told == []
+        return
+    count = "1 joint has" if len(without) == 1 else f"{len(without)} joints have"
+    named = ", ".join(f"'{name}'" for name in without[:3]) + (", ..." if len(without) > 3 else "")
+    assert told == [f"{count} the range 0 to 0: {named}"]

@@ -11,8 +11,11 @@ from eurdf.description import Description
 from eurdf.diagnostics import Diagnostic
 from eurdf.diagnostics.registry import REGISTRY, Phase
 from eurdf.format import read_extension
+from eurdf.format.urdf import Urdf
+from eurdf.mechanism import link
 from eurdf.mechanism.frame_names import FrameNames
 from eurdf.mechanism.replacement import _Replacement
+from eurdf.mechanism.spanning_tree import joint_of
 from eurdf_conformance.adapters.reference import Reference
 from eurdf_conformance.level import Level
 from eurdf_conformance.mutants.deviation import Deviation, around, instead, result
@@ -60,6 +63,16 @@ def warnings_reject() -> Deviation:
 def late_errors_are_not_told() -> Deviation:
     """A robot with an error of inertia or closure is accepted without a word."""
     return issues(lambda found: [issue for issue in found if REGISTRY[issue.code or ""].phase not in _LATE])
+
+
+@mutant("EU-URD-025")
+def ranges_of_replaced_joints_are_missed() -> Deviation:
+    """A joint without a range in the URDF is warned about, whatever the description makes of it."""
+
+    def check(original: Any, urdf: Urdf, joints: Any, *arguments: Any) -> Any:
+        return original(urdf, {joint.name: joint_of(joint) for joint in urdf.walk()}, *arguments)
+
+    return around(link, "check_ranges", check)
 
 
 @mutant("EU-PRO-004", caught_by=frozenset({Verdict.ERRORED}))

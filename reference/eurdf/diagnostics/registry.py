@@ -131,7 +131,7 @@ urdf-mimic-unknown         EU-URD-021 error   A joint mimics a joint that does n
 urdf-mimic-cycle           EU-URD-022 error   Joints mimic one another in a cycle.
 urdf-mimic-kind            EU-URD-023 error   A joint mimics, or is mimicked, that has not exactly one coordinate.
 urdf-geometry              EU-URD-024 error   A geometry is not one shape of positive size.
-urdf-no-range              EU-URD-025 warning A revolute or prismatic joint has the range 0 to 0, so it cannot move.
+urdf-no-range              EU-URD-025 warning A revolute or prismatic joint has the range 0 to 0, which is no range.
 urdf-unknown-element       EU-URD-026 warning An element or attribute is nearly one that URDF has.
 urdf-closure-ignored       EU-URD-027 warning The URDF says a closure in a dialect that is not part of this format.
 urdf-mesh-missing          EU-URD-028 warning A mesh file is not found.

@@ -433,7 +433,6 @@ class _Reader:
                 complete = complete and joint is not None
                 if joint:
                     joints.append(joint)
-        self.no_range(joints)
         if not complete or name is None:
             return None
         return self.tree(name, links, joints)
@@ -700,23 +699,6 @@ class _Reader:
         self.attributes(element)
         values = self.several(element, _MIMIC)
         return None if joint is None or values is None else Mimic(joint, *values)
-
-    def no_range(self, joints: list[UrdfJoint]) -> None:
-        """EU-URD-025: a joint that is to move has a range; URDF reads left-out limits as zero."""
-        stuck = [
-            joint
-            for joint in joints
-            if joint.type in _RANGED and joint.limit is not None and joint.limit.lower == joint.limit.upper == 0.0
-        ]
-        if stuck:
-            names = ", ".join(f"'{joint.name}'" for joint in stuck[:3]) + (", ..." if len(stuck) > 3 else "")
-            count = "1 joint has" if len(stuck) == 1 else f"{len(stuck)} joints have"
-            self.report(
-                "urdf-no-range",
-                f"{count} the range 0 to 0: {names}",
-                stuck[0].element.find("limit"),  # type: ignore[arg-type]
-                hint="write 'lower' and 'upper', or make it 'continuous'",
-            )
 
     # -- the tree -------------------------------------------------------------------------------------------------
 

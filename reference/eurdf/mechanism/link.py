@@ -13,6 +13,7 @@ from eurdf.mechanism.configurations import link_configurations
 from eurdf.mechanism.frame_names import FrameNames
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Frame, Joint, Mechanism, Root
+from eurdf.mechanism.ranges import check_ranges
 from eurdf.mechanism.replacement import Joints, replace_joints
 from eurdf.mechanism.spanning_tree import bodies_of, depth_first, joint_of, rigid_roots
 from eurdf.reading.yaml_node import json_pointer
@@ -47,7 +48,7 @@ def link(
     """
     before = diagnostics.error_count
     if extension is None or document is None:
-        mechanism = _bare(urdf, root or "fixed")
+        mechanism = _bare(urdf, diagnostics, root or "fixed")
     else:
         mechanism = _described(urdf, extension, document, diagnostics, root or extension.root)
         _reserve_names(extension, document, diagnostics, mechanism.root)
@@ -72,9 +73,10 @@ def _refuse_too_large(
         diagnostics.report("file-too-large", message, document.place((key,)))
 
 
-def _bare(urdf: Urdf, root: Root) -> Mechanism:
+def _bare(urdf: Urdf, diagnostics: Diagnostics, root: Root) -> Mechanism:
     bodies = bodies_of(urdf)
     ordered = tuple(joint_of(joint) for joint in urdf.walk())
+    check_ranges(urdf, {joint.name: joint for joint in ordered}, diagnostics)
     return Mechanism(urdf.name, "", root, (bodies[urdf.root], *(bodies[joint.child] for joint in ordered)), ordered)
 
 
@@ -91,6 +93,7 @@ def _described(
         diagnostics,
         merges_revolutes=extension.merges_revolutes,
     )
+    check_ranges(urdf, joints.by_name, diagnostics)
     _own_keys(extension, urdf, document, diagnostics)
     names = FrameNames(urdf, joints.by_name, faulty, document, diagnostics)
     frames = names.add(extension.frames)
