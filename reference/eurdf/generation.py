@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
+from eurdf.closure_choice import choose_types
 from eurdf.diagnostics import Diagnostics
 from eurdf.format.field import is_own_key
-from eurdf.format.generate import Conventions, Found, find, version1_text, version2_text
+from eurdf.format.generate import Conventions, Found, find, version1_text, version2_text, with_type
 from eurdf.format.urdf import Urdf
-from eurdf.mechanism.mechanism import Mechanism, Root
+from eurdf.mechanism.mechanism import ClosureType, Mechanism, Root
 from eurdf.mechanism.merging import find_chains
 from eurdf.mechanism.spanning_tree import joint_of
 from eurdf.rereading import reread
@@ -26,6 +27,7 @@ class Generation:
         merges: For each spherical joint made of three revolutes whose axes meet, their names.
         mechanism: That the text describes; None where the names say what cannot be.
         diagnostics: Found in the text.
+        notes: Why closures have the types that they have, where their names do not say it; one sentence each.
     """
 
     text: str
@@ -33,6 +35,7 @@ class Generation:
     merges: Mapping[str, tuple[str, str, str]]
     mechanism: Mechanism | None
     diagnostics: Diagnostics
+    notes: tuple[str, ...] = ()
 
 
 def generate(
@@ -42,6 +45,7 @@ def generate(
     root: Root = "fixed",
     urdf_path: str = "robot.urdf",
     schema: str | None = None,
+    closure_type: ClosureType | None = None,
 ) -> Generation:
     """Describe a robot by the names in its URDF.
 
@@ -55,14 +59,44 @@ def generate(
         root: Whether the root is fixed or floating; version 1 can only say fixed.
         urdf_path: Path of the URDF from the folder of the description; version 1 cannot say it.
         schema: Path of the schema from the folder of the description, for its first line; None for no such line.
+        closure_type: Type of every closure; by default what their names say, and else what `choose_types` finds.
     """
     if version == "1" and root != "fixed":
         raise ValueError("version 1 cannot say that the root floats")
     found = find(urdf, conventions)
+    notes = _hinge_notes(found)
+    if closure_type is not None:
+        found, notes = with_type(found, closure_type), ()
     merges = _merges(urdf, found, version)
-    text = version1_text(found, schema) if version == "1" else version2_text(found, merges, root, urdf_path, schema)
-    mechanism, diagnostics = reread(text, urdf, "the description")
-    return Generation(text, found, merges, mechanism, diagnostics)
+
+    def written(found: Found) -> tuple[str, Mechanism | None, Diagnostics]:
+        text = version2_text(found, merges, root, urdf_path, schema)
+        if version == "1":
+            text = version1_text(found, schema)
+        return text, *reread(text, urdf, "the description")
+
+    text, mechanism, diagnostics = written(found)
+    undecided = [index for index, closure in enumerate(found.closures) if closure.type is None]
+    if mechanism is not None and undecided:
+        # Version 1 has no names of closures; their order is that of the file in both versions.
+        names = {mechanism.closures[index].name: index for index in undecided}
+        choice = choose_types(mechanism, names, [closure.name for closure in found.closures])
+        closures = list(found.closures)
+        for name, kind in choice.types.items():
+            closures[names[name]] = replace(closures[names[name]], type=kind)
+        found, notes = replace(found, closures=tuple(closures)), (*notes, *choice.notes)
+        text, mechanism, diagnostics = written(found)
+    return Generation(text, found, merges, mechanism, diagnostics, notes)
+
+
+def _hinge_notes(found: Found) -> tuple[str, ...]:
+    """What is said of closures that are 3d because two points hold a hinge."""
+    return tuple(
+        f"'{closure.name}' is a revolute mate, since its frames have others on its axis: '{closure.name}' and "
+        f"'{closure.name}_z' hold the hinge, each 3d"
+        for closure in found.closures
+        if closure.hinge and any(other.name == f"{closure.name}_z" and other.hinge for other in found.closures)
+    )
 
 
 def _merges(urdf: Urdf, found: Found, version: Literal["1", "2"]) -> dict[str, tuple[str, str, str]]:

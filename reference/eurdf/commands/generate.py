@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,9 +21,13 @@ _DESCRIPTION = """\
 Write a description from the names in a URDF.
 
   closures    closedloop1_A with closedloop1_B, or closing_knee_1 with closing_knee_2: names of links or joints.
-              3d or 6d behind closedloop is the type (closedloop3D_1A); 6d where there is neither.
-  motors      joints whose name begins with the word mot or motor: motor_knee, mot1.
+              3d or 6d in the name is the type: closedloop3D_1A, closedloop1_A_3D. closing_knee_1_z and
+              closing_knee_2_z, which onshape-to-robot adds on the axis of a revolute mate, make it two 3d closures.
+  motors      joints whose name begins or ends with the word mot or motor: motor_knee, mot1, left_motor_hip, hip_motor.
   sphericals  joints that have spherical in their name.
+
+A closure whose name does not tell its type is 6d, unless the loops then cannot close, or motors depend on one
+another or cannot move, and 3d mends it. A note says why; --type decides it for all.
 
 Three revolute joints whose axes meet, with nothing between them, are one spherical joint.
 
@@ -55,6 +59,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         parser.add_argument(
             option, metavar="PATTERN", action="append", default=[], help=f"names of {what}; may be repeated"
         )
+    parser.add_argument("--type", choices=("3d", "6d"), help="type of every closure, whatever its name or motion says")
     parser.add_argument("--root", choices=("fixed", "floating"), default="fixed", help="default: fixed")
     parser.add_argument("--version", choices=("1", "2"), default="2", help="version of the format; default: 2")
     parser.add_argument("--json", action="store_true", help="write one JSON object: the text, and what was found")
@@ -64,7 +69,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def run(args: argparse.Namespace) -> int:
     """Generate, write, tell what was found, and return the exit code."""
     from eurdf.diagnostics import Diagnostics, Fault
-    from eurdf.format.generate import BadPattern, conventions
+    from eurdf.format.generate import BadPattern, conventions, hints
     from eurdf.format.urdf import read_urdf
     from eurdf.generation import generate
     from eurdf.reading.source import read_source
@@ -93,7 +98,8 @@ def run(args: argparse.Namespace) -> int:
         refuse_to_replace(args.output, args.force)
         schema = schema_beside(args.output, args.version, args.schema, urdf, args.force)
     reference = None if schema is None else schema.reference
-    generation = generate(urdf, convention, args.version, args.root, urdf_path, reference)
+    generation = generate(urdf, convention, args.version, args.root, urdf_path, reference, args.type)
+    advice = hints(urdf, generation.found, convention)
     if generation.mechanism is None:
         show_refusal(args.urdf, tuple(generation.diagnostics), args.json)
         tell(["nothing was written: what the names say cannot be"])
@@ -106,11 +112,18 @@ def run(args: argparse.Namespace) -> int:
     if args.version == "1" and urdf_path != "robot.urdf":
         warnings.append(f"version 1 cannot name its URDF: it is robot.urdf beside the description, not '{urdf_path}'")
     if args.json:
-        write_json(_result(generation, args.output, schema, warnings))
+        write_json(_result(generation, args.output, schema, warnings, advice))
         return 0
     if args.output is None:
         write_yaml(generation.text)
-    tell([*_summary(generation), *(f"warning: {warning}" for warning in warnings)])
+    tell(
+        [
+            *_summary(generation),
+            *(f"note: {note}" for note in generation.notes),
+            *(f"warning: {warning}" for warning in warnings),
+            *(f"hint: {hint}" for hint in advice),
+        ]
+    )
     if args.output is not None:
         tell([f"wrote '{args.output}'"])
     elif args.schema != "none":
@@ -137,7 +150,11 @@ def _count(what: str, names: Collection[str], more: str = "") -> str:
 
 
 def _result(
-    generation: Generation, output: str | None, schema: EditorSchema | None, warnings: list[str]
+    generation: Generation,
+    output: str | None,
+    schema: EditorSchema | None,
+    warnings: Sequence[str],
+    advice: Sequence[str],
 ) -> dict[str, Any]:
     from eurdf.diagnostics.report import encodable
 
@@ -151,6 +168,8 @@ def _result(
         "motors": list(found.motors),
         "sphericals": list(found.sphericals),
         "merges": {name: list(three) for name, three in generation.merges.items()},
+        "notes": [encodable(note) for note in generation.notes],
         "warnings": [encodable(warning) for warning in warnings],
+        "hints": [encodable(hint) for hint in advice],
         "text": generation.text,
     }

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
+import shlex
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import cast
 
 from eurdf.format.field import is_own_key
@@ -18,18 +19,31 @@ _ROTARY = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS})
 
 # Atomic groups, (?>…), keep a name of any length from being tried in more than a few ways.
 
+_LOOP_WORD = r"(?>.*(?:closed_?loop|fermeture))"
+_SIDE = r"(?:[_.-]|(?<=\d))(?P<side>[ab])"
+
 #: ``closedloop1_A`` and ``closedloop1_B``, ``closedloop3D_1A``, ``closed_loop_knee_a``; and with ``_frame`` behind it,
 #: the joint that some exporters fix such a link by.
-PUBLISHED_CLOSURE = (
-    r"(?is)(?P<loop>(?>.*(?:closed_?loop|fermeture))(?:_?(?P<type>[36]d))?.*)"
-    r"(?:[_.-]|(?<=\d))(?P<side>[ab])(?:_frame)?"
-)
+PUBLISHED_CLOSURE = rf"(?is)(?P<loop>{_LOOP_WORD}(?:_?(?P<type>[36]d))?.*){_SIDE}(?:_frame)?"
 
-#: ``closing_knee_1`` and ``closing_knee_2``, as onshape-to-robot names the frames of a mate ``closing_knee``.
-MATE_CLOSURE = r"(?s)(?P<loop>(?>.*closing_).+)_(?P<side>[12])(?:_frame)?"
+#: ``closedloop0_A_3D`` and ``closedloop0_B_3D``: the type last.
+TYPE_LAST_CLOSURE = rf"(?is)(?P<loop>{_LOOP_WORD}.*){_SIDE}_?(?P<type>[36]d)(?:_frame)?"
 
-#: Names that begin with the word ``mot`` or ``motor``: ``motor_knee`` and ``mot1_rod2``, but not ``moteur_rod``.
-MOTOR = r"(?i)^mot(or)?(?![^\W\d_])"
+#: ``closing_knee_1`` and ``closing_knee_2``, as onshape-to-robot names the frames of a mate ``closing_knee``; and
+#: ``closing_knee_1_z`` and ``closing_knee_2_z``, on the axis of a mate that is revolute.
+MATE_CLOSURE = r"(?s)(?P<loop>(?>.*closing_).+)_(?P<side>[12])(?P<axis>_z)?(?:_frame)?"
+
+#: A pattern of closures, as the user writes it on the command line.
+EXAMPLE_CLOSURE = r"--closure '(?P<loop>rod\d+)_(?P<side>top|bottom)'"
+
+_WHERE = r"left|right|front|rear|back|hind|upper|lower|inner|outer|[lr]|[frhb][lr]|[lr][frhb]"
+
+#: Names that begin with the word ``mot`` or ``motor``, but for where it is on the robot: ``motor_knee``, ``mot1_rod2``
+#: and ``left_motor_ankle``, but not ``moteur_rod`` or ``free_motor_holder``.
+MOTOR = rf"(?i)^(?:(?:{_WHERE})\d*[_.-])*mot(?:or)?(?![^\W\d_])"
+
+#: Names that end with the word, numbers and ``joint`` aside: ``left_knee_motor``, ``ankle_motor_2_joint``.
+MOTOR_LAST = r"(?i)^(?!(?:free|passive|frame|fixed)[_.-]).*(?<![^\W_])mot(?:or)?[_.-]?\d*(?:[_.-]joint)?$"
 
 #: Names that have the word in them.
 SPHERICAL = r"(?i)spherical|to_rotule"
@@ -47,7 +61,8 @@ class Conventions:
         closures: Match the whole name of a link or a joint, which then is one frame of a closure. The group ``side``
             tells the two frames apart; frame A is that whose side sorts first. The group ``loop``, or the name without
             its side, is what they have in common, and names the closure. The group ``type``, where it matches ``3d`` or
-            ``6d`` in any case, is its type; 6d where it does not.
+            ``6d`` in any case, is its type. Where the group ``axis`` matches, the frame is a second one, on the axis of
+            the loop's hinge.
         motors: Found in the name of an actuated joint.
         sphericals: Found in the name of a joint that is spherical, not revolute.
     """
@@ -65,7 +80,7 @@ def conventions(
     Raises:
         BadPattern: Not a regular expression, or one of a closure without the group ``side``.
     """
-    closing = tuple(map(_compiled, closures or (PUBLISHED_CLOSURE, MATE_CLOSURE)))
+    closing = tuple(map(_compiled, closures or (PUBLISHED_CLOSURE, TYPE_LAST_CLOSURE, MATE_CLOSURE)))
     for pattern in closing:
         if "side" not in pattern.groupindex:
             raise BadPattern(
@@ -73,7 +88,7 @@ def conventions(
                 r"for instance '(?P<loop>loop\d+)_(?P<side>A|B)'"
             )
     return Conventions(
-        closing, tuple(map(_compiled, motors or (MOTOR,))), tuple(map(_compiled, sphericals or (SPHERICAL,)))
+        closing, tuple(map(_compiled, motors or (MOTOR, MOTOR_LAST))), tuple(map(_compiled, sphericals or (SPHERICAL,)))
     )
 
 
@@ -86,11 +101,19 @@ def _compiled(pattern: str) -> re.Pattern[str]:
 
 @dataclass(frozen=True, slots=True)
 class NamedClosure:
-    """A closure that two names say."""
+    """A closure that two names say.
+
+    Attributes:
+        name: What its frames have in common.
+        type: None where the names do not tell it.
+        frames: Names of frame A and frame B.
+        hinge: Whether it is one of the two that hold a hinge: a point on its axis, and a second one.
+    """
 
     name: str
-    type: ClosureType
+    type: ClosureType | None
     frames: tuple[str, str]
+    hinge: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,15 +142,27 @@ def find(urdf: Urdf, convention: Conventions) -> Found:
     return Found(closures, motors, sphericals, tuple(warnings))
 
 
+def with_type(found: Found, closure_type: ClosureType) -> Found:
+    """Give every closure one type. A 6d closure holds a hinge by one point: the second one would be redundant."""
+    second = {f"{closure.name}_z" for closure in found.closures if closure.hinge}
+    closures = tuple(
+        replace(closure, type=closure_type, hinge=False)
+        for closure in found.closures
+        if not (closure_type == "6d" and closure.hinge and closure.name in second)
+    )
+    return replace(found, closures=closures)
+
+
 # -- closures -----------------------------------------------------------------------------------------------------
 
 
-def _closures(urdf: Urdf, patterns: Iterable[re.Pattern[str]], warnings: list[str]) -> Iterable[NamedClosure]:
+def _closures(urdf: Urdf, patterns: Iterable[re.Pattern[str]], warnings: list[str]) -> list[NamedClosure]:
     bodies = {name: name for name in urdf.links}
     for joint in urdf.joints.values():
         bodies.setdefault(joint.name, joint.child)
     loops: dict[str, dict[str, list[str]]] = {}
-    types: dict[str, ClosureType] = {}
+    types: dict[str, set[ClosureType]] = {}
+    axes: dict[str, str] = {}
     for pattern in patterns:
         # Links come first: of a link and the joint that fixes it, the link is the frame that was meant.
         for name in bodies:
@@ -135,14 +170,18 @@ def _closures(urdf: Urdf, patterns: Iterable[re.Pattern[str]], warnings: list[st
             if match is None or match["side"] is None:
                 continue
             loop = _loop(match)
+            if "axis" in pattern.groupindex and match["axis"]:
+                axes[loop + match["axis"]] = loop
+                loop += match["axis"]
             names = loops.setdefault(loop, {}).setdefault(match["side"].upper(), [])
             if name not in names:
                 names.append(name)
             told = match["type"] if "type" in pattern.groupindex else None
             if told is not None and told.lower() in ("3d", "6d"):
-                types[loop] = cast(ClosureType, told.lower())
+                types.setdefault(loop, set()).add(cast(ClosureType, told.lower()))
     rigid = _rigid(urdf)
     joined: dict[frozenset[str], str] = {}
+    paired: list[NamedClosure] = []
     for loop in sorted(loops, key=_natural):
         sides = loops[loop]
         if len(sides) != 2:
@@ -164,7 +203,14 @@ def _closures(urdf: Urdf, patterns: Iterable[re.Pattern[str]], warnings: list[st
             warnings.append(f"'{frames[0]}' and '{frames[1]}' are the two frames of '{joined[pair]}' already: left out")
         else:
             joined[pair] = loop
-            yield NamedClosure(loop, types.get(loop, "6d"), (frames[0], frames[1]))
+            if len(told_types := types.get(loop, set())) > 1:
+                warnings.append(f"the names of loop '{loop}' say both 3d and 6d: neither is taken from them")
+            type_ = told_types.pop() if len(told_types) == 1 else None
+            paired.append(NamedClosure(loop, type_, (frames[0], frames[1])))
+    names_of_pairs = {closure.name for closure in paired}
+    hinges = {name for axis, loop in axes.items() if {axis, loop} <= names_of_pairs for name in (axis, loop)}
+    # Two points hold a hinge, each in position alone.
+    return [replace(closure, type="3d", hinge=True) if closure.name in hinges else closure for closure in paired]
 
 
 def _loop(match: re.Match[str]) -> str:
@@ -208,12 +254,6 @@ def _motors(urdf: Urdf, patterns: Sequence[re.Pattern[str]], warnings: list[str]
             warnings.append(f"joint '{joint.name}' is named as a motor, but mimics '{joint.mimic.joint}': left out")
         else:
             motors.append(joint.name)
-    if not named:
-        moving = (joint.name for joint in urdf.walk() if joint.type is not JointType.FIXED)
-        near = [name for name in moving if "mot" in name.lower()]
-        if near:
-            others = f" and {len(near) - 1} more have" if len(near) > 1 else " has"
-            warnings.append(f"no joint is named as a motor, but '{near[0]}'{others} 'mot' in the name")
     return motors
 
 
@@ -232,6 +272,41 @@ def _sphericals(urdf: Urdf, patterns: Sequence[re.Pattern[str]], warnings: list[
             yield joint.name
             continue
         warnings.append(f"joint '{joint.name}' is named as spherical, but {why}: left out")
+
+
+# -- hints --------------------------------------------------------------------------------------------------------
+
+
+def hints(urdf: Urdf, found: Found, convention: Conventions) -> tuple[str, ...]:
+    """How to get closures, or motors, where the names say none: one sentence each, with names of this robot."""
+    said = []
+    if not found.closures:
+        why = "no two links or joints are named as the frames of a closure"
+        if convention.closures != conventions().closures:
+            why = "no two names match a --closure pattern with different sides"
+        carrying = {joint.parent for joint in urdf.joints.values()}
+        ends = [name for name, link in urdf.links.items() if name not in carrying and link.inertial is None]
+        may_be = f"; links without mass at the ends of the tree, such frames perhaps: {_some(ends)}" if ends else ""
+        said.append(
+            f"{why}: name them closedloop1_A and closedloop1_B in CAD, or give a pattern of their names, such as "
+            f"{EXAMPLE_CLOSURE}{may_be}"
+        )
+    if not found.motors:
+        moving = [joint.name for joint in urdf.walk() if joint.type is not JointType.FIXED and joint.mimic is None]
+        why = "no joint is named as a motor"
+        if convention.motors != conventions().motors:
+            why = "no joint that can move matches a --motor pattern"
+        if moving:
+            likely = next((name for name in moving if "mot" in name.lower()), moving[0])
+            said.append(
+                f"{why}: give a pattern that is found in the names of the actuated joints, such as "
+                f"--motor {shlex.quote(f'^{re.escape(likely)}$')}; the joints that move: {_some(moving)}"
+            )
+    return tuple(said)
+
+
+def _some(names: Sequence[str]) -> str:
+    return ", ".join(f"'{name}'" for name in names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
 
 
 # -- text ---------------------------------------------------------------------------------------------------------
@@ -261,7 +336,7 @@ def version2_text(
         entries.append(Entry(lines_of("root", root)))
     if found.closures:
         items = [
-            Entry(item_of_mapping({"name": closure.name, "type": closure.type, "frames": closure.frames}))
+            Entry(item_of_mapping({"name": closure.name, "type": closure.type or "6d", "frames": closure.frames}))
             for closure in found.closures
         ]
         entries.append(section("closures", items))
@@ -278,7 +353,7 @@ def version1_text(found: Found, schema: str | None = None) -> str:
     """The description in version 1, which merges revolutes by itself; `schema` as in `version2_text`."""
     values: dict[str, Value] = {
         "closed_loop": [closure.frames for closure in found.closures],
-        "type": [closure.type for closure in found.closures],
+        "type": [closure.type or "6d" for closure in found.closures],
         "name_mot": found.motors,
         "joint_name": found.sphericals,
         "joint_type": ["SPHERICAL"] * len(found.sphericals),
