@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import io
 import json
+import re
 from pathlib import Path
 from typing import Any, ClassVar
 
 import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 from pydantic import ValidationError
 
@@ -145,6 +148,80 @@ BROKEN: list[tuple[int, str, Any]] = [
 def fits(outcome: str, answer: Any) -> bool:
     """Whether an answer fits the schema of that outcome, if there is one."""
     return outcome in SCHEMAS and Draft202012Validator(SCHEMAS[outcome]).is_valid(answer)
+
+
+ANSWERS = {word: Draft202012Validator(schema) for word, schema in SCHEMAS.items() if "outcome" in schema["properties"]}
+
+# Text that is no Unicode, a lone surrogate, is none in JSON either.
+texts = st.text(st.characters(exclude_categories=["Cs"]), max_size=3)
+words = st.sampled_from(["", "a", "j", "3d", "6d", "1", "2", "error", "warning", "accept", "fixed", "rejected", "1.0"])
+numbers = (
+    st.integers(-2, 3)
+    | st.sampled_from([0.5, -0.0, 1.0, 2.0, 3.0, 2.0**53, 1e22, 1.5e300, 2**53 + 1, 10**30])
+    | st.floats(allow_nan=False, allow_infinity=False)
+)
+members = st.sampled_from(["extra", "issues", "reason", "line", "mimic", "code"]) | texts
+scalars = st.none() | st.booleans() | numbers | words | texts
+values = st.recursive(
+    scalars, lambda inner: st.lists(inner, max_size=4) | st.dictionaries(words | texts, inner, max_size=3), max_leaves=5
+)
+
+
+def places(value: Any) -> list[tuple[Any, Any]]:
+    """Each collection in a value, itself included, with each of its keys or indices."""
+    found = []
+    if isinstance(value, dict | list):
+        for key in list(value) if isinstance(value, dict) else range(len(value)):
+            found += [(value, key), *places(value[key])]
+    return found
+
+
+@st.composite
+def spoiled_answers(draw: st.DrawFn) -> tuple[str, dict[str, Any]]:
+    """A request, and an answer to it that was sound before up to three changes anywhere in it."""
+    command, sound = draw(st.sampled_from(SOUND))
+    answer: dict[str, Any] = json.loads(json.dumps({"id": 1, **sound}))
+    for _ in range(draw(st.integers(1, 3))):
+        around, key = draw(st.sampled_from(places(answer)))
+        match draw(st.sampled_from(["replace", "remove", "add", "wrap", "unwrap", "other"])):
+            case "replace":
+                around[key] = draw(values)
+            case "remove":
+                del around[key]
+            case "add" if isinstance(around, dict):
+                around[draw(st.sampled_from(["extra", "issues", "reason", "line", "mimic", "code"]) | texts)] = draw(
+                    values
+                )
+            case "add":
+                around.insert(key, draw(values))
+            case "wrap":
+                around[key] = [around[key]]
+            case "unwrap" if isinstance(around[key], list) and around[key]:
+                around[key] = around[key][0]
+            case "other":
+                there, what = draw(st.sampled_from(places(answer)))
+                around[key] = json.loads(json.dumps(there[what]))
+        if not answer:
+            break
+    return command, answer
+
+
+@settings(max_examples=500, deadline=None)
+@given(spoiled_answers())
+@example(("load", {"id": 1, "outcome": "rejected", "issues": [{"message": "m", "line": 1e22}]}))
+@example(("load", {"id": 1e22, "outcome": "rejected", "issues": []}))
+@example(("evaluate", {"id": 1.0, "outcome": "evaluated", "values": [{"mass": 10**30}]}))
+def test_the_runner_judges_a_spoiled_answer_as_the_schemas_do(spoiled: tuple[str, dict[str, Any]]) -> None:
+    command, answer = spoiled
+    identity = answer.get("id")
+    if isinstance(identity, int | float) and not isinstance(identity, bool) and identity == int(identity):
+        request = REQUESTS[command].model_copy(update={"id": int(identity)})  # so that it is not misplaced
+    else:
+        request = REQUESTS[command]
+    found = read_answer(json.dumps(answer).encode(), request)
+    # Whether it answers this request is another question than whether it is an answer.
+    taken = not isinstance(found, Malformed) or re.search("is no answer to|configurations; .* asked for", found.why)
+    assert bool(taken) == any(validator.is_valid(answer) for validator in ANSWERS.values()), str(found)
 
 
 def test_the_files_are_current() -> None:

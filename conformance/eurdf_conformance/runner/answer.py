@@ -91,7 +91,7 @@ def _elsewhere(value: dict[str, Any], line: bytes, request: AnyRequest) -> Malfo
 
 
 def _whole(value: Any) -> Any:
-    if isinstance(value, float) and abs(value) < 2**53 and value.is_integer():
+    if isinstance(value, float) and value.is_integer():
         return int(value)
     if isinstance(value, list):
         return [_whole(item) for item in value]
