@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -181,3 +182,51 @@ def test_a_wheel_needs_no_actuator_and_a_pendulum_does(advice, lever: str, expec
         return text.replace("</robot>", WHEEL.format(lever=lever, parent=parent))
 
     assert codes(advice("four_bar", urdf=urdf)) == expected
+
+
+def rocker(lower: float, upper: float) -> Callable[[str], str]:
+    """Gives the rocker of the four-bar linkage other limits; it swings from -0.798 to 0.031 rad."""
+    return lambda text: text.replace('lower="-0.9372" upper="0.11"', f'lower="{lower}" upper="{upper}"')
+
+
+def without_configurations(description: dict) -> None:
+    del description["configurations"]
+
+
+@pytest.mark.parametrize("edit", [lambda description: None, without_configurations])
+@pytest.mark.parametrize(
+    ("lower", "upper", "expected"),
+    [
+        (0.3, 0.6, ["x-closes-beyond-limits"]),
+        (-1.2, -0.9, ["x-closes-beyond-limits"]),
+        (-0.9, -0.3, []),  # at the start it is beyond, but it closes within
+        (0.02, 0.6, []),
+        (0, 0, ["urdf-no-range"]),
+    ],
+)
+def test_loops_that_close_only_beyond_limits_are_reported(advice, edit, lower, upper, expected: list[str]) -> None:
+    found = advice("four_bar", edit, rocker(lower, upper))
+    assert codes(found) == expected
+    if expected == ["x-closes-beyond-limits"]:
+        assert (found[0].severity, found[0].clause, found[0].pointer) == ("warning", None, "/closures/0")
+        assert "at the best, 'rocker_pin' by " in found[0].message
+        side, limit = ("below", lower) if lower > 0.0 else ("above", upper)
+        said = rf"they close with 'free_rocker' (\S+) rad {side} its \w+ limit {limit}: correct"
+        match = re.search(said, found[0].hint or "")
+        assert match is not None
+        farthest = 0.031 if lower > 0.0 else -0.798  # where the rocker comes nearest to its limits
+        assert float(match[1]) >= abs(limit - farthest) - 1e-3
+
+
+def test_a_joint_outside_the_loops_may_be_beyond_its_limits(advice) -> None:
+    def urdf(text: str) -> str:
+        lid = WHEEL.format(lever="0", parent=text.split('<link name="')[1].split('"')[0])
+        lid = lid.replace("continuous", "revolute").replace(
+            '<axis xyz="0 1 0"/>', '<axis xyz="0 1 0"/><limit lower="1" upper="2" effort="1" velocity="1"/>'
+        )
+        return text.replace("</robot>", lid)
+
+    def driven(description: dict) -> None:
+        description["actuators"].append("axle")
+
+    assert codes(advice("four_bar", driven, urdf)) == []

@@ -229,6 +229,15 @@ def test_a_configuration_beyond_limits_is_shown_but_not_written(folder: Path, ru
     assert run("robot.yaml", "--hold", "motor", "--limits")[0] == 1
 
 
+def test_a_range_of_0_to_0_keeps_nothing_from_being_written(folder: Path, run: Run) -> None:
+    given, none = 'lower="-3" upper="3" effort="5"', 'lower="0" upper="0" effort="5"'
+    file = bench(folder, urdf=lambda urdf: urdf.replace(given, none))
+    code, out, _ = run("robot.yaml", "--write")
+    assert code == 0
+    assert "beyond its limits" not in out
+    assert eurdf.check(file).ok
+
+
 def test_version_1_is_assembled_but_has_no_configurations(folder: Path, run: Run) -> None:
     shutil.copytree(ROBOTS / "four_bar", folder / "bar")
     code, out, err = run("bar/robot.v1.yaml")

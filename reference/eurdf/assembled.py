@@ -12,7 +12,7 @@ from eurdf.diagnostics import Diagnostics
 from eurdf.format.edit_configuration import with_configuration
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.residual import residual
-from eurdf.mechanism.configurations import LIMIT_TOLERANCE
+from eurdf.mechanism.configurations import within_limits
 from eurdf.mechanism.joint_type import COORDINATES, JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.pinocchio.configuration import configuration_vector
@@ -63,7 +63,7 @@ def beyond_limits(mechanism: Mechanism, coordinates: Mapping[str, Sequence[float
         for name, value, lower, upper in zip(
             joint.coordinates.names, coordinates[joint.name], joint.lower, joint.upper, strict=True
         )
-        if not lower - LIMIT_TOLERANCE <= value <= upper + LIMIT_TOLERANCE
+        if not within_limits(value, lower, upper)
     ]
 
 

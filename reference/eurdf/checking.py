@@ -46,6 +46,7 @@ def _loop_diagnostics(description: Description, mechanism: Mechanism) -> Diagnos
     """What needs a simulator: whether the loops close and, where there is no error, advice on how they move."""
     # Only now: a description without closures is checked without a simulator.
     from eurdf.advice.actuation import advise_on_actuation
+    from eurdf.advice.limits import advise_on_limits
     from eurdf.kinematics.assembly import assemble
     from eurdf.pinocchio.robot import build_robot
 
@@ -55,6 +56,7 @@ def _loop_diagnostics(description: Description, mechanism: Mechanism) -> Diagnos
     if not description.diagnostics.error_count + diagnostics.error_count:
         q = robot.configurations["assembled"] if assembly is None else assembly.q
         advise_on_actuation(description, robot, q, diagnostics)
+        advise_on_limits(description, robot, q, diagnostics)
     return diagnostics
 
 

@@ -205,6 +205,7 @@ closure-cannot-close       EU-CLO-006 error   No configuration closes the loops.
 x-no-actuator              A robot with closures has no actuator.
 x-dependent-actuators      Actuators cannot move independently of one another, or at all.
 x-uncontrolled-motion      A motion is possible with every actuator held that is not the spin of a rod.
+x-closes-beyond-limits     The loops close only where joints are beyond their limits.
 """,
     ),
 ]

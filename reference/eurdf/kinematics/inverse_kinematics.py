@@ -170,7 +170,7 @@ class _Search:
 
     def run(self, q: Vector, restarts: int) -> InverseKinematics:
         openings = closure_openings(self.robot, q)
-        if not any(found.is_open for found in openings) and self._within(q) and self._reached(q):
+        if not any(found.is_open for found in openings) and np.array_equal(self._clipped(q), q) and self._reached(q):
             return InverseKinematics(q, True, self._errors(q), openings, 0)
         assembly = self.assembler.assemble(self._clipped(q))
         q = best = assembly.q
@@ -291,9 +291,6 @@ class _Search:
 
     def _moved(self, q: Vector, v: Vector) -> Vector:
         return self._clipped(np.asarray(pin.normalize(self.model, pin.integrate(self.model, q, v))))
-
-    def _within(self, q: Vector) -> bool:
-        return self.limits is None or not self.limits.beyond(q)
 
     def _clipped(self, q: Vector) -> Vector:
         return q if self.limits is None else self.limits.clip(q, self.velocities)

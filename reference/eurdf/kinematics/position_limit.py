@@ -19,19 +19,17 @@ BEYOND = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class JointAtLimit:
-    """A coordinate of a joint that is at its limit, or beyond it.
+    """A coordinate of a joint that is at its limit.
 
     Attributes:
         joint: Name of the joint.
         limit: Its limit, rad or m.
         side: Which of its two limits this is.
-        beyond: How far the coordinate is beyond it, rad or m; 0 where it is at it.
     """
 
     joint: str
     limit: float
     side: Literal["lower", "upper"]
-    beyond: float = 0.0
 
     def __str__(self) -> str:
         return f"'{self.joint}' ({self.side} limit {self.limit:.6g})"
@@ -68,13 +66,6 @@ class PositionLimits:
         at = q[self.coordinates[velocities]]
         return np.minimum(self.lower[velocities] - at, 0.0), np.maximum(self.upper[velocities] - at, 0.0)
 
-    def beyond(self, q: Vector) -> tuple[JointAtLimit, ...]:
-        """The coordinates that are beyond a limit at q, by more than `BEYOND`."""
-        at = q[self.coordinates]
-        below, above = self.lower - at, at - self.upper
-        found = [self._at(v, "lower", below[v]) for v in np.flatnonzero(below > BEYOND).tolist()]
-        return (*found, *(self._at(v, "upper", above[v]) for v in np.flatnonzero(above > BEYOND).tolist()))
-
     def pressed(self, q: Vector, v: Vector) -> tuple[JointAtLimit, ...]:
         """The coordinates that are at a limit at q, or within 1e-9 of it, and that v (nv,) would move beyond it."""
         at, least = q[self.coordinates], 1e-6 * float(np.abs(v).max(initial=0.0))
@@ -83,9 +74,9 @@ class PositionLimits:
         found = [self._at(index, "lower") for index in np.flatnonzero(low).tolist()]
         return (*found, *(self._at(index, "upper") for index in np.flatnonzero(high).tolist()))
 
-    def _at(self, velocity: int, side: Literal["lower", "upper"], beyond: float = 0.0) -> JointAtLimit:
+    def _at(self, velocity: int, side: Literal["lower", "upper"]) -> JointAtLimit:
         limit = (self.lower if side == "lower" else self.upper)[velocity]
-        return JointAtLimit(self.joints[velocity], float(limit), side, float(beyond))
+        return JointAtLimit(self.joints[velocity], float(limit), side)
 
 
 def position_limits(model: Any, *, strict: bool = False) -> PositionLimits:

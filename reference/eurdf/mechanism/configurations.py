@@ -84,6 +84,11 @@ def _joint(
     return None
 
 
+def within_limits(value: float, lower: float, upper: float) -> bool:
+    """EU-CFG-004: whether a coordinate is within its limits, rad or m; limits that are both 0 are no range."""
+    return lower == upper == 0.0 or lower - LIMIT_TOLERANCE <= value <= upper + LIMIT_TOLERANCE
+
+
 def _coordinates(
     joint: Joint,
     values: tuple[float, ...],
@@ -115,9 +120,7 @@ def _coordinates(
             return None
         return (*values[:start], *(value / norm for value in values[start : start + 4]))
     for value, lower, upper, name in zip(values, joint.lower, joint.upper, coordinates.names, strict=True):
-        if lower == upper == 0.0:  # EU-CFG-004: no range was given
-            continue
-        if not lower - LIMIT_TOLERANCE <= value <= upper + LIMIT_TOLERANCE:
+        if not within_limits(value, lower, upper):
             diagnostics.report(
                 "configuration-limits",
                 f"{name} {value:g} of joint '{joint.name}' in configuration '{entry.name}' is outside its limits "

@@ -1,0 +1,70 @@
+"""Advice on limits: loops that close only where joints are beyond their limits."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from eurdf.assembled import BeyondLimit, beyond_limits
+from eurdf.kinematics.assembly import assemble
+from eurdf.kinematics.loop import find_loops
+from eurdf.kinematics.velocity_names import velocity_names
+
+if TYPE_CHECKING:
+    from eurdf.description import Description
+    from eurdf.diagnostics import Diagnostics
+    from eurdf.kinematics.array import Vector
+    from eurdf.pinocchio.robot import Robot
+
+# Joints that a hint lists.
+_JOINTS_LISTED = 4
+
+
+def advise_on_limits(description: Description, robot: Robot, q: Vector, diagnostics: Diagnostics) -> None:
+    """Report loops for which no closed configuration was found within the limits of their joints.
+
+    It costs nothing where the closed configuration is within them. Where it is not, configurations within are searched
+    for from the start of `assemble` and from q.
+
+    Args:
+        description: The robot as read; it has closures.
+        robot: The robot built from it.
+        q: A closed configuration (nq,).
+        diagnostics: Gets what is found.
+    """
+    beyond = _beyond(robot, q)
+    if not beyond:
+        return
+    within = assemble(robot, limits=True)
+    if not within.closes:
+        within = min(within, assemble(robot, q, limits=True), key=lambda found: (not found.closes, found.residual))
+    if within.closes:
+        return
+    near = assemble(robot, within.q)
+    if near.closes:
+        beyond = min(beyond, _beyond(robot, near.q), key=lambda found: max(map(_excess, found)))
+    widest = max(within.open, key=lambda opening: max(opening.position, opening.angle))
+    listed = ", ".join(map(_said, beyond[:_JOINTS_LISTED])) + (", ..." if len(beyond) > _JOINTS_LISTED else "")
+    diagnostics.report(
+        "x-closes-beyond-limits",
+        f"no configuration was found that closes the loops within the limits of their joints; at the best, {widest}",
+        description.place_of_closure(next(each for each in robot.mechanism.closures if each.name == widest.name)),
+        f"they close with {listed}: correct these limits, or the frames of the closure",
+    )
+
+
+def _beyond(robot: Robot, q: Vector) -> list[BeyondLimit]:
+    """The coordinates of joints of the loops that are beyond their limits."""
+    names = velocity_names(robot.model)
+    in_loops = {names[velocity] for loop in find_loops(robot) for velocity in loop.velocities.tolist()}
+    return [found for found in beyond_limits(robot.mechanism, robot.coordinates(q)) if found.joint in in_loops]
+
+
+def _excess(found: BeyondLimit) -> float:
+    return max(found.lower - found.value, found.value - found.upper)
+
+
+def _said(found: BeyondLimit) -> str:
+    side, limit = ("below", found.lower) if found.value < found.lower else ("above", found.upper)
+    unit = "m" if found.coordinate == "length" else "rad"
+    bound = "lower" if side == "below" else "upper"
+    return f"'{found.joint}' {_excess(found):.3g} {unit} {side} its {bound} limit {limit:.4g}"
