@@ -226,7 +226,13 @@ def test_a_configuration_beyond_limits_is_shown_but_not_written(folder: Path, ru
     code, _, err = run("robot.yaml", "--hold", "motor", "--write")
     assert (code, err.splitlines()[1]) == (1, "nothing was written to 'robot.yaml'")
     assert file.read_text() == DESCRIPTION
-    assert run("robot.yaml", "--hold", "motor", "--limits")[0] == 1
+    code, _, err = run("robot.yaml", "--hold", "motor", "--limits")
+    assert code == 1
+    first, second = err.splitlines()
+    assert first.startswith(
+        "no configuration was found that closes the loops with 'motor' held; at the best, 'pin' by "
+    )
+    assert second == "at their limits: 'pivot' (lower limit 0.05)"
 
 
 def test_a_range_of_0_to_0_keeps_nothing_from_being_written(folder: Path, run: Run) -> None:

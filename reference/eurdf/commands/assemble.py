@@ -39,6 +39,9 @@ _NEUTRAL = "neutral"
 # What each row of the residual is brought to, m or rad; a file is to be closed to 1e-12.
 _TOLERANCE = 1e-13
 
+# Open closures that are listed beside the table.
+_MOST_OPEN = 4
+
 
 def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add the command to the parser."""
@@ -184,9 +187,12 @@ def _told(info: AssemblyInfo, assembly: Assembly, beyond: list[BeyondLimit]) -> 
     """What is said beside the table."""
     nothing_written = [f"nothing was written to '{info.file}'"] if info.file is not None else []
     if not info.closes:
-        wide = [opening for opening in assembly.open if opening.is_open]
-        first = f"no configuration was found that closes the loops; at the best, {'; '.join(map(str, wide))}"
-        return [first, *nothing_written]
+        held = ", ".join(f"'{joint.name}'" for joint in info.joints if joint.held)
+        found = f"no configuration was found that closes the loops{held and f' with {held} held'}"
+        told = [f"{found}; at the best, {_widest(assembly)}"]
+        if assembly.at_limits:
+            told.append(f"at their limits: {', '.join(map(str, assembly.at_limits))}")
+        return [*told, *nothing_written]
     if beyond:
         return [f"the loops close only beyond the limits of joints: {'; '.join(map(str, beyond))}", *nothing_written]
     if info.written:
@@ -194,6 +200,14 @@ def _told(info: AssemblyInfo, assembly: Assembly, beyond: list[BeyondLimit]) -> 
     if info.file is not None:
         return [f"'{info.file}' has this configuration as 'assembled' already: nothing to do"]
     return []
+
+
+def _widest(assembly: Assembly) -> str:
+    """The closures that are open the widest; the table has all."""
+    wide = [opening for opening in assembly.open if opening.is_open]
+    wide.sort(key=lambda opening: max(opening.position, opening.angle), reverse=True)
+    more = f"; and {len(wide) - _MOST_OPEN} more" if len(wide) > _MOST_OPEN else ""
+    return "; ".join(map(str, wide[:_MOST_OPEN])) + more
 
 
 def _show(info: AssemblyInfo) -> None:
