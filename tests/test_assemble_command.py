@@ -279,6 +279,7 @@ def test_a_robot_with_errors_is_refused_with_its_diagnostics(folder: Path, run: 
         (("--from", "raedy"), "there is no configuration 'raedy'; did you mean 'ready'?"),
         (("--from", "x"), "there is no configuration 'x'; there are: ready, neutral"),
         (("--urdf", "none.urdf"), "'none.urdf' does not exist"),
+        (("--force",), "--force replaces what --write would write: give --write too"),
     ],
 )
 def test_a_wrong_option_is_told(folder: Path, run: Run, options: tuple[str, ...], told: str) -> None:

@@ -77,6 +77,8 @@ def run(args: argparse.Namespace) -> int:
     path = select_one(args.path)
     if args.urdf is not None and not os.path.exists(args.urdf):
         raise CannotRun(f"'{args.urdf}' does not exist")
+    if args.force and not args.write:
+        raise CannotRun("--force replaces what --write would write: give --write too")
     description = describe(path, args.urdf, geometry=False)
     if description.diagnostics.refused or description.mechanism is None:
         show_refusal(path, tuple(description.diagnostics), args.json)
