@@ -586,7 +586,7 @@ def test_another_version_of_yaml_is_refused(version: str) -> None:
         ("a:\n  b: 1\n\tc: 2\n", (3, 1), "a tab is used as indentation", "indent with spaces"),
         ("é: ü: x\n", (1, 5), "':' stands where no key can be", "quote"),
         ("a: 1\nbc\nd: 2\n", (2, 1), "no ':' after it", "key: value"),
-        ("a:\n  b: 1\n c: 2\n", (3, 2), "the mapping that begins on line 1", "alike"),
+        ("a:\n  b: 1\n c: 2\n", (3, 2), "the mapping that begins on line 1", "like 'b'"),
         ("a:\n  - 1\n  b: 2\n", (3, 3), "the list that begins on line 2", "'- '"),
         ("a: [1, 2\nb: 3\n", (2, 2), "']' is missing in the list that begins on line 1", None),
         ("a:\n  [1,\n   2\n", (2, 3), "'[' is never closed", None),

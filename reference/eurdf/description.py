@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import difflib
 import os
+import shlex
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -13,6 +15,7 @@ from eurdf.diagnostics import Diagnostics, Fault, Place
 from eurdf.format.extension import Extension
 from eurdf.format.read_extension import read_extension
 from eurdf.format.urdf import Urdf, read_urdf
+from eurdf.format.yaml_text import scalar
 from eurdf.mechanism.inertia import check_inertias, check_leaves
 from eurdf.mechanism.link import link
 from eurdf.mechanism.mechanism import Closure, Mechanism, Root
@@ -143,12 +146,46 @@ def _named_urdf(description: Path, extension: Extension | None, document: YamlDo
 
 def _urdf_not_found(path: Path, extension: Extension, document: YamlDocument, diagnostics: Diagnostics) -> None:
     """EU-FIL-004: the URDF that the description names exists."""
-    near = sorted(other.name for other in path.parent.glob("*.urdf")) if os.path.isdir(path.parent) else []
-    hint = "name it by the key 'urdf', or by the option --urdf"
-    if near:
-        hint = f"there is '{near[0]}': " + hint
+    home = Path(document.source.file).parent
+    near = _urdfs_near(path, home)
     message = f"the URDF '{extension.urdf}' does not exist"
-    diagnostics.report("urdf-not-found", message, document.place(("urdf",)), hint)
+    if extension.version != "1" and "urdf" not in document.data:
+        message += ", the one meant where the key 'urdf' is left out"
+    diagnostics.report("urdf-not-found", message, document.place(("urdf",)), _urdf_hint(near, path, home, extension))
+
+
+def _urdf_hint(near: Sequence[str], path: Path, home: Path, extension: Extension) -> str:
+    """How to name the URDF that is meant: one of those nearby, by their paths from the description."""
+    likely = near[0] if len(near) == 1 else None
+    if len(near) > 1:
+        alike = difflib.get_close_matches(path.stem, [Path(other).stem for other in near], n=1)
+        likely = next((other for other in near if alike and Path(other).stem == alike[0]), None)
+    meant = likely or (near[0] if near else None)
+    option = f"the option --urdf {'FILE' if meant is None else shlex.quote(os.path.normpath(home / meant))}"
+    if extension.version == "1":
+        fix = f"version 1 names none, so call it robot.urdf beside this file, or use {option}"
+    elif meant is None:
+        fix = f"write its path from this file under the key 'urdf', or use {option}"
+    else:
+        fix = f"write urdf: {scalar(meant)}"
+    if likely:
+        return f"there is '{likely}': {fix}"
+    if not near:
+        return f"there is no URDF nearby: {fix}"
+    shown = ", ".join(f"'{other}'" for other in near[:4]) + (f" and {len(near) - 4} more" if len(near) > 4 else "")
+    return f"there are {shown}: {fix}, or another of them"
+
+
+def _urdfs_near(path: Path, home: Path) -> list[str]:
+    """Paths, from the folder of the description, of the URDFs in the first folder around that has some."""
+    for folder in dict.fromkeys((path.parent, home, home / "urdf", home.parent / "urdf")):
+        try:
+            files = sorted(other for other in folder.iterdir() if other.suffix.lower() == ".urdf" and other.is_file())
+        except (OSError, ValueError):
+            continue
+        if files:
+            return [Path(os.path.relpath(other, home)).as_posix() for other in files]
+    return []
 
 
 def find_meshes(

@@ -206,6 +206,10 @@ def did_you_mean(wrong: str, known: Iterable[str]) -> str | None:
     The time is bounded. Where there are too many names to compare with, those that share its first or second half are,
     as every name does that differs in one place.
     """
+    if " - " in wrong:
+        known = list(known)
+        if wrong.partition(" - ")[0] in known:
+            return "an item that is indented deeper than the one before continues it: indent each '-' of a list alike"
     size = len(wrong)
     # A name of less than 3/7 of the length of another cannot be near it, as difflib counts.
     candidates = [name for name in known if 3 * len(name) <= 7 * size and 3 * size <= 7 * len(name)]

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from eurdf.diagnostics import Diagnostic, did_you_mean
 from eurdf.format.extension import Pointer
+from eurdf.format.misplaced import Indentation, another_entry_hint, key_of_the_file_hint, key_outside_hint
 from eurdf.format.near import near
 from eurdf.format.version2 import EXCLUDED, FROM_VERSION1, JOINT_TYPES, KEYS, TAGS
 
@@ -98,8 +99,9 @@ def violations(error: ValidationError, document: YamlDocument) -> list[Diagnosti
         lacked = [key for key in keys if misspelt.isdisjoint((*mapping, each) for each in _alternatives(key))]
         missing |= {mapping: lacked} if lacked else {}
     diagnostics = [_lacking(mapping, keys, document) for mapping, keys in missing.items()]
+    indentation = Indentation(document, [violation.pointer for violation in found])
     diagnostics += [
-        _diagnostic(violation, meant.get(violation.pointer), document)
+        _diagnostic(violation, meant.get(violation.pointer), document, indentation)
         for violation in found
         if violation.type != "missing"
     ]
@@ -194,16 +196,20 @@ def _lacking(mapping: Pointer, keys: Sequence[str], document: YamlDocument) -> D
     """The diagnostic of a mapping that lacks keys, of which one or all are one fault (EU-DIA-001)."""
     said = sorted((" or ".join(f"'{other}'" for other in _alternatives(key)) for key in keys), key=len)
     listed = f"{', '.join(said[:-1])} and {said[-1]}" if len(said) > 1 else said[0]
-    return Diagnostic("missing-key", f"{subject(mapping)} lacks {listed}", document.place(mapping))
+    hint = next(filter(None, (key_outside_hint(mapping, key, document) for key in keys)), None)
+    return Diagnostic("missing-key", f"{subject(mapping)} lacks {listed}", document.place(mapping), hint)
 
 
-def _diagnostic(violation: _Violation, meant: str | None, document: YamlDocument) -> Diagnostic:
+def _diagnostic(
+    violation: _Violation, meant: str | None, document: YamlDocument, indentation: Indentation
+) -> Diagnostic:
     """The diagnostic of one violation.
 
     Args:
         violation: What is wrong.
         meant: The required key that an unknown one misspells, or None.
         document: The file that was read.
+        indentation: Tells what is probably indented wrongly.
     """
     pointer, value, context = violation.pointer, violation.value, violation.context
     name, place = subject(pointer), document.place(pointer)
@@ -241,7 +247,8 @@ def _diagnostic(violation: _Violation, meant: str | None, document: YamlDocument
             must = violation.message
         case _:
             must = f"must be {_EXPECTED[violation.type]}"
-    return Diagnostic("wrong-type", f"{name} {must}, not {described(value)}", place, _type_hint(must, pointer, value))
+    hint = indentation.hint(pointer, value) or _type_hint(must, pointer, value)
+    return Diagnostic("wrong-type", f"{name} {must}, not {described(value)}", place, hint)
 
 
 def _wrong_choice(pointer: Pointer, value: Any, allowed: Sequence[str], document: YamlDocument) -> Diagnostic:
@@ -264,10 +271,16 @@ def _unknown_key(violation: _Violation, meant: str | None, document: YamlDocumen
         return Diagnostic("conflicting-keys", f"{subject(mapping)}: {excluded[key]}", place)
     keys = KEYS[violation.mapping]
     likely = meant or _likeliest_key(key, (*keys, *excluded))
-    if not mapping and key in FROM_VERSION1:
+    if meant is None and (outside := key_of_the_file_hint(violation.pointer)):
+        hint = outside
+    elif not mapping and key in FROM_VERSION1:
         hint = f"it is a key of version 1; version 2.0 says it under '{FROM_VERSION1[key]}'"
     elif likely is not None:
         hint = f"did you mean '{likely}'?"
+        if meant is None and (beside := another_entry_hint(violation.pointer, document)):
+            hint = f"did you mean '{likely}'? {beside}"
+    elif beside := another_entry_hint(violation.pointer, document):
+        hint = beside
     else:
         known = ", ".join(f"'{known}'" for known in keys)
         hint = f"the keys here are {known}; a key of your own begins with 'x-'"
@@ -280,6 +293,8 @@ def _type_hint(must: str, pointer: Pointer, value: Any) -> str | None:
         return None if isinstance(pointer[-1], int) else "leave the key out where there is nothing to say"
     if ("text" in must or "name" in must) and isinstance(value, bool | int | float):
         return "a name that looks like a number, true or false is put in quotes"
+    if must == "must be a list" and isinstance(value, dict):
+        return "begin each item with '- '"
     if must == "must be a list" and isinstance(value, str | int | float) and len(str(value)) <= 60:
         return f"write it as a list: [{value}]"
     if "number" in must and isinstance(value, str):

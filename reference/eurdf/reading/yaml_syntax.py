@@ -8,6 +8,7 @@ from typing import NamedTuple
 from yaml.error import MarkedYAMLError, YAMLError
 
 from eurdf.diagnostics import Fault, Place
+from eurdf.reading.indentation import first_line_hint, indentation_hint
 from eurdf.reading.source import Source
 
 #: What may not stand in a YAML file even in quotes (YAML 1.2.2, section 5.1).
@@ -66,6 +67,8 @@ _MEANINGS = {
     ),
     "found undefined tag handle": _Meaning("the tag has an unknown prefix", None, "yaml-unknown-tag"),
 }
+_TOO_DEEP = "mapping values are not allowed in this context"
+_NO_ITEM = "block sequence entries are not allowed in this context"
 _NOT_CONTINUED = ("did not find expected key", "did not find expected '-' indicator")
 
 
@@ -103,8 +106,24 @@ def syntax_fault(source: Source, error: YAMLError | UnicodeDecodeError) -> Fault
     if text[context : context + 1] in ("[", "{") and not text[problem:].strip():
         meaning = _Meaning(f"'{text[context]}' is never closed", late=True)
     message = meaning.message.replace("{line}", str(source.position(context)[0]))
+    advice = meaning.hint
+    if meaning.code == "yaml-syntax" and (better := _about_indentation(source, error.problem, problem)):
+        advice = better
+        if error.problem == _TOO_DEEP:
+            message = "this key does not line up with those before it"
     start = context if meaning.late else problem
-    return Fault(meaning.code, message, source.place(start, min(start + 1, len(text))), meaning.hint)
+    return Fault(meaning.code, message, source.place(start, min(start + 1, len(text))), advice)
+
+
+def _about_indentation(source: Source, said: str, problem: int) -> str | None:
+    """How to indent the line at which libyaml stumbled; None where that is not what is wrong."""
+    before = _line_before(source, problem)
+    if said == "did not find expected <document start>":
+        return None if before.strip() else first_line_hint(source.text)
+    key_alone = said == _TOO_DEEP and ": " not in before
+    if key_alone or (said in (*_NOT_CONTINUED, _NO_ITEM) and not before.strip(" -")):
+        return indentation_hint(source.text, source.position(problem)[0])
+    return None
 
 
 def _line_before(source: Source, index: int) -> str:
