@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
+from eurdf.advice.angles import advise_on_angles
+from eurdf.advice.lengths import advise_on_lengths
+from eurdf.advice.quaternions import advise_on_quaternions, closes_w_first
 from eurdf.description import Description, describe, find_meshes
 from eurdf.diagnostics import Diagnostics
 from eurdf.diagnostics.report import Report
@@ -15,6 +18,10 @@ if TYPE_CHECKING:
     from eurdf.kinematics.residual import Opening
     from eurdf.mechanism.mechanism import Mechanism
     from eurdf.pinocchio.robot import Robot
+
+#: Loops that are open by no more than this, in rad and of the length of the longest loop, may be so because numbers in
+#: the files were rounded to four or five digits.
+ROUNDED = 1e-4
 
 
 def check(path: str | os.PathLike[str], urdf: str | os.PathLike[str] | None = None) -> Report:
@@ -32,32 +39,42 @@ def check(path: str | os.PathLike[str], urdf: str | os.PathLike[str] | None = No
     """
     description = describe(path, urdf)
     diagnostics = description.diagnostics
+    meshes: dict[str, str] = {}
     if description.urdf is not None:
-        for found in find_meshes(description)[1]:
+        meshes, missing = find_meshes(description)
+        for found in missing:
             diagnostics.add(found)
     mechanism = description.mechanism
-    if mechanism is not None and mechanism.closures and not diagnostics.refused:
-        for found in _loop_diagnostics(description, mechanism):
-            diagnostics.add(found)
+    if mechanism is not None and not diagnostics.refused:
+        if mechanism.closures:
+            _check_loops(description, mechanism)
+        else:
+            advise_on_quaternions(description, None, diagnostics)
+        advise_on_angles(description, diagnostics)
+        advise_on_lengths(description, meshes, diagnostics)
     return Report(description.path, tuple(diagnostics))
 
 
-def _loop_diagnostics(description: Description, mechanism: Mechanism) -> Diagnostics:
-    """What needs a simulator: whether the loops close and, where there is no error, advice on how they move."""
+def _check_loops(description: Description, mechanism: Mechanism) -> None:
+    """Report what needs a simulator: whether the loops close and, where there is no error, advice on how they move."""
     # Only now: a description without closures is checked without a simulator.
     from eurdf.advice.actuation import advise_on_actuation
     from eurdf.advice.limits import advise_on_limits
+    from eurdf.advice.massless import advise_on_massless_links
     from eurdf.kinematics.assembly import assemble
     from eurdf.pinocchio.robot import build_robot
 
+    diagnostics = description.diagnostics
     robot = build_robot(mechanism, geometry=False)
     assembly = None if "assembled" in robot.configurations else assemble(robot)
-    diagnostics = closure_diagnostics(description, robot, assembly)
-    if not description.diagnostics.error_count + diagnostics.error_count:
+    for found in closure_diagnostics(description, robot, assembly):
+        diagnostics.add(found)
+    if not diagnostics.error_count:
         q = robot.configurations["assembled"] if assembly is None else assembly.q
+        advise_on_quaternions(description, robot, diagnostics)
+        advise_on_massless_links(description, robot, q, diagnostics)
         advise_on_actuation(description, robot, q, diagnostics)
         advise_on_limits(description, robot, q, diagnostics)
-    return diagnostics
 
 
 def closure_diagnostics(
@@ -90,7 +107,9 @@ def closure_diagnostics(
             "closure-cannot-close",
             f"no configuration was found that closes the loops; at the best, {_told(assembly.open)}",
             description.place_of_closure(closure),
-            "check where its frames are, and that enough joints can move",
+            f"{_closed_to(assembly.open)}: write the numbers of the files with more digits"
+            if _is_rounding(robot, assembly.open)
+            else "check where its frames are, and that enough joints can move",
         )
     return diagnostics
 
@@ -106,9 +125,36 @@ def assembled_diagnostics(description: Description, robot: Robot) -> Diagnostics
             "assembled-open",
             f"the loops are open at the assembled configuration: {_told(openings)}",
             description.place_of_configuration("assembled"),
-            "`eurdf assemble` finds a configuration that closes them; --write states it",
+            _hint_for_assembled(robot, openings),
         )
     return diagnostics
+
+
+def _hint_for_assembled(robot: Robot, openings: Sequence[Opening]) -> str:
+    if closes_w_first(robot, "assembled"):
+        return "they close where its quaternions are read w first: the order is x, y, z, w"
+    if not _is_rounding(robot, openings):
+        return "`eurdf assemble` finds a configuration that closes them; --write states it"
+    from eurdf.kinematics.assembly import assemble
+
+    least = assemble(robot)
+    if least.closes:
+        return f"{_closed_to(openings)}: write more digits, as `eurdf assemble --write` does"
+    return f"{_closed_to(least.open)} at best: write the numbers of the URDF with more digits"
+
+
+def _is_rounding(robot: Robot, openings: Iterable[Opening]) -> bool:
+    """Whether closures are open by no more than numbers that were rounded explain."""
+    from eurdf.kinematics.scale import characteristic_length
+
+    length = characteristic_length(robot)
+    return all(opening.position <= ROUNDED * length and opening.angle <= ROUNDED for opening in openings)
+
+
+def _closed_to(openings: Iterable[Opening]) -> str:
+    """How far the loops are closed, in the unit of the widest opening."""
+    widest = max(openings, key=_width)
+    return f"they are closed to {_width(widest):.0e} {'m' if widest.position >= widest.angle else 'rad'}"
 
 
 def _told(openings: Iterable[Opening]) -> str:

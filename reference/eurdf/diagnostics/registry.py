@@ -202,10 +202,14 @@ closure-cannot-close       EU-CLO-006 error   No configuration closes the loops.
     ),
     *_advice(
         """
+x-angle-in-degrees         An angle is so large that it is likely in degrees.
+x-length-in-millimetres    A length is so large that it is likely in millimetres.
+x-quaternion-order         A quaternion is likely written w first.
 x-no-actuator              A robot with closures has no actuator.
 x-dependent-actuators      Actuators cannot move independently of one another, or at all.
 x-uncontrolled-motion      A motion is possible with every actuator held that is not the spin of a rod.
 x-closes-beyond-limits     The loops close only where joints are beyond their limits.
+x-massless-link            A link of a loop has no mass.
 """,
     ),
 ]

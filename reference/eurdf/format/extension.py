@@ -140,6 +140,12 @@ class Extension:
     metadata: Mapping[str, object] = field(default_factory=dict)
     own_data: Mapping[Pointer, object] = field(default_factory=dict)
 
+    @property
+    def references(self) -> tuple[FrameReference, ...]:
+        """The frames of the closures, and what the frames that are added are on."""
+        sides = (side for closure in self.closures for side in (closure.a, closure.b))
+        return (*sides, *(frame.reference for frame in self.frames))
+
 
 __all__ = [
     "ActuatorEntry",
