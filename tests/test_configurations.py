@@ -100,7 +100,7 @@ def test_a_quaternion_of_nearly_unit_length_is_normalised_and_any_other_refused(
         ("{}", "a: 2.000000002", "configuration-limits"),
         ("{}", "a: -2.000000002", "configuration-limits"),
         ("{}", "a: 2.0000000005", ""),
-        ("{}", "b: 100", ""),
+        ("{}", "b: 100.3", ""),
         ("{a: {limits: {upper: 1}}}", "a: 1.5", "configuration-limits"),
         ("{a: {limits: {upper: 3}}}", "a: 2.5", ""),
         ("{d: {type: universal, axes: xy}}", "d: [0, 2.1]", "configuration-limits"),
@@ -120,7 +120,7 @@ def test_a_quaternion_of_nearly_unit_length_is_normalised_and_any_other_refused(
         # 2 m of travel at 1 m a revolution are two turns.
         ("{c: {type: helical, pitch: 1}}", f"c: {2.01 * math.tau}", "configuration-limits"),
         ("{c: {type: helical, pitch: 1}}", f"c: {1.99 * math.tau}", ""),
-        ("{}", "e: [100, 100, 100]", ""),
+        ("{}", "e: [100, 100, 100.3]", ""),
         ("{}", "a: []", "wrong-length"),
         ("{}", "e: [1, 2]", "configuration-length"),
         ("{}", "f: [0, 0, 0, 0, 0, 0, 2]", "configuration-quaternion"),
