@@ -393,24 +393,23 @@ def try_case(path: Path, *, analyse: bool) -> str:
     json.dumps(reports_to_json([report]), allow_nan=False).encode()
     "".join(text for line in report_lines(report) for text, _ in line).encode("utf-8", "strict")
     refused = any(found.phase in REFUSED_PHASES for found in report.errors)
-    geometry = "urdf-mesh-missing" not in {found.code for found in report.diagnostics}
     restart_clock()
     try:
-        robot = eurdf.load(path, geometry=geometry)
+        robot = eurdf.load(path)
     except eurdf.InvalidRobot as error:
         if not refused:
             raise AssertionError("load refuses what check passes") from error
         return "refused"
     assert not refused, "load takes what check refuses"
     told = {found.code for found in robot.diagnostics}
-    if geometry:  # without it, what is wrong with shapes is not looked for
-        assert told == {found.code for found in report.diagnostics if found.clause is not None}  # advice is check's own
+    # Advice is check's own.
+    assert told == {found.code for found in report.diagnostics if found.clause is not None}
     q = pin.neutral(robot.model)
     pin.framesForwardKinematics(robot.model, robot.data, q)
     pin.computeJointJacobians(robot.model, robot.data, q)
     for configuration in robot.configurations.values():
         assert np.isfinite(configuration).all()
-    if geometry:
+    if "urdf-mesh-missing" not in told:
         data = pin.GeometryData(robot.collision_model)
         pin.updateGeometryPlacements(robot.model, robot.data, robot.collision_model, data, q)
     if analyse:

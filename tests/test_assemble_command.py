@@ -278,7 +278,7 @@ def test_a_robot_with_errors_is_refused_with_its_diagnostics(folder: Path, run: 
         (("--hold", "motr"), "the model has no joint 'motr'; did you mean 'motor'?"),
         (("--from", "raedy"), "there is no configuration 'raedy'; did you mean 'ready'?"),
         (("--from", "x"), "there is no configuration 'x'; there are: ready, neutral"),
-        (("--urdf", "none.urdf"), "'none.urdf' does not exist"),
+        (("--urdf", "none.urdf"), "the URDF 'none.urdf' does not exist"),
         (("--force",), "--force replaces what --write would write: give --write too"),
     ],
 )

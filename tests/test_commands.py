@@ -78,7 +78,7 @@ def robot(folder: Path, description: str = DESCRIPTION, urdf: str = URDF) -> Pat
 def finds(monkeypatch: pytest.MonkeyPatch, *codes: str) -> None:
     """Let every check find just these."""
     found = tuple(Diagnostic(code, "it is wrong", Place("robot.yaml", 1)) for code in codes)
-    monkeypatch.setitem(vars(eurdf), "check", lambda path, urdf=None: Report(path, found))
+    monkeypatch.setitem(vars(eurdf), "check", lambda path, **options: Report(path, found))
 
 
 def in_a_process(*argv: str, **options: Any) -> subprocess.CompletedProcess[str]:
@@ -175,7 +175,7 @@ def test_a_path_that_is_not_there_exits_with_2_and_says_so(folder: Path, run: Ru
     assert err.count("\n") == 1
 
 
-@pytest.mark.parametrize("path", ["x" * 5000, "a\0b", "a\nb\x1b[31m", ""])
+@pytest.mark.parametrize("path", ["x" * 5000, "a\0b", "a\x1b[31mb", ""])
 def test_a_path_that_cannot_be_one_exits_with_2_in_one_line(folder: Path, run: Run, path: str) -> None:
     code, out, err = run("check", path)
     assert (code, out) == (2, "")
@@ -472,7 +472,7 @@ import eurdf
 from eurdf.diagnostics import Diagnostic, Place
 from eurdf.diagnostics.report import Report
 from eurdf.commands.main import main
-eurdf.check = lambda path, urdf=None: Report(path, (Diagnostic("wrong-type", "it is wrong", Place(path, 1, 1)),))
+eurdf.check = lambda path, **options: Report(path, (Diagnostic("wrong-type", "it is wrong", Place(path, 1, 1)),))
 sys.exit(main(["check", *sys.argv[1:]]))
 """
 
@@ -519,7 +519,7 @@ def test_a_command_that_was_started_with_interrupts_ignored_goes_on(folder: Path
 
 
 def test_an_interrupt_of_main_is_an_exit_code(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupted_check(path: str, urdf: str | None = None) -> Report:
+    def interrupted_check(path: str, **options: Any) -> Report:
         raise KeyboardInterrupt
 
     robot(folder)
@@ -530,7 +530,7 @@ def test_an_interrupt_of_main_is_an_exit_code(folder: Path, run: Run, monkeypatc
 def test_a_fault_of_the_program_is_not_taken_for_one_of_the_robot(
     folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def broken(path: str, urdf: str | None = None) -> Report:
+    def broken(path: str, **options: Any) -> Report:
         raise RuntimeError("impossible")
 
     robot(folder)

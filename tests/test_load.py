@@ -293,17 +293,46 @@ def test_meshes_are_found_in_the_folders_given_and_in_those_of_the_environment(
     monkeypatch.delenv("ROS_PACKAGE_PATH", raising=False)
     folder = _write(tmp_path / "robot", MESHED, YAML)
     _stl(tmp_path / "packages" / "parts" / "arm.stl")
-    with pytest.raises(eurdf.InvalidRobot, match="geometry=False") as caught:
-        eurdf.load(folder)
-    assert [found.code for found in caught.value.diagnostics] == ["urdf-mesh-missing"]
-    assert eurdf.load(folder, geometry=False).model.nv == 1
     found = eurdf.load(folder, package_dirs=[tmp_path / "packages"])
     assert found.visual_model.geometryObjects[0].meshPath == str(tmp_path / "packages" / "parts" / "arm.stl")
     np.testing.assert_array_equal(found.visual_model.geometryObjects[0].meshScale, [2, 2, 2])
-    assert [diagnostic.code for diagnostic in eurdf.check(folder).diagnostics] == ["urdf-mesh-missing"]
+    assert eurdf.check(folder, package_dirs=[tmp_path / "packages"]).diagnostics == ()
+    assert eurdf.check(folder, package_dirs=str(tmp_path / "packages")).diagnostics == ()
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path / "packages"))
     assert eurdf.load(folder).visual_model.ngeoms == 1
     assert eurdf.check(folder).diagnostics == ()
+    monkeypatch.delenv("ROS_PACKAGE_PATH")
+    _stl(tmp_path / "install" / "share" / "parts" / "arm.stl")
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "install"))
+    assert eurdf.check(folder).diagnostics == ()
+
+
+def test_check_and_load_agree_on_a_missing_mesh(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("ROS_PACKAGE_PATH", raising=False)
+    folder = _write(tmp_path / "robot", MESHED, YAML)
+    loaded = eurdf.load(folder)
+    assert loaded.diagnostics == eurdf.check(folder).diagnostics
+    (found,) = loaded.diagnostics
+    assert (found.code, found.severity) == ("urdf-mesh-missing", "warning")
+    assert all(word in str(found.hint) for word in ("package_dirs", "ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"))
+    assert loaded.model.nv == 1
+    assert eurdf.load(folder, geometry=False).diagnostics == ()
+
+
+def test_geometry_that_lacks_a_mesh_is_refused_when_it_is_asked_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("ROS_PACKAGE_PATH", raising=False)
+    loaded = eurdf.load(_write(tmp_path / "robot", MESHED, YAML))
+    for ask in (
+        lambda: loaded.visual_model,
+        lambda: loaded.collision_model,
+        lambda: [*loaded],
+        lambda: eurdf.lock(loaded, ["j"]).visual_model,
+    ):
+        with pytest.raises(eurdf.InvalidRobot, match="geometry=False") as caught:
+            ask()
+        assert [found.code for found in caught.value.diagnostics] == ["urdf-mesh-missing"]
 
 
 def test_meshes_beside_the_urdf_need_no_environment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

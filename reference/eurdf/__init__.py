@@ -14,12 +14,14 @@ if TYPE_CHECKING:
     from eurdf.diagnostics import Diagnostic
     from eurdf.diagnostics.report import Report
     from eurdf.exceptions import (
+        CannotExpand,
         CannotLock,
         DependentActuators,
         EurdfError,
         InconsistentMotion,
         InvalidRobot,
         LockedOpen,
+        MissingExtra,
         NotClosable,
         RobotNotFound,
         SimulationDiverged,
@@ -56,12 +58,14 @@ _NAMES = {
     "eurdf.diagnostics": ("Diagnostic",),
     "eurdf.diagnostics.report": ("Report",),
     "eurdf.exceptions": (
+        "CannotExpand",
         "CannotLock",
         "DependentActuators",
         "EurdfError",
         "InconsistentMotion",
         "InvalidRobot",
         "LockedOpen",
+        "MissingExtra",
         "NotClosable",
         "RobotNotFound",
         "SimulationDiverged",
@@ -125,6 +129,7 @@ _HOMES = {name: home for home, names in _NAMES.items() for name in names}
 __all__ = [
     "Analysis",
     "Assembly",
+    "CannotExpand",
     "CannotLock",
     "DependentActuators",
     "Diagnostic",
@@ -139,6 +144,7 @@ __all__ = [
     "LockedRobot",
     "LoopAnalysis",
     "Mechanism",
+    "MissingExtra",
     "Motion",
     "NotClosable",
     "Opening",

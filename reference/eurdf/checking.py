@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from eurdf.advice.angles import advise_on_angles
@@ -12,6 +12,7 @@ from eurdf.advice.quaternions import advise_on_quaternions, closes_w_first
 from eurdf.description import Description, describe, find_meshes
 from eurdf.diagnostics import Diagnostics
 from eurdf.diagnostics.report import Report
+from eurdf.reading.given import Given
 
 if TYPE_CHECKING:
     from eurdf.kinematics.assembly import Assembly
@@ -24,24 +25,36 @@ if TYPE_CHECKING:
 ROUNDED = 1e-4
 
 
-def check(path: str | os.PathLike[str], urdf: str | os.PathLike[str] | None = None) -> Report:
+def check(
+    path: Given,
+    urdf: Given | None = None,
+    *,
+    package_dirs: Sequence[str | os.PathLike[str]] = (),
+    xacro_args: Mapping[str, str] | None = None,
+) -> Report:
     """Check a robot: EU-DIA-001, EU-DIA-003, each fault is told that no error hides.
 
     Args:
-        path: A folder, a YAML file, a bare URDF, or the name of a robot of the collection.
-        urdf: A URDF in place of the one that the description names.
+        path: A folder, a YAML file, a bare URDF or xacro, the name of a robot of the collection, ``-`` for standard
+            input, a pipe, or a text: one that begins with ``<`` is a URDF, any other a description.
+        urdf: A URDF in place of the one that the description names: a file, ``-``, a pipe or a text.
+        package_dirs: Folders to look for the packages of meshes in, before ``ROS_PACKAGE_PATH`` and
+            ``AMENT_PREFIX_PATH``.
+        xacro_args: Values of the arguments of a xacro.
 
     Returns:
         The findings of all phases, in the order of the phases.
 
     Raises:
         RobotNotFound: Where there are no such files.
+        CannotExpand: A xacro has an error, or `xacro_args` are given for what is no xacro.
+        MissingExtra: A xacro is given, and the extra ``xacro`` is not installed.
     """
-    description = describe(path, urdf)
+    description = describe(path, urdf, package_dirs=package_dirs, xacro_args=xacro_args)
     diagnostics = description.diagnostics
     meshes: dict[str, str] = {}
     if description.urdf is not None:
-        meshes, missing = find_meshes(description)
+        meshes, missing = find_meshes(description, package_dirs)
         for found in missing:
             diagnostics.add(found)
     mechanism = description.mechanism

@@ -5,13 +5,14 @@ from __future__ import annotations
 import difflib
 import os
 import shlex
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
 from eurdf.collection import find_robot
 from eurdf.diagnostics import Diagnostics, Fault, Place
+from eurdf.exceptions import CannotExpand
 from eurdf.format.extension import Extension
 from eurdf.format.read_extension import read_extension
 from eurdf.format.urdf import Urdf, read_urdf
@@ -19,10 +20,14 @@ from eurdf.format.yaml_text import scalar
 from eurdf.mechanism.inertia import check_inertias, check_leaves
 from eurdf.mechanism.link import link
 from eurdf.mechanism.mechanism import Closure, Mechanism, Root
-from eurdf.reading.resource import resolve
-from eurdf.reading.source import read_source
+from eurdf.reading.given import Given, shown, source_of
+from eurdf.reading.resource import HINT, resolve
+from eurdf.reading.source import Source, read_source
+from eurdf.reading.xacro import expand, is_xacro
 from eurdf.reading.xml_reader import read_xml
 from eurdf.reading.yaml_reader import YamlDocument, read_yaml
+
+_NO_XACRO = "only a .xacro file takes arguments; give one as the robot or as its URDF"
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +54,7 @@ class Description:
     def folder(self) -> Path:
         """Folder of the URDF, which its mesh paths are relative to."""
         assert self.urdf is not None
-        return Path(self.urdf.document.source.file).parent
+        return self.urdf.document.source.folder
 
     def place_of_closure(self, closure: Closure) -> Place:
         """Where a closure is stated."""
@@ -65,46 +70,59 @@ class Description:
 
 
 def describe(
-    path: str | os.PathLike[str],
-    urdf: str | os.PathLike[str] | None = None,
+    path: Given,
+    urdf: Given | None = None,
     root: Root | None = None,
     *,
     geometry: bool = True,
+    package_dirs: Sequence[str | os.PathLike[str]] = (),
+    xacro_args: Mapping[str, str] | None = None,
 ) -> Description:
     """Read and link the files of a robot, and check its inertias.
 
     EU-DIA-002: what needs a file that has an error is not looked at, so that nothing is told that only follows from it.
 
     Args:
-        path: A folder, a YAML file, a bare URDF, or the name of a robot of the collection.
+        path: What `find_robot` takes.
         urdf: A URDF in place of the one that the description names.
         root: In place of the root that the description states.
         geometry: Whether to read the geometry; else bodies have none, and it is not checked.
+        package_dirs: Folders to look for packages in, which a xacro finds files in.
+        xacro_args: Values of the arguments of a xacro.
 
     Raises:
         RobotNotFound: Where there are no such files.
+        CannotExpand: A xacro has an error, or arguments are given for what is no xacro.
+        MissingExtra: A xacro is given, and the extra ``xacro`` is not installed.
     """
-    shown = os.fspath(path)
-    files = find_robot(path, urdf)
     diagnostics = Diagnostics()
+    name = shown(path)
+    try:
+        files = find_robot(path, urdf)
+        given = files.urdf and _expanded(files.urdf, name, diagnostics, package_dirs, xacro_args)
+    except Fault as fault:
+        diagnostics.add(fault.diagnostic)
+        return Description(name, diagnostics)
+    if given is None and xacro_args:
+        raise CannotExpand(name, _NO_XACRO)
     if files.description is None:
-        assert files.urdf is not None
-        tree = _read_urdf(files.urdf, diagnostics, geometry)
+        assert given is not None
+        tree = _read_urdf(given, diagnostics, geometry)
         mechanism = None if tree is None else link(tree, None, None, diagnostics, root)
-        return _finish(Description(shown, diagnostics, mechanism, tree))
+        return _finish(Description(name, diagnostics, mechanism, tree))
     document = _read_yaml(files.description, diagnostics)
     extension = None if document is None else read_extension(document, diagnostics)
-    urdf_path = files.urdf or _named_urdf(files.description, extension, document)
-    if files.urdf is None and not os.path.lexists(urdf_path):
+    urdf_path = given or _named_urdf(files.description, extension, document)
+    if not isinstance(urdf_path, Source) and given is None and not os.path.lexists(urdf_path):
         # Where the description could not be read, which URDF it means is a guess that deserves no second error.
         if extension is not None and document is not None:
             _urdf_not_found(urdf_path, extension, document, diagnostics)
-        return Description(shown, diagnostics, None, None, extension, document)
+        return Description(name, diagnostics, None, None, extension, document)
     tree = _read_urdf(urdf_path, diagnostics, geometry)
     mechanism = None
     if tree is not None and extension is not None:
         mechanism = link(tree, extension, document, diagnostics, root)
-    return _finish(Description(shown, diagnostics, mechanism, tree, extension, document))
+    return _finish(Description(name, diagnostics, mechanism, tree, extension, document))
 
 
 def _finish(description: Description) -> Description:
@@ -115,33 +133,80 @@ def _finish(description: Description) -> Description:
     return description
 
 
-def _read_yaml(path: Path, diagnostics: Diagnostics) -> YamlDocument | None:
+def read_urdf_source(
+    path: Given,
+    diagnostics: Diagnostics,
+    package_dirs: Sequence[str | os.PathLike[str]] = (),
+    xacro_args: Mapping[str, str] | None = None,
+) -> Source:
+    """Read what is given as a URDF, without looking for a description.
+
+    Args:
+        path: A file, a xacro, ``-`` for standard input, a pipe, or a text.
+        diagnostics: Where findings are added.
+        package_dirs: Folders to look for packages in, which a xacro finds files in.
+        xacro_args: Values of the arguments of a xacro.
+
+    Raises:
+        Fault: It cannot be read.
+        CannotExpand: A xacro has an error, or arguments are given for what is no xacro.
+        MissingExtra: A xacro is given, and the extra ``xacro`` is not installed.
+    """
+    text = source_of(path)
+    file = Path(shown(path)) if text is None else text
+    return _source(_expanded(file, shown(path), diagnostics, package_dirs, xacro_args))
+
+
+def _expanded(
+    urdf: Path | Source,
+    name: str,
+    diagnostics: Diagnostics,
+    package_dirs: Sequence[str | os.PathLike[str]],
+    xacro_args: Mapping[str, str] | None,
+) -> Path | Source:
+    """A URDF that the caller gave, or that a xacro is expanded to."""
+    if isinstance(urdf, Path) and is_xacro(urdf) and os.path.lexists(urdf):
+        source, warnings = expand(urdf, xacro_args, package_dirs)
+        if warnings:
+            diagnostics.report("x-xacro-warning", f"xacro warns: {' '.join(warnings.split())}", Place(os.fspath(urdf)))
+        return source
+    if xacro_args:
+        raise CannotExpand(name, _NO_XACRO)
+    return urdf
+
+
+def _read_yaml(path: Path | Source, diagnostics: Diagnostics) -> YamlDocument | None:
     try:
-        return read_yaml(read_source(path))
+        return read_yaml(_source(path))
     except Fault as fault:
         diagnostics.add(fault.diagnostic)
         return None
 
 
-def _read_urdf(path: Path, diagnostics: Diagnostics, geometry: bool) -> Urdf | None:
+def _source(path: Path | Source) -> Source:
+    return path if isinstance(path, Source) else read_source(path)
+
+
+def _read_urdf(path: Path | Source, diagnostics: Diagnostics, geometry: bool) -> Urdf | None:
     try:
-        document = read_xml(read_source(path))
+        document = read_xml(_source(path))
     except Fault as fault:
         diagnostics.add(fault.diagnostic)
         return None
     return read_urdf(document, diagnostics, geometry=geometry)
 
 
-def _named_urdf(description: Path, extension: Extension | None, document: YamlDocument | None) -> Path:
+def _named_urdf(description: Path | Source, extension: Extension | None, document: YamlDocument | None) -> Path:
     name = "robot.urdf"
     if extension is not None:
         name = extension.urdf
     elif document is not None and isinstance(document.data, dict) and isinstance(document.data.get("urdf"), str):
         name = document.data["urdf"]
+    folder = description.folder if isinstance(description, Source) else description.parent
     try:
-        return description.parent / name
+        return folder / name
     except ValueError:
-        return description.parent / "robot.urdf"
+        return folder / "robot.urdf"
 
 
 def _urdf_not_found(path: Path, extension: Extension, document: YamlDocument, diagnostics: Diagnostics) -> None:
@@ -218,7 +283,7 @@ def find_meshes(
                 f"urdf-{tag}-missing",
                 f"{count} not found: {names}",
                 partial(place_of_file, description, tag, missing[0]),
-                "put them beside the URDF, or set ROS_PACKAGE_PATH to the folder that holds their package",
+                HINT,
             )
     return found, diagnostics
 

@@ -46,6 +46,32 @@ class RobotNotFound(EurdfError, FileNotFoundError):  # noqa: N818 - part of the 
         super().__init__(message)
 
 
+class CannotExpand(EurdfError, ValueError):  # noqa: N818 - part of the public interface
+    """A xacro file that cannot be expanded with the arguments that are given.
+
+    Attributes:
+        path: The file.
+        reason: Why not.
+    """
+
+    def __init__(self, path: str, reason: str) -> None:
+        self.path = path
+        self.reason = reason
+        super().__init__(f"xacro cannot expand '{path}': {reason}")
+
+
+class MissingExtra(EurdfError, ImportError):  # noqa: N818 - part of the public interface
+    """An optional dependency that is needed and not installed.
+
+    Attributes:
+        extra: The extra of this package that installs it.
+    """
+
+    def __init__(self, message: str, extra: str) -> None:
+        self.extra = extra
+        super().__init__(message)
+
+
 class CannotLock(EurdfError, ValueError):  # noqa: N818 - part of the public interface
     """A joint that cannot be locked.
 

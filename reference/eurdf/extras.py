@@ -10,21 +10,7 @@ from importlib.metadata import Distribution, PackageNotFoundError, distribution
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
-from eurdf.exceptions import EurdfError
-
 _CHECKOUT = Path(__file__).parents[2]
-
-
-class MissingExtra(EurdfError, ImportError):  # noqa: N818 - like InvalidRobot, it says what the thing is
-    """An optional dependency that is not installed.
-
-    Attributes:
-        extra: The extra of this package that installs it.
-    """
-
-    def __init__(self, what: str, extra: str) -> None:
-        self.extra = extra
-        super().__init__(f"{what}; install it with: {install_command(extra)}")
 
 
 def install_command(extra: str) -> str:

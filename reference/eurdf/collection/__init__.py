@@ -6,19 +6,25 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
+from eurdf.collection.near_paths import near_path
 from eurdf.exceptions import RobotNotFound
+from eurdf.reading.given import Given, is_stream, is_xml, shown, source_of
+from eurdf.reading.source import Source
 
 _HERE = Path(__file__).parent
 _YAML = (".yaml", ".yml")
-_URDF = (".urdf", ".xml")
+_URDF = (".urdf", ".xml", ".xacro")
 
 
 @dataclass(frozen=True, slots=True)
 class RobotFiles:
-    """The files of one robot: a description that names its URDF, or a URDF alone."""
+    """The files of one robot: a description that names its URDF, or a URDF alone.
 
-    description: Path | None
-    urdf: Path | None
+    Each is a path, or what was read where the caller gave a text or a stream.
+    """
+
+    description: Path | Source | None
+    urdf: Path | Source | None
 
 
 def collection_folder() -> Path | None:
@@ -35,38 +41,66 @@ def collection_names() -> list[str]:
     return [] if folder is None else sorted(path.parent.name for path in folder.glob("*/robot.yaml"))
 
 
-def find_robot(path: str | os.PathLike[str], urdf: str | os.PathLike[str] | None = None) -> RobotFiles:
+def find_robot(path: Given, urdf: Given | None = None) -> RobotFiles:
     """Find the files of a robot.
 
     Args:
-        path: A folder, a YAML file, a bare URDF, or the name of a robot of the collection. A file is told by its
-            ending: ``.urdf`` and ``.xml`` are URDFs, anything else is a description.
-        urdf: A URDF in place of the one that the description names.
+        path: A folder, a YAML file, a bare URDF or xacro, the name of a robot of the collection, ``-`` for standard
+            input, a pipe, or a text. A file is told by its ending: ``.urdf``, ``.xml`` and ``.xacro`` are URDFs,
+            anything else is a description; a text and what comes from a stream, by its first character: ``<`` begins
+            a URDF.
+        urdf: A URDF in place of the one that the description names: a file, ``-``, a pipe or a text.
 
     Raises:
         RobotNotFound: Where there is no such thing.
+        Fault: A stream or a text cannot be read.
     """
+    if urdf is not None and is_stream(path) and path == urdf:
+        raise RobotNotFound(shown(path), f"{shown(path)} cannot be both the description and its URDF")
+    source = source_of(path)
+    if source is not None:
+        if is_xml(source):
+            _refuse_second_urdf(path, urdf)
+            return RobotFiles(None, source)
+        return RobotFiles(source, _given_urdf(urdf))
+    assert not isinstance(path, bytes)
+    if os.fspath(path) == "":  # Path takes it for the working directory
+        raise RobotNotFound("", "the path of the robot is empty; '.' is the working directory")
     where = Path(path)
-    given = Path(urdf) if urdf is not None else None
     # os.path takes a text that no file system does for a path of nothing; Path raises.
     if os.path.isdir(where):
-        return _in_folder(where, given)
+        return _in_folder(where, _given_urdf(urdf))
     if os.path.lexists(where):
         if where.suffix.lower() in _URDF:
-            if given is not None:
-                raise RobotNotFound(str(path), f"'{path}' is a URDF itself; give the YAML file to use it with '{urdf}'")
+            _refuse_second_urdf(path, urdf)
             return RobotFiles(None, where)
-        return RobotFiles(where, given)
+        return RobotFiles(where, _given_urdf(urdf))
     folder = collection_folder()
     name = os.fspath(path)
     if folder is not None and "/" not in name and os.sep not in name and os.path.isfile(folder / name / "robot.yaml"):
-        return RobotFiles(folder / name / "robot.yaml", given)
-    known = ", ".join(collection_names())
-    message = f"there is no '{name}': it is no file, no folder, and no robot of the collection ({known})"
-    raise RobotNotFound(name, message)
+        return RobotFiles(folder / name / "robot.yaml", _given_urdf(urdf))
+    near = near_path(name, collection_names())
+    hint = f"did you mean '{near}'?" if near else "`eurdf robots` lists the collection"
+    raise RobotNotFound(name, f"there is no '{name}': it is no file, no folder, and no robot of the collection; {hint}")
 
 
-def _in_folder(folder: Path, given: Path | None) -> RobotFiles:
+def _given_urdf(urdf: Given | None) -> Path | Source | None:
+    if urdf is None:
+        return None
+    source = source_of(urdf)
+    if source is not None:
+        return source
+    assert not isinstance(urdf, bytes)
+    return Path(urdf)
+
+
+def _refuse_second_urdf(path: Given, urdf: Given | None) -> None:
+    if urdf is not None:
+        message = f"'{shown(path)}' is a URDF itself; give the YAML file to use it with '{shown(urdf)}'"
+        raise RobotNotFound(shown(path), message)
+
+
+def _in_folder(folder: Path, given: Path | Source | None) -> RobotFiles:
     for ending in _YAML:
         description = folder / f"robot{ending}"
         if description.is_file():
@@ -77,11 +111,16 @@ def _in_folder(folder: Path, given: Path | None) -> RobotFiles:
         return RobotFiles(descriptions[0], given)
     if not descriptions:
         urdfs = [path for path in files if path.suffix.lower() == ".urdf"]
+        if given is not None:
+            raise RobotNotFound(str(folder), f"folder '{folder}' holds no YAML file to use with the URDF given")
         if (folder / "robot.urdf") in urdfs:
             return RobotFiles(None, folder / "robot.urdf")
         if len(urdfs) == 1:
             return RobotFiles(None, urdfs[0])
         what = f"{len(urdfs)} URDFs" if urdfs else "no robot.yaml and no URDF"
+        xacro = next((path.name for path in files if path.suffix.lower() == ".xacro"), None)
+        if xacro is not None and not urdfs:
+            what += f", but '{xacro}'"
         raise RobotNotFound(str(folder), f"folder '{folder}' holds {what}; name the file")
     names = ", ".join(path.name for path in descriptions)
     raise RobotNotFound(str(folder), f"folder '{folder}' holds no robot.yaml but {names}; name the one you mean")

@@ -12,6 +12,7 @@ from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.migrate import show_refusal, tell
 from eurdf.commands.output import cell, new_table, write_json, write_rendered
 from eurdf.commands.output_file import write_new
+from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
 from eurdf.commands.selection import select_one
 
 if TYPE_CHECKING:
@@ -29,9 +30,11 @@ Find a configuration in which every loop is closed, and show it: for each joint 
 
 The search begins at the configuration 'assembled', or else at the neutral one. It stays within the limits of the joints
 where it can. With --write, the configuration goes into the description as 'assembled'; comments and all else stay.
-
-  eurdf assemble my_robot --hold motor_knee --write
 """
+_EPILOG = ending(
+    "0 the loops close, 1 they do not or the robot has errors, 2 the command cannot run.",
+    "eurdf assemble my_robot --hold motor_knee --write",
+)
 
 #: Where to start, where no configuration of that name is in the file.
 _NEUTRAL = "neutral"
@@ -49,10 +52,11 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "assemble",
         help="find a configuration that closes the loops, and write it to the description",
         description=_DESCRIPTION,
-        epilog="Exit codes: 0 the loops close, 1 they do not or the robot has errors, 2 the command cannot run.",
+        epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("path", metavar="PATH", help="a robot: its folder, its .yaml, or a collection name")
+    add_robot_path(parser)
+    add_robot_options(parser)
     parser.add_argument("--write", action="store_true", help="write it to the description as 'assembled'")
     parser.add_argument("--force", action="store_true", help="replace a different 'assembled' that is there already")
     parser.add_argument(
@@ -66,7 +70,6 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help=f"configuration to start from: one of the description, or {_NEUTRAL}",
     )
     parser.add_argument("--json", action="store_true", help="write one JSON object")
-    parser.add_argument("--urdf", metavar="FILE", help="the URDF, where it is not the one that the description names")
     parser.set_defaults(run=run)
 
 
@@ -75,17 +78,17 @@ def run(args: argparse.Namespace) -> int:
     from eurdf.description import describe
 
     path = select_one(args.path)
-    if args.urdf is not None and not os.path.exists(args.urdf):
-        raise CannotRun(f"'{args.urdf}' does not exist")
     if args.force and not args.write:
         raise CannotRun("--force replaces what --write would write: give --write too")
-    description = describe(path, args.urdf, geometry=False)
+    description = describe(path, geometry=False, **robot_options(args))
     if description.diagnostics.refused or description.mechanism is None:
-        show_refusal(path, tuple(description.diagnostics), args.json)
+        show_refusal(description.path, tuple(description.diagnostics), args.json)
         return 1
     file = _file_to_write(args.path, description) if args.write else None
     if description.extension is None:
-        raise CannotRun(f"'{path}' is a bare URDF, which has no loops; `eurdf generate` writes a description with them")
+        raise CannotRun(
+            f"'{description.path}' is a bare URDF, which has no loops; `eurdf generate` writes a description with them"
+        )
 
     from eurdf.assembled import beyond_limits
     from eurdf.commands.assembly_info import assembly_info
@@ -116,6 +119,8 @@ def _file_to_write(path: str, description: Description) -> str:
     if description.extension is None or description.document is None:
         raise CannotRun(f"'{path}' is a bare URDF, which has no configurations; `eurdf generate` writes a description")
     file = description.document.source.file
+    if not description.document.source.is_file:
+        raise CannotRun(f"--write needs a file to write to, and the description came from {file}")
     if description.extension.version == "1":
         raise CannotRun(
             f"'{file}' is of version 1, which has no configurations; `eurdf migrate` writes it in version 2"

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
-from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, TextIO
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TextIO
 
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.output import columns, has_boxes, is_terminal, write_json, write_lines
+from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
 from eurdf.commands.selection import select
+from eurdf.reading.given import is_stream
 
 if TYPE_CHECKING:
     from eurdf.diagnostics.report import Report
@@ -18,10 +19,16 @@ if TYPE_CHECKING:
 _DESCRIPTION = """\
 Check robots: the description, the URDF it extends, and whether the loops close.
 
-A PATH is a description (.yaml), a bare .urdf, the folder of a robot, a folder to search for robots, or the
-name of a robot of the collection. In a folder that is searched, each folder with a robot.yaml is a robot;
-elsewhere each YAML file is one that has extended_urdf or closed_loop at its top level.
+In a folder that is searched, each folder with a robot.yaml is a robot; elsewhere each YAML file is one that has
+extended_urdf or closed_loop at its top level. From standard input, as from a pipe, comes one text: a URDF, which
+begins with <, or a description, whose paths are relative to the working directory.
 """
+_EPILOG = ending(
+    "0 all robots pass, 1 errors found, 2 the check cannot run.",
+    "eurdf check robots/",
+    "eurdf check leg.yaml --urdf leg.urdf.xacro --xacro-arg side:=left --package-dir ~/ws/src",
+    "xacro leg.urdf.xacro side:=left | eurdf check -",
+)
 
 # From how many robots on a person is shown how far the check is.
 _MANY = 4
@@ -33,11 +40,11 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "check",
         help="tell which line of a robot's description is wrong, and why",
         description=_DESCRIPTION,
-        epilog="Exit codes: 0 all robots pass, 1 errors found, 2 the check cannot run.",
+        epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("paths", nargs="+", metavar="PATH", help="robots to check")
-    parser.add_argument("--urdf", metavar="FILE", help="the URDF, where it is not the one that the description names")
+    add_robot_path(parser, several=True)
+    add_robot_options(parser)
     parser.add_argument("--format", choices=("text", "json", "sarif"), default="text", help="default: text")
     parser.add_argument("--strict", action="store_true", help="let warnings count as errors")
     parser.add_argument(
@@ -51,9 +58,10 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def run(args: argparse.Namespace) -> int:
     """Check, write what was found, and return the exit code."""
     robots = select(args.paths, args.allow_none)
-    if args.urdf is not None and not os.path.exists(args.urdf):
-        raise CannotRun(f"'{args.urdf}' does not exist")
-    reports = [_check(robot, args.urdf) for robot in _with_progress(robots)]
+    options = robot_options(args)
+    if len(robots) > 1 and args.urdf is not None and is_stream(args.urdf):
+        raise CannotRun(f"--urdf {args.urdf} can be read only once, but there are {len(robots)} robots")
+    reports = [_check(robot, options) for robot in _with_progress(robots)]
     if args.format == "json":
         from eurdf.diagnostics.report import reports_to_json
 
@@ -87,10 +95,10 @@ def write_reports(reports: Sequence[Report], strict: bool = False, stream: TextI
         write_lines([total_line(reports, strict)], stream)
 
 
-def _check(robot: str, urdf: str | None) -> Report:
+def _check(robot: str, options: Mapping[str, Any]) -> Report:
     import eurdf
 
-    return eurdf.check(robot, urdf)
+    return eurdf.check(robot, **options)
 
 
 def _with_progress(robots: Sequence[str]) -> Iterable[str]:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.output import cell, new_table, write_json, write_lines, write_rendered
+from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
 from eurdf.commands.selection import select_one
+from eurdf.reading.given import shown
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -28,32 +28,33 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "info",
         help="show a robot's dimensions, its closures, and how it can move",
         description="Show what a robot is made of, whether its loops close, and what motions that leaves.",
-        epilog="Exit codes: 0 shown, 1 the robot has errors that keep it from being built, 2 the command cannot run.",
+        epilog=ending(
+            "0 shown, 1 the robot has errors that keep it from being built, 2 the command cannot run.",
+            "eurdf info digit_leg --root floating",
+        ),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument(
-        "path", metavar="PATH", help="a robot: its folder, its .yaml, a bare .urdf, or a collection name"
-    )
-    parser.add_argument("--json", action="store_true", help="write one JSON object")
-    parser.add_argument("--urdf", metavar="FILE", help="the URDF, where it is not the one that the description names")
+    add_robot_path(parser)
+    add_robot_options(parser)
     parser.add_argument("--root", choices=("fixed", "floating"), help="default: as the description says")
+    parser.add_argument("--json", action="store_true", help="write one JSON object")
     parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
     """Load, analyse, show, and return the exit code."""
     path = select_one(args.path)
-    if args.urdf is not None and not os.path.exists(args.urdf):
-        raise CannotRun(f"'{args.urdf}' does not exist")
+    options = robot_options(args)
 
     import eurdf
 
     try:
-        robot = eurdf.load(path, urdf=args.urdf, root=args.root, geometry=False)
+        robot = eurdf.load(path, root=args.root, geometry=False, **options)
     except eurdf.InvalidRobot as refusal:
         from eurdf.commands.check import write_reports
         from eurdf.diagnostics.report import Report, reports_to_json
 
-        report = Report(path, tuple(refusal.diagnostics))
+        report = Report(refusal.path, tuple(refusal.diagnostics))
         if args.json:
             write_json(reports_to_json([report]))
         else:
@@ -72,7 +73,7 @@ def run(args: argparse.Namespace) -> int:
         from eurdf.diagnostics.report import Report
 
         write_lines([[]], sys.stdout)
-        write_reports([Report(path, robot.diagnostics)])
+        write_reports([Report(shown(path), robot.diagnostics)])
     return 0
 
 

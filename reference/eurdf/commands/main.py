@@ -18,6 +18,7 @@ from eurdf import __version__
 from eurdf.commands import assemble, certify, check, generate, info, migrate, robots, schema
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.start import INTERRUPTED, start
+from eurdf.exceptions import CannotExpand, MissingExtra
 
 #: The commands, in the order in which the help shows them.
 COMMANDS = (check, info, assemble, robots, migrate, generate, schema, certify)
@@ -56,7 +57,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         # Nobody reads any more. The interpreter flushes once more at its end: let that go nowhere.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return _BROKEN_PIPE
-    except (CannotRun, OSError) as reason:  # also eurdf.RobotNotFound, which is an OSError
+    except (CannotRun, CannotExpand, MissingExtra, OSError) as reason:  # OSError: also RobotNotFound
         from eurdf.diagnostics.text import visible
 
         sys.stderr.write(f"eurdf: {visible(str(reason))}\n")

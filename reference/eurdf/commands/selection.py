@@ -10,6 +10,7 @@ from pathlib import Path
 from eurdf.collection import find_robot
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.exceptions import RobotNotFound
+from eurdf.reading.given import is_stream, is_text
 
 _DESCRIPTIONS = ("robot.yaml", "robot.yml")
 _YAML_SUFFIXES = (".yaml", ".yml")
@@ -58,7 +59,8 @@ def _robots_at(path: str, allow_none: bool) -> list[str]:
             return found
         if allow_none:
             return [path] if _holds_urdf(path) else []
-    find_robot(path)
+    if not (is_stream(path) or is_text(path)):  # what is in them is found when they are checked, and read once
+        find_robot(path)
     return [path]
 
 

@@ -6,7 +6,7 @@ import difflib
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 from eurdf.diagnostics.registry import REFUSED_PHASES, REGISTRY, Phase, Severity
@@ -39,6 +39,7 @@ class Place:
         column: Column, from 1, in characters; None where only the line is known.
         end_column: Column just after the last character meant, on the same line; None if not known.
         pointer: JSON pointer of the value in a YAML file, XPath of the element or attribute in a URDF.
+        text: The whole text that the place is in, where it is not that of a file, which can be read again.
     """
 
     file: str
@@ -46,6 +47,7 @@ class Place:
     column: int | None = None
     end_column: int | None = None
     pointer: str = ""
+    text: str | None = field(default=None, compare=False, repr=False)
 
 
 class Diagnostic:

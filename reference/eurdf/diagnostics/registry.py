@@ -210,6 +210,7 @@ x-dependent-actuators      Actuators cannot move independently of one another, o
 x-uncontrolled-motion      A motion is possible with every actuator held that is not the spin of a rod.
 x-closes-beyond-limits     The loops close only where joints are beyond their limits.
 x-massless-link            A link of a loop has no mass.
+x-xacro-warning            A xacro file was expanded with warnings.
 """,
     ),
 ]

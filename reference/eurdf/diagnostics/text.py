@@ -6,6 +6,7 @@ Everything is made as lines of styled pieces; whoever writes them decides whethe
 from __future__ import annotations
 
 import os
+import re
 import stat
 import unicodedata
 from collections.abc import Iterator, Sequence
@@ -23,6 +24,7 @@ SOURCE_WIDTH = 96
 _LONGEST_MESSAGE = 1000
 # Files are read once more to show their lines. No reader takes a larger one than this.
 _LARGEST_FILE = 64 * 2**20
+_BREAK = re.compile("\r\n?|\n")
 _ELLIPSIS = "..."
 _TAB = "    "
 
@@ -107,7 +109,7 @@ def _excerpt_lines(found: Diagnostic, texts: dict[str, list[str]], width: int, b
     number = ""
     if place.line is not None:
         if place.file not in texts:
-            texts[place.file] = _read_lines(place.file)
+            texts[place.file] = _read_lines(place.file) if place.text is None else _BREAK.split(place.text)
         lines = texts[place.file]
         if place.line <= len(lines):
             number = str(place.line)

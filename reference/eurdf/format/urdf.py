@@ -266,7 +266,9 @@ class _Reader:
         if "," in text:
             hint = "write a point, not a comma, and separate numbers by spaces"
         elif "${" in text or "$(" in text:
-            hint = "this looks like xacro: expand the file first"
+            hint = (
+                "this looks like xacro: give the .xacro file itself, by --urdf if there is a description, or expand it"
+            )
         shown = text if len(text) <= 40 else text[:37] + "..."
         self.report(
             "urdf-bad-number",

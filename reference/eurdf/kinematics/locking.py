@@ -92,9 +92,10 @@ def lock(robot: Robot, joints: Iterable[str], q: Vector | None = None, *, tolera
     _check_closed(robot, q, {closure.name for closure in locked.closures}, tolerance)
     built = build_robot(locked.mechanism, geometry=False, mimic=mimic)
     for kind in ("visual_model", "collision_model"):
-        if getattr(robot, kind) is not None:
+        if robot.no_geometry is None and getattr(robot, kind) is not None:
             setattr(built, kind, _carried_over(getattr(robot, kind), robot.model, built.model))
     new = LockedRobot(built, locked, *_free_indices(robot, built))
+    new.no_geometry = robot.no_geometry
     new.defer_diagnostics(lambda: robot.diagnostics)
     return new
 

@@ -28,9 +28,9 @@ class Robot:
         model: The spanning tree.
         constraint_models: The closures, in file order.
         actuation: The actuated joints, in file order.
-        visual_model: What is seen; None without geometry.
-        collision_model: What collides; None without geometry.
         configurations: For each named configuration its q.
+        no_geometry: What makes the error that `visual_model` and `collision_model` raise, where the geometry was asked
+            for and cannot be built; else None.
     """
 
     def __init__(
@@ -48,8 +48,9 @@ class Robot:
         self.model = model
         self.constraint_models = constraint_models
         self.actuation = actuation
-        self.visual_model = visual_model
-        self.collision_model = collision_model
+        self._visual_model = visual_model
+        self._collision_model = collision_model
+        self.no_geometry: Callable[[], Exception] | None = None
         self.configurations = configurations
         self._diagnostics: tuple[Diagnostic, ...] | Callable[[], tuple[Diagnostic, ...]] = diagnostics
         self._data: pin.Data | None = None
@@ -60,6 +61,38 @@ class Robot:
         if self._data is None:
             self._data = self.model.createData()
         return self._data
+
+    @property
+    def visual_model(self) -> pin.GeometryModel | None:
+        """What is seen; None without geometry.
+
+        Raises:
+            InvalidRobot: A mesh is missing.
+        """
+        self._require_geometry()
+        return self._visual_model
+
+    @visual_model.setter
+    def visual_model(self, geometry_model: pin.GeometryModel | None) -> None:
+        self._visual_model = geometry_model
+
+    @property
+    def collision_model(self) -> pin.GeometryModel | None:
+        """What collides; None without geometry.
+
+        Raises:
+            InvalidRobot: A mesh is missing.
+        """
+        self._require_geometry()
+        return self._collision_model
+
+    @collision_model.setter
+    def collision_model(self, geometry_model: pin.GeometryModel | None) -> None:
+        self._collision_model = geometry_model
+
+    def _require_geometry(self) -> None:
+        if self.no_geometry is not None:
+            raise self.no_geometry()
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:

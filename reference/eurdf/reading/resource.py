@@ -7,13 +7,18 @@ from collections.abc import Sequence
 from pathlib import Path
 from urllib.parse import unquote
 
+#: What to do where a file of a package is not found.
+HINT = (
+    "put them beside the URDF, or name the folder that holds their package by --package-dir (package_dirs= in Python), "
+    "ROS_PACKAGE_PATH or AMENT_PREFIX_PATH"
+)
+
 
 def resolve(uri: str, folder: Path, package_dirs: Sequence[str | os.PathLike[str]] = ()) -> str | None:
     """The file that a mesh URI of a URDF means, on this machine (EU-SEC-003).
 
-    ``package://name/rest`` is looked for as ``name/rest`` below the given package directories, below those of
-    ``ROS_PACKAGE_PATH`` and ``AMENT_PREFIX_PATH``, and below the folder of the URDF and the folders that hold it,
-    one of which may be the package itself. A path is relative to the folder of the URDF.
+    ``package://name/rest`` is looked for in the package ``name``, in the folders of `package_homes`. A path is relative
+    to the folder of the URDF.
 
     Args:
         uri: As the URDF writes it.
@@ -32,11 +37,7 @@ def resolve(uri: str, folder: Path, package_dirs: Sequence[str | os.PathLike[str
         return None
     package, _, rest = rest.partition("/")
     rest = rest.lstrip("/")
-    homes = [Path(home) for home in package_dirs]
-    homes += [Path(home) for home in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if home]
-    homes += [Path(home) / "share" for home in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if home]
-    absolute = folder.absolute()
-    for home in (*homes, absolute, *absolute.parents):
+    for home in package_homes(folder, package_dirs):
         candidates = [home / package / rest]
         if home.name == package:
             candidates.append(home / rest)
@@ -44,6 +45,24 @@ def resolve(uri: str, folder: Path, package_dirs: Sequence[str | os.PathLike[str
             if found := _file(candidate):
                 return found
     return None
+
+
+def package_homes(folder: Path, package_dirs: Sequence[str | os.PathLike[str]] = ()) -> list[Path]:
+    """The folders that a package is looked for in, each of which may be the package itself.
+
+    First those given, then those of ``ROS_PACKAGE_PATH``, then ``share`` below each of ``AMENT_PREFIX_PATH``, then the
+    folder of the URDF and the folders that hold it.
+
+    Args:
+        folder: Folder of the URDF.
+        package_dirs: Folders that hold packages.
+    """
+    given = [package_dirs] if isinstance(package_dirs, str | os.PathLike) else package_dirs
+    homes = [Path(os.path.abspath(home)) for home in given]
+    homes += [Path(home) for home in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if home]
+    homes += [Path(home) / "share" for home in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if home]
+    absolute = folder.absolute()
+    return [*homes, absolute, *absolute.parents]
 
 
 def _file(path: Path) -> str | None:

@@ -7,6 +7,7 @@ import re
 import stat
 from bisect import bisect_right
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from eurdf.diagnostics import Fault, Place
 
@@ -24,18 +25,30 @@ URDF_LIMIT = 64 << 20
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    r"""A file that was read.
+    r"""A text that was read.
 
     Attributes:
-        file: Path as the user gave it.
+        file: Path as the user gave it; what diagnostics call a text that is not in a file.
         text: Decoded, without byte order mark, line breaks as they are.
         data: The same as UTF-8 bytes.
+        base: Folder that relative paths in a text start from which is not in a file; None for a file.
     """
 
     file: str
     text: str
     data: bytes
+    base: Path | None = field(default=None, compare=False)
     _starts: list[int] = field(default_factory=list, init=False, repr=False, compare=False)
+
+    @property
+    def is_file(self) -> bool:
+        """Whether `file` is a path at which the text can be read again."""
+        return self.base is None
+
+    @property
+    def folder(self) -> Path:
+        """Folder that relative paths in the text start from."""
+        return Path(self.file).parent if self.base is None else self.base
 
     def position(self, index: int) -> tuple[int, int]:
         r"""Line and column, both from 1, of a character (EU-DIA-011, EU-DIA-012).
@@ -58,7 +71,15 @@ class Source:
         if end is not None:
             end_line, last = self.position(end)
             end_column = last if end_line == line else None
-        return Place(self.file, line, column, end_column, pointer)
+        return Place(self.file, line, column, end_column, pointer, self._kept)
+
+    def place_of_line(self, line: int) -> Place:
+        """Place of a line, from 1, as a whole."""
+        return Place(self.file, line, text=self._kept)
+
+    @property
+    def _kept(self) -> str | None:
+        return None if self.is_file else self.text
 
 
 def read_source(path: str | os.PathLike[str], limit: int = URDF_LIMIT) -> Source:
@@ -74,7 +95,20 @@ def read_source(path: str | os.PathLike[str], limit: int = URDF_LIMIT) -> Source
         Fault: ``file-unreadable``, ``file-too-large`` or ``file-not-utf8``.
     """
     file = os.fsdecode(path)
-    data = _read_bytes(file, limit)
+    return decoded(_read_bytes(file, limit), file)
+
+
+def decoded(data: bytes, file: str, base: Path | None = None) -> Source:
+    """The text that is in some bytes, EU-FIL-003.
+
+    Args:
+        data: The bytes.
+        file: What diagnostics call the text.
+        base: Folder that relative paths start from, for a text that is not in a file.
+
+    Raises:
+        Fault: ``file-not-utf8``.
+    """
     # The first bytes tell UTF-16 and UTF-32 apart from UTF-8, with or without a byte order mark (YAML 1.2.2, 5.2).
     if data[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\0" in data[:2]:
         message = "the file begins as UTF-16, UTF-32 or binary data; it must be UTF-8 text"
@@ -84,10 +118,10 @@ def read_source(path: str | os.PathLike[str], limit: int = URDF_LIMIT) -> Source
         text = data.decode()
     except UnicodeDecodeError as error:
         before = data[: error.start].decode()
-        place = Source(file, before, b"").place(len(before))
+        place = Source(file, before, b"", base).place(len(before))
         message = f"the byte 0x{data[error.start]:02x} stands where UTF-8 text cannot have it"
         raise Fault("file-not-utf8", message, place, "save the file with the encoding UTF-8") from None
-    return Source(file, text, data)
+    return Source(file, text, data, base)
 
 
 def _read_bytes(file: str, limit: int) -> bytes:

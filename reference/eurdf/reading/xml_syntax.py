@@ -7,7 +7,7 @@ from typing import Any
 from xml.parsers import expat
 from xml.parsers.expat import errors
 
-from eurdf.diagnostics import Fault, Place
+from eurdf.diagnostics import Fault
 from eurdf.reading.source import Source, short
 
 #: Elements that may be nested in one another; what libxml2 allows by itself.
@@ -73,10 +73,10 @@ def refused(source: Source, code: int, message: str, line: int) -> Fault:
     """The fault of a file that is well-formed, but that libxml2 does not take, for the error that it gives."""
     if code in _RESOURCE_ERRORS:
         message = "a name, a text or the value of an attribute is too long for the XML parser"
-        return Fault("file-too-large", message, Place(source.file, line))
+        return Fault("file-too-large", message, source.place_of_line(line))
     # What only the namespaces of XML forbid, such as two ':' in a name.
     message = re.sub(r",? line \d+, column \d+.*", "", message.strip(), flags=re.DOTALL)
-    return Fault("xml-syntax", short(message[:1].lower() + message[1:]), Place(source.file, line))
+    return Fault("xml-syntax", short(message[:1].lower() + message[1:]), source.place_of_line(line))
 
 
 def _not_closed(source: Source, problem: str, at: int, name: str, opened: int) -> Fault:

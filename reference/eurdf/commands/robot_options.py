@@ -1,0 +1,108 @@
+"""The options that say which robot a command reads, the same for every command, and the end of its help."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from typing import Any
+
+from eurdf.collection.near_paths import near_path
+from eurdf.commands.cannot_run import CannotRun
+from eurdf.reading.given import is_stream, is_text
+
+_PATH = "a robot: a folder, a .yaml, .urdf or .xacro file, - for standard input, or a name of the collection"
+_URDF_ENDINGS = (".urdf", ".xml", ".xacro")
+
+
+def add_robot_path(parser: argparse.ArgumentParser, *, several: bool = False) -> None:
+    """Add the path of a robot, or those of several."""
+    if several:
+        parser.add_argument("paths", nargs="+", metavar="PATH", help=f"{_PATH}; a folder may hold several")
+    else:
+        parser.add_argument("path", metavar="PATH", help=_PATH)
+
+
+def add_robot_options(parser: argparse.ArgumentParser) -> None:
+    """Add what may be said of a robot beside its path."""
+    parser.add_argument(
+        "--urdf",
+        metavar="FILE",
+        help="the URDF, where it is not the one that the description names; - for standard input",
+    )
+    add_urdf_options(parser)
+
+
+def add_urdf_options(parser: argparse.ArgumentParser) -> None:
+    """Add what may be said of a URDF beside its path."""
+    parser.add_argument(
+        "--package-dir",
+        metavar="DIR",
+        dest="package_dirs",
+        action="append",
+        default=[],
+        help="a folder that holds ROS packages, which meshes and xacro files are found in (repeatable)",
+    )
+    parser.add_argument(
+        "--xacro-arg",
+        metavar="NAME:=VALUE",
+        dest="xacro_args",
+        type=_xacro_arg,
+        action="append",
+        default=[],
+        help="an argument of a .xacro file (repeatable)",
+    )
+
+
+def robot_options(args: argparse.Namespace) -> dict[str, Any]:
+    """What `add_robot_options` was given, as keyword arguments of `eurdf.load` and `eurdf.check`.
+
+    Raises:
+        CannotRun: A file or a folder does not exist.
+    """
+    if args.urdf is not None:
+        require_urdf(args.urdf)
+    return {"urdf": args.urdf, **urdf_options(args)}
+
+
+def urdf_options(args: argparse.Namespace) -> dict[str, Any]:
+    """What `add_urdf_options` was given, as keyword arguments.
+
+    Raises:
+        CannotRun: A folder does not exist.
+    """
+    for folder in args.package_dirs:
+        if not os.path.isdir(folder):
+            raise CannotRun(f"--package-dir: '{folder}' is no folder{_hint(near_path(folder, endings=()))}")
+    return {"package_dirs": tuple(args.package_dirs), "xacro_args": dict(args.xacro_args)}
+
+
+def require_urdf(path: str) -> None:
+    """Refuse the path of a URDF that does not exist.
+
+    Raises:
+        CannotRun: It does not.
+    """
+    if not (os.path.exists(path) or is_stream(path) or is_text(path)):
+        raise CannotRun(f"the URDF '{path}' does not exist{_hint(near_path(path, endings=_URDF_ENDINGS))}")
+
+
+def ending(exit_codes: str, *examples: str) -> str:
+    """The end of the help of a command.
+
+    Args:
+        exit_codes: What each of them means.
+        examples: Command lines.
+    """
+    shown = "\n".join(f"  {example}" for example in examples)
+    return f"{'example' if len(examples) == 1 else 'examples'}:\n{shown}\n\nExit codes: {exit_codes}"
+
+
+def _hint(near: str | None) -> str:
+    return f"; did you mean '{near}'?" if near else ""
+
+
+def _xacro_arg(text: str) -> tuple[str, str]:
+    name, separator, value = text.partition(":=")
+    if not (separator and name.strip()):
+        raise argparse.ArgumentTypeError(f"'{text}' is not of the form NAME:=VALUE")
+    return name.strip(), value.strip()

@@ -1,0 +1,149 @@
+"""What a caller may give in place of the path of a file: a text, standard input, a pipe.
+
+Only a caller can: a path that a file names is that of a regular file (EU-FIL-001).
+"""
+
+from __future__ import annotations
+
+import os
+import select
+import stat
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+from eurdf.diagnostics import Fault, Place
+from eurdf.reading.source import BOM, URDF_LIMIT, Source, decoded, too_large
+
+#: What is given: a path, ``-`` for standard input, or the text itself.
+Given = str | bytes | os.PathLike[str]
+
+#: The path that means standard input.
+STDIN = "-"
+
+#: Time allowed for somebody to open a named pipe for writing, s.
+PATIENCE = 2.0
+
+_CHUNK = 1 << 16
+_SPACE = " \t\r\n"
+
+
+def is_stream(given: Given) -> bool:
+    """Whether it can be read only once: standard input, or a pipe."""
+    if isinstance(given, bytes):
+        return False
+    return given == STDIN or _is_pipe(given)
+
+
+def is_text(given: Given) -> bool:
+    """Whether it is a text and no path: bytes, or a string that begins with ``<`` or has several lines."""
+    if isinstance(given, bytes):
+        return True
+    if not isinstance(given, str) or os.path.lexists(given):
+        return False
+    text = given.strip("\ufeff" + _SPACE)
+    return "\n" in text or text.startswith("<")
+
+
+def shown(given: Given) -> str:
+    """What a report calls it: a path as it is."""
+    if is_text(given):
+        return "<text>"
+    return "<stdin>" if given == STDIN else os.fsdecode(given)
+
+
+def source_of(given: Given, limit: int = URDF_LIMIT) -> Source | None:
+    """The source of a text, or of what a stream holds; None for the path of anything else.
+
+    Relative paths in it start from the working directory.
+
+    Args:
+        given: What the caller gave.
+        limit: Largest size accepted, in bytes.
+
+    Raises:
+        Fault: ``file-unreadable``, ``file-too-large`` or ``file-not-utf8``.
+    """
+    if is_text(given):
+        data = given if isinstance(given, bytes) else str(given).encode("utf-8", "surrogatepass")
+        return _checked(data, "<urdf>" if _is_xml(data) else "<description>", limit)
+    if given == STDIN:
+        return _checked(_read_stdin(limit), "<stdin>", limit)
+    if not isinstance(given, bytes) and _is_pipe(given):
+        file = os.fsdecode(given)
+        return _checked(_read_pipe(file, limit), file, limit)
+    return None
+
+
+def is_xml(source: Source) -> bool:
+    """Whether a text is XML, so a URDF, rather than YAML."""
+    return _is_xml(source.data)
+
+
+def _is_xml(data: bytes) -> bool:
+    return data.removeprefix(BOM).lstrip(_SPACE.encode()).startswith(b"<")
+
+
+def _is_pipe(path: str | os.PathLike[str]) -> bool:
+    try:
+        return stat.S_ISFIFO(os.stat(path).st_mode)
+    except (OSError, ValueError):
+        return False
+
+
+def _checked(data: bytes, file: str, limit: int) -> Source:
+    if len(data) > limit:
+        raise too_large(file, f"{limit:,} bytes")
+    if not data.strip():
+        raise Fault("file-unreadable", f"{file} is empty: there is no URDF and no description in it", Place(file))
+    return decoded(data, file, Path())
+
+
+def _read_stdin(limit: int) -> bytes:
+    if sys.stdin is None:  # closed; the number of its file may be that of another one by now
+        raise Fault("file-unreadable", "standard input is closed", Place("<stdin>"))
+    try:
+        return sys.stdin.buffer.read(limit + 1)
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise Fault("file-unreadable", f"standard input cannot be read: {reason}", Place("<stdin>")) from None
+
+
+def _read_pipe(file: str, limit: int) -> bytes:
+    try:
+        # Not blocking, since opening a pipe would wait for someone to write into it.
+        descriptor = os.open(file, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+        try:
+            first = _first_chunk(descriptor, file)
+            os.set_blocking(descriptor, True)
+            return first + b"".join(_chunks(descriptor, max(limit - len(first), 0)))
+        finally:
+            os.close(descriptor)
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise Fault("file-unreadable", f"'{file}' cannot be read: {reason}", Place(file)) from None
+
+
+def _first_chunk(descriptor: int, file: str) -> bytes:
+    """What is in a pipe at first; nothing where its writer is silent so far, or has gone."""
+    poll = select.poll()
+    poll.register(descriptor, select.POLLIN)
+    end = time.monotonic() + PATIENCE
+    while True:
+        has_event = poll.poll(50)  # ms
+        try:
+            chunk = os.read(descriptor, _CHUNK)
+        except BlockingIOError:  # there is a writer
+            return b""
+        if chunk or has_event:
+            return chunk
+        if time.monotonic() > end:
+            raise Fault("file-unreadable", f"nobody writes into the pipe '{file}'", Place(file))
+
+
+def _chunks(descriptor: int, limit: int) -> Iterator[bytes]:
+    room = limit + 1
+    while room and (chunk := os.read(descriptor, min(_CHUNK, room))):
+        room -= len(chunk)
+        yield chunk

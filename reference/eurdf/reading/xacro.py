@@ -1,0 +1,97 @@
+"""Expanding a xacro file into the URDF that it means.
+
+A xacro is a program: its expressions are evaluated, and it includes other files. So it is expanded only where the
+caller names it, never where a description does (EU-SEC-001, EU-SEC-002), and in a process of its own, bounded in time
+and memory.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from eurdf.diagnostics import did_you_mean
+from eurdf.exceptions import CannotExpand, MissingExtra
+from eurdf.reading.resource import package_homes
+from eurdf.reading.source import URDF_LIMIT, Source, too_large
+
+#: Time allowed for an expansion, s.
+TIME_LIMIT = 60.0
+
+_PROGRAM = Path(__file__).with_name("xacro_process.py")
+
+
+def is_xacro(path: str | os.PathLike[str]) -> bool:
+    """Whether a path is that of a xacro file, by its ending."""
+    return os.fspath(path).lower().endswith(".xacro")
+
+
+def expand(
+    path: str | os.PathLike[str],
+    arguments: Mapping[str, str] | None = None,
+    package_dirs: Sequence[str | os.PathLike[str]] = (),
+) -> tuple[Source, str]:
+    """Expand a xacro file.
+
+    Lines and columns in the source are those of the expanded text, as its name says: xacro keeps none of its own.
+
+    Args:
+        path: The file.
+        arguments: Values of its arguments, ``xacro:arg``.
+        package_dirs: Folders to look for packages in, ``$(find package)``.
+
+    Returns:
+        The URDF, and what xacro warned of (empty for nothing).
+
+    Raises:
+        CannotExpand: It has an error, or an argument is given that it does not have.
+        MissingExtra: The extra ``xacro`` is not installed.
+        Fault: ``file-too-large``.
+    """
+    file = os.fspath(path)
+    found = find_spec("xacro")
+    if found is None or found.origin is None:  # a folder named xacro is no module
+        from eurdf.extras import install_command
+
+        message = f"'{file}' is a xacro file, and the package that expands it is not installed; install it with: "
+        raise MissingExtra(message + install_command("xacro"), "xacro")
+    folder = Path(path).parent
+    request = {
+        "file": file,
+        "arguments": dict(arguments or {}),
+        "homes": [str(home) for home in package_homes(folder, package_dirs)],
+        "limit": URDF_LIMIT,
+    }
+    answer = _answer(file, request)
+    unknown = next(iter(answer["unused"]), None)
+    if unknown is not None:
+        known = answer["declared"]
+        hint = did_you_mean(unknown, known) or (f"it has {', '.join(known)}" if known else "it has none")
+        raise CannotExpand(file, f"it has no argument '{unknown}': {hint}")
+    if answer["error"] == "too large":
+        raise too_large(f"{file} (expanded)", f"{URDF_LIMIT:,} bytes")
+    if answer["error"]:
+        raise CannotExpand(file, answer["error"])
+    text = answer["urdf"]
+    return Source(f"{file} (expanded)", text, text.encode(), folder), answer["warnings"]
+
+
+def _answer(file: str, request: Mapping[str, object]) -> dict[str, Any]:
+    # -P: a module of the working directory named xacro is not the one that is meant.
+    command = [sys.executable, "-P", str(_PROGRAM)]
+    try:
+        done = subprocess.run(
+            command, input=json.dumps(request).encode(), capture_output=True, timeout=TIME_LIMIT, check=False
+        )
+    except subprocess.TimeoutExpired:
+        raise CannotExpand(file, f"it takes longer than {TIME_LIMIT:g} s") from None
+    if done.returncode:
+        raise CannotExpand(file, "xacro ended without an answer, out of memory perhaps")
+    answer: dict[str, Any] = json.loads(done.stdout)
+    return answer

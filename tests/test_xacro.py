@@ -1,0 +1,191 @@
+"""Robots that are given as xacro files."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+import eurdf
+from eurdf.commands.main import main
+from eurdf.description import describe
+from eurdf.diagnostics.text import report_lines
+from eurdf.reading import xacro
+
+pytest.importorskip("xacro", reason='xacro is not installed: pip install -e ".[xacro]"')
+
+ARM = """\
+<?xml version="1.0"?>
+<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="mass" default="2"/>
+  <xacro:property name="length" value="0.5"/>
+  <xacro:macro name="body" params="name">
+    <link name="${name}">
+      <inertial><mass value="$(arg mass)"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+    </link>
+  </xacro:macro>
+  <link name="base"/>
+  <xacro:body name="upper"/>
+  <joint name="shoulder" type="continuous">
+    <origin xyz="0 0 ${2*length}"/>
+    <parent link="base"/><child link="upper"/><axis xyz="0 0 1"/>
+  </joint>
+</robot>
+"""
+DESCRIPTION = 'extended_urdf: "2.0"\nactuators: [shoulder]\n'
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    for name in ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH"):
+        monkeypatch.delenv(name, raising=False)
+    (tmp_path / "arm.urdf.xacro").write_text(ARM, encoding="utf-8")
+    return tmp_path
+
+
+def robot_with(content: str) -> str:
+    return f'<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">{content}</robot>'
+
+
+def test_a_xacro_is_expanded_with_its_arguments() -> None:
+    robot = eurdf.load("arm.urdf.xacro")
+    assert robot.model.names[1] == "shoulder"
+    assert robot.model.jointPlacements[1].translation[2] == 1
+    assert robot.model.inertias[1].mass == 2
+    assert eurdf.load("arm.urdf.xacro", xacro_args={"mass": "5"}).model.inertias[1].mass == 5
+    assert eurdf.check("arm.urdf.xacro", xacro_args={"mass": "5"}).ok
+
+
+def test_a_xacro_is_the_urdf_of_a_description_where_the_caller_says_so(folder: Path) -> None:
+    (folder / "arm.yaml").write_text(DESCRIPTION, encoding="utf-8")
+    robot = eurdf.load("arm.yaml", "arm.urdf.xacro", xacro_args={"mass": "5"})
+    assert robot.actuation.joints == ("shoulder",)
+    assert robot.model.inertias[1].mass == 5
+
+
+def test_a_xacro_that_a_description_names_is_not_expanded(folder: Path) -> None:
+    (folder / "arm.yaml").write_text(DESCRIPTION + "urdf: arm.urdf.xacro\n", encoding="utf-8")
+    report = eurdf.check("arm.yaml")
+    assert "urdf-bad-number" in {found.code for found in report.errors}
+    assert any("xacro" in str(found.hint) for found in report.errors)
+
+
+def test_places_are_those_of_the_expanded_text_and_say_so(folder: Path) -> None:
+    (folder / "arm.urdf.xacro").write_text(ARM.replace('"1"/></inertial>', '"one"/></inertial>'), encoding="utf-8")
+    report = eurdf.check("arm.urdf.xacro")
+    (found,) = report.diagnostics
+    assert found.file == "arm.urdf.xacro (expanded)"
+    lines = ["".join(piece for piece, _ in line) for line in report_lines(report)]
+    assert f"{found.line:>5} | " + " " * 6 + '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="one"/>' in lines
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        ("<link", "not well-formed"),
+        ('<link name="${lenght}"/>', "lenght"),
+        ('<link name="$(arg side)"/>', "side"),
+        ('<xacro:include filename="legs.xacro"/>', "legs.xacro"),
+        ('<xacro:macro name="leg" params="a"><link name="${a + b}"/></xacro:macro><xacro:leg a="1"/>', "macro 'leg'"),
+        ('<xacro:macro name="leg"><xacro:leg/></xacro:macro><xacro:leg/>', "contain themselves"),
+        ('<link name="$(find no_such_package)"/>', "--package-dir"),
+        ("${__import__('os')}", "__import__"),
+    ],
+)
+def test_a_xacro_with_an_error_is_refused_in_one_line(
+    folder: Path, content: str, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "wrong.xacro").write_text(robot_with(content), encoding="utf-8")
+    for function in (eurdf.load, eurdf.check):
+        with pytest.raises(eurdf.CannotExpand, match=r"'wrong\.xacro'") as caught:
+            function("wrong.xacro")
+        assert said in str(caught.value)
+    assert main(["check", "wrong.xacro"]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.startswith("eurdf: xacro cannot expand 'wrong.xacro': ")
+    assert captured.err.count("\n") == 1
+
+
+def test_the_file_with_the_error_is_named(folder: Path) -> None:
+    (folder / "legs.xacro").write_text(robot_with('<link name="${lenght}"/>'), encoding="utf-8")
+    (folder / "robot.xacro").write_text(robot_with('<xacro:include filename="legs.xacro"/>'), encoding="utf-8")
+    with pytest.raises(eurdf.CannotExpand, match=r"lenght.*in 'legs\.xacro'"):
+        eurdf.check("robot.xacro")
+
+
+def test_an_argument_that_the_xacro_does_not_have_is_refused() -> None:
+    with pytest.raises(eurdf.CannotExpand, match=r"no argument 'mas'.*did you mean 'mass'"):
+        eurdf.load("arm.urdf.xacro", xacro_args={"mas": "5"})
+
+
+def test_arguments_without_a_xacro_are_refused(folder: Path) -> None:
+    (folder / "robot.urdf").write_text('<robot name="r"><link name="base"/></robot>', encoding="utf-8")
+    (folder / "robot.yaml").write_text('extended_urdf: "2.0"\n', encoding="utf-8")
+    for path in ("robot.urdf", "robot.yaml", '<robot name="r"><link name="base"/></robot>'):
+        with pytest.raises(eurdf.CannotExpand, match=r"only a \.xacro file takes arguments"):
+            eurdf.check(path, xacro_args={"mass": "1"})
+
+
+def test_files_of_packages_are_found_as_meshes_are(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    package = folder / "install" / "share" / "legs"
+    package.mkdir(parents=True)
+    (package / "leg.xacro").write_text(robot_with('<link name="foot"/>'), encoding="utf-8")
+    including = robot_with('<xacro:include filename="$(find legs)/leg.xacro"/>')
+    (folder / "robot.xacro").write_text(including, encoding="utf-8")
+    for dirs in ([package.parent], [package], str(package.parent)):
+        mechanism = describe("robot.xacro", package_dirs=dirs).mechanism
+        assert mechanism is not None
+        assert [body.name for body in mechanism.bodies] == ["foot"]
+    monkeypatch.setenv("AMENT_PREFIX_PATH", os.fspath(folder / "install"))
+    assert eurdf.check("robot.xacro").ok
+
+
+def test_what_xacro_warns_of_is_a_warning(folder: Path) -> None:
+    (folder / "robot.xacro").write_text(robot_with("<link name=\"${xacro.warning('old')}base\"/>"), encoding="utf-8")
+    (found,) = eurdf.check("robot.xacro").diagnostics
+    assert (found.code, found.file, found.line) == ("x-xacro-warning", "robot.xacro", None)
+    assert "old" in found.message
+
+
+def test_the_commands_take_a_xacro_with_arguments(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", "arm.urdf.xacro", "--xacro-arg", "mass:=3"]) == 0
+    assert capsys.readouterr().out == "arm.urdf.xacro: sound\n"
+    assert main(["info", "arm.urdf.xacro", "--xacro-arg", "mass:=3"]) == 0
+    assert ", 3 kg" in capsys.readouterr().out
+    with pytest.raises(SystemExit):
+        main(["check", "arm.urdf.xacro", "--xacro-arg", "mass=3"])
+    assert "NAME:=VALUE" in capsys.readouterr().err
+
+
+def test_without_the_extra_the_command_that_installs_it_is_said(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(xacro, "find_spec", lambda name: None)
+    with pytest.raises(eurdf.MissingExtra) as caught:
+        eurdf.load("arm.urdf.xacro")
+    assert caught.value.extra == "xacro"
+    assert main(["check", "arm.urdf.xacro"]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("eurdf: 'arm.urdf.xacro' is a xacro file")
+    assert said.endswith('pip install "eurdf[xacro]"\n')
+
+
+def test_a_module_of_that_name_beside_the_robot_is_not_run(folder: Path) -> None:
+    (folder / "xacro.py").write_text("raise RuntimeError('not mine')\n", encoding="utf-8")
+    assert eurdf.check("arm.urdf.xacro").ok
+
+
+def test_an_expansion_is_bounded_in_time_and_size(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    doubled = "".join(f'<xacro:macro name="m{i + 1}"><xacro:m{i}/><xacro:m{i}/></xacro:macro>' for i in range(40))
+    text = robot_with(f'<xacro:macro name="m0"><link name="l"/></xacro:macro>{doubled}<xacro:m40/>')
+    (folder / "bomb.xacro").write_text(text, encoding="utf-8")
+    monkeypatch.setattr(xacro, "TIME_LIMIT", 1.0)
+    with pytest.raises(eurdf.CannotExpand, match="longer than 1 s"):
+        eurdf.check("bomb.xacro")
+    monkeypatch.undo()
+    monkeypatch.setattr(xacro, "URDF_LIMIT", 100)
+    monkeypatch.chdir(folder)
+    assert [found.code for found in eurdf.check("arm.urdf.xacro").diagnostics] == ["file-too-large"]
