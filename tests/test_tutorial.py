@@ -2,106 +2,34 @@
 
 from __future__ import annotations
 
-import contextlib
-import io
 import re
-import shlex
-from collections.abc import Iterator
-from dataclasses import dataclass, field
 from pathlib import Path
 
 import pytest
 
-from eurdf.commands.main import main
+from page_reader import PageReader
 from spec.figures import draw
-from spec.site.blocks import Block, Code, Directive, read_blocks
 
 SPEC = Path(__file__).parents[1] / "spec"
 TUTORIAL = SPEC / "tutorial.md"
 ROBOT = SPEC / "examples" / "tutorial"
 
-# What is zero but for rounding is another number on each machine.
-_NOISE = re.compile(r"\b\d(?:\.\d+)?e-1[0-9]\b|\b0\.0e\+00\b")
-
-
-@dataclass
-class Reader:
-    """Somebody who does what the tutorial shows, in a folder of their own.
-
-    Attributes:
-        folder: The folder.
-        written: Files that the last command wrote, and that the text is to show next.
-        names: What the Python of the tutorial has defined.
-        told: What was shown and given, block by block: its line, what is shown, what is given.
-    """
-
-    folder: Path
-    written: list[Path] = field(default_factory=list)
-    names: dict[str, object] = field(default_factory=dict)
-    told: list[tuple[int, str, str]] = field(default_factory=list)
-
-    def follow(self, blocks: Iterator[Block]) -> None:
-        """Do all that is shown, in order."""
-        printed: str | None = None
-        for block in blocks:
-            if printed is not None:
-                assert isinstance(block, Code), f"line {block.line}: what the code before it prints is not shown"
-                assert block.language == "text", f"line {block.line}: what the code before it prints is not shown"
-                self._compare(block, block.text, printed)
-                printed = None
-            elif isinstance(block, Directive) and block.name == "example":
-                self._write(block)
-            elif isinstance(block, Code) and block.language == "console":
-                self._run(block)
-            elif isinstance(block, Code) and block.language == "python":
-                printed = self._execute(block) or None
-        assert printed is None, "what the last code prints is not shown"
-
-    def _write(self, block: Directive) -> None:
-        path = self.folder / block.options.get("file", "robot.yaml")
-        if path in self.written:
-            self._compare(block, block.body, path.read_text(encoding="utf-8"))
-        self.written.clear()
-        path.write_text(block.body + "\n", encoding="utf-8")
-
-    def _run(self, block: Code) -> None:
-        command, _, shown = block.text.partition("\n")
-        prompt, program, *arguments = shlex.split(command)
-        assert (prompt, program) == ("$", "eurdf")
-        before = {path: path.stat().st_mtime_ns for path in self.folder.iterdir()}
-        output = io.StringIO()
-        with contextlib.redirect_stdout(output), contextlib.redirect_stderr(output):
-            main(arguments)
-        self.written = [path for path in self.folder.iterdir() if before.get(path) != path.stat().st_mtime_ns]
-        self._compare(block, shown, output.getvalue())
-
-    def _execute(self, block: Code) -> str:
-        output = io.StringIO()
-        code = compile("\n" * block.line + block.text, str(TUTORIAL), "exec")
-        with contextlib.redirect_stdout(output):
-            exec(code, self.names)
-        return output.getvalue()
-
-    def _compare(self, block: Block, shown: str, given: str) -> None:
-        self.told.append((block.line, _NOISE.sub("0", shown.strip()), _NOISE.sub("0", given.strip())))
-
 
 @pytest.fixture(scope="module")
-def reader(tmp_path_factory: pytest.TempPathFactory) -> Reader:
+def reader(tmp_path_factory: pytest.TempPathFactory) -> PageReader:
     """Who has done the tutorial."""
-    reader = Reader(tmp_path_factory.mktemp("tutorial"))
-    with contextlib.chdir(reader.folder):
-        reader.follow(read_blocks(TUTORIAL.read_text(encoding="utf-8")))
+    reader = PageReader(TUTORIAL, tmp_path_factory.mktemp("tutorial"))
+    reader.follow()
     return reader
 
 
-def test_each_command_and_each_piece_of_code_gives_what_the_tutorial_shows(reader: Reader) -> None:
+def test_each_command_and_each_piece_of_code_gives_what_the_tutorial_shows(reader: PageReader) -> None:
     assert len(reader.told) > 10
     for line, shown, given in reader.told:
         assert given == shown, f"spec/tutorial.md:{line}"
 
 
-def test_the_robot_that_the_tutorial_ends_with_is_the_one_among_the_examples(reader: Reader) -> None:
+def test_the_robot_that_the_tutorial_ends_with_is_the_one_among_the_examples(reader: PageReader) -> None:
     for name in ("robot.urdf", "robot.yaml"):
         assert (reader.folder / name).read_text(encoding="utf-8") == (ROBOT / name).read_text(encoding="utf-8"), name
 

@@ -14,6 +14,7 @@ from eurdf.format.version2 import VERSION
 from eurdf.format.yaml_text import Entry, Value, item_of_mapping, lines_of, modeline, section, text_of
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ClosureType, Root
+from eurdf.mechanism.merging import MASSLESS
 
 _ROTARY = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS})
 
@@ -285,7 +286,11 @@ def hints(urdf: Urdf, found: Found, convention: Conventions) -> tuple[str, ...]:
         if convention.closures != conventions().closures:
             why = "no two names match a --closure pattern with different sides"
         carrying = {joint.parent for joint in urdf.joints.values()}
-        ends = [name for name, link in urdf.links.items() if name not in carrying and link.inertial is None]
+        ends = [
+            name
+            for name, link in urdf.links.items()
+            if name not in carrying and (link.inertia is None or link.inertia.mass < MASSLESS)
+        ]
         may_be = f"; links without mass at the ends of the tree, such frames perhaps: {_some(ends)}" if ends else ""
         said.append(
             f"{why}: name them closedloop1_A and closedloop1_B in CAD, or give a pattern of their names, such as "
