@@ -102,14 +102,14 @@ def test_a_terminal_shows_the_same_table(folder: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["delta", "digit_leg", "kangaroo_2legs", "slider_crank", "tesla_optimus_ankle"])
-def test_json_fits_its_schema_and_tells_every_coordinate(name: str, run: Run) -> None:
+def test_json_fits_its_schema_and_has_every_coordinate(name: str, run: Run) -> None:
     code, out, err = run(name, "--json")
     assert (code, err) == (0, "")
     found = json.loads(out)
     jsonschema.Draft202012Validator(output_schemas()["assemble.schema.json"]).validate(found)
     robot = eurdf.load(name, geometry=False)
-    told = {joint["name"]: tuple(one["value"] for one in joint["coordinates"]) for joint in found["joints"]}
-    assert told == robot.coordinates(robot.configurations["assembled"])
+    shown = {joint["name"]: tuple(one["value"] for one in joint["coordinates"]) for joint in found["joints"]}
+    assert shown == robot.coordinates(robot.configurations["assembled"])
     assert (found["start"], found["closes"], found["file"], found["written"]) == ("assembled", True, None, False)
 
 
@@ -163,10 +163,10 @@ def test_a_joint_that_is_stated_stays_stated_where_it_is_at_its_neutral(folder: 
     assert re.search(r"^  assembled: \{stage: 0, pivot: 0\}$", file.read_text(), re.MULTILINE)
 
 
-def test_the_json_of_a_write_tells_the_file(folder: Path, run: Run) -> None:
+def test_the_json_of_a_write_names_the_file(folder: Path, run: Run) -> None:
     bench(folder)
-    told = [json.loads(run("robot.yaml", "--write", "--json")[1]) for _ in range(2)]
-    assert [(each["file"], each["written"]) for each in told] == [("robot.yaml", True), ("robot.yaml", False)]
+    written = [json.loads(run("robot.yaml", "--write", "--json")[1]) for _ in range(2)]
+    assert [(each["file"], each["written"]) for each in written] == [("robot.yaml", True), ("robot.yaml", False)]
 
 
 def test_a_floating_root_is_stated_only_where_it_has_moved(folder: Path, run: Run) -> None:
@@ -182,7 +182,7 @@ def open_bench(urdf: str) -> str:
 
 
 @pytest.mark.parametrize("options", [(), ("--write",), ("--write", "--force", "--json")])
-def test_loops_that_cannot_close_exit_with_1_and_tell_the_openings(
+def test_loops_that_cannot_close_exit_with_1_and_list_the_openings(
     folder: Path, run: Run, options: tuple[str, ...]
 ) -> None:
     file = bench(folder, urdf=open_bench)
@@ -221,8 +221,8 @@ def test_a_configuration_beyond_limits_is_shown_but_not_written(folder: Path, ru
     code, out, err = run("robot.yaml", "--hold", "motor")
     assert code == 0
     assert re.search(r"^pivot +revolute +0 +rad +beyond its limits$", out, re.MULTILINE)
-    told = "the loops close only beyond the limits of joints: 'pivot' at 0 rad (limits 0.05 to 0.3)\n"
-    assert re.sub("at -?[0-9.e-]+ rad", "at 0 rad", err) == told
+    message = "the loops close only beyond the limits of joints: 'pivot' at 0 rad (limits 0.05 to 0.3)\n"
+    assert re.sub("at -?[0-9.e-]+ rad", "at 0 rad", err) == message
     code, _, err = run("robot.yaml", "--hold", "motor", "--write")
     assert (code, err.splitlines()[1]) == (1, "nothing was written to 'robot.yaml'")
     assert file.read_text() == DESCRIPTION
@@ -249,8 +249,8 @@ def test_version_1_is_assembled_but_has_no_configurations(folder: Path, run: Run
     code, out, err = run("bar/robot.v1.yaml")
     assert (code, err) == (0, "")
     assert out.startswith("four_bar  closed")
-    told = "'bar/robot.v1.yaml' is of version 1, which has no configurations; `eurdf migrate` writes it in version 2"
-    assert run("bar/robot.v1.yaml", "--write") == (2, "", f"eurdf: {told}\n")
+    message = "'bar/robot.v1.yaml' is of version 1, which has no configurations; `eurdf migrate` writes it in version 2"
+    assert run("bar/robot.v1.yaml", "--write") == (2, "", f"eurdf: {message}\n")
 
 
 @pytest.mark.parametrize("options", [(), ("--write",)])
@@ -273,7 +273,7 @@ def test_a_robot_with_errors_is_refused_with_its_diagnostics(folder: Path, run: 
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("options", "message"),
     [
         (("--hold", "motr"), "the model has no joint 'motr'; did you mean 'motor'?"),
         (("--from", "raedy"), "there is no configuration 'raedy'; did you mean 'ready'?"),
@@ -282,9 +282,9 @@ def test_a_robot_with_errors_is_refused_with_its_diagnostics(folder: Path, run: 
         (("--force",), "--force replaces what --write would write: give --write too"),
     ],
 )
-def test_a_wrong_option_is_told(folder: Path, run: Run, options: tuple[str, ...], told: str) -> None:
+def test_a_wrong_option_is_reported(folder: Path, run: Run, options: tuple[str, ...], message: str) -> None:
     bench(folder, DESCRIPTION + READY)
-    assert run("robot.yaml", *options) == (2, "", f"eurdf: {told}\n")
+    assert run("robot.yaml", *options) == (2, "", f"eurdf: {message}\n")
 
 
 def test_a_robot_of_the_collection_is_not_written_to(run: Run) -> None:
@@ -321,16 +321,16 @@ def test_a_file_that_another_program_changed_is_left_alone(
 
 
 @pytest.mark.parametrize(
-    ("stated", "told"),
+    ("stated", "message"),
     [
         ("", "residual 0; `eurdf assemble` shows a configuration"),
         ("configurations: {assembled: {}}\n", "residual 0"),
     ],
 )
 def test_info_names_the_command_where_no_configuration_is_stated(
-    folder: Path, capsys: pytest.CaptureFixture[str], stated: str, told: str
+    folder: Path, capsys: pytest.CaptureFixture[str], stated: str, message: str
 ) -> None:
     bench(folder, DESCRIPTION + stated)
     assert main(["info", "robot.yaml"]) == 0
     (line,) = re.findall(r"^loops +close  (.*)$", capsys.readouterr().out, re.MULTILINE)
-    assert re.sub(r"\d\.\de[-+]\d\d", "0", line) == told
+    assert re.sub(r"\d\.\de[-+]\d\d", "0", line) == message

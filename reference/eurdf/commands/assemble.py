@@ -110,7 +110,7 @@ def run(args: argparse.Namespace) -> int:
             code = 1
     if args.json:
         write_json(info.model_dump(mode="json"))
-    tell(_told(info, assembly, beyond))
+    tell(_messages(info, assembly, beyond))
     return code
 
 
@@ -165,7 +165,7 @@ def _assemble(robot: Robot, q0: Vector, hold: list[str], limits: bool) -> Assemb
 
 
 def _write(file: str, description: Description, robot: Robot, q: Vector, force: bool) -> bool:
-    """Write the configuration to the description; tell whether it was not there already."""
+    """Write the configuration to the description; return whether that changed the file."""
     from eurdf.assembled import NAME, is_stated, with_assembled
     from eurdf.format.edit_configuration import NotEditable
     from eurdf.reading.source import BOM
@@ -190,16 +190,16 @@ def _write(file: str, description: Description, robot: Robot, q: Vector, force: 
     return True
 
 
-def _told(info: AssemblyInfo, assembly: Assembly, beyond: list[BeyondLimit]) -> list[str]:
-    """What is said beside the table."""
+def _messages(info: AssemblyInfo, assembly: Assembly, beyond: list[BeyondLimit]) -> list[str]:
+    """The messages beside the table."""
     nothing_written = [f"nothing was written to '{info.file}'"] if info.file is not None else []
     if not info.closes:
         held = ", ".join(f"'{joint.name}'" for joint in info.joints if joint.held)
         found = f"no configuration was found that closes the loops{held and f' with {held} held'}"
-        told = [f"{found}; at the best, {_widest(assembly)}"]
+        messages = [f"{found}; at the best, {_widest(assembly)}"]
         if assembly.at_limits:
-            told.append(f"at their limits: {', '.join(map(str, assembly.at_limits))}")
-        return [*told, *nothing_written]
+            messages.append(f"at their limits: {', '.join(map(str, assembly.at_limits))}")
+        return [*messages, *nothing_written]
     if beyond:
         return [f"the loops close only beyond the limits of joints: {'; '.join(map(str, beyond))}", *nothing_written]
     if info.written:
@@ -234,12 +234,12 @@ def _joints(info: AssemblyInfo) -> Table:
         numbers = "  ".join(_number(coordinate.value) for coordinate in joint.coordinates)
         notes = [
             word
-            for word, holds in (
+            for word, applies in (
                 ("held", joint.held),
                 ("beyond its limits", joint.beyond_limits),
                 ("actuated", joint.actuated),
             )
-            if holds
+            if applies
         ]
         style = "red" if joint.beyond_limits else "cyan"
         table.add_row(cell(joint.name, "bold"), joint.type.value, numbers, _units(joint), cell(", ".join(notes), style))

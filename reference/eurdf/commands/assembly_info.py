@@ -1,4 +1,4 @@
-"""What ``eurdf assemble`` says: the object that ``--json`` writes, and its JSON Schema."""
+"""The object that ``eurdf assemble --json`` writes, and its JSON Schema."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ class AssemblyInfo(_Entry):
 def assembly_info(
     robot: Robot, assembly: Assembly, start: str, held: Collection[str], beyond: Collection[str]
 ) -> AssemblyInfo:
-    """What there is to say of an assembly, before anything is written.
+    """An assembly as ``eurdf assemble`` shows it, before anything is written.
 
     Args:
         robot: The robot.

@@ -18,7 +18,7 @@ from eurdf.reading.yaml_reader import YamlDocument, read_yaml
 _BEFORE = tuple(takewhile(lambda key: key != "configurations", Version2.model_fields))
 
 
-class NotEditable(Exception):  # noqa: N818 - said to the user as it is
+class NotEditable(Exception):  # noqa: N818 - shown to the user as it is
     """The file is written in a way in which the configuration cannot be changed without changing something else."""
 
 
@@ -38,7 +38,7 @@ def with_configuration(document: YamlDocument, name: str, coordinates: Mapping[s
     """
     value: dict[str, Value] = {joint: _plain(values) for joint, values in coordinates.items()}
     text = _Edit(document).stated(name, value)
-    if not _says(text, document.data, name, value):
+    if not _reads_back(text, document.data, name, value):
         raise NotEditable(f"configuration '{name}' cannot be written without changing other parts of the file")
     return text
 
@@ -167,8 +167,8 @@ def _same(old: object, new: Value) -> bool:
     return as_list[0] == as_list[1]
 
 
-def _says(text: str, before: Mapping[str, Any], name: str, value: Mapping[str, Value]) -> bool:
-    """Whether a text says what was said before, and in the configuration the coordinates."""
+def _reads_back(text: str, before: Mapping[str, Any], name: str, value: Mapping[str, Value]) -> bool:
+    """Whether a text has the data of before, and the coordinates in the configuration."""
     try:
         after = read_yaml(Source("", text, text.encode())).data
     except Fault:
