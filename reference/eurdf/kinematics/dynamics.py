@@ -27,6 +27,7 @@ from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.frame_index import frame_index
 from eurdf.kinematics.loop import Loop, find_loops
+from eurdf.kinematics.mass_matrix import mass_times
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
@@ -289,11 +290,7 @@ class _Motion:
 
     def mass_along(self, motions: Matrix) -> Matrix:
         """M times the columns (nv, n)."""
-        model = self.robot.model
-        if len(model.mimicking_joints):  # crba is wrong, up to Pinocchio 4.1, where a follower carries several branches
-            return np.array([self.mass(column) for column in motions.T]).reshape(motions.T.shape).T
-        M = np.triu(pin.crba(model, self.data, self.q))
-        return np.asarray((M + np.triu(M, 1).T) @ motions)
+        return mass_times(self.robot.model, self.data, self.q, motions)
 
     def applied(self, u: Vector | None, tau: Vector | None, external: External | None, dissipation: bool) -> Vector:
         """Generalized force (nv,) of motors, external forces, damping and friction."""
