@@ -25,6 +25,7 @@ from eurdf.kinematics.loop import LoopGroup, find_loops, independent_groups
 from eurdf.kinematics.position_limit import JointAtLimit, Limits, PositionLimits, chosen_limits
 from eurdf.kinematics.residual import CLOSED, Opening
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
+from eurdf.several import several
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -91,7 +92,7 @@ class Assembly:
 def assemble(
     robot: Robot,
     q0: Vector | None = None,
-    hold: Iterable[str] = (),
+    hold: str | Iterable[str] = (),
     *,
     tolerance: float = 1e-10,
     limits: Limits = False,
@@ -110,7 +111,7 @@ def assemble(
     Args:
         robot: The robot.
         q0: Where to start (nq,). The `assembled` configuration by default, or else the neutral one.
-        hold: Names of joints that stay where they are. A joint that mimics another is held with that one.
+        hold: Names of joints that stay where they are, or one name. A joint that mimics another is held with that one.
         tolerance: What each row of the residual may be, m or rad, where the loops are closed.
         limits: Whether to stay within the position limits of the joints whose coordinates are plain angles or lengths;
             where the start is outside of them it is brought to the nearest limit first. A range of zero width counts as
@@ -123,7 +124,7 @@ def assemble(
     Raises:
         ValueError: ``q0`` is no configuration, or ``hold`` names no joint of the model.
     """
-    q, held = start(robot, q0), tuple(hold)
+    q, held = start(robot, q0), several(hold)
     # Taken away while in use, so that no other thread works in the same memory.
     known = _KNOWN.get(robot, {}).pop(held, None)
     if known is None or not known.fits(robot):
@@ -168,7 +169,7 @@ class Assembler:
     """
 
     def __init__(
-        self, robot: Robot, hold: Iterable[str] = (), *, tolerance: float = 1e-10, limits: Limits = False
+        self, robot: Robot, hold: str | Iterable[str] = (), *, tolerance: float = 1e-10, limits: Limits = False
     ) -> None:
         """For the arguments see `assemble`."""
         # Not the robot: it would be kept alive by what is kept with it.
@@ -364,9 +365,9 @@ def _merged(groups: Sequence[LoopGroup], nc: int) -> LoopGroup:
     )
 
 
-def _held_velocities(model: Any, names: Iterable[str]) -> list[int]:
+def _held_velocities(model: Any, names: str | Iterable[str]) -> list[int]:
     held: list[int] = []
-    for name in names:
+    for name in several(names):
         if not model.existJointName(name):
             near = difflib.get_close_matches(name, list(model.names), n=1)
             raise ValueError(f"the model has no joint '{name}'" + (f"; did you mean '{near[0]}'?" if near else ""))

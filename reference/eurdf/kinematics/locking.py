@@ -18,6 +18,7 @@ from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.configuration import joint_coordinates
 from eurdf.pinocchio.coordinates import slots
 from eurdf.pinocchio.robot import Robot, build_robot
+from eurdf.several import several
 
 
 class LockedRobot(Robot):
@@ -55,7 +56,9 @@ class LockedRobot(Robot):
         self.idx_v = idx_v
 
 
-def lock(robot: Robot, joints: Iterable[str], q: Vector | None = None, *, tolerance: float = CLOSED) -> LockedRobot:
+def lock(
+    robot: Robot, joints: str | Iterable[str], q: Vector | None = None, *, tolerance: float = CLOSED
+) -> LockedRobot:
     """Lock joints of a robot where they stand at a configuration.
 
     The locked joints are fixed ones of the new robot: their frames, and all links, joints and frames, are found under
@@ -73,7 +76,8 @@ def lock(robot: Robot, joints: Iterable[str], q: Vector | None = None, *, tolera
 
     Args:
         robot: The robot, which stays as it is.
-        joints: Names of joints. With a joint, those that follow it are locked. One that is fixed already stays so.
+        joints: Names of joints, or one name. With a joint, those that follow it are locked. One that is fixed already
+            stays so.
         q: Where to lock them (nq,); the coordinates of the other joints matter to closures that are left out alone.
             `assembled` by default, or else the neutral configuration.
         tolerance: What each row of the residual of a closure that is left out may be at q, m or rad.
@@ -83,7 +87,7 @@ def lock(robot: Robot, joints: Iterable[str], q: Vector | None = None, *, tolera
         LockedOpen: A closure that is left out is open at q.
         ValueError: ``q`` is no configuration.
     """
-    names = {joints} if isinstance(joints, str) else set(joints)
+    names = set(several(joints))
     if ROOT_JOINT in names and robot.mechanism.root == "floating":
         raise CannotLock(ROOT_JOINT, "it is the robot's place in the world; load the robot with root='fixed'")
     q = start(robot, q)

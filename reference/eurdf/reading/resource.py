@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from pathlib import Path
+
+from eurdf.several import several
 from urllib.parse import unquote
 
 #: What to do where a file of a package is not found.
@@ -57,7 +59,7 @@ def package_homes(folder: Path, package_dirs: Sequence[str | os.PathLike[str]] =
         folder: Folder of the URDF.
         package_dirs: Folders that hold packages.
     """
-    given = [package_dirs] if isinstance(package_dirs, str | os.PathLike) else package_dirs
+    given = several(package_dirs)
     homes = [Path(os.path.abspath(home)) for home in given]
     homes += [Path(home) for home in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if home]
     homes += [Path(home) / "share" for home in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if home]
