@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
+import ast
+import inspect
+import re
 import subprocess
 import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
 
 import eurdf
 
@@ -12,6 +19,47 @@ def test_every_public_name_can_be_loaded() -> None:
     for name in eurdf.__all__:
         assert getattr(eurdf, name) is not None
     assert set(eurdf.__all__) <= set(dir(eurdf))
+
+
+def test_the_lists_of_public_names_agree() -> None:
+    tree = ast.parse(Path(eurdf.__file__).read_text(encoding="utf-8"))
+    checked = next(node for node in tree.body if isinstance(node, ast.If))
+    imported = {
+        (node.module, alias.name) for node in checked.body if isinstance(node, ast.ImportFrom) for alias in node.names
+    }
+    loaded = {(home, name) for home, names in eurdf._NAMES.items() for name in names}
+    assert imported == loaded
+    assert sorted(eurdf.__all__) == sorted(["__version__", *(name for _, name in loaded)])
+    assert list(eurdf._NAMES) == sorted(eurdf._NAMES)
+
+
+#: Public functions that take several names or folders, each called with one alone and with a list of it.
+TAKE_NAMES = {
+    "assemble": lambda given: eurdf.assemble(four_bar(), np.array([0.0, 1.0, 0.0, 0.0, 1.0]), hold=given).q,
+    "lock": lambda given: eurdf.lock(four_bar(), given).locked_joints,
+    "load": lambda given: eurdf.load("four_bar", package_dirs=given).model.nq,
+}
+
+
+def four_bar() -> eurdf.Robot:
+    return eurdf.load("four_bar", geometry=False)
+
+
+@pytest.mark.parametrize("name", TAKE_NAMES)
+def test_a_name_alone_is_one_name(name: str) -> None:
+    one, listed = TAKE_NAMES[name]("motor_crank"), TAKE_NAMES[name](["motor_crank"])
+    np.testing.assert_array_equal(one, listed)
+
+
+def test_no_other_public_function_takes_several_names() -> None:
+    takes = set()
+    for name in eurdf.__all__:
+        value = getattr(eurdf, name)
+        if inspect.isfunction(value):
+            annotations = [str(each.annotation) for each in inspect.signature(value).parameters.values()]
+            if any(re.search(r"(Iterable|Sequence|Collection|list|set|tuple)\[str\b", each) for each in annotations):
+                takes.add(name)
+    assert takes == set(TAKE_NAMES)
 
 
 def test_a_name_that_is_not_there_is_an_attribute_error_that_says_so() -> None:

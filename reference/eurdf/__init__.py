@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     )
     from eurdf.kinematics.analysis import Analysis, LoopAnalysis, Motion, analyze
     from eurdf.kinematics.assembly import Assembly, assemble
+    from eurdf.kinematics.differential_inverse_kinematics import FrameVelocity, differential_inverse_kinematics
     from eurdf.kinematics.dynamics import (
         ForwardDynamics,
         InverseDynamics,
@@ -40,6 +41,8 @@ if TYPE_CHECKING:
     from eurdf.kinematics.forward_kinematics import forward_kinematics
     from eurdf.kinematics.inverse_kinematics import FrameError, InverseKinematics, inverse_kinematics
     from eurdf.kinematics.locking import LockedRobot, lock
+    from eurdf.kinematics.mass_matrix import mass_matrix
+    from eurdf.kinematics.position_limit import JointAtLimit
     from eurdf.kinematics.projection import project_acceleration, project_configuration, project_velocity
     from eurdf.kinematics.residual import Opening, closure_openings, residual, residual_and_jacobian
     from eurdf.kinematics.sensitivity import actuated_jacobian, dq_dq_actuated
@@ -77,6 +80,10 @@ _NAMES = {
         "Assembly",
         "assemble",
     ),
+    "eurdf.kinematics.differential_inverse_kinematics": (
+        "FrameVelocity",
+        "differential_inverse_kinematics",
+    ),
     "eurdf.kinematics.dynamics": (
         "ForwardDynamics",
         "InverseDynamics",
@@ -94,6 +101,8 @@ _NAMES = {
         "LockedRobot",
         "lock",
     ),
+    "eurdf.kinematics.mass_matrix": ("mass_matrix",),
+    "eurdf.kinematics.position_limit": ("JointAtLimit",),
     "eurdf.kinematics.projection": (
         "project_acceleration",
         "project_configuration",
@@ -136,10 +145,12 @@ __all__ = [
     "EurdfError",
     "ForwardDynamics",
     "FrameError",
+    "FrameVelocity",
     "InconsistentMotion",
     "InvalidRobot",
     "InverseDynamics",
     "InverseKinematics",
+    "JointAtLimit",
     "LockedOpen",
     "LockedRobot",
     "LoopAnalysis",
@@ -165,6 +176,7 @@ __all__ = [
     "check",
     "closure_openings",
     "collection_names",
+    "differential_inverse_kinematics",
     "dq_dq_actuated",
     "forward_dynamics",
     "forward_kinematics",
@@ -172,6 +184,7 @@ __all__ = [
     "inverse_kinematics",
     "load",
     "lock",
+    "mass_matrix",
     "merge_configuration",
     "merge_velocity",
     "project_acceleration",
