@@ -23,8 +23,8 @@ class Robot:
 
     It unpacks as ``model, constraint_models, actuation, visual_model, collision_model = robot``.
 
-    Take the mass matrix from `eurdf.mass_matrix`: up to Pinocchio 4.1, that of `pin.crba` has wrong entries where a mimic
-    joint carries several branches.
+    Take the mass matrix from `eurdf.mass_matrix`: up to Pinocchio 4.1, that of `pin.crba` has wrong entries where a
+    mimic joint carries several branches.
 
     Attributes:
         mechanism: What it was built from, as plain data.
