@@ -37,6 +37,7 @@ def test_the_lists_of_public_names_agree() -> None:
 TAKE_NAMES = {
     "assemble": lambda given: eurdf.assemble(four_bar(), np.array([0.0, 1.0, 0.0, 0.0, 1.0]), hold=given).q,
     "lock": lambda given: eurdf.lock(four_bar(), given).locked_joints,
+    "check": lambda given: len(eurdf.check("four_bar", package_dirs=given).diagnostics),
     "load": lambda given: eurdf.load("four_bar", package_dirs=given).model.nq,
 }
 

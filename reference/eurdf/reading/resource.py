@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from pathlib import Path
+from urllib.parse import unquote
 
 from eurdf.several import several
-from urllib.parse import unquote
 
 #: What to do where a file of a package is not found.
 HINT = (
