@@ -147,12 +147,12 @@ def _hint_for_assembled(robot: Robot, openings: Sequence[Opening]) -> str:
     if closes_w_first(robot, "assembled"):
         return "they close where its quaternions are read w first: the order is x, y, z, w"
     if not _is_rounding(robot, openings):
-        return "`eurdf assemble` finds a configuration that closes them; --write states it"
+        return "`eurdf assemble` finds a configuration that closes them; --write --force states it"
     from eurdf.kinematics.assembly import assemble
 
     least = assemble(robot)
     if least.closes:
-        return f"{_closed_to(openings)}: write more digits, as `eurdf assemble --write` does"
+        return f"{_closed_to(openings)}: write more digits, as `eurdf assemble --write --force` does"
     return f"{_closed_to(least.open)} at best: write the numbers of the URDF with more digits"
 
 
