@@ -11,6 +11,9 @@ import numpy.typing as npt
 Vector3 = tuple[float, float, float]
 Matrix3 = npt.NDArray[np.float64]
 
+#: An angle that is nothing but the rounding of sums and products of numbers of size 1, rad.
+_ROUNDING = 1e-12
+
 
 @dataclass(frozen=True, slots=True)
 class Box:
@@ -123,9 +126,15 @@ def rotation_of(rpy: Vector3) -> Matrix3:
 def rpy_of(rotation: Matrix3) -> Vector3:
     """The roll, pitch and yaw (rad) that ``rotation_of`` turns into a rotation (3 x 3); where pitch is ±90°, too.
 
-    Roll is taken from the rotation with the yaw taken off, so that both agree where yaw is nothing but rounding.
+    Roll is taken from the rotation with the yaw taken off, so that both agree where yaw is nothing but rounding. Half a
+    turn is π, not -π, however it is rounded.
     """
     (r00, r01, r02), (r10, r11, r12), (r20, _, _) = rotation.tolist()
     yaw = math.atan2(r10, r00)
     sy, cy = math.sin(yaw), math.cos(yaw)
-    return (math.atan2(sy * r02 - cy * r12, cy * r11 - sy * r01), math.atan2(-r20, cy * r00 + sy * r10), yaw)
+    roll, pitch = math.atan2(sy * r02 - cy * r12, cy * r11 - sy * r01), math.atan2(-r20, cy * r00 + sy * r10)
+    return (_positive_half_turn(roll), pitch, _positive_half_turn(yaw))
+
+
+def _positive_half_turn(angle: float) -> float:
+    return angle if angle + math.pi > _ROUNDING else angle + 2.0 * math.pi
