@@ -43,19 +43,19 @@ def lines_from_0() -> Deviation:
 @mutant("EU-DIA-011")
 def carriage_return_ends_no_line() -> Deviation:
     """A carriage return alone ends no line."""
-    return instead(source, "_BREAK", re.compile("\r?\n"))
+    return instead(source, "BREAK", re.compile("\r?\n"))
 
 
 @mutant("EU-DIA-011")
 def carriage_return_and_line_feed_end_two_lines() -> Deviation:
     """A carriage return and a line feed end a line each."""
-    return instead(source, "_BREAK", re.compile("[\r\n]"))
+    return instead(source, "BREAK", re.compile("[\r\n]"))
 
 
 @mutant("EU-DIA-011")
 def lines_of_unicode() -> Deviation:
     """A line ends also where Unicode has a separator, as for str.splitlines and libyaml."""
-    return instead(source, "_BREAK", re.compile("\r\n|[\n\r\v\f\x1c-\x1e\x85\u2028\u2029]"))
+    return instead(source, "BREAK", re.compile("\r\n|[\n\r\v\f\x1c-\x1e\x85\u2028\u2029]"))
 
 
 @mutant("EU-DIA-012")
