@@ -12,6 +12,7 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from eurdf_conformance.corpus.case import SCHEMA_FILE, TOPICS, CasePlace, InvalidCase, ValidCase, schema_text
@@ -47,7 +48,21 @@ class Corpus:
     def twin(self, case: CorpusCase) -> CorpusCase | None:
         """The valid twin of an invalid case, if it has one."""
         assert isinstance(case.case, InvalidCase)
-        return next((other for other in self.cases if other.id == case.case.twin), None)
+        return self._by_id.get(case.case.twin)
+
+    @cached_property
+    def _by_id(self) -> Mapping[str, CorpusCase]:
+        return {case.id: case for case in reversed(self.cases)}
+
+    @cached_property
+    def ids(self) -> Counter[str]:
+        """How many cases have each id."""
+        return Counter(case.id for case in self.cases)
+
+    @cached_property
+    def titles(self) -> Counter[str]:
+        """How many cases have each title."""
+        return Counter(case.case.title for case in self.cases)
 
 
 #: Given a case, what is wrong with it.
@@ -57,8 +72,9 @@ Rule = Callable[[CorpusCase, Corpus], Iterator[str]]
 def lint(root: Path = CASES, clauses: Mapping[str, Clause] | None = None) -> list[Fault]:
     """What is wrong with the cases below a folder."""
     faults, cases = [], []
+    folders = set(case_folders(root))
     for path in sorted(root.glob(f"**/{CASE_FILE}")):
-        if path.parent not in set(case_folders(root)):
+        if path.parent not in folders:
             faults.append(
                 Fault(path, "folder", f"a case stands in <topic>/<id>/, a topic being one of {', '.join(TOPICS)}")
             )
@@ -79,12 +95,12 @@ def lint(root: Path = CASES, clauses: Mapping[str, Clause] | None = None) -> lis
 def _id(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
     if case.id != case.folder.name:
         yield f"id '{case.id}' is not the name of the folder"
-    if Counter(other.id for other in corpus.cases)[case.id] > 1:
+    if corpus.ids[case.id] > 1:
         yield f"id '{case.id}' is another case's too"
 
 
 def _title(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
-    if sum(other.case.title == case.case.title for other in corpus.cases) > 1:
+    if corpus.titles[case.case.title] > 1:
         yield "another case has the same title"
 
 
