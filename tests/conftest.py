@@ -1,13 +1,52 @@
-"""Options of the tests."""
+"""Options of the tests, how they are spread over processes, and what the summary says of tests that were skipped."""
 
 from __future__ import annotations
 
+import gc
+import os
+import tempfile
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
 import pytest
+from hypothesis import settings
+
+#: Files whose tests are run by one worker, since they share something that takes long to make.
+TOGETHER = ("test_specification_site.py", "test_editor.py", "test_conformance_explore.py")
+
+#: Files with the longest tests. They are started first, so that no worker is left with one at the end.
+FIRST = (
+    "test_specification_site.py",
+    "test_editor.py",
+    "test_write_an_adapter.py",
+    "test_conformance_explore.py",
+    "test_conformance_random.py",
+    "test_conformance_suite.py",
+    "test_conformance_certify.py",
+    "test_conformance_case.py",
+    "test_bad_input.py",
+    "test_examples.py",
+    "test_schema.py",
+)
+
+# Random examples are the same in each run. `--hypothesis-profile=random` draws others.
+settings.register_profile("same", derandomize=True)
+settings.register_profile("random", derandomize=False)
+settings.load_profile("same")
 
 
 def pytest_configure(config: pytest.Config) -> None:
     # Here, and not where pytest is configured: the conformance suite runs with whatever plug-ins its users have.
     config.addinivalue_line("filterwarnings", "error")
+    # The matrices are small, and there is a worker for each processor: threads would only be in each other's way.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    if os.environ.get("PYTHONDONTWRITEBYTECODE") and not hasattr(config, "workerinput"):
+        # Tests start the package in some hundred processes, and each would compile it: keep what is compiled elsewhere.
+        compiled = tempfile.TemporaryDirectory(prefix="eurdf-tests-")
+        config.add_cleanup(compiled.cleanup)
+        del os.environ["PYTHONDONTWRITEBYTECODE"]
+        os.environ["PYTHONPYCACHEPREFIX"] = compiled.name
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -16,3 +55,42 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption(
         "--mutation-seed", type=int, default=0, metavar="SEED", help="from which they are drawn (default: 0)"
     )
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    last = len(FIRST)
+    items.sort(key=lambda item: FIRST.index(item.path.name) if item.path.name in FIRST else last)
+
+
+def pytest_collection_finish() -> None:
+    """What was collected stays to the end: the garbage collector need not look through it again and again."""
+    gc.freeze()
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Spread tests one by one, but those of `TOGETHER` by file.
+
+    The mark ``xdist_group`` would say so beside the tests, but pytest-xdist 3.8 does not see it with pytest 9.2
+    (https://github.com/pytest-dev/pytest-xdist/issues/1386).
+    """
+    from xdist.scheduler import LoadScopeScheduling
+
+    class ByFile(LoadScopeScheduling):  # type: ignore[misc]
+        def _split_scope(self, nodeid: str) -> str:
+            file = nodeid.partition("::")[0]
+            return file if Path(file).name in TOGETHER else nodeid
+
+    return ByFile(config, log) if config.getvalue("dist") == "loadgroup" else None
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Say how many tests were skipped, why, and what to do to run them."""
+    reasons = Counter[str]()
+    for report in terminalreporter.stats.get("skipped", ()):
+        reason = report.longrepr[2] if isinstance(report.longrepr, tuple) else str(report.longrepr)
+        reasons[reason.removeprefix("Skipped: ")] += 1
+    if reasons:
+        terminalreporter.section("tests that were skipped")
+    for reason, count in reasons.most_common():
+        terminalreporter.line(f"{count} skipped: {reason}")

@@ -27,6 +27,7 @@ from eurdf_conformance.level import Level
 from eurdf_conformance.suite.smoke import smoke_lines
 from eurdf_conformance.verdict.verdict import Verdict
 from terminal import on_a_terminal
+from warm import run_module
 
 REFERENCE = "eurdf_conformance.adapters.reference:READER"
 
@@ -48,8 +49,7 @@ ACCEPTS, REJECTS = one_answer("accepted"), one_answer("rejected")
 
 def certify(*argv: str | Path, **environment: str) -> subprocess.CompletedProcess[str]:
     # The suite runs pytest, which no test of pytest can do within its own process.
-    command = [sys.executable, "-m", "eurdf.commands.main", "certify", *map(str, argv)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, env=os.environ | environment)
+    return run_module("eurdf", ["certify", *map(str, argv)], environment=os.environ | environment)
 
 
 def certificate_of(*argv: str | Path) -> dict[str, Any]:
@@ -68,6 +68,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 # --- what it says ----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_the_reference_is_certified_and_its_certificate_says_so_again_when_it_is_replayed(folder: Path) -> None:
     done = certify("--parser", REFERENCE, *SOME, "--certificate", "mine", "--date", "2026-01-31")
     assert (done.returncode, done.stderr) == (0, "")

@@ -38,9 +38,6 @@ from eurdf_conformance.verdict.verdict import Verdict
 #: What is drawn from a seed depends on the version of Hypothesis too: as many are drawn as find it from any.
 SEED, COUNT = 1, 400
 
-# What one exploration finds is looked at by several tests: they run where it is.
-pytestmark = pytest.mark.xdist_group("explore")
-
 
 @pytest.fixture(scope="module", autouse=True)
 def _small() -> Iterator[None]:

@@ -10,6 +10,7 @@ import pytest
 from eurdf.diagnostics.registry import REGISTRY
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.coverage import said_in
+from eurdf_conformance.corpus.read import all_cases
 from eurdf_conformance.level import VERSIONS, Version
 from eurdf_conformance.mutants import MUTANTS
 from eurdf_conformance.mutants.accepting import ACCEPTING
@@ -20,7 +21,6 @@ from eurdf_conformance.mutants.unbroken import UNBROKEN
 from eurdf_conformance.protocol.message import Accepted, CanonicalRobot, Rejected
 from eurdf_conformance.protocol.reply import accepted
 from eurdf_conformance.protocol.serve import find_object
-from eurdf_conformance.suite.asking import all_cases
 from eurdf_conformance.suite.smoke import smoke_case
 
 INERTIA = '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'

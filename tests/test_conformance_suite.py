@@ -4,7 +4,6 @@ import json
 import os
 import re
 import shlex
-import subprocess
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -13,7 +12,7 @@ from types import SimpleNamespace
 import pytest
 
 from conformance_runs import result, run, started
-from eurdf_conformance.corpus.case import ValidCase
+from eurdf_conformance.corpus.case import TOPICS, ValidCase
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.protocol_rule import GOES_ON
 from eurdf_conformance.corpus.read import CorpusCase, read_cases
@@ -55,6 +54,7 @@ from eurdf_conformance.suite.smoke import SMOKE
 from eurdf_conformance.suite.summary import summary_lines
 from eurdf_conformance.verdict.result import RESULT
 from eurdf_conformance.verdict.verdict import Verdict
+from warm import run_module
 
 ROOT = Path(__file__).parents[1]
 CASES = {case.id: case for case in read_cases()}
@@ -379,9 +379,9 @@ def suite(
 ) -> tuple[int, str]:
     """Run the suite, in one process: exit code, and what it writes."""
     parser = [f"--parser=case_reader:{reader}"] if reader else []
-    argv = [sys.executable, "-m", "pytest", *command, "-n0", "-p", "no:cacheprovider", *parser, *arguments]
+    argv = [*command, "-n0", "-p", "no:cacheprovider", *parser, *arguments]
     environment = os.environ | {"PYTHONPATH": str(ROOT / "tests" / "fakes"), "COLUMNS": "200"}
-    done = subprocess.run(argv, cwd=cwd, env=environment, capture_output=True, text=True, timeout=300)
+    done = run_module("pytest", argv, cwd=cwd, environment=environment)
     assert "INTERNALERROR" not in done.stdout + done.stderr
     return done.returncode, done.stdout + done.stderr
 
@@ -390,13 +390,17 @@ def suite(
 FEW = "tq4m8z or k9b2yf"
 
 
-def test_a_reader_that_is_right_passes_every_case_and_is_written_a_certificate(tmp_path: Path) -> None:
+@pytest.mark.parametrize("topics", ["protocol or closures or names", pytest.param("", marks=pytest.mark.slow)])
+def test_a_reader_that_is_right_passes_every_case_and_is_written_a_certificate(topics: str, tmp_path: Path) -> None:
     # Of the older version, which has fewer cases.
-    asked = ["--format-version=1", "-k", "not properties", f"--certificate={tmp_path}"]
+    asked = ["--format-version=1", "-k", f"({topics or 'test'}) and not properties", f"--certificate={tmp_path}"]
     code, out = suite("-n2", *asked, reader="Right")
     assert code == 0, out
-    few = [item for item in planned_items(CASES.values()) if item.version == "1"]
-    items = [item for item in few if not item.id.startswith("properties")]
+    items = [
+        item
+        for item in planned_items(CASES.values())
+        if item.version == "1" and item.id.split("/")[0] in (topics.split(" or ") if topics else ["protocol", *TOPICS])
+    ]
     assert f"{len(items)} passed" in out
     assert "by_heart 1 (Python)" in out
     assert json.loads((tmp_path / "certificate.json").read_text(encoding="utf-8"))["reader"]["name"] == "by_heart"

@@ -15,7 +15,7 @@ from language_server import MISSING, Editor, in_editor
 
 ROOT = Path(__file__).parent.parent
 
-pytestmark = [pytest.mark.skipif(bool(MISSING), reason=MISSING), pytest.mark.xdist_group("editor")]
+pytestmark = pytest.mark.skipif(bool(MISSING), reason=MISSING)
 
 HEAD = '# yaml-language-server: $schema={}\nextended_urdf: "2.0"\n'
 TOP = ["urdf", "root", "closures", "joints", "actuators", "frames", "configurations", "metadata"]

@@ -17,10 +17,9 @@ from spec.site.clause import SPEC, read_chapters, read_clauses
 ROOT = Path(__file__).parents[1]
 
 pytestmark = [
-    pytest.mark.xdist_group("site"),  # it is built once
     pytest.mark.skipif(
         any(importlib.util.find_spec(name) is None for name in ("sphinx", "myst_parser", "furo", "latex2mathml")),
-        reason="the extra 'docs' is not installed",
+        reason="the packages of the site are not installed: pip install -e '.[docs]'",
     ),
 ]
 

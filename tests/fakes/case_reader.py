@@ -7,13 +7,25 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from eurdf_conformance.corpus.case import CasePlace, ValidCase
-from eurdf_conformance.corpus.read import CorpusCase, read_cases
+from eurdf_conformance.corpus.read import CASE_FILE, CorpusCase, read_case, read_cases
 from eurdf_conformance.level import VERSIONS, Level, Version
 from eurdf_conformance.protocol.message import Accepted, Issue, Quantity, Rejected, Skipped, Unsupported, Values
 from eurdf_conformance.protocol.reply import accepted, rejected, skipped, unsupported
 
 #: The valid case, and the invalid one, at which the others go wrong.
 VALID, INVALID = "tq4m8z", "k9b2yf"
+
+
+class Cases(dict[tuple[Path, Path], CorpusCase]):
+    """The cases by their files, of which only those that are asked for are read."""
+
+    def __missing__(self, files: tuple[Path, Path]) -> CorpusCase:
+        description, _ = files
+        if not (description.parent / CASE_FILE).is_file():  # of a robot of the collection
+            self.update({(case.description, case.urdf): case for case in read_cases()})
+            return dict(self)[files]
+        self[files] = read_case(description.parent)
+        return self[files]
 
 
 class Right:
@@ -25,7 +37,7 @@ class Right:
     claims: Mapping[Version, Sequence[Level]] = dict.fromkeys(VERSIONS, tuple(Level))
 
     def __init__(self) -> None:
-        self.cases = {(case.description, case.urdf): case for case in read_cases()}
+        self.cases = Cases()
         self.case: CorpusCase | None = None
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported | Skipped:

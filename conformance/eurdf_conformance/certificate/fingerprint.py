@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 
 from eurdf_conformance.corpus.archive import case_files
 from eurdf_conformance.corpus.clause import Clause, read_clauses
-from eurdf_conformance.corpus.read import CorpusCase, read_cases
+from eurdf_conformance.corpus.read import CorpusCase, all_cases
 from eurdf_conformance.properties.example import FROZEN
 from eurdf_conformance.suite.property import all_properties
 
@@ -25,9 +25,7 @@ def clauses_hash(clauses: Iterable[Clause] | None = None) -> str:
 def corpus_hash(cases: Iterable[CorpusCase] | None = None) -> str:
     """Hash of all files of cases, in whatever order these come; of all cases if left out."""
     files = {
-        name: path.read_bytes()
-        for case in (read_cases() if cases is None else cases)
-        for name, path in case_files(case)
+        name: path.read_bytes() for case in (all_cases() if cases is None else cases) for name, path in case_files(case)
     }
     return files_hash(files)
 

@@ -16,7 +16,7 @@ from eurdf_conformance.certificate.issue import installed_suite
 from eurdf_conformance.certificate.summary import level_words
 from eurdf_conformance.certificate.write import certificate_files
 from eurdf_conformance.comparison.text import same_text
-from eurdf_conformance.corpus.read import read_cases
+from eurdf_conformance.corpus.read import all_cases
 from eurdf_conformance.json_schema import published, schema_text
 from eurdf_conformance.level import VERSIONS, Level
 from eurdf_conformance.protocol.json_text import read_json
@@ -127,7 +127,7 @@ def _unexpected(certificate: Certificate) -> Iterator[str]:
     """What is said of the file of known failures, and cannot be said of any."""
     if not certificate.unexpected:
         return
-    items = {item.key: item for item in planned_items(read_cases())}
+    items = {item.key: item for item in planned_items(all_cases())}
     failed = {(failure.id, failure.level): failure.verdict for failure in certificate.failures}
     asked = {(each.version, each.level) for each in certificate.levels if each.claimed and each.asked}
     results = [

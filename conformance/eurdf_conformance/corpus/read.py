@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -108,6 +108,12 @@ def read_cases(root: Path = CASES) -> list[CorpusCase]:
         NotACase: One of them is none.
     """
     return [read_case(folder) for folder in case_folders(root)]
+
+
+@cache
+def all_cases() -> tuple[CorpusCase, ...]:
+    """The cases of the suite, read once a process."""
+    return tuple(read_cases())
 
 
 def case_folders(root: Path = CASES) -> Iterator[Path]:

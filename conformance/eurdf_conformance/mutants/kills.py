@@ -12,7 +12,7 @@ from tempfile import TemporaryDirectory
 from eurdf_conformance.adapters.reference import Reference
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.protocol_rule import RULES, ProtocolRule
-from eurdf_conformance.corpus.read import CorpusCase
+from eurdf_conformance.corpus.read import CorpusCase, all_cases
 from eurdf_conformance.level import VERSIONS, Level, Version
 from eurdf_conformance.mutants.mutant import Mutant
 from eurdf_conformance.properties import LAWS
@@ -21,7 +21,6 @@ from eurdf_conformance.properties.law import Law
 from eurdf_conformance.properties.trying import try_example
 from eurdf_conformance.protocol.serve import ReaderObject
 from eurdf_conformance.runner.session import Session
-from eurdf_conformance.suite.asking import all_cases
 from eurdf_conformance.suite.conversation import Conversation
 from eurdf_conformance.suite.in_process import InProcess
 from eurdf_conformance.suite.item import ProtocolItem, protocol_items

@@ -5,11 +5,10 @@ from __future__ import annotations
 import time
 import traceback
 from collections.abc import Callable, Collection
-from functools import cache
 
 import pytest
 
-from eurdf_conformance.corpus.read import CorpusCase, read_cases
+from eurdf_conformance.corpus.read import CorpusCase
 from eurdf_conformance.level import Level
 from eurdf_conformance.protocol.message import Started
 from eurdf_conformance.runner.session import NotStarted, Session
@@ -26,12 +25,6 @@ STARTED = "eurdf_conformance.started"
 
 #: So many differences of one item are kept for the certificate.
 _KEPT = 20
-
-
-@cache
-def all_cases() -> tuple[CorpusCase, ...]:
-    """The cases, read once a process."""
-    return tuple(read_cases())
 
 
 class Asking:

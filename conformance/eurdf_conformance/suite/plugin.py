@@ -10,14 +10,16 @@ import gc
 import os
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from eurdf_conformance.certificate.issue import issue
 from eurdf_conformance.certificate.write import NoRoom, make_room, write_certificate
+from eurdf_conformance.corpus.read import all_cases
 from eurdf_conformance.protocol.message import Started
 from eurdf_conformance.runner.session import NotStarted, Session
-from eurdf_conformance.suite.asking import STARTED, Asking, all_cases, new_session
+from eurdf_conformance.suite.asking import STARTED, Asking, new_session
 from eurdf_conformance.suite.item import planned_items
 from eurdf_conformance.suite.options import OPTIONS, add_options, options_of, read_options
 from eurdf_conformance.suite.summary import summary_lines
@@ -37,10 +39,37 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Read the options, and where results are collected, collect them."""
-    config.addinivalue_line("markers", "xdist_group(name): run by one worker, in order")
     config.stash[OPTIONS] = read_options(config)
     if not hasattr(config, "workerinput"):
         config.pluginmanager.register(Collector(config), "eurdf_conformance.collector")
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Let one worker ask all levels of a case, whose reader then loads it once; and the rules of the protocol, alike.
+
+    Of pytest-xdist's own ``--dist`` only `loadgroup` is replaced: 3.8 sees no groups with pytest 9.2
+    (https://github.com/pytest-dev/pytest-xdist/issues/1386).
+    """
+    if config.getvalue("dist") != "loadgroup":
+        return None
+    from xdist.scheduler import LoadScopeScheduling
+
+    smoke = options_of(config).smoke
+
+    class ByCase(LoadScopeScheduling):  # type: ignore[misc]
+        def _split_scope(self, nodeid: str) -> str:
+            return "" if smoke else group_of(nodeid)
+
+    return ByCase(config, log)
+
+
+def group_of(nodeid: str) -> str:
+    """What the items of one worker have in common: the case, all rules of the protocol, or else the item."""
+    file, _, name = nodeid.partition("::")
+    if file.endswith("test_protocol.py"):
+        return file
+    return nodeid.rpartition("/")[0] if name.startswith("test_case[") else nodeid
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

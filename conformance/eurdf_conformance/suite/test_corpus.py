@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from eurdf_conformance.corpus.read import all_cases
 from eurdf_conformance.level import Level
-from eurdf_conformance.suite.asking import Asking, all_cases
+from eurdf_conformance.suite.asking import Asking
 from eurdf_conformance.suite.item import CaseItem, case_items
 from eurdf_conformance.suite.judge import judge
 from eurdf_conformance.suite.options import Options, options_of
@@ -18,14 +19,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     items = [item for item in case_items(all_cases()) if options.wants(item.item)]
     if options.smoke:
         items = [item for item in items if item.item.level in smoke_levels(item)]
-    # The levels of one case are asked one after the other of one reader, which loads it once.
-    marked = [
-        pytest.param(
-            item, id=f"{item.item.id}/{item.item.level}", marks=pytest.mark.xdist_group(_group(item, options.smoke))
-        )
-        for item in items
-    ]
-    metafunc.parametrize("case_item", marked)
+    metafunc.parametrize("case_item", [pytest.param(item, id=f"{item.item.id}/{item.item.level}") for item in items])
 
 
 def test_case(case_item: CaseItem, asking: Asking) -> None:
@@ -39,7 +33,3 @@ def _rather(item: CaseItem, options: Options) -> tuple[Level, ...]:
     levels = smoke_levels(item) if options.smoke else ()
     earlier = levels[: levels.index(item.item.level)] if levels else ()
     return tuple(level for level in earlier if level in options.levels)
-
-
-def _group(item: CaseItem, smoke: bool) -> str:
-    return "smoke" if smoke else item.case.id

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from eurdf_conformance.suite.asking import Asking, all_cases
+from eurdf_conformance.corpus.read import all_cases
+from eurdf_conformance.suite.asking import Asking
 from eurdf_conformance.suite.item import ProtocolItem, protocol_items
 from eurdf_conformance.suite.options import options_of
 from eurdf_conformance.suite.protocol_check import Asked, check
@@ -15,9 +16,8 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """One test a rule and version."""
     options = options_of(metafunc.config)
     items = [item for item in protocol_items() if options.wants(item.item)]
-    mark = pytest.mark.xdist_group("smoke" if options.smoke else "protocol")
     metafunc.parametrize(
-        "protocol_item", [pytest.param(item, id=f"{item.item.id}/{item.item.level}", marks=mark) for item in items]
+        "protocol_item", [pytest.param(item, id=f"{item.item.id}/{item.item.level}") for item in items]
     )
 
 
