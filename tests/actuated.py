@@ -25,7 +25,7 @@ _LOADED: dict[str, Robot] = {}
 
 def robot_called(name: str) -> Robot:
     if name.startswith("wild/") and not FACTS:
-        pytest.skip("the folder of published robots, ../shared/wild, is not there")
+        pytest.skip("no published robots: put their folder at ../shared/wild, beside the checkout")
     if name not in _LOADED:
         place = WILD / name.removeprefix("wild/") if name.startswith("wild/") else name
         _LOADED[name] = eurdf.load(place, geometry=False)

@@ -102,12 +102,15 @@ def mechanisms(draw: st.DrawFn, version: str = "2") -> tuple[str, dict[str, Any]
     kinds = [*PLAIN, "ball", "mimic", "spherical", "universal", "locked"]
     kinds += ["cylindrical", "helical", "overridden"] if version == "2" else []
     leaders: list[str] = []
-    movers: list[str] = []
+    movers: dict[str, str] = {}  # by the link that they carry
     for i, kind in enumerate(draw(st.lists(st.sampled_from(kinds), min_size=1, max_size=8))):
         name, parent = f"joint{i}", draw(st.sampled_from(tips))
         if kind == "ball":
             tips.append(files.ball(name, parent))
             files.bodies.append(tips[-1])
+            if version == "1":
+                # With two joints of the ball it may make the three that are merged, and has then no motor.
+                movers.pop(parent, None)
             if version == "2" and draw(st.booleans()):
                 files.joints[name] = {"type": "spherical", "merges": [f"{name}_r{letter}" for letter in "xyz"]}
             continue
@@ -127,8 +130,8 @@ def mechanisms(draw: st.DrawFn, version: str = "2") -> tuple[str, dict[str, Any]
             leaders.append(name)  # mimics too, so that there are chains
         if kind not in ("fixed", "locked"):
             files.bodies.append(tips[-1])
-            movers += [] if mimic else [name]
-    description = (described if version == "2" else published)(draw, files, tips, movers)
+            movers |= {} if mimic else {tips[-1]: name}
+    description = (described if version == "2" else published)(draw, files, tips, list(movers.values()))
     return f'<robot name="random">{"".join(files.urdf)}</robot>', description, seed
 
 

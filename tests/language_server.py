@@ -20,7 +20,7 @@ NODE = shutil.which("node")
 
 #: Why the server cannot be run, or nothing.
 MISSING = (
-    "Node.js is not on the PATH"
+    "Node.js is not on the PATH: install it, then npm install --prefix tests/editor"
     if NODE is None
     else ""
     if SERVER.is_file()

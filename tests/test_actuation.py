@@ -81,9 +81,9 @@ def test_the_armature_is_what_is_stated_or_else_the_rotor_as_the_joint_feels_it(
     model = load(STAR, f"joints: {joints}\nactuators: [{actuator}, c]\n", root=root).model
     _, _, idx_v, nv = at(model, "a")
     own = slice(idx_v, idx_v + nv)
-    assert model.rotorGearRatio[own].tolist() == pytest.approx(gear_ratio, rel=1e-15)
-    assert model.rotorInertia[own].tolist() == pytest.approx(rotor_inertia, rel=1e-15)
-    assert model.armature[own].tolist() == pytest.approx(armature, rel=1e-15)
+    assert model.rotorGearRatio[own].tolist() == pytest.approx(gear_ratio, rel=1e-12)
+    assert model.rotorInertia[own].tolist() == pytest.approx(rotor_inertia, rel=1e-12)
+    assert model.armature[own].tolist() == pytest.approx(armature, rel=1e-12)
     others = np.delete(model.armature, range(idx_v, idx_v + nv))
     assert not others.any()
 

@@ -54,7 +54,7 @@ def test_a_configuration_stands_at_the_joints_place_in_q_and_the_others_at_neutr
     loaded = load(STAR, f"joints: {joints}\nconfigurations: {{ready: {{{says}}}}}\n", root=root)
     idx_q, nq, _, _ = at(loaded.model, name)
     q = loaded.configurations["ready"]
-    np.testing.assert_allclose(q[idx_q : idx_q + nq], numbers, atol=1e-15)
+    np.testing.assert_allclose(q[idx_q : idx_q + nq], numbers, atol=1e-12)
     others = np.delete(q, range(idx_q, idx_q + nq))
     np.testing.assert_array_equal(others, np.delete(pin.neutral(loaded.model), range(idx_q, idx_q + nq)))
 
@@ -72,7 +72,7 @@ def test_configurations_stand_in_file_order() -> None:
 def test_the_first_angle_of_a_universal_joint_is_about_its_first_axis() -> None:
     loaded = load(STAR, "joints: {d: {type: universal, axes: xy}}\nconfigurations: {ready: {d: [0.5, 1.5]}}\n")
     turned = link_poses(loaded.model, loaded.configurations["ready"])["ld"][:3, :3]
-    np.testing.assert_allclose(turned, rotation((1, 0, 0), 0.5) @ rotation((0, 1, 0), 1.5), atol=1e-15)
+    np.testing.assert_allclose(turned, rotation((1, 0, 0), 0.5) @ rotation((0, 1, 0), 1.5), atol=1e-12)
 
 
 @settings(max_examples=50, deadline=None)
@@ -90,8 +90,8 @@ def test_a_quaternion_of_nearly_unit_length_is_normalised_and_any_other_refused(
     loaded = load(STAR, yaml)
     idx_q = at(loaded.model, "d")[0]
     found = loaded.configurations["ready"][idx_q : idx_q + 4]
-    assert np.linalg.norm(found) == pytest.approx(1.0, abs=1e-15)
-    np.testing.assert_allclose(found, np.array(direction) / norm, atol=1e-15)
+    assert np.linalg.norm(found) == pytest.approx(1.0, abs=1e-12)
+    np.testing.assert_allclose(found, np.array(direction) / norm, atol=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -153,7 +153,7 @@ def test_a_joint_that_follows_stands_in_the_same_place_where_it_is_loaded_free()
         robot = eurdf.load(WORKBENCH, geometry=False, mimic=mimic)
         pin.framesForwardKinematics(robot.model, robot.data, robot.configurations["ready"])
         places.append(robot.data.oMf[robot.model.getFrameId("thumb")].homogeneous)
-    np.testing.assert_allclose(places[1], places[0], rtol=0.0, atol=1e-15)
+    np.testing.assert_allclose(places[1], places[0], rtol=0.0, atol=1e-12)
 
 
 def some_configuration(robot: Robot, data: st.DataObject) -> np.ndarray:

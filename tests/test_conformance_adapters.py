@@ -46,7 +46,7 @@ NODE = shutil.which("node")
 
 #: Why the JavaScript example cannot be run, or nothing.
 NO_JAVASCRIPT = (
-    "Node.js is not on the PATH"
+    "Node.js is not on the PATH: install it, then npm install --prefix tests/javascript"
     if NODE is None
     else ""
     if (MODULES / "yaml").is_dir() and (MODULES / "@xmldom").is_dir()

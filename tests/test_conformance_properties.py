@@ -245,7 +245,7 @@ def test_a_family_has_the_counts_that_are_known_at_any_size(law: Law) -> None:
         assert example.known is not None
         assert counts_of(robot.jacobian(q), robot, q) == Counts(*example.known), size
         assert has_clear_ranks(robot, q), size
-        assert np.abs(robot.residual(q)).max(initial=0.0) < 1e-14, size
+        assert np.abs(robot.residual(q)).max(initial=0.0) < 1e-12 * max(size, 1.0), size
 
 
 def test_the_counts_are_the_words_of_dimension_that_the_oracle_finds() -> None:

@@ -25,7 +25,16 @@ from eurdf_conformance.suite.in_process import InProcess
 NEAR = 1e-9
 
 
-@pytest.mark.parametrize(("version", "closures", "count"), [("1", 1, 300), ("2", 0, 300), ("2", 1, 400)])
+@pytest.mark.parametrize(
+    ("version", "closures", "count"),
+    [
+        ("1", 1, 50),
+        ("2", 1, 50),
+        pytest.param("1", 1, 300, marks=pytest.mark.slow),
+        pytest.param("2", 0, 300, marks=pytest.mark.slow),
+        pytest.param("2", 1, 400, marks=pytest.mark.slow),
+    ],
+)
 def test_they_agree_to_a_billionth_of_its_size(version: Version, closures: int, count: int, tmp_path: Path) -> None:
     bench = Bench(InProcess(READER), tmp_path)
     tried = []

@@ -42,7 +42,7 @@ velocityProjection accelerationProjection
 )
 
 needs_matplotlib = pytest.mark.skipif(
-    importlib.util.find_spec("matplotlib") is None, reason="matplotlib is not installed"
+    importlib.util.find_spec("matplotlib") is None, reason="matplotlib is not installed: pip install -e '.[examples]'"
 )
 
 

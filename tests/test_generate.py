@@ -27,7 +27,9 @@ from eurdf.reading.yaml_reader import read_yaml
 HERE = Path(__file__).parent
 WILD = HERE.parents[1] / "shared" / "wild"
 WILD_ROBOTS = sorted(path.parent.name for path in WILD.glob("*/robot.yaml"))
-needs_wild = pytest.mark.skipif(not WILD_ROBOTS, reason="the folder of published robots, ../shared/wild, is not there")
+needs_wild = pytest.mark.skipif(
+    not WILD_ROBOTS, reason="no published robots: put their folder at ../shared/wild, beside the checkout"
+)
 
 FACTS = json.loads((WILD / "facts.json").read_text(encoding="utf-8")) if WILD_ROBOTS else {}
 

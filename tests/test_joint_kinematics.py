@@ -124,7 +124,7 @@ def test_a_screw_advances_by_its_pitch_in_one_turn_and_is_right_handed() -> None
         model = build_model(mechanism)
         turned = pose_of(model, configuration_vector(mechanism, model, {"screw": (2 * math.pi,)}), "tip")
         along = np.array(axis) / np.linalg.norm(axis)
-        np.testing.assert_allclose(turned, by_hand.transform(np.eye(3), 0.005 * along), atol=1e-15)
+        np.testing.assert_allclose(turned, by_hand.transform(np.eye(3), 0.005 * along), atol=1e-12)
 
 
 def test_a_universal_joint_with_oblique_axes_turns_about_both_of_them() -> None:
@@ -135,7 +135,7 @@ def test_a_universal_joint_with_oblique_axes_turns_about_both_of_them() -> None:
     assert model.joints[1].shortname() == "JointModelComposite"  # Pinocchio's own asks for perpendicular axes
     pose = pose_of(model, configuration_vector(mechanism, model, {"cardan": (0.4, -0.7)}), "tip")
     R = by_hand.rotation(axes[0], 0.4) @ by_hand.rotation(axes[1], -0.7)
-    np.testing.assert_allclose(pose[:3, :3], R, atol=1e-15)
+    np.testing.assert_allclose(pose[:3, :3], R, atol=1e-12)
 
 
 def test_a_universal_joint_with_perpendicular_axes_is_pinocchios_own() -> None:
@@ -152,7 +152,7 @@ def test_both_frames_of_a_joint_whose_body_is_off_its_centre_stand_at_the_body()
     data = model.createData()
     pin.framesForwardKinematics(model, data, q)
     for name in ("ball", "tip"):
-        np.testing.assert_allclose(data.oMf[model.getFrameId(name)].translation, (0.0, 0.1, 1.0), atol=1e-15)
+        np.testing.assert_allclose(data.oMf[model.getFrameId(name)].translation, (0.0, 0.1, 1.0), atol=1e-12)
     np.testing.assert_array_equal(data.oMi[1].translation, (0.0, 0.0, 1.0))
 
 
@@ -172,7 +172,7 @@ def test_coordinates_survive_the_way_to_pinocchio_and_back(seed: int, root: str)
     back = joint_coordinates(mechanism, model, configuration_vector(mechanism, model, given_))
     assert list(back) == list(given_)
     for name, values in given_.items():
-        assert back[name] == pytest.approx(values, abs=1e-15)
+        assert back[name] == pytest.approx(values, abs=1e-12)
 
 
 def test_a_joint_left_out_stands_at_its_neutral() -> None:

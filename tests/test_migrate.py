@@ -39,7 +39,9 @@ WORKBENCH = HERE / "data" / "workbench.urdf"
 ROBOTS = HERE.parent / "robots"
 WILD = HERE.parents[1] / "shared" / "wild"
 WILD_ROBOTS = sorted(path.parent.name for path in WILD.glob("*/robot.yaml"))
-needs_wild = pytest.mark.skipif(not WILD_ROBOTS, reason="the folder of published robots, ../shared/wild, is not there")
+needs_wild = pytest.mark.skipif(
+    not WILD_ROBOTS, reason="no published robots: put their folder at ../shared/wild, beside the checkout"
+)
 
 
 def workbench() -> Urdf:

@@ -23,7 +23,7 @@ def test_without_a_renderer_it_says_what_to_install(monkeypatch, capsys, tmp_pat
 
 
 def test_what_cannot_be_drawn_is_told(monkeypatch, capsys, tmp_path):
-    pytest.importorskip("pyvista")
+    pytest.importorskip("pyvista", reason="pyvista is not installed: pip install -e '.[pictures]'")
     assert picture.main(["no_such_robot"]) == 1
     (tmp_path / "robot.urdf").write_text('<robot name="bare"><link name="base"/></robot>')
     assert picture.main([str(tmp_path)]) == 1
@@ -33,7 +33,7 @@ def test_what_cannot_be_drawn_is_told(monkeypatch, capsys, tmp_path):
 
 
 def test_the_views_of_a_robot_fill_the_picture_but_for_a_margin():
-    pytest.importorskip("pyvista")
+    pytest.importorskip("pyvista", reason="pyvista is not installed: pip install -e '.[pictures]'")
     image = picture.picture(eurdf.load("four_bar"))
     height, width, _ = image.shape
     assert abs(width - 780) <= 3
@@ -50,7 +50,7 @@ def test_a_picture_is_drawn_beside_the_robot_and_is_small():
 
 
 def test_the_sheet_shows_each_robot_with_its_name():
-    pytest.importorskip("pyvista")
+    pytest.importorskip("pyvista", reason="pyvista is not installed: pip install -e '.[pictures]'")
     one, two = sheet.sheet(["four_bar"]), sheet.sheet(["four_bar", "bennett"])
     width, height = 170, 190
     assert one.shape == two.shape

@@ -11,7 +11,7 @@ import eurdf
 from wild import FACTS, WILD
 
 if not FACTS:
-    pytest.skip("the folder of published robots, ../shared/wild, is not there", allow_module_level=True)
+    pytest.skip("no published robots: put their folder at ../shared/wild, beside the checkout", allow_module_level=True)
 
 
 #: Faults of the published files: everything that `check` finds, but for the meshes that were left out.

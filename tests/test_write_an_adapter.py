@@ -25,7 +25,13 @@ def blocks(language: str) -> list[str]:
     return re.findall(rf"^```{language}\n(.*?)^```$", TEXT, re.DOTALL | re.MULTILINE)
 
 
-@pytest.mark.parametrize("shown", blocks("console"), ids=["smoke", "whole"])
+@pytest.mark.parametrize(
+    "shown",
+    [
+        pytest.param(blocks("console")[0], id="smoke"),
+        pytest.param(blocks("console")[1], id="whole", marks=pytest.mark.slow),
+    ],
+)
 def test_the_first_runs_of_the_example_come_to_what_is_shown(shown: str) -> None:
     command, *lines = shown.splitlines()
     program, *arguments = shlex.split(command.removeprefix("$ "))

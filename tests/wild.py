@@ -14,4 +14,6 @@ _FILE = WILD / "facts.json"
 #: By robot, what its README describes; empty where the folder is not there.
 FACTS: dict[str, dict[str, Any]] = json.loads(_FILE.read_text(encoding="utf-8")) if _FILE.is_file() else {}
 
-needs_wild = pytest.mark.skipif(not FACTS, reason="the folder of published robots, ../shared/wild, is not there")
+needs_wild = pytest.mark.skipif(
+    not FACTS, reason="no published robots: put their folder at ../shared/wild, beside the checkout"
+)
