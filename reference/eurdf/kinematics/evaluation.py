@@ -9,13 +9,14 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pinocchio as pin
 
-from eurdf.kinematics.array import Matrix, Vector
-from eurdf.kinematics.loop import Loop, LoopGroup, find_loops
+from eurdf.kinematics.array import Indices, Matrix, Vector
+from eurdf.kinematics.loop import Loop, LoopGroup, find_loops, joints_of_loops
 from eurdf.kinematics.residual import residual_rows, rows_of_twist
 
 if TYPE_CHECKING:
@@ -37,9 +38,13 @@ class Evaluation(ABC):
         self.row_scale = row_scale[group.rows]
         self.unit = velocity_scale[group.velocities]
         self._spatial = [loops[index].spatial for index in group.closures]
-        with np.errstate(over="ignore", invalid="ignore"):
-            self._scale = self.row_scale[:, None] * self.unit
         self._aMb: list[Any] = []
+
+    @cached_property
+    def _scale(self) -> Matrix:
+        """Factors (m, n) that make the derivative free of unit."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            return self.row_scale[:, None] * self.unit
 
     def residual(self, q: Vector) -> Vector:
         """Rows (m,) of the group at q (nq,), m and rad."""
@@ -84,7 +89,6 @@ class DataEvaluation(Evaluation):
         super().__init__(group, loops, row_scale, velocity_scale)
         model = self._model = robot.model
         self._data = data
-        self._scale = -self._scale  # Pinocchio's is the Jacobian of the twist of A against B
         # Also for a 3d closure all six rows: its residual turns with A.
         self._constraints, self._datas = pin.StdVec_RigidConstraintModel(), pin.StdVec_RigidConstraintData()
         for index in group.closures:
@@ -105,7 +109,7 @@ class DataEvaluation(Evaluation):
     def _jacobian(self, rows: Sequence[Matrix]) -> Matrix:
         J = pin.getConstraintsJacobian(self._model, self._data, self._constraints, self._datas)
         for index, place in enumerate(rows):
-            self._rows[index, : len(place)] = place
+            self._rows[index, : len(place)] = -place  # Pinocchio's is the Jacobian of the twist of A against B
         K = np.matmul(self._rows, J.reshape(len(rows), 6, -1)).reshape(6 * len(rows), -1)
         if self._kept is not None:
             K = K[self._kept]
@@ -121,34 +125,39 @@ class PathEvaluation(Evaluation):
         """For the arguments see `Evaluation`."""
         super().__init__(group, loops, row_scale, velocity_scale)
         model, loops = robot.model, [loops[index] for index in group.closures]
-        joint_ids = sorted({joint for loop in loops for joint in loop.joints})
+        parents = model.parents.tolist()
         self._joints: list[tuple[int, int, Any, Any, Any, slice]] = []
         first = 0
-        for joint in joint_ids:
+        for joint in joints_of_loops(loops, parents):
             joint_model = model.joints[joint]
             columns = slice(first, first + joint_model.nvExtended)
             placement = pin.SE3(model.jointPlacements[joint])
-            self._joints.append(
-                (joint, model.parents[joint], placement, joint_model, joint_model.createData(), columns)
-            )
+            self._joints.append((joint, parents[joint], placement, joint_model, joint_model.createData(), columns))
             first = columns.stop
-        start = {joint: columns.start for joint, _, _, _, _, columns in self._joints}
-        column = {velocity: index for index, velocity in enumerate(group.velocities.tolist())}
+        self._loops = loops
         constraints = [robot.constraint_models[index] for index in group.closures]
         self._frames = [
             (found.joint1_id, pin.SE3(found.joint1_placement), found.joint2_id, pin.SE3(found.joint2_placement))
             for found in constraints
         ]
-        # Of each loop: its columns in J, with their signs, and where they stand in K; those held stand nowhere.
-        self._columns = []
-        for loop in loops:
-            in_J = [start[joint] + k for joint in loop.joints for k in range(model.nvExtendeds[joint])]
-            moving = [k for k, velocity in enumerate(loop.velocities.tolist()) if velocity in column]
-            in_K = np.array([column[loop.velocities[k]] for k in moving], dtype=np.intp)
-            self._columns.append((np.array(in_J, dtype=np.intp)[moving], loop.signs[moving], in_K, loop.mimics))
         self._J = np.zeros((6, first))
         self._oMa: list[Any] = []
-        self._shape = len(group.rows), len(group.velocities)
+
+    @cached_property
+    def _columns(self) -> list[tuple[Indices, Vector, Indices, bool]]:
+        """Of each loop its columns in J, their signs, their columns in K, and whether one of these occurs twice.
+
+        Columns of joints that are held are left out.
+        """
+        of_joint = {joint: range(columns.start, columns.stop) for joint, _, _, _, _, columns in self._joints}
+        column = {velocity: index for index, velocity in enumerate(self.group.velocities.tolist())}
+        found = []
+        for path in (loop.path for loop in self._loops):
+            in_J = [index for joint in path.joints for index in of_joint[joint]]
+            moving = [k for k, velocity in enumerate(path.velocities.tolist()) if velocity in column]
+            in_K = np.array([column[path.velocities[k]] for k in moving], dtype=np.intp)
+            found.append((np.array(in_J, dtype=np.intp)[moving], path.signs[moving], in_K, path.mimics))
+        return found
 
     def _closures(self, q: Vector) -> list[Any]:
         placements: dict[int, Any] = {}
@@ -164,7 +173,7 @@ class PathEvaluation(Evaluation):
         ]
 
     def _jacobian(self, rows: Sequence[Matrix]) -> Matrix:
-        K, first = np.zeros(self._shape), 0
+        K, first = np.zeros((len(self.group.rows), len(self.group.velocities))), 0
         for oMa, place, (in_J, signs, in_K, mimics) in zip(self._oMa, rows, self._columns, strict=True):
             part = K[first : first + len(place)]
             block = place @ oMa.toActionMatrixInverse() @ (self._J[:, in_J] * signs)

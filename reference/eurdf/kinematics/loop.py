@@ -5,25 +5,22 @@ from __future__ import annotations
 import weakref
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from eurdf.kinematics.ancestry import Ancestry
 from eurdf.kinematics.array import Indices, Vector
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Loop:
-    """One closure's loop: the path through the tree from frame A to frame B.
+class Path(NamedTuple):
+    """The joints of a loop, and where their columns and velocities are.
 
     Attributes:
-        rows: Rows of the closure in the stacked residual.
-        spatial: True for a 6d closure, False for a 3d one.
-        joint_a: Joint of the model that carries frame A; 0 is the universe.
-        joint_b: Joint that carries frame B.
         joints: Joints of the path, both sides, without the common ancestor, in ascending order.
         columns: Columns (n,) of the path's joints in Pinocchio's world Jacobian ``data.J``, in which a joint that
             mimics another has columns of its own.
@@ -33,15 +30,59 @@ class Loop:
         mimics: Whether an index stands twice in ``velocities``.
     """
 
-    rows: slice
-    spatial: bool
-    joint_a: int
-    joint_b: int
     joints: tuple[int, ...]
     columns: Indices
     velocities: Indices
     signs: Vector
     mimics: bool
+
+
+class _Tree(NamedTuple):
+    """Of each joint of a model: its parent, and where its columns and velocities begin, and how many there are."""
+
+    parents: list[int]
+    first_column: list[int]
+    width: list[int]
+    first_velocity: list[int]
+
+
+@dataclass(frozen=True, eq=False)
+class Loop:
+    """One closure's loop: the path through the tree from frame A to frame B.
+
+    Attributes:
+        rows: Rows of the closure in the stacked residual.
+        spatial: True for a 6d closure, False for a 3d one.
+        joint_a: Joint of the model that carries frame A; 0 is the universe.
+        joint_b: Joint that carries frame B.
+        common: The lowest joint that is an ancestor of both, or one of the two.
+    """
+
+    rows: slice
+    spatial: bool
+    joint_a: int
+    joint_b: int
+    common: int
+    _tree: _Tree
+
+    @cached_property
+    def path(self) -> Path:
+        """The path, found when first asked for: thousands of loops of thousands of joints take gigabytes."""
+        parents, first_column, width, first_velocity = self._tree
+        signs = {}
+        for joint, sign in ((self.joint_a, -1.0), (self.joint_b, 1.0)):
+            while joint != self.common:
+                signs[joint] = sign
+                joint = parents[joint]
+        joints = tuple(sorted(signs))
+        velocities = [first_velocity[j] + k for j in joints for k in range(width[j])]
+        return Path(
+            joints,
+            np.array([first_column[j] + k for j in joints for k in range(width[j])], dtype=np.intp),
+            np.array(velocities, dtype=np.intp),
+            np.array([signs[j] for j in joints for _ in range(width[j])]),
+            mimics=len(set(velocities)) < len(velocities),
+        )
 
 
 # The loops depend only on the tree and on the joints that carry the frames: they are kept until one of these changes.
@@ -62,35 +103,32 @@ def find_loops(robot: Robot) -> tuple[Loop, ...]:
 
 
 def _trace(model: Any, ends: Sequence[tuple[int, int, int]]) -> tuple[Loop, ...]:
-    parents = list(model.parents)
-    first_column, widths, first_velocity = list(model.idx_vExtendeds), list(model.nvExtendeds), list(model.idx_vs)
+    tree = _Tree(list(model.parents), list(model.idx_vExtendeds), list(model.nvExtendeds), list(model.idx_vs))
+    ancestry = Ancestry(tree.parents)
     loops, row = [], 0
     for joint_a, joint_b, size in ends:
-        signs = {}
-        a, b = joint_a, joint_b
-        while a != b:  # a parent has a lower index than its child: the higher of the two cannot be the common ancestor
-            if a > b:
-                signs[a], a = -1.0, parents[a]
-            else:
-                signs[b], b = 1.0, parents[b]
-        joints = tuple(sorted(signs))
-        columns = [first_column[j] + k for j in joints for k in range(widths[j])]
-        velocities = [first_velocity[j] + k for j in joints for k in range(widths[j])]
-        loops.append(
-            Loop(
-                rows=slice(row, row + size),
-                spatial=size == 6,
-                joint_a=joint_a,
-                joint_b=joint_b,
-                joints=joints,
-                columns=np.array(columns, dtype=np.intp),
-                velocities=np.array(velocities, dtype=np.intp),
-                signs=np.array([signs[j] for j in joints for _ in range(widths[j])]),
-                mimics=len(set(velocities)) < len(velocities),
-            )
-        )
+        rows = slice(row, row + size)
+        loops.append(Loop(rows, size == 6, joint_a, joint_b, ancestry.common(joint_a, joint_b), tree))
         row += size
     return tuple(loops)
+
+
+def joints_of_loops(loops: Iterable[Loop], parents: Sequence[int]) -> list[int]:
+    """The joints of the loops' paths, in ascending order; ``parents`` has the parent of each joint.
+
+    The time is linear in the number of loops and of joints, however many loops share a joint.
+    """
+    # For each joint found, one farther up: those in between are found too.
+    beyond: dict[int, int] = {}
+    for loop in loops:
+        for joint in (loop.joint_a, loop.joint_b):
+            passed = []
+            while joint > loop.common:  # a parent has a lower index than its child
+                passed.append(joint)
+                joint = beyond.get(joint, parents[joint])
+            for found in passed:
+                beyond[found] = joint
+    return sorted(beyond)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -120,22 +158,26 @@ def independent_groups(robot: Robot, held: Iterable[int] = ()) -> tuple[LoopGrou
         held: Indices in v that do not move, and so couple nothing.
     """
     model, loops, still = robot.model, find_loops(robot), set(held)
+    first_velocity, first_coordinate = list(model.idx_vs), list(model.idx_qs)
+    nv, nq = list(model.nvs), list(model.nqs)
     owner = {  # the joint of each velocity: one that mimics another has none of its own
         velocity: joint
-        for joint, (first, width) in enumerate(zip(model.idx_vs, model.nvs, strict=True))
+        for joint, (first, width) in enumerate(zip(first_velocity, nv, strict=True))
         for velocity in range(first, first + width)
         if velocity not in still
     }
-    moving = [{owner[velocity] for velocity in loop.velocities.tolist() if velocity in owner} for loop in loops]
+    movers = [
+        next((owner[velocity] for velocity in range(first, first + width) if velocity in owner), 0)
+        for first, width in zip(first_velocity, model.nvExtendeds, strict=True)
+    ]
     groups = []
-    for members in _connected(moving):
-        joints = sorted({joint for index in members for joint in moving[index]})
+    for members, joints in _connected(loops, list(model.parents), movers):
         groups.append(
             LoopGroup(
                 closures=tuple(members),
                 rows=_indices((loops[index].rows.start, loops[index].rows.stop) for index in members),
-                velocities=_indices((model.idx_vs[j], model.idx_vs[j] + model.nvs[j]) for j in joints),
-                coordinates=_indices((model.idx_qs[j], model.idx_qs[j] + model.nqs[j]) for j in joints),
+                velocities=_indices((first_velocity[j], first_velocity[j] + nv[j]) for j in joints),
+                coordinates=_indices((first_coordinate[j], first_coordinate[j] + nq[j]) for j in joints),
             )
         )
     return tuple(groups)
@@ -145,22 +187,53 @@ def _indices(ranges: Iterable[tuple[int, int]]) -> Indices:
     return np.array([index for start, stop in ranges for index in range(start, stop)], dtype=np.intp)
 
 
-def _connected(sets: Sequence[set[int]]) -> list[list[int]]:
-    """Indices of the sets, grouped so that sets of two groups have nothing in common."""
-    holders: dict[int, list[int]] = {}
-    for index, elements in enumerate(sets):
-        for element in elements:
-            holders.setdefault(element, []).append(index)
-    groups, seen = [], set()
-    for index in range(len(sets)):
-        if index in seen:
-            continue
-        seen.add(index)
-        group = [index]
-        for member in group:  # grows while it is walked
-            for element in sets[member]:
-                found = [other for other in holders.pop(element, ()) if other not in seen]
-                seen.update(found)
-                group += found
-        groups.append(sorted(group))
-    return groups
+def _connected(
+    loops: Sequence[Loop], parents: Sequence[int], movers: Sequence[int]
+) -> list[tuple[list[int], list[int]]]:
+    """Indices of the loops, grouped so that no two groups have a mover in common, and the movers of each group.
+
+    The time is nearly linear in the number of loops and of joints, however many loops share a joint.
+
+    Args:
+        loops: The loops.
+        parents: The parent of each joint.
+        movers: For each joint, the joint whose velocities move it; 0 where it is held.
+    """
+    # The nearest joint on the way to the root, itself included, that moves; 0 where none does.
+    nearest: list[int] = []
+    for joint, parent in enumerate(parents):
+        nearest.append(joint if movers[joint] else nearest[parent] if joint else 0)
+    above = [nearest[parent] for parent in parents]  # the next of them: later one beyond others of the same group
+    leader = list(range(len(parents)))  # by mover: a union-find forest
+
+    def find(mover: int) -> int:
+        while leader[mover] != mover:
+            leader[mover] = leader[leader[mover]]
+            mover = leader[mover]
+        return mover
+
+    found: dict[int, None] = {}  # movers of all loops
+    first: list[int] = []  # of each loop one mover; 0 where all of its joints are held
+    for loop in loops:
+        one = 0
+        for end in (loop.joint_a, loop.joint_b):
+            joint, passed = nearest[end], []
+            while joint > loop.common:  # a parent has a lower index than its child
+                passed.append(joint)
+                joint = above[joint]
+            for each in passed:
+                above[each] = joint
+                mover = movers[each]
+                found[mover] = None
+                one = one or mover
+                leader[find(mover)] = find(one)
+        first.append(one)
+
+    members: dict[int, list[int]] = {}
+    for index, mover in enumerate(first):
+        # A loop none of whose joints moves is a group of its own.
+        members.setdefault(find(mover) if mover else -1 - index, []).append(index)
+    joints: dict[int, list[int]] = {key: [] for key in members}
+    for mover in sorted(found):
+        joints[find(mover)].append(mover)
+    return [(indices, joints[key]) for key, indices in members.items()]

@@ -73,11 +73,12 @@ def residual_and_jacobian(robot: Robot, q: Vector, data: Any = None) -> tuple[Ve
         aMb = oMa.actInv(oMb)
         r[loop.rows] = residual_rows(aMb, loop.spatial)
         projection = rows_of_twist(aMb, loop.spatial) @ oMa.toActionMatrixInverse()
-        block = projection @ (J[:, loop.columns] * loop.signs)
-        if loop.mimics:
-            np.add.at(K[loop.rows].T, loop.velocities, block.T)
+        path = loop.path
+        block = projection @ (J[:, path.columns] * path.signs)
+        if path.mimics:
+            np.add.at(K[loop.rows].T, path.velocities, block.T)
         else:
-            K[loop.rows, loop.velocities] = block
+            K[loop.rows, path.velocities] = block
     return r, K
 
 

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pinocchio as pin
 
+from eurdf.kinematics.ancestry import Ancestry
 from eurdf.kinematics.array import Vector
-from eurdf.kinematics.loop import find_loops
+from eurdf.kinematics.loop import find_loops, joints_of_loops
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -21,15 +22,15 @@ def characteristic_length(robot: Robot) -> float:
     1 m for loops without extent, such as a spherical linkage whose joints all stand in one point.
     """
     longest = 0.0
-    loops, placements = find_loops(robot), robot.model.jointPlacements
-    # Once a joint: loops may share most of theirs.
-    reach = {joint: math.hypot(*placements[joint].translation) for joint in {j for loop in loops for j in loop.joints}}
-    for loop, constraint in zip(loops, robot.constraint_models, strict=True):
-        ends = (
-            math.hypot(*constraint.joint1_placement.translation),
-            math.hypot(*constraint.joint2_placement.translation),
-        )
-        longest = max(longest, sum(ends) + sum(reach[joint] for joint in loop.joints))
+    ancestry = Ancestry(robot.model.parents.tolist())
+    reach = [math.hypot(*placement.translation) for placement in robot.model.jointPlacements]
+    sums = ancestry.sums(reach)
+    for loop, constraint in zip(find_loops(robot), robot.constraint_models, strict=True):
+        around = math.hypot(*constraint.joint1_placement.translation)
+        around += math.hypot(*constraint.joint2_placement.translation)
+        for joint in (loop.joint_a, loop.joint_b):
+            around += ancestry.sum_to(joint, loop.common, reach, sums)
+        longest = max(longest, around)
     return longest / 2.0 if longest > 1e-9 else 1.0
 
 
@@ -43,8 +44,10 @@ def velocity_scale(robot: Robot, length: float) -> Vector:
     """Unit (nv,) of each velocity of the loops: length for one that only translates (m/s), 1 for the others (rad/s)."""
     model = robot.model
     scale, neutral = np.ones(model.nv), pin.neutral(model)
-    moving = {velocity for loop in find_loops(robot) for velocity in loop.velocities.tolist()}
-    for joint, (first, width) in enumerate(zip(model.idx_vs, model.nvs, strict=True)):
+    first_velocity = model.idx_vs.tolist()
+    # A joint that mimics another moves by the velocity of that one.
+    moving = {first_velocity[joint] for joint in joints_of_loops(find_loops(robot), model.parents.tolist())}
+    for joint, (first, width) in enumerate(zip(first_velocity, model.nvs, strict=True)):
         if width == 0 or first not in moving:
             continue
         joint_model = model.joints[joint]

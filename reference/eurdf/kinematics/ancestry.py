@@ -1,0 +1,57 @@
+"""Common ancestors in a tree, and sums along its paths, in time logarithmic in its depth.
+
+Each node has, beside its parent, one ancestor to jump to (E. W. Myers, *An applicative random-access stack*, 1983).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+
+class Ancestry:
+    """The ancestors of the nodes of a tree.
+
+    Nodes are numbered from 0, the root, and a parent has a lower number than its children, as the joints of a Pinocchio
+    model have.
+    """
+
+    def __init__(self, parents: Sequence[int]) -> None:
+        """``parents`` has the parent of each node; that of the root is 0."""
+        self.parents = parents
+        self._depth, self._jump = [0], [0]
+        depth, jump = self._depth, self._jump
+        for parent in parents[1:]:
+            above = jump[parent]
+            as_far = depth[parent] - depth[above] == depth[above] - depth[jump[above]]
+            depth.append(depth[parent] + 1)
+            jump.append(jump[above] if as_far else parent)
+
+    def common(self, a: int, b: int) -> int:
+        """The lowest node that is an ancestor of both, or one of the two."""
+        depth, jump, parents = self._depth, self._jump, self.parents
+        if depth[a] > depth[b]:
+            a, b = b, a
+        while depth[b] > depth[a]:
+            b = jump[b] if depth[jump[b]] >= depth[a] else parents[b]
+        while a != b:
+            a, b = (jump[a], jump[b]) if jump[a] != jump[b] else (parents[a], parents[b])
+        return a
+
+    def sums(self, weights: Sequence[float]) -> list[float]:
+        """For each node the sum of the weights from it to the node that it jumps to, without that one's."""
+        jump, parents, sums = self._jump, self.parents, [0.0]
+        for node in range(1, len(parents)):
+            parent = parents[node]
+            over = 0.0 if jump[node] == parent else sums[parent] + sums[jump[parent]]
+            sums.append(weights[node] + over)
+        return sums
+
+    def sum_to(self, node: int, ancestor: int, weights: Sequence[float], sums: Sequence[float]) -> float:
+        """Sum of the weights from a node up to an ancestor of it, without that one's; ``sums`` as `sums` has them."""
+        depth, jump, total = self._depth, self._jump, 0.0
+        while node != ancestor:
+            if depth[jump[node]] >= depth[ancestor]:
+                total, node = total + sums[node], jump[node]
+            else:
+                total, node = total + weights[node], self.parents[node]
+        return total
