@@ -82,7 +82,8 @@ def _check_loops(description: Description, mechanism: Mechanism) -> None:
     assembly = None if "assembled" in robot.configurations else assemble(robot)
     for found in closure_diagnostics(description, robot, assembly):
         diagnostics.add(found)
-    if not diagnostics.error_count:
+    given_up = assembly is not None and assembly.reason == "given up"
+    if not given_up and not diagnostics.error_count:
         q = robot.configurations["assembled"] if assembly is None else assembly.q
         advise_on_quaternions(description, robot, diagnostics)
         advise_on_massless_links(description, robot, q, diagnostics)
@@ -116,6 +117,14 @@ def closure_diagnostics(
     if not assembly.closes:
         worst = max(assembly.open, key=_width)
         closure = next(closure for closure in mechanism.closures if closure.name == worst.name)
+        if assembly.reason == "given up":
+            diagnostics.report(
+                "x-loops-not-checked",
+                "whether the loops can be closed was not computed: too many closures share their joints",
+                description.place_of_closure(closure),
+                "state a configuration 'assembled' (version 2): the loops are checked at it",
+            )
+            return diagnostics
         diagnostics.report(
             "closure-cannot-close",
             f"no configuration was found that closes the loops; at the best, {_told(assembly.open)}",

@@ -79,6 +79,8 @@ def run(args: argparse.Namespace) -> int:
 
 def _show(info: RobotInfo) -> None:
     shown: list[Text | Table] = [_heading(info), _dimensions(info)]
+    if info.left_out is not None:
+        shown.append(cell(info.left_out, "yellow"))
     if info.closure_list:
         shown.append(_closures(info))
     if len(info.loop_list) > 1:
@@ -116,6 +118,8 @@ def _dimensions(info: RobotInfo) -> Table:
         stated = any(configuration.name == "assembled" for configuration in info.configuration_list)
         more = "" if stated else "; `eurdf assemble` shows a configuration"
         verdict = ("loops", "close", f"residual {info.residual:.1e}{more}")
+    elif info.left_out is not None:
+        verdict = ("loops", "-", "")
     else:
         smallest = "" if info.residual is None else f"smallest residual found {info.residual:.1e}; "
         verdict = ("loops", "open", f"{smallest}`eurdf assemble` shows how far each closure is")

@@ -168,6 +168,8 @@ class RobotInfo(_Entry):
     """Norm of the residual of all closures at the configuration found, m and rad."""
     closes: bool
     """Whether a configuration was found at which every loop is closed."""
+    left_out: str | None
+    """What was not computed, and is null, since the robot is too large; null where all was."""
     joint_list: tuple[JointInfo, ...]
     """The moving joints, depth first."""
     closure_list: tuple[ClosureInfo, ...]
@@ -221,6 +223,7 @@ def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
         mass=_finite(math.fsum(body.inertia.mass for body in mechanism.bodies if body.inertia)),
         residual=_finite(analysis.residual),
         closes=analysis.closes,
+        left_out=analysis.left_out or None,
         joint_list=moving,
         closure_list=tuple(
             ClosureInfo(
@@ -281,7 +284,7 @@ def _joint_infos(robot: Robot) -> Iterator[JointInfo]:
             actuated=False,
             mimics=None,
         )
-    at = slots(mechanism, robot.model)
+    at, actuated = slots(mechanism, robot.model), set(robot.actuation.joints)
     for joint in mechanism.joints:
         if joint.type is JointType.FIXED:
             continue
@@ -293,7 +296,7 @@ def _joint_infos(robot: Robot) -> Iterator[JointInfo]:
             child=joint.child,
             nq=slot.nq if slot else 0,
             nv=slot.nv if slot else 0,
-            actuated=joint.name in robot.actuation.joints,
+            actuated=joint.name in actuated,
             mimics=joint.mimic.joint if joint.mimic else None,
         )
 

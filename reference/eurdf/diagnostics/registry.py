@@ -211,6 +211,7 @@ x-uncontrolled-motion      A motion is possible with every actuator held that is
 x-closes-beyond-limits     The loops close only where joints are beyond their limits.
 x-massless-link            A link of a loop has no mass.
 x-xacro-warning            A xacro file was expanded with warnings.
+x-loops-not-checked        Whether the loops can be closed was not computed: too many of them share joints.
 """,
     ),
 ]

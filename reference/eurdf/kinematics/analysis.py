@@ -10,14 +10,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
-from eurdf.kinematics.assembly import Assembler, start
+from eurdf.kinematics.assembly import Assembler, Assembly, start
 from eurdf.kinematics.evaluation import Evaluation
+from eurdf.kinematics.loop import LoopGroup
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.sparse_basis import sparse_basis
 from eurdf.kinematics.velocity_names import velocity_names
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
+
+# What n² max(m, n), K (m, n), may be for all groups together: each of some twenty decompositions takes a few times as
+# many multiplications, and all of them some ten seconds.
+_MOST_WORK = 1e9
 
 # Closed configurations looked at beside the first, and how far each is stepped to (rad, or characteristic lengths).
 _MOVES = (0.05, 0.1, 0.2, 0.2)
@@ -81,7 +86,7 @@ class LoopAnalysis:
 class Analysis:
     """Dimensions of a mechanism, of all of it and of each of its independent groups of loops.
 
-    What follows from ranks is None, or empty, where the loops do not close.
+    What follows from ranks is None, or empty, where the loops do not close, or where it is left out.
 
     Attributes:
         nq: Coordinates of the spanning tree.
@@ -108,6 +113,7 @@ class Analysis:
         residual: Norm of the residual at q, m and rad: the smallest found.
         closes: Whether the loops close, with each closure open by at most 1e-6 (m, rad) at q.
         q: The configuration (nq,) looked at: closed, or the least open one found.
+        left_out: Why the ranks were not computed, where they were not though the loops close; else empty.
     """
 
     nq: int
@@ -128,6 +134,7 @@ class Analysis:
     residual: float
     closes: bool
     q: Vector
+    left_out: str = ""
 
 
 def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
@@ -149,14 +156,17 @@ def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
         ValueError: ``q`` is no configuration.
     """
     model = robot.model
-    actuated: Mask = np.any(robot.actuation.selection, axis=1)
+    actuated: Mask = np.zeros(model.nv, dtype=bool)
+    actuated[robot.actuation.idx_v] = True
     assembler = Assembler(robot)
     assembly = assembler.assemble(start(robot, q))
     nv, nc = model.nv, sum(len(evaluation.group.rows) for evaluation in assembler.evaluations)
     names = velocity_names(model)
     loops: tuple[LoopAnalysis, ...] = ()
     motions: list[Motion] = []
-    if assembly.closes:
+    left_out = _left_out(assembler, assembly)
+    ranked = assembly.closes and not left_out
+    if ranked:
         closures = [constraint.name for constraint in robot.constraint_models]
         loops = tuple(
             _analyze(evaluation, at, actuated[evaluation.group.velocities], names, closures)
@@ -169,28 +179,47 @@ def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
         motions += [
             _unit_motion(names, velocity, assembly.q) for velocity in np.flatnonzero(outside & ~actuated).tolist()
         ]
-    closes, count = assembly.closes, int(actuated.sum())
+    count = int(actuated.sum())
     rank = sum(loop.rank for loop in loops)
     return Analysis(
         nq=model.nq,
         nv=nv,
         nc=nc,
-        rank=rank if closes else None,
-        mobility=nv - rank if closes else None,
-        redundant=nc - rank if closes else None,
-        uncontrolled=len(motions) if closes else None,
+        rank=rank if ranked else None,
+        mobility=nv - rank if ranked else None,
+        redundant=nc - rank if ranked else None,
+        uncontrolled=len(motions) if ranked else None,
         actuated=count,
-        controlled=nv - rank - len(motions) if closes else None,
-        surplus=count - (nv - rank - len(motions)) if closes else None,
+        controlled=nv - rank - len(motions) if ranked else None,
+        surplus=count - (nv - rank - len(motions)) if ranked else None,
         fighting=tuple(together for loop in loops for together in loop.fighting),
         motions=tuple(motions),
         singularity=min((loop.singularity for loop in loops), default=None),
         actuation_singularity=min((loop.actuation_singularity for loop in loops), default=None),
         loops=loops,
         residual=assembly.residual,
-        closes=closes,
+        closes=assembly.closes,
         q=assembly.q,
+        left_out=left_out,
     )
+
+
+def _left_out(assembler: Assembler, assembly: Assembly) -> str:
+    """Why no ranks are computed of loops that are not known to be open: it would take too long."""
+    given_up, groups = assembly.reason == "given up", [each.group for each in assembler.evaluations]
+    if not given_up and not (assembly.closes and sum(map(_work, groups)) > _MOST_WORK):
+        return ""
+    group = max(groups, key=_work)
+    what = "ranks are" if assembly.closes else "whether the loops can be closed is"
+    return (
+        f"{what} not computed: {len(group.closures):,} closures that share joints have {len(group.rows):,} constraint "
+        f"rows on {len(group.velocities):,} velocities"
+    )
+
+
+def _work(group: LoopGroup) -> float:
+    m, n = len(group.rows), len(group.velocities)
+    return float(n) * n * max(m, n)
 
 
 def _generic_jacobians(assembler: Assembler, q: Vector) -> list[list[tuple[Vector, Matrix]]]:

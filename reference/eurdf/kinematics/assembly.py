@@ -36,9 +36,12 @@ _MOST_VELOCITIES_WITH_DATA = 60
 
 _MOST_STEPS = 60
 
-# Multiplications that one assembly may take in its steps, some five seconds. Loops that share joints by the hundred
-# are given up earlier than after all restarts.
+# Multiplications that one assembly may take in its steps, some five seconds. Loops that share joints by the hundred are
+# given up earlier than after all restarts; those whose every step takes more are not tried.
 _MOST_WORK = 1e10
+
+# The residual and Jacobian of one closure take as long as so many multiplications.
+_WORK_OF_A_CLOSURE = 3e5
 
 # How far from the first place further descents start (rad, or characteristic lengths); the last one is repeated.
 _SPREADS = (0.1, 0.3, 1.0, 2.0, 3.0)
@@ -48,8 +51,9 @@ _MOST_KEPT = 2
 
 
 #: Why an assembly did not converge: joints at their limits keep the loops open; the loops were not closed, though no
-#: limit keeps them open; or they close, but redundant rows contradict one another by the rounding of numbers in files.
-AssemblyReason = Literal["joint limits", "not closed", "rounding"]
+#: limit keeps them open; they share so many joints that no descent came to its end, and whether they can be closed is
+#: not known; or they close, but redundant rows contradict one another by the rounding of numbers in files.
+AssemblyReason = Literal["joint limits", "not closed", "given up", "rounding"]
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -84,6 +88,8 @@ class Assembly:
         parts = [f"open: {is_open}" if is_open else "closed", f"residual {self.residual:.3g}"]
         if self.reason == "rounding":
             parts.append("not converged: redundant rows contradict one another by rounding")
+        if self.reason == "given up":
+            parts.append("given up: the loops share too many joints")
         if self.at_limits:
             parts.append(f"at their limits: {', '.join(map(str, self.at_limits))}")
         return f"<Assembly: {'; '.join(parts)}; {self.iterations} iterations>"
@@ -192,6 +198,7 @@ class Assembler:
         self._whole = made[len(groups) :] if merged else self.evaluations
         self.iterations = 0
         self._work = 0.0  # of the assembly under way, in multiplications
+        self._gave_up = False  # of the last one
         self.tolerance = tolerance
         self.limits = chosen_limits(model, limits)
 
@@ -217,9 +224,14 @@ class Assembler:
             closes=closes,
             iterations=self.iterations - before,
             open=tuple(Opening(name, *opening) for name, opening in zip(self._names, open_by, strict=True)),
-            reason=None if converged else "rounding" if closes else "joint limits" if at_limits else "not closed",
+            reason=None if converged else "rounding" if closes else self._why_open(at_limits),
             at_limits=at_limits,
         )
+
+    def _why_open(self, at_limits: Sequence[JointAtLimit]) -> AssemblyReason:
+        if self._gave_up:
+            return "given up"
+        return "joint limits" if at_limits else "not closed"
 
     @np.errstate(over="ignore", invalid="ignore")  # lengths such as 1e200 m overflow, and so never close
     def close(self, q: Vector, restarts: int = 20) -> tuple[Vector, list[float]]:
@@ -232,12 +244,16 @@ class Assembler:
         self._work = 0.0
         q = self._within_limits(q, self.evaluations)
         best, errors = np.array(q), [math.inf] * len(self.evaluations)
+        tried = [False] * len(self.evaluations)  # whether a descent came to its end
         if self._whole is not self.evaluations:
-            best, (descent,) = self._descend(q, self._whole)
+            best, (descent,), (ended,) = self._descend(q, self._whole)
             errors = [math.hypot(*descent.r[evaluation.group.rows]) for evaluation in self.evaluations]
+            tried = [ended] * len(self.evaluations)
         random: np.random.Generator | None = None
         for attempt in range(restarts + 1):
             still_open = [index for index, error in enumerate(errors) if not error <= CLOSED]
+            if attempt > 0:
+                still_open = [index for index in still_open if _feasible(self.evaluations[index])]
             if not still_open or (attempt > 0 and self._work > _MOST_WORK):
                 break
             going, place = [self.evaluations[index] for index in still_open], q
@@ -246,12 +262,15 @@ class Assembler:
                 spread = _SPREADS[min(attempt, len(_SPREADS)) - 1]
                 away = [random.uniform(-spread, spread, len(evaluation.unit)) for evaluation in going]
                 place = self._within_limits(self.moved(q, going, away), going)
-            end, descents = self._descend(place, going)
-            for index, descent in zip(still_open, descents, strict=True):
+            end, descents, ended_by_group = self._descend(place, going)
+            for index, descent, ended in zip(still_open, descents, ended_by_group, strict=True):
+                tried[index] |= ended
                 if descent.error < errors[index]:
                     errors[index] = descent.error
                     coordinates = self.evaluations[index].group.coordinates
                     best[coordinates] = end[coordinates]
+        still_open = [index for index, error in enumerate(errors) if not error <= CLOSED]
+        self._gave_up = bool(still_open) and not any(tried[index] for index in still_open)
         return best, errors
 
     def moved(self, q: Vector, going: Sequence[Evaluation], steps: Sequence[Vector]) -> Vector:
@@ -262,35 +281,39 @@ class Assembler:
         # Pinocchio brings quaternions back to unit length to first order alone.
         return np.asarray(pin.normalize(self._model, pin.integrate(self._model, q, v)))
 
-    def _descend(self, q: Vector, going: Sequence[Evaluation]) -> tuple[Vector, list[Descent]]:
-        """Where the descents of the groups lead to (nq,), and the descents."""
+    def _descend(self, q: Vector, going: Sequence[Evaluation]) -> tuple[Vector, list[Descent], list[bool]]:
+        """Where the descents of the groups lead to (nq,), the descents, and whether each came to its end."""
         q = np.array(q)
         self.iterations += 1
         descents = [Descent(evaluation, q) for evaluation in going]
+        moving: list[Descent] = []
         for _ in range(_MOST_STEPS):
             moving = [descent for descent in descents if descent.error > self.tolerance and not descent.stuck]
-            self._work += sum(_work_of_step(descent.evaluation.group) for descent in moving)
-            if not moving or self._work > _MOST_WORK:
+            feasible = [descent for descent in moving if _feasible(descent.evaluation)]
+            self._work += sum(_work_of_step(descent.evaluation.group) for descent in feasible)
+            if not feasible or self._work > _MOST_WORK:
                 break
-            steps = [descent.step(self._room(q, descent.evaluation)) for descent in moving]
-            trial = self.moved(q, [descent.evaluation for descent in moving], steps)
+            steps = [descent.step(self._room(q, descent.evaluation)) for descent in feasible]
+            trial = self.moved(q, [descent.evaluation for descent in feasible], steps)
             self.iterations += 1
-            for descent in moving:
+            for descent in feasible:
                 if descent.arrive(trial):
                     coordinates = descent.evaluation.group.coordinates
                     q[coordinates] = trial[coordinates]
-        return q, descents
+        else:
+            moving = []
+        cut = set(moving)
+        return q, descents, [descent not in cut for descent in descents]
 
     def _within_limits(self, q: Vector, going: Sequence[Evaluation]) -> Vector:
-        if self.limits is not None:
-            for evaluation in going:
-                q = self.limits.clip(q, evaluation.group.velocities)
-        return q
+        if self.limits is None or not going:
+            return q
+        return self.limits.clip(q, np.concatenate([evaluation.group.velocities for evaluation in going]))
 
     def _pressed(self, q: Vector, limits: PositionLimits) -> tuple[JointAtLimit, ...]:
         """The joints at their limits that -Kᵀ r, down the residual, would move beyond them."""
         down = np.zeros(self._model.nv)
-        for evaluation in self._whole:
+        for evaluation in filter(_feasible, self._whole):
             b = evaluation.row_scale * evaluation.residual(q)
             down[evaluation.group.velocities] = -evaluation.jacobian().T @ b
         return limits.pressed(q, down)
@@ -334,10 +357,14 @@ class _Known:
 _KNOWN: weakref.WeakKeyDictionary[Any, dict[tuple[str, ...], _Known]] = weakref.WeakKeyDictionary()
 
 
+def _feasible(evaluation: Evaluation) -> bool:
+    return _work_of_step(evaluation.group) <= _MOST_WORK
+
+
 def _work_of_step(group: LoopGroup) -> float:
-    """Multiplications that the smaller one of A Aᵀ and Aᵀ A takes."""
+    """Multiplications that the smaller one of A Aᵀ and Aᵀ A takes, and what the evaluation of A takes beside them."""
     m, n = len(group.rows), len(group.velocities)
-    return float(m) * n * min(m, n)
+    return float(m) * n * min(m, n) + _WORK_OF_A_CLOSURE * len(group.closures)
 
 
 def _said_of_closures(robot: Robot) -> list[tuple[Any, ...]]:
