@@ -119,6 +119,31 @@ def mimics(joints: int, last: str) -> str:
     )
 
 
+def shared(closures: int, joints: int) -> tuple[str, str]:
+    """Closures between the first hundred links of a chain and its last ones."""
+    pairs = (f"l{i % 100}, l{joints - i // 100}" for i in range(closures))
+    items = "".join(f"- {{name: c{i}, type: 3d, frames: [{pair}]}}\n" for i, pair in enumerate(pairs))
+    return f"{VERSION2}closures:\n{items}", chain(joints)
+
+
+def four_bars(count: int, in_series: bool, ground: float = 1.6) -> tuple[str, str]:
+    """Four-bars, each on the rocker of the one before, or side by side on the ground; they close up to 3.7 m of it."""
+    links, joints, closures, foot, y = ["ground"], [], [], "ground", 0.0
+    for i in range(count):
+        parent = foot
+        for name, xyz in (("crank", f"0 {y} 0"), ("coupler", "1 0 0"), ("rocker", "1.5 0 0")):
+            links.append(f"{name}{i}")
+            joints.append(
+                joint(f"{name}_pin{i}", parent, f"{name}{i}", content=f'<origin xyz="{xyz}"/><axis xyz="0 0 1"/>')
+            )
+            parent = f"{name}{i}"
+        ends = f"{{link: {foot}, xyz: [{ground}, {y}, 0]}}, {{link: {parent}, xyz: [1.2, 0, 0]}}"
+        closures.append(f"- {{name: loop{i}, type: 3d, frames: [{ends}]}}\n")
+        foot, y = (parent, 0.1) if in_series else ("ground", y + 0.1)
+    cranks = ", ".join(f"crank_pin{i}" for i in range(count))
+    return f"{VERSION2}actuators: [{cranks}]\nclosures:\n{''.join(closures)}", robot(links, joints)
+
+
 def many(key: str, item: str, count: int) -> str:
     return f"{VERSION2}{key}:\n" + "".join(f"- {item.format(i)}\n" for i in range(count))
 
@@ -149,7 +174,7 @@ HOSTILE = {
     "an alias bomb": _yaml("yaml-alias", alias_bomb()),
     "100,000 elements in one another": _urdf("file-too-large", lambda: "<a>" * 100_000 + "</a>" * 100_000),
     "100,000 lists in one another": _yaml("yaml-too-deep", "[" * 100_000),
-    "a scalar of 4 MB": _yaml("urdf-not-found", f"{VERSION2}urdf: {'x' * 4_000_000}\n"),
+    "a scalar of 16 MB": _yaml("urdf-not-found", f"{VERSION2}urdf: {'x' * 16_000_000}\n"),
     "8,000 keys that are near misses": _yaml("", "type: []\n" + "".join(f"name_mo{i}: 1\n" for i in range(8_000))),
     "20,000 unknown keys": _yaml("unknown-key", VERSION2 + "".join(f"clos{i}: 1\n" for i in range(20_000))),
     # a fault over and over
@@ -200,8 +225,11 @@ HOSTILE = {
     ),
     # large structures
     "a chain of 20,000 links": _urdf("file-too-large", lambda: chain(20_000)),
-    "a chain of 5,000 fixed links": _urdf("", lambda: chain(5_000, "fixed")),
-    "3,000 links on one": _urdf("", lambda: star(3_000)),
+    "a chain of 4,000 joints": _urdf("", lambda: chain(4_000)),
+    "a chain of 4,001 joints": _urdf("file-too-large", lambda: chain(4_001)),
+    "a chain of 666 floating joints": _urdf("", lambda: chain(666, "floating")),
+    "a chain of 10,000 fixed links": _urdf("", lambda: chain(10_000, "fixed")),
+    "4,000 links on one": _urdf("", lambda: star(4_000)),
     "a cycle of 10,000 links": _urdf(
         "urdf-cycle",
         lambda: robot(numbered(10_000), [joint(f"j{i}", f"l{i}", f"l{(i + 1) % 10_000}") for i in range(10_000)]),
@@ -216,20 +244,13 @@ HOSTILE = {
             chain(6_000),
         ),
     ),
-    "6,000 closures on 200 joints": _files(
-        "file-too-large",
-        lambda: (
-            many("closures", "{{name: c{0}, type: 3d, frames: [l1, {{link: l200, xyz: [{0}, 0, 0]}}]}}", 6_000),
-            chain(200),
-        ),
-    ),
-    "500 closures that share 500 joints": _files(
-        "",
-        lambda: (
-            many("closures", "{{name: c{0}, type: 6d, frames: [l1, {{link: l500, xyz: [{0}, 0, 0]}}]}}", 500),
-            chain(500),
-        ),
-    ),
+    "6,000 closures that share 400 joints": _files("", lambda: shared(6_000, 400)),
+    "6,666 closures that share 4,000 joints": _files("", lambda: shared(6_666, 4_000)),
+    "6,667 closures": _files("file-too-large", lambda: shared(6_667, 400)),
+    "500 closures that share 500 joints": _files("", lambda: shared(500, 500)),
+    "1,000 four-bars side by side": _files("", lambda: four_bars(1_000, in_series=False)),
+    "1,000 four-bars in series": _files("", lambda: four_bars(1_000, in_series=True)),
+    "1,000 four-bars that cannot close": _files("", lambda: four_bars(1_000, in_series=True, ground=4.0)),
     "6,000 frames": _yaml("", many("frames", "{{name: f{}, link: l0}}", 6_000)),
     "6,000 meshes that are not there": _urdf(
         "",

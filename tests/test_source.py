@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from eurdf.diagnostics import Fault
-from eurdf.reading.source import URDF_LIMIT, YAML_LIMIT, Source, read_source
+from eurdf.reading.source import FILE_LIMIT, Source, read_source
 
 
 def fault_of(path: str | os.PathLike[str], **options: int) -> Fault:
@@ -52,14 +52,13 @@ def test_a_file_as_large_as_the_limit_is_read_and_one_byte_more_is_refused(tmp_p
     assert fault_of(path, limit=99_999).diagnostic.code == "file-too-large"
 
 
-@pytest.mark.parametrize("limit", [YAML_LIMIT, URDF_LIMIT])
-def test_a_file_of_100_megabytes_is_refused_without_being_read(tmp_path: Path, limit: int) -> None:
+def test_a_file_of_100_megabytes_is_refused_without_being_read(tmp_path: Path) -> None:
     path = tmp_path / "robot.urdf"
     with path.open("wb") as file:
         file.truncate(100_000_000)
-    diagnostic = fault_of(path, limit=limit).diagnostic
+    diagnostic = fault_of(path).diagnostic
     assert diagnostic.code == "file-too-large"
-    assert f"{limit:,} bytes" in diagnostic.message
+    assert f"{FILE_LIMIT:,} bytes" in diagnostic.message
 
 
 @pytest.mark.skipif(not os.path.exists("/proc/self/status"), reason="there is no /proc here")

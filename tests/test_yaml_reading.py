@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from eurdf.diagnostics import Diagnostic, Fault, Place
 from eurdf.reading.core_schema import resolve
-from eurdf.reading.source import YAML_LIMIT, Source
+from eurdf.reading.source import FILE_LIMIT, Source
 from eurdf.reading.yaml_reader import DEPTH_LIMIT, DIRECTIVE_LIMIT, NODE_LIMIT, YamlDocument, read_yaml
 
 Pointer = tuple[str | int, ...]
@@ -446,7 +446,7 @@ def test_endless_nesting_is_refused(opening: str) -> None:
         "- 1\n" * 1_000_000,
         "a: [" + "1," * 1_500_000 + "]",
         "".join(f"%TAG !a{n}! b\n" for n in range(200_000)) + "---\na: 1\n",
-        "a: 1\n" + "#" * YAML_LIMIT,
+        "a: 1\n" + "#" * FILE_LIMIT,
     ],
     ids=["items", "flow items", "directives", "bytes"],
 )

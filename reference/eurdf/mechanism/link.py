@@ -19,12 +19,14 @@ from eurdf.mechanism.spanning_tree import bodies_of, depth_first, joint_of, rigi
 from eurdf.reading.yaml_node import json_pointer
 from eurdf.reading.yaml_reader import YamlDocument
 
-#: Joints that a robot may have. The memory of a model grows with the square of the depth of its tree.
+#: Joints that a robot may have, fixed ones too.
 JOINT_LIMIT = 10_000
 
-#: What the number of closures times that of joints may be: as many entries, at most, has the constraint Jacobian for
-#: each of a closure's rows.
-CLOSURES_TIMES_JOINTS_LIMIT = 1_000_000
+#: Velocities that the joints of a robot may have. The memory of a model grows with the square of their number.
+VELOCITY_LIMIT = 4_000
+
+#: Constraint rows that the closures of a robot may have. A model of a closure takes memory for each velocity.
+ROW_LIMIT = 20_000
 
 
 def link(
@@ -61,14 +63,17 @@ def link(
 def _refuse_too_large(
     mechanism: Mechanism, urdf: Urdf, document: YamlDocument | None, diagnostics: Diagnostics
 ) -> None:
-    """EU-FIL-002: a robot is not so large that its model could not be held, or its loops not be closed."""
-    joints, closures = len(mechanism.joints), len(mechanism.closures)
+    """EU-FIL-002: a robot is not so large that its model takes more memory than a machine has."""
+    joints = len(mechanism.joints)
+    velocities = sum(joint.coordinates.nv for joint in mechanism.joints)
     if joints > JOINT_LIMIT:
         message = f"the robot has {joints:,} joints; it may have {JOINT_LIMIT:,}"
         diagnostics.report("file-too-large", message, urdf.document.place(urdf.document.root))
-    elif closures * joints > CLOSURES_TIMES_JOINTS_LIMIT and document is not None:
-        most = CLOSURES_TIMES_JOINTS_LIMIT // joints
-        message = f"the robot has {closures:,} closures on {joints:,} joints; on so many it may have {most:,}"
+    elif velocities > VELOCITY_LIMIT:
+        message = f"the joints of the robot have {velocities:,} velocities; they may have {VELOCITY_LIMIT:,}"
+        diagnostics.report("file-too-large", message, urdf.document.place(urdf.document.root))
+    elif mechanism.nc > ROW_LIMIT and document is not None:
+        message = f"the closures of the robot have {mechanism.nc:,} constraint rows; they may have {ROW_LIMIT:,}"
         key = "closed_loop" if mechanism.version == "1" else "closures"
         diagnostics.report("file-too-large", message, document.place((key,)))
 

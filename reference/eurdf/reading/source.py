@@ -16,11 +16,8 @@ BOM = b"\xef\xbb\xbf"
 #: Where a line ends.
 BREAK = re.compile("\r\n?|\n")
 
-#: Bytes that the YAML file may have.
-YAML_LIMIT = 4 << 20
-
-#: Bytes that the URDF may have.
-URDF_LIMIT = 64 << 20
+#: Bytes that a file may have (EU-FIL-002).
+FILE_LIMIT = 16 << 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +79,7 @@ class Source:
         return None if self.is_file else self.text
 
 
-def read_source(path: str | os.PathLike[str], limit: int = URDF_LIMIT) -> Source:
+def read_source(path: str | os.PathLike[str], limit: int = FILE_LIMIT) -> Source:
     """Read a text file.
 
     Never reads more than ``limit`` bytes, and nothing that is not a regular file: a pipe or a device could block.

@@ -7,7 +7,7 @@ import re
 from lxml import etree
 
 from eurdf.diagnostics import Fault, Place
-from eurdf.reading.source import URDF_LIMIT, Source, short, too_large
+from eurdf.reading.source import FILE_LIMIT, Source, short, too_large
 from eurdf.reading.xml_syntax import DEPTH_LIMIT, NAMESPACE_ERRORS, refused, syntax_fault
 
 #: Tags and attributes that a file may have: what takes memory is their number.
@@ -103,8 +103,8 @@ def read_xml(source: Source) -> XmlDocument:
     Raises:
         Fault: ``file-too-large``, ``file-not-utf8``, ``xml-doctype`` or ``xml-syntax``.
     """
-    if len(source.data) > URDF_LIMIT:
-        raise too_large(source.file, f"{URDF_LIMIT:,} bytes")
+    if len(source.data) > FILE_LIMIT:
+        raise too_large(source.file, f"{FILE_LIMIT:,} bytes")
     if len(source.text) > TAG_LIMIT and source.text.count("<") + source.text.count("=") > TAG_LIMIT:
         raise too_large(source.file, f"{TAG_LIMIT:,} tags and attributes")
     _refuse_other_encoding(source)

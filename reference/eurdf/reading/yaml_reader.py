@@ -23,7 +23,7 @@ from yaml.events import (
 
 from eurdf.diagnostics import Fault, Place
 from eurdf.reading.core_schema import TAG_PREFIX, resolve, resolve_tagged
-from eurdf.reading.source import YAML_LIMIT, Source, short, too_large
+from eurdf.reading.source import FILE_LIMIT, Source, short, too_large
 from eurdf.reading.yaml_node import Alias, Collection, Node, Span, json_pointer
 from eurdf.reading.yaml_syntax import syntax_fault, unusual_name
 
@@ -86,8 +86,8 @@ def read_yaml(source: Source) -> YamlDocument:
     Raises:
         Fault: ``file-too-large`` or one of the ``yaml-`` codes, at the first thing that is wrong.
     """
-    if len(source.data) > YAML_LIMIT:
-        raise too_large(source.file, f"{YAML_LIMIT:,} bytes")
+    if len(source.data) > FILE_LIMIT:
+        raise too_large(source.file, f"{FILE_LIMIT:,} bytes")
     data, original = _without_other_breaks(source)
     text = source.text.rstrip(" ")
     if text != source.text and text[-1:] in "\r\n":
