@@ -38,7 +38,7 @@ def actuated(linkage: Linkage, joints: Sequence[str] | None = None) -> Robot:
     found = [model.joints[model.getJointId(name)] for name in names]
     idx_q = np.array([joint.idx_q + k for joint in found for k in range(joint.nq)], np.intp)
     idx_v = np.array([joint.idx_v + k for joint in found for k in range(joint.nv)], np.intp)
-    actuation = Actuation(names, idx_q, idx_v, np.eye(model.nv)[:, idx_v])
+    actuation = Actuation(names, idx_q, idx_v, model.nv)
     no_mechanism: Any = None
     return Robot(no_mechanism, model, linkage.constraint_models, actuation, None, None, dict(linkage.configurations))
 

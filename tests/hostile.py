@@ -95,8 +95,12 @@ def joint(name: str, parent: str, child: str, kind: str = "continuous", content:
     return f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>{content}</joint>'
 
 
-def robot(links: Sequence[str], joints: Sequence[str]) -> str:
-    return '<robot name="r">' + "".join(f'<link name="{link}"/>' for link in links) + "".join(joints) + "</robot>"
+INERTIAL = '<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
+
+
+def robot(links: Sequence[str], joints: Sequence[str], content: str = "") -> str:
+    elements = (f'<link name="{link}">{content}</link>' for link in links)
+    return '<robot name="r">' + "".join(elements) + "".join(joints) + "</robot>"
 
 
 def numbered(count: int, prefix: str = "l") -> list[str]:
@@ -141,7 +145,7 @@ def four_bars(count: int, in_series: bool, ground: float = 1.6) -> tuple[str, st
         closures.append(f"- {{name: loop{i}, type: 3d, frames: [{ends}]}}\n")
         foot, y = (parent, 0.1) if in_series else ("ground", y + 0.1)
     cranks = ", ".join(f"crank_pin{i}" for i in range(count))
-    return f"{VERSION2}actuators: [{cranks}]\nclosures:\n{''.join(closures)}", robot(links, joints)
+    return f"{VERSION2}actuators: [{cranks}]\nclosures:\n{''.join(closures)}", robot(links, joints, INERTIAL)
 
 
 def many(key: str, item: str, count: int) -> str:

@@ -9,14 +9,10 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
+from eurdf.pinocchio.actuation import Actuation
 from plain_urdf import inertial, joint_element, link_element
 
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
-
-
-@dataclass
-class Actuation:
-    selection: Any
 
 
 @dataclass(eq=False)
@@ -31,12 +27,18 @@ class Linkage:
     @property
     def actuation(self) -> Actuation:
         rows = [row for name in self.actuated for row in velocities(self.model, name)]
-        return Actuation(np.eye(self.model.nv)[:, rows])
+        coordinates = [row for name in self.actuated for row in coordinates_of(self.model, name)]
+        return Actuation(tuple(self.actuated), np.array(coordinates, np.intp), np.array(rows, np.intp), self.model.nv)
 
 
 def velocities(model: Any, joint: str) -> range:
     index = model.getJointId(joint)
     return range(model.idx_vs[index], model.idx_vs[index] + model.nvs[index])
+
+
+def coordinates_of(model: Any, joint: str) -> range:
+    index = model.getJointId(joint)
+    return range(model.idx_qs[index], model.idx_qs[index] + model.nqs[index])
 
 
 def translation(*xyz: float) -> Any:

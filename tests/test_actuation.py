@@ -122,3 +122,8 @@ def test_a_ball_made_of_three_joints_has_its_motor_too() -> None:
 )
 def test_an_actuator_is_a_joint_that_moves_listed_once(yaml: str, fault: str) -> None:
     assert codes(STAR, yaml) == [fault]
+
+
+def test_the_selection_is_made_once() -> None:
+    actuation = load(STAR, "actuators: [c, a]\n").actuation
+    assert actuation.selection is actuation.selection

@@ -212,8 +212,8 @@ def _left_out(assembler: Assembler, assembly: Assembly) -> str:
     group = max(groups, key=_work)
     what = "ranks are" if assembly.closes else "whether the loops can be closed is"
     return (
-        f"{what} not computed: {len(group.closures):,} closures that share joints have {len(group.rows):,} constraint "
-        f"rows on {len(group.velocities):,} velocities"
+        f"{what} not computed: the loops that share joints with that of '{assembly.open[group.closures[0]].name}' have "
+        f"{len(group.rows):,} constraint rows on {len(group.velocities):,} velocities"
     )
 
 

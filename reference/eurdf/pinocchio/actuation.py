@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +14,7 @@ from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.coordinates import Slot, slots
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Actuation:
     """The actuated joints, in file order, and where they stand in a model, along each of their velocities (EU-ACT-007).
 
@@ -21,14 +22,23 @@ class Actuation:
         joints: Their names.
         idx_q: Indices of all their coordinates in q, joint by joint.
         idx_v: Indices of all their velocities in v, joint by joint; there are nu.
-        selection: S, of shape (nv, nu): motor torques u act on the mechanism as S u. Column k is the unit vector of
-            ``idx_v[k]``.
+        nv: Number of velocities of the model.
     """
 
     joints: tuple[str, ...]
     idx_q: npt.NDArray[np.intp]
     idx_v: npt.NDArray[np.intp]
-    selection: npt.NDArray[np.float64]
+    nv: int
+
+    @cached_property
+    def selection(self) -> npt.NDArray[np.float64]:
+        """S, of shape (nv, nu): motor torques u act on the mechanism as S u. It is dense, and made when first asked for.
+
+        Column k is the unit vector of ``idx_v[k]``.
+        """
+        selection = np.zeros((self.nv, len(self.idx_v)))
+        selection[self.idx_v, np.arange(len(self.idx_v))] = 1.0
+        return selection
 
 
 def build_actuation(mechanism: Mechanism, model: pin.Model, at: Mapping[str, Slot] | None = None) -> Actuation:
@@ -40,11 +50,9 @@ def build_actuation(mechanism: Mechanism, model: pin.Model, at: Mapping[str, Slo
         at: The `slots` of the two, where the caller has them.
     """
     if not mechanism.actuators:
-        return Actuation((), np.empty(0, np.intp), np.empty(0, np.intp), np.empty((model.nv, 0)))
+        return Actuation((), np.empty(0, np.intp), np.empty(0, np.intp), model.nv)
     at = slots(mechanism, model) if at is None else at
     actuated = [at[name] for name in mechanism.actuators]
     idx_q = np.array([slot.idx_q + k for slot in actuated for k in range(slot.nq)], np.intp)
     idx_v = np.array([slot.idx_v + k for slot in actuated for k in range(slot.nv)], np.intp)
-    selection = np.zeros((model.nv, len(idx_v)))
-    selection[idx_v, np.arange(len(idx_v))] = 1.0
-    return Actuation(mechanism.actuators, idx_q, idx_v, selection)
+    return Actuation(mechanism.actuators, idx_q, idx_v, model.nv)
