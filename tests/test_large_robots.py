@@ -1,4 +1,4 @@
-"""Robots of thousands of joints: what we make of them grows as their number does, and no `pin.Data` is made for them."""
+"""Robots of thousands of joints: what we make of them grows as their number does, and no `pin.Data` is made."""
 
 from __future__ import annotations
 
@@ -115,7 +115,8 @@ def test_loops_that_share_too_many_joints_are_left_out_in_one_line(
     assert analysis.closes
     assert (analysis.rank, analysis.mobility, analysis.loops) == (None, None, ())
     assert analysis.left_out == (
-        "ranks are not computed: the loops that share joints with that of 'loop0' have 3 constraint rows on 3 velocities"
+        "ranks are not computed: the loops that share joints with that of 'loop0' have 3 constraint rows "
+        "on 3 velocities"
     )
     assert robot_info(loaded, analysis).left_out == analysis.left_out
 
@@ -133,7 +134,7 @@ def test_a_group_that_is_too_large_does_not_keep_the_others_open(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("eurdf.kinematics.assembly._MOST_VELOCITIES_WITH_DATA", 0)
-    # Two loops of the chain of three four-bars share their joints with one around all of them.
+    # The first three loops share their joints with one around them.
     description, urdf = four_bars(5, in_series=True)
     around = (
         "- {name: around, type: 3d, frames: [{link: ground, xyz: [0.5, 0, 0]}, {link: rocker2, xyz: [0.2, 0, 0]}]}\n"

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from eurdf.assembled import BeyondLimit, beyond_limits
 from eurdf.kinematics.assembly import assemble
-from eurdf.kinematics.loop import find_loops
+from eurdf.kinematics.loop import find_loops, joints_of_loops
 from eurdf.kinematics.velocity_names import velocity_names
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ def advise_on_limits(description: Description, robot: Robot, q: Vector, diagnost
     within = assemble(robot, limits=True)
     if not within.closes:
         within = min(within, assemble(robot, q, limits=True), key=lambda found: (not found.closes, found.residual))
-    if within.closes:
+    if within.closes or within.reason == "given up":
         return
     near = assemble(robot, within.q)
     if near.closes:
@@ -54,8 +54,9 @@ def advise_on_limits(description: Description, robot: Robot, q: Vector, diagnost
 
 def _beyond(robot: Robot, q: Vector) -> list[BeyondLimit]:
     """The coordinates of joints of the loops that are beyond their limits."""
-    names = velocity_names(robot.model)
-    in_loops = {names[velocity] for loop in find_loops(robot) for velocity in loop.velocities.tolist()}
+    names, first = velocity_names(robot.model), robot.model.idx_vs.tolist()
+    joints = joints_of_loops(find_loops(robot), robot.model.parents.tolist())
+    in_loops = {names[first[joint]] for joint in joints}
     return [found for found in beyond_limits(robot.mechanism, robot.coordinates(q)) if found.joint in in_loops]
 
 

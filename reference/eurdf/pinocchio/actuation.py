@@ -32,9 +32,9 @@ class Actuation:
 
     @cached_property
     def selection(self) -> npt.NDArray[np.float64]:
-        """S, of shape (nv, nu): motor torques u act on the mechanism as S u. It is dense, and made when first asked for.
+        """S, of shape (nv, nu): motor torques u act on the mechanism as S u.
 
-        Column k is the unit vector of ``idx_v[k]``.
+        Column k is the unit vector of ``idx_v[k]``. The matrix is dense, and made when first asked for.
         """
         selection = np.zeros((self.nv, len(self.idx_v)))
         selection[self.idx_v, np.arange(len(self.idx_v))] = 1.0
