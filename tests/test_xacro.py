@@ -186,6 +186,6 @@ def test_an_expansion_is_bounded_in_time_and_size(folder: Path, monkeypatch: pyt
     with pytest.raises(eurdf.CannotExpand, match="longer than 1 s"):
         eurdf.check("bomb.xacro")
     monkeypatch.undo()
-    monkeypatch.setattr(xacro, "URDF_LIMIT", 100)
+    monkeypatch.setattr(xacro, "FILE_LIMIT", 100)
     monkeypatch.chdir(folder)
     assert [found.code for found in eurdf.check("arm.urdf.xacro").diagnostics] == ["file-too-large"]

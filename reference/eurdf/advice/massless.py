@@ -9,7 +9,7 @@ import numpy as np
 import pinocchio as pin
 
 from eurdf.kinematics.array import Matrix, Vector
-from eurdf.kinematics.loop import find_loops
+from eurdf.kinematics.loop import find_loops, joints_of_loops
 from eurdf.kinematics.scale import characteristic_length
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ def advise_on_massless_links(description: Description, robot: Robot, q: Vector, 
         diagnostics: Gets what is found.
     """
     model = robot.model
-    looped = {joint for loop in find_loops(robot) for joint in loop.joints}
+    looped = set(joints_of_loops(find_loops(robot), model.parents.tolist()))
     massless = {joint for joint in range(1, model.njoints) if _is_massless(model.inertias[joint])}
     if massless.isdisjoint(looped):
         return

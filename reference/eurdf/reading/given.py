@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from eurdf.diagnostics import Fault, Place
-from eurdf.reading.source import BOM, URDF_LIMIT, Source, decoded, too_large
+from eurdf.reading.source import BOM, FILE_LIMIT, Source, decoded, too_large
 
 #: What is given: a path, ``-`` for standard input, or the text itself.
 Given = str | bytes | os.PathLike[str]
@@ -53,7 +53,7 @@ def shown(given: Given) -> str:
     return "<stdin>" if given == STDIN else os.fsdecode(given)
 
 
-def source_of(given: Given, limit: int = URDF_LIMIT) -> Source | None:
+def source_of(given: Given, limit: int = FILE_LIMIT) -> Source | None:
     """The source of a text, or of what a stream holds; None for the path of anything else.
 
     Relative paths in it start from the working directory.

@@ -19,7 +19,7 @@ from typing import Any
 from eurdf.diagnostics import did_you_mean
 from eurdf.exceptions import CannotExpand, MissingExtra
 from eurdf.reading.resource import package_homes
-from eurdf.reading.source import URDF_LIMIT, Source, too_large
+from eurdf.reading.source import FILE_LIMIT, Source, too_large
 
 #: Time allowed for an expansion, s.
 TIME_LIMIT = 60.0
@@ -66,7 +66,7 @@ def expand(
         "file": file,
         "arguments": dict(arguments or {}),
         "homes": [str(home) for home in package_homes(folder, package_dirs)],
-        "limit": URDF_LIMIT,
+        "limit": FILE_LIMIT,
     }
     answer = _answer(file, request)
     unknown = next(iter(answer["unused"]), None)
@@ -75,7 +75,7 @@ def expand(
         hint = did_you_mean(unknown, known) or (f"it has {', '.join(known)}" if known else "it has none")
         raise CannotExpand(file, f"it has no argument '{unknown}': {hint}")
     if answer["error"] == "too large":
-        raise too_large(f"{file} (expanded)", f"{URDF_LIMIT:,} bytes")
+        raise too_large(f"{file} (expanded)", f"{FILE_LIMIT:,} bytes")
     if answer["error"]:
         raise CannotExpand(file, answer["error"])
     text = answer["urdf"]
