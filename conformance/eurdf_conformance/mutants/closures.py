@@ -193,6 +193,13 @@ def turning_of_a_forgotten() -> Deviation:
     return _derivative(lambda aMb: np.eye(3, 6), spatial=False)
 
 
+def _on_path(loop: Any, **changes: Any) -> Any:
+    """The loop with another path."""
+    changed = replace(loop)
+    vars(changed)["path"] = loop.path._replace(**changes)
+    return changed
+
+
 def _loops(change: Callable[[Any], Any]) -> Deviation:
     """The loops are others, where K is made of them."""
     return while_evaluating(
@@ -203,13 +210,13 @@ def _loops(change: Callable[[Any], Any]) -> Deviation:
 @mutant("EU-CLO-010")
 def motion_of_a_forgotten() -> Deviation:
     """K leaves out the joints that move A."""
-    return _loops(lambda loop: replace(loop, signs=np.maximum(loop.signs, 0.0)))
+    return _loops(lambda loop: _on_path(loop, signs=np.maximum(loop.path.signs, 0.0)))
 
 
 @mutant("EU-CLO-010")
 def one_of_two_followers_forgotten() -> Deviation:
     """Where several joints of a loop follow one coordinate, the last one alone counts in K."""
-    return _loops(lambda loop: replace(loop, mimics=False))
+    return _loops(lambda loop: _on_path(loop, mimics=False))
 
 
 @mutant("EU-CLO-010")
@@ -225,7 +232,8 @@ def turning_after_a_slide_forgotten() -> Deviation:
         ]
         columns = [robot.model.idx_vExtendeds[robot.model.getJointId(name)] for name in turning]
         return tuple(
-            replace(loop, signs=np.where(np.isin(loop.columns, columns), 0.0, loop.signs)) for loop in original(robot)
+            _on_path(loop, signs=np.where(np.isin(loop.path.columns, columns), 0.0, loop.path.signs))
+            for loop in original(robot)
         )
 
     return while_evaluating(lambda: around(residual, "find_loops", loops))
@@ -234,7 +242,7 @@ def turning_after_a_slide_forgotten() -> Deviation:
 @mutant("EU-CLO-010")
 def sign_of_k() -> Deviation:
     """K has the other sign than the residual."""
-    return _loops(lambda loop: replace(loop, signs=-loop.signs))
+    return _loops(lambda loop: _on_path(loop, signs=-loop.path.signs))
 
 
 @mutant("EU-CLO-010")
