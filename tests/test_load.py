@@ -70,6 +70,17 @@ def test_a_folder_stands_for_the_description_in_it(tmp_path: Path) -> None:
     assert eurdf.load(_write(tmp_path / "c", URDF)).actuation.joints == ()
 
 
+@pytest.mark.parametrize("name", ["leg.eurdf.yaml", "leg.eurdf.yml", "LEG.EURDF.YAML"])
+def test_of_several_yaml_files_the_one_that_is_named_eurdf_is_the_description(tmp_path: Path, name: str) -> None:
+    (tmp_path / "robot.urdf").write_bytes((ROBOTS / "four_bar" / "robot.urdf").read_bytes())
+    (tmp_path / name).write_bytes((ROBOTS / "four_bar" / "robot.yaml").read_bytes())
+    (tmp_path / "config.yaml").write_text("rate: 100\n", encoding="utf-8")
+    assert len(eurdf.load(tmp_path).constraint_models) == 1
+    (tmp_path / "arm.eurdf.yaml").write_text("closed_loop: []\n", encoding="utf-8")
+    with pytest.raises(eurdf.RobotNotFound, match="name the one you mean"):
+        eurdf.load(tmp_path)
+
+
 def test_a_folder_that_holds_none_or_several_is_not_guessed_at(tmp_path: Path) -> None:
     empty = tmp_path / "empty"
     empty.mkdir()

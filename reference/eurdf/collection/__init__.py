@@ -107,6 +107,8 @@ def _in_folder(folder: Path, given: Path | Source | None) -> RobotFiles:
             return RobotFiles(description, given)
     files = sorted(path for path in folder.iterdir() if path.is_file())
     descriptions = [path for path in files if path.suffix.lower() in _YAML]
+    # By the ending that catalogues of schemas know, other YAML files beside it aside.
+    descriptions = [path for path in descriptions if path.stem.lower().endswith(".eurdf")] or descriptions
     if len(descriptions) == 1:
         return RobotFiles(descriptions[0], given)
     if not descriptions:
