@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import shlex
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import cast
 
 from eurdf.format.field import is_own_key
@@ -157,44 +157,35 @@ def with_type(found: Found, closure_type: ClosureType) -> Found:
 # -- closures -----------------------------------------------------------------------------------------------------
 
 
+@dataclass(slots=True)
+class _Loop:
+    """What names say of one loop.
+
+    Attributes:
+        sides: For each side, the names of links and joints.
+        types: Those that the names say.
+        axis_of: Name of the loop that it is the axis of, where it is a second point on a hinge.
+    """
+
+    sides: dict[str, list[str]] = field(default_factory=dict)
+    types: set[ClosureType] = field(default_factory=set)
+    axis_of: str | None = None
+
+
 def _closures(urdf: Urdf, patterns: Iterable[re.Pattern[str]], warnings: list[str]) -> list[NamedClosure]:
     bodies = {name: name for name in urdf.links}
     for joint in urdf.joints.values():
         bodies.setdefault(joint.name, joint.child)
-    loops: dict[str, dict[str, list[str]]] = {}
-    types: dict[str, set[ClosureType]] = {}
-    axes: dict[str, str] = {}
-    for pattern in patterns:
-        # Links come first: of a link and the joint that fixes it, the link is the frame that was meant.
-        for name in bodies:
-            match = pattern.fullmatch(name)
-            if match is None or match["side"] is None:
-                continue
-            loop = _loop(match)
-            if "axis" in pattern.groupindex and match["axis"]:
-                axes[loop + match["axis"]] = loop
-                loop += match["axis"]
-            names = loops.setdefault(loop, {}).setdefault(match["side"].upper(), [])
-            if name not in names:
-                names.append(name)
-            told = match["type"] if "type" in pattern.groupindex else None
-            if told is not None and told.lower() in ("3d", "6d"):
-                types.setdefault(loop, set()).add(cast(ClosureType, told.lower()))
+    loops = _loops(bodies, patterns)
     rigid = _rigid(urdf)
     joined: dict[frozenset[str], str] = {}
     paired: list[NamedClosure] = []
-    for loop in sorted(loops, key=_natural):
-        sides = loops[loop]
-        if len(sides) != 2:
-            warnings.append(_unpaired(loop, sides))
+    for name in sorted(loops, key=_natural):
+        loop = loops[name]
+        if len(loop.sides) != 2:
+            warnings.append(_unpaired(name, loop.sides))
             continue
-        frames = []
-        for side in sorted(sides, key=_natural):
-            names = sides[side]
-            if len({bodies[name] for name in names}) > 1:
-                others = ", ".join(f"'{name}'" for name in names[1:])
-                warnings.append(f"side {side} of loop '{loop}' is taken to be '{names[0]}'; it might be {others}")
-            frames.append(names[0])
+        frames = [_frame(name, side, loop.sides[side], bodies, warnings) for side in sorted(loop.sides, key=_natural)]
         a, b = bodies[frames[0]], bodies[frames[1]]
         if rigid[a] == rigid[b]:
             warnings.append(
@@ -203,15 +194,50 @@ def _closures(urdf: Urdf, patterns: Iterable[re.Pattern[str]], warnings: list[st
         elif (pair := frozenset({a, b})) in joined:
             warnings.append(f"'{frames[0]}' and '{frames[1]}' are the two frames of '{joined[pair]}' already: left out")
         else:
-            joined[pair] = loop
-            if len(told_types := types.get(loop, set())) > 1:
-                warnings.append(f"the names of loop '{loop}' say both 3d and 6d: neither is taken from them")
-            type_ = told_types.pop() if len(told_types) == 1 else None
-            paired.append(NamedClosure(loop, type_, (frames[0], frames[1])))
-    names_of_pairs = {closure.name for closure in paired}
-    hinges = {name for axis, loop in axes.items() if {axis, loop} <= names_of_pairs for name in (axis, loop)}
+            joined[pair] = name
+            if len(loop.types) > 1:
+                warnings.append(f"the names of loop '{name}' say both 3d and 6d: neither is taken from them")
+            type_ = next(iter(loop.types)) if len(loop.types) == 1 else None
+            paired.append(NamedClosure(name, type_, (frames[0], frames[1])))
+    names = {closure.name for closure in paired}
+    hinges = {
+        each
+        for name in names
+        if (point := loops[name].axis_of) is not None and point in names
+        for each in (name, point)
+    }
     # Two points hold a hinge, each in position alone.
     return [replace(closure, type="3d", hinge=True) if closure.name in hinges else closure for closure in paired]
+
+
+def _loops(names: Iterable[str], patterns: Iterable[re.Pattern[str]]) -> dict[str, _Loop]:
+    """The loops that names of links and joints say, links first: of a link and the joint that fixes it, it is meant."""
+    loops: dict[str, _Loop] = {}
+    for pattern in patterns:
+        for name in names:
+            match = pattern.fullmatch(name)
+            if match is None or match["side"] is None:
+                continue
+            groups = match.groupdict()
+            point = _loop(match)
+            loop = loops.setdefault(point + (groups.get("axis") or ""), _Loop())
+            if groups.get("axis"):
+                loop.axis_of = point
+            side = loop.sides.setdefault(match["side"].upper(), [])
+            if name not in side:
+                side.append(name)
+            told = (groups.get("type") or "").lower()
+            if told in ("3d", "6d"):
+                loop.types.add(cast(ClosureType, told))
+    return loops
+
+
+def _frame(loop: str, side: str, names: Sequence[str], bodies: Mapping[str, str], warnings: list[str]) -> str:
+    """The name that is taken for the frame of one side."""
+    if len({bodies[name] for name in names}) > 1:
+        others = ", ".join(f"'{name}'" for name in names[1:])
+        warnings.append(f"side {side} of loop '{loop}' is taken to be '{names[0]}'; it might be {others}")
+    return names[0]
 
 
 def _loop(match: re.Match[str]) -> str:
