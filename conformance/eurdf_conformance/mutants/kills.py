@@ -6,6 +6,7 @@ import shlex
 import sys
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -55,12 +56,22 @@ def kills(mutant: Mutant) -> dict[Version, str]:
 
 def _by_cases(mutant: Mutant, found: Collection[Version]) -> Catches:
     conversation, level = Conversation(InProcess(mutant)), mutant.level
-    for case in all_cases():
+    for case in _soonest_first():
         version = case.case.version
         if version in found or mutant.clause not in case.case.clauses or level not in case.levels:
             continue
         if judge(case, level, conversation).verdict in mutant.caught_by and _REFERENCE.passes_case(case, level):
             yield version, f"{case.path}/{level}"
+
+
+@cache
+def _soonest_first() -> tuple[CorpusCase, ...]:
+    """The cases, those first that are about the fewest clauses, and of these the smallest: they tell soonest."""
+    return tuple(sorted(all_cases(), key=lambda case: (len(case.case.clauses), _size(case))))
+
+
+def _size(case: CorpusCase) -> int:
+    return sum(path.stat().st_size for path in (case.description, case.urdf) if path.is_file())
 
 
 def _by_properties(mutant: Mutant, found: Collection[Version]) -> Catches:
