@@ -151,7 +151,7 @@ mutation.work(0, 10, 4, attempt=attempt)
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="memory is measured and bounded as Linux does it")
-@pytest.mark.parametrize("part", range(PARTS))
+@pytest.mark.parametrize("part", [0, *(pytest.param(part, marks=pytest.mark.slow) for part in range(1, PARTS))])
 def test_a_hostile_file_is_judged_in_bounded_time_and_memory(part: int) -> None:
     names = list(HOSTILE)[part::PARTS]
     lines, end, log = run("hostile.py", *names)

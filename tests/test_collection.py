@@ -65,7 +65,11 @@ def test_every_robot_that_was_asked_for_is_there():
     assert {folder.name for folder in FOLDERS} == set(DIMENSIONS) == set(eurdf.collection_names())
 
 
-@pytest.mark.parametrize("folder", FOLDERS, ids=named)
+@pytest.mark.parametrize(
+    "folder",
+    [pytest.param(folder, marks=[pytest.mark.slow] * (folder.name in TWO_LEGGED)) for folder in FOLDERS],
+    ids=named,
+)
 def test_a_robot_is_good_enough_by_every_rule(folder):
     faults = judge(Candidate.find(folder)).faults
     assert {rule: found for rule, found in faults.items() if found} == {}

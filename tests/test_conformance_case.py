@@ -350,12 +350,13 @@ def archived(*arguments: str | Path) -> int:
 
 
 def test_the_archive_says_what_it_writes_and_replaces_nothing_unasked(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(archive, "read_cases", lambda: CASES[:3])
     out = tmp_path / "new" / "out"
     assert archived(out) == 0
     assert capsys.readouterr().out.splitlines() == [
-        f"{out / archive.NAME}.zip: {len(CASES)} cases",
+        f"{out / archive.NAME}.zip: 3 cases",
         f"{out / archive.NAME}.json: the same as one JSON value",
     ]
     (out / f"{archive.NAME}.zip").unlink()
@@ -371,6 +372,7 @@ def test_an_archive_that_cannot_be_written_is_said_in_one_line_and_leaves_nothin
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(archive, "read_cases", lambda: CASES[:3])
     Path("file").write_text("mine", encoding="utf-8")
     Path("out", f"{archive.NAME}.json").mkdir(parents=True)
     for wrong in (["file"], ["file/out"], ["out"], ["out", "--force"]):

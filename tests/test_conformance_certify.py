@@ -82,6 +82,7 @@ def test_the_reference_is_certified_and_its_certificate_says_so_again_when_it_is
     assert again.stderr == f"running {REFERENCE}\n"
 
 
+@pytest.mark.slow
 def test_a_parser_that_accepts_everything_fails_on_every_invalid_case_and_on_no_valid_one(folder: Path) -> None:
     given = certificate_of("--parser", ACCEPTS, "--level", "accept", "--jobs", "0")
     failed = {failure["id"] for failure in given["failures"]}
@@ -94,6 +95,7 @@ def test_a_parser_that_accepts_everything_fails_on_every_invalid_case_and_on_no_
     assert not any(level["certified"] for level in given["levels"])
 
 
+@pytest.mark.slow
 def test_a_parser_that_rejects_everything_fails_on_every_valid_case_and_on_no_invalid_one(folder: Path) -> None:
     given = certificate_of("--parser", REJECTS, "--level", "accept", "--jobs", "0")
     failed = {failure["id"] for failure in given["failures"]}
@@ -115,6 +117,7 @@ def test_what_failed_is_shown_with_the_reason_and_the_command_that_runs_it_again
     assert done.stdout.endswith("always_accepted 1: Not certified at any level\n")
 
 
+@pytest.mark.slow
 def test_the_json_is_the_certificate_and_fits_its_schema_however_the_run_is_spread(folder: Path) -> None:
     here = certificate_of("--parser", REJECTS, *SOME)
     spread = certificate_of("--parser", REJECTS, *SOME[:-1], "2", "--certificate", "mine")

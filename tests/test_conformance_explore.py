@@ -102,6 +102,7 @@ def test_the_case_is_one_that_the_wrong_reader_fails_and_the_reference_passes(fo
         assert judge(case, level, Conversation(InProcess(READER))).verdict == Verdict.PASSED, level
 
 
+@pytest.mark.slow
 def test_of_two_robots_that_do_not_agree_the_one_that_is_read_wrong_is_written(tmp_path: Path) -> None:
     # The law compares frames that are said in place, which this reader gets wrong, with others.
     explored("frames", ForgetsInlineAngles(), tmp_path)

@@ -44,6 +44,7 @@ def can_be_witnessed(mechanism: Mechanism) -> bool:
     return not mechanism.merged and any(link.inertia for link in mechanism.links)
 
 
+@pytest.mark.slow
 @settings(max_examples=100, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 @given(mechanisms().filter(can_be_witnessed))
 def test_mujoco_says_what_the_oracle_says_of_random_mechanisms(mechanism: Mechanism) -> None:

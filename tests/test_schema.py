@@ -216,6 +216,7 @@ def edited_pieces(version: str) -> Iterator[Any]:
             yield from edits({**head, key: entry}, under=key)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("version", VERSIONS)
 def test_model_and_schema_agree_on_every_document_that_is_one_edit_from_a_sound_one(version: str) -> None:
     verdicts = [accepted(version, document) for document in edited_pieces(version)]
