@@ -1,4 +1,4 @@
-"""3d or 6d: the type of closures whose names do not tell it, chosen by the motion that it leaves."""
+"""3d or 6d: the type of closures whose names do not state it, chosen by the motion that it leaves."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class _Candidate:
 
 
 def choose_types(mechanism: Mechanism, undecided: Iterable[str], called: Sequence[str]) -> Choice:
-    """Choose between 3d and 6d for the closures whose names do not tell.
+    """Choose between 3d and 6d for the closures whose names state neither.
 
     A closure is 6d, as where version 1 does not state its type, unless the loops then cannot close, or are locked, or
     have actuators whose velocities depend on one another, and with 3d they do not. Of loops that need 3d, each closure

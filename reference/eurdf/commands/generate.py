@@ -26,8 +26,8 @@ Write a description from the names in a URDF.
   motors      joints whose name begins or ends with the word mot or motor: motor_knee, mot1, left_motor_hip, hip_motor.
   sphericals  joints that have spherical in their name.
 
-A closure whose name does not tell its type is 6d, unless the loops then cannot close, or motors depend on one
-another or cannot move, and 3d mends it. A note says why; --type decides it for all.
+A closure whose name does not state its type is 6d. It is 3d if with 6d the loops cannot close or move, or motors
+depend on one another, and with 3d they do not. A note gives the reason; --type sets the type of all closures.
 
 Three revolute joints whose axes meet, with nothing between them, are one spherical joint.
 
