@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from eurdf.assembled import BeyondLimit, beyond_limits
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.loop import find_loops, joints_of_loops
+from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.velocity_names import velocity_names
 
 if TYPE_CHECKING:
@@ -23,7 +26,7 @@ def advise_on_limits(description: Description, robot: Robot, q: Vector, diagnost
     """Report loops for which no closed configuration was found within the limits of their joints.
 
     It costs nothing where the closed configuration is within them. Where it is not, configurations within are searched
-    for from the start of `assemble` and from q.
+    for from the start of `assemble`, from q, and from the middle of each range.
 
     Args:
         description: The robot as read; it has closures.
@@ -34,11 +37,12 @@ def advise_on_limits(description: Description, robot: Robot, q: Vector, diagnost
     beyond = _beyond(robot, q)
     if not beyond:
         return
-    within = assemble(robot, limits=True)
-    if not within.closes:
-        within = min(within, assemble(robot, q, limits=True), key=lambda found: (not found.closes, found.residual))
-    if within.closes or within.reason == "given up":
-        return
+    tried = []
+    for q0 in (None, q, _middle(robot, q)):
+        tried.append(assemble(robot, q0, limits=True))
+        if tried[-1].closes or tried[-1].reason == "given up":
+            return
+    within = min(tried, key=lambda found: found.residual)
     near = assemble(robot, within.q)
     if near.closes:
         beyond = min(beyond, _beyond(robot, near.q), key=lambda found: max(map(_excess, found)))
@@ -58,6 +62,15 @@ def _beyond(robot: Robot, q: Vector) -> list[BeyondLimit]:
     joints = joints_of_loops(find_loops(robot), robot.model.parents.tolist())
     in_loops = {names[first[joint]] for joint in joints}
     return [found for found in beyond_limits(robot.mechanism, robot.coordinates(q)) if found.joint in in_loops]
+
+
+def _middle(robot: Robot, q: Vector) -> Vector:
+    """The configuration with each coordinate that has a range in the middle of it."""
+    limits = position_limits(robot.model)
+    ranged = np.isfinite(limits.lower) & np.isfinite(limits.upper)
+    middle = np.array(q)
+    middle[limits.coordinates[ranged]] = 0.5 * limits.lower[ranged] + 0.5 * limits.upper[ranged]
+    return middle
 
 
 def _excess(found: BeyondLimit) -> float:
