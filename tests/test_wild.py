@@ -83,3 +83,12 @@ def test_the_loops_close_from_the_neutral_configuration(robots: dict[str, eurdf.
     assembly = eurdf.assemble(robots[name])
     assert assembly.converged
     assert np.max(np.abs(assembly.residual)) < 1e-10
+
+
+@pytest.mark.parametrize("name", [name for name in FACTS if FACTS[name]["closes"]])
+def test_every_actuator_moves_though_no_range_is_given(robots: dict[str, eurdf.Robot], name: str) -> None:
+    robot = robots[name]
+    for actuator in robot.actuation.joints:
+        found = eurdf.sweep(robot, actuator, steps=10)
+        assert found.upper.reached - found.lower.reached > 0.05
+        assert {found.lower.end, found.upper.end} <= {"half turn", "dead point", "passive stop"}

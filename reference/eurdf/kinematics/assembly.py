@@ -310,6 +310,7 @@ class Assembler:
             return q
         return self.limits.clip(q, np.concatenate([evaluation.group.velocities for evaluation in going]))
 
+    @np.errstate(over="ignore", invalid="ignore")
     def _pressed(self, q: Vector, limits: PositionLimits) -> tuple[JointAtLimit, ...]:
         """The joints at their limits that -Kᵀ r, down the residual, would move beyond them."""
         down = np.zeros(self._model.nv)
