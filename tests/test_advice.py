@@ -222,6 +222,22 @@ def test_loops_that_close_only_beyond_limits_are_reported(advice, edit, lower, u
         assert float(match[1]) >= abs(limit - farthest) - 1e-3
 
 
+def test_a_search_without_limits_that_ends_within_them_leaves_nothing_to_report(advice, monkeypatch) -> None:
+    from eurdf.advice import limits as module
+
+    robot = eurdf.load("four_bar", geometry=False)
+    closed = eurdf.forward_kinematics(robot, {"motor_crank": 2.0})
+
+    def found(robot: eurdf.Robot, q0: object = None, limits: bool = False) -> eurdf.Assembly:
+        q = np.array([0.0, 1.0, 0.0, 0.0, 1.0]) if limits else closed
+        opening = eurdf.Opening("rocker_pin", 0.1 if limits else 0.0, 0.0)
+        return eurdf.Assembly(q, 0.1 if limits else 0.0, not limits, not limits, 1, (opening,))
+
+    (angle,) = robot.coordinates(closed)["free_rocker"]
+    monkeypatch.setattr(module, "assemble", found)
+    assert codes(advice("four_bar", urdf=rocker(angle - 0.01, angle + 0.01))) == []
+
+
 def test_a_joint_outside_the_loops_may_be_beyond_its_limits(advice) -> None:
     def urdf(text: str) -> str:
         lid = WHEEL.format(lever="0", parent=text.split('<link name="')[1].split('"')[0])

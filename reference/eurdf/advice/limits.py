@@ -45,7 +45,9 @@ def advise_on_limits(description: Description, robot: Robot, q: Vector, diagnost
     within = min(tried, key=lambda found: found.residual)
     near = assemble(robot, within.q)
     if near.closes:
-        beyond = min(beyond, _beyond(robot, near.q), key=lambda found: max(map(_excess, found)))
+        beyond = min(beyond, _beyond(robot, near.q), key=lambda found: max(map(_excess, found), default=0.0))
+    if not beyond:  # the search without limits ended within them
+        return
     widest = max(within.open, key=lambda opening: max(opening.position, opening.angle))
     listed = ", ".join(map(_said, beyond[:_JOINTS_LISTED])) + (", ..." if len(beyond) > _JOINTS_LISTED else "")
     diagnostics.report(
