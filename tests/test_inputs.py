@@ -281,3 +281,40 @@ def test_a_urdf_or_a_folder_that_is_not_there_suggests_a_near_one(
     assert capsys.readouterr().err == "eurdf: the URDF 'arms.urdf' does not exist; did you mean 'arm.urdf'?\n"
     assert main([command, "arm.yaml", "--urdf", "arm.urdf", "--package-dir", "package"]) == 2
     assert capsys.readouterr().err == "eurdf: --package-dir: 'package' is no folder; did you mean 'packages'?\n"
+
+
+# --- commands that write a description -------------------------------------------------------------------------------
+
+
+def test_a_description_is_generated_from_standard_input(folder: Path) -> None:
+    done = eurdf_with(URDF, "generate", "-", "--motor", "shoulder", "-o", "arm.yaml")
+    assert done.returncode == 0
+    assert "the URDF came from <stdin>: write it to 'robot.urdf'" in done.stderr
+    (folder / "robot.urdf").write_text(URDF, encoding="utf-8")
+    assert eurdf.load("arm.yaml").actuation.joints == ("shoulder",)
+
+
+def test_a_description_from_standard_input_is_migrated(folder: Path) -> None:
+    (folder / "leg").mkdir()
+    shutil.copy(FOUR_BAR / "robot.urdf", folder / "leg" / "leg.urdf")
+    text = (FOUR_BAR / "robot.v1.yaml").read_text(encoding="utf-8")
+    done = eurdf_with(text, "migrate", "-", "--urdf", "leg/leg.urdf", "-o", "two.yaml")
+    assert done.returncode == 0
+    assert eurdf.load("two.yaml").mechanism.version == "2.0"
+    done = in_bash(f"eurdf migrate '{FOUR_BAR / 'robot.v1.yaml'}' --urdf <(cat leg/leg.urdf)")
+    assert "urdf: robot.urdf" in done.stdout
+    assert "write it to 'robot.urdf'" in done.stderr
+
+
+def test_the_schema_for_a_urdf_from_standard_input_knows_its_joints() -> None:
+    assert '"shoulder"' in eurdf_with(URDF, "schema", "--for", "-").stdout
+    done = eurdf_with("<robot", "schema", "--for", "-")
+    assert (done.returncode, done.stdout) == (1, "")
+    assert "<stdin>:1:1: error" in done.stderr
+
+
+def test_a_configuration_is_not_written_to_standard_input(folder: Path) -> None:
+    text = (FOUR_BAR / "robot.yaml").read_text(encoding="utf-8")
+    done = eurdf_with(text, "assemble", "-", "--urdf", str(FOUR_BAR / "robot.urdf"), "--write")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "--write needs a file" in done.stderr

@@ -189,3 +189,15 @@ def test_an_expansion_is_bounded_in_time_and_size(folder: Path, monkeypatch: pyt
     monkeypatch.setattr(xacro, "FILE_LIMIT", 100)
     monkeypatch.chdir(folder)
     assert [found.code for found in eurdf.check("arm.urdf.xacro").diagnostics] == ["file-too-large"]
+
+
+def test_a_description_is_generated_from_a_xacro_and_names_the_urdf_to_be_written(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    options = ("--motor", "shoulder", "--xacro-arg", "mass:=3", "-o", "arm.yaml")
+    assert main(["generate", "arm.urdf.xacro", *options]) == 0
+    assert "write it to 'robot.urdf'" in capsys.readouterr().err
+    assert eurdf.load("arm.yaml", "arm.urdf.xacro").actuation.joints == ("shoulder",)
+    assert main(["schema", "--for", "arm.urdf.xacro"]) == 0
+    assert '"shoulder"' in capsys.readouterr().out
+    assert main(["schema", "--xacro-arg", "mass:=3"]) == 2

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.output import is_terminal, write_json, write_lines
+from eurdf.commands.robot_options import ending
 from eurdf.diagnostics.text import visible
 from eurdf_conformance.level import Level
 from eurdf_conformance.named_folder import named_folder
@@ -30,10 +31,11 @@ A parser is 'package.module:object', a Python object that reads robots, or 'cmd:
 program which speaks the protocol. --verify runs a certificate's parser again, by the command that stands in it:
 look at that first, or give your own with --parser.
 """
-_EPILOG = """\
-Exit codes: 0 every level claimed and asked for is certified (--smoke: the cases passed; --verify: the same came of
-it), 1 not, 2 the command cannot run. A known failure is no pass.
-"""
+_EPILOG = ending(
+    "0 every level claimed and asked for is certified (--smoke: the cases passed; --verify: the same came of it),\n"
+    "1 not, 2 the command cannot run. A known failure is no pass.",
+    "eurdf certify --parser 'cmd:./my_parser --flag' --certificate out",
+)
 
 # Options that say what a run is of; those that say how it is done.
 _OF_A_RUN = ("level", "format_version", "known_failures", "certificate", "date", "explore", "explore_seed")

@@ -5,14 +5,15 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Collection, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.editor_schema import NOT_BESIDE, EditorSchema, add_schema_option, schema_beside, write_schema
-from eurdf.commands.migrate import show_refusal, tell, tell_schema, urdf_from, write_yaml
+from eurdf.commands.migrate import not_in_a_file, show_refusal, tell, tell_schema, urdf_named, write_yaml
 from eurdf.commands.output import write_json
 from eurdf.commands.output_file import refuse_to_replace, write_new
+from eurdf.commands.robot_options import add_urdf_options, add_urdf_path, ending, require_urdf, urdf_options
+from eurdf.reading.given import shown
 
 if TYPE_CHECKING:
     from eurdf.generation import Generation
@@ -32,9 +33,7 @@ depend on one another, and with 3d they do not. A note gives the reason; --type 
 Three revolute joints whose axes meet, with nothing between them, are one spherical joint.
 
 PATTERNs are regular expressions in place of these. That of a closure matches a whole name, and has the group
-side, which tells its two frames apart; a group loop is what they have in common, a group type is 3d or 6d:
-
-  eurdf generate arm.urdf --closure '(?P<loop>rod\\d+)_(?P<side>top|bottom)' --motor 'drive$'
+side, which tells its two frames apart; a group loop is what they have in common, a group type is 3d or 6d.
 """
 
 
@@ -44,10 +43,15 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "generate",
         help="write a description from the names in a URDF",
         description=_DESCRIPTION,
-        epilog="Exit codes: 0 written, 1 the URDF has errors, or its names say what cannot be; 2 cannot run.",
+        epilog=ending(
+            "0 written, 1 the URDF has errors, or its names say what cannot be, 2 the command cannot run.",
+            "eurdf generate arm.urdf -o arm.yaml",
+            "eurdf generate arm.urdf --closure '(?P<loop>rod\\d+)_(?P<side>top|bottom)' --motor 'drive$'",
+        ),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("urdf", metavar="URDF", help="the URDF")
+    add_urdf_path(parser)
+    add_urdf_options(parser)
     parser.add_argument("-o", "--output", metavar="OUT", help="the file to write; default: the standard output")
     parser.add_argument("--force", action="store_true", help="replace OUT, and its schema, if they are there already")
     add_schema_option(parser)
@@ -68,47 +72,50 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(args: argparse.Namespace) -> int:
     """Generate, write, tell what was found, and return the exit code."""
+    from eurdf.description import read_urdf_source
     from eurdf.diagnostics import Diagnostics, Fault
     from eurdf.format.generate import BadPattern, conventions, hints
     from eurdf.format.urdf import read_urdf
     from eurdf.generation import generate
-    from eurdf.reading.source import read_source
     from eurdf.reading.xml_reader import read_xml
 
     if args.version == "1" and args.root != "fixed":
         raise CannotRun("version 1 cannot say that the root floats")
-    if not os.path.exists(args.urdf):
-        raise CannotRun(f"'{args.urdf}' does not exist")
+    require_urdf(args.urdf)
+    options = urdf_options(args)
     try:
         convention = conventions(args.closure, args.motor, args.spherical)
     except BadPattern as reason:
         raise CannotRun(str(reason)) from None
     diagnostics = Diagnostics()
     try:
-        urdf = read_urdf(read_xml(read_source(args.urdf)), diagnostics)
+        urdf = read_urdf(read_xml(read_urdf_source(args.urdf, diagnostics, **options)), diagnostics)
     except Fault as fault:
         diagnostics.add(fault.diagnostic)
         urdf = None
     if urdf is None:
-        show_refusal(args.urdf, tuple(diagnostics), args.json)
+        show_refusal(shown(args.urdf), tuple(diagnostics), args.json)
         return 1
-    urdf_path, schema = Path(args.urdf).name, None
+    source, schema = urdf.document.source, None
+    urdf_path = urdf_named(args.output or args.urdf, source)
     if args.output is not None:
-        urdf_path = urdf_from(args.output, args.urdf)
         refuse_to_replace(args.output, args.force)
         schema = schema_beside(args.output, args.version, args.schema, urdf, args.force)
     reference = None if schema is None else schema.reference
     generation = generate(urdf, convention, args.version, args.root, urdf_path, reference, args.type)
     advice = hints(urdf, generation.found, convention)
     if generation.mechanism is None:
-        show_refusal(args.urdf, tuple(generation.diagnostics), args.json)
+        show_refusal(shown(args.urdf), tuple(generation.diagnostics), args.json)
         tell(["nothing was written: what the names say cannot be"])
         return 1
     if args.output is not None:
         write_new(args.output, generation.text, args.force)
         if schema is not None:
             write_schema(schema)
-    warnings = [*generation.found.warnings]
+    warnings = [found.message for found in diagnostics if found.code == "x-xacro-warning"]
+    warnings += generation.found.warnings
+    if not source.is_file:
+        warnings.append(not_in_a_file(source, urdf_path))
     if args.version == "1" and urdf_path != "robot.urdf":
         warnings.append(f"version 1 cannot name its URDF: it is robot.urdf beside the description, not '{urdf_path}'")
     if args.json:

@@ -14,10 +14,11 @@ from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.editor_schema import NOT_BESIDE, EditorSchema, add_schema_option, schema_beside, write_schema
 from eurdf.commands.output import write_json, write_text
 from eurdf.commands.output_file import refuse_to_replace, write_new
+from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
 from eurdf.commands.selection import select_one
 
 if TYPE_CHECKING:
-    from eurdf.description import Description
+    from eurdf.reading.source import Source
 
 _DESCRIPTION = """\
 Write a description of version 1 in version 2, with the same model.
@@ -34,14 +35,17 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "migrate",
         help="write a description of version 1 in version 2",
         description=_DESCRIPTION,
-        epilog="Exit codes: 0 written or nothing to do, 1 the robot has errors, 2 the command cannot run.",
+        epilog=ending(
+            "0 written or nothing to do, 1 the robot has errors, 2 the command cannot run.",
+            "eurdf migrate robot.v1.yaml -o robot.yaml",
+        ),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("path", metavar="PATH", help="a robot: its folder, its .yaml, or a collection name")
+    add_robot_path(parser)
+    add_robot_options(parser)
     parser.add_argument("-o", "--output", metavar="OUT", help="the file to write; default: the standard output")
     parser.add_argument("--force", action="store_true", help="replace OUT, and its schema, if they are there already")
     add_schema_option(parser)
-    parser.add_argument("--urdf", metavar="FILE", help="the URDF, where it is not robot.urdf beside the description")
     parser.add_argument("--json", action="store_true", help="write one JSON object: the text, and what was done")
     parser.set_defaults(run=run)
 
@@ -53,15 +57,15 @@ def run(args: argparse.Namespace) -> int:
     from eurdf.migration import migrate
 
     path = select_one(args.path)
-    if args.urdf is not None and not os.path.exists(args.urdf):
-        raise CannotRun(f"'{args.urdf}' does not exist")
-    description = describe(path, args.urdf)
+    description = describe(path, **robot_options(args))
+    path = description.path
     if description.diagnostics.refused or description.mechanism is None:
         show_refusal(path, tuple(description.diagnostics), args.json)
         return 1
     if description.document is None or description.extension is None:
         raise CannotRun(f"'{path}' is a bare URDF, which has nothing to migrate; `eurdf generate` writes a description")
-    source = description.document.source
+    assert description.urdf is not None
+    source, urdf = description.document.source, description.urdf.document.source
     schema: EditorSchema | None = None
     if description.extension.version != "1":
         text, output = source.text, None
@@ -70,17 +74,19 @@ def run(args: argparse.Namespace) -> int:
         output = args.output
         reference = schema_named(description.document) if args.schema == "format" else None
         if output is not None and not _leads_to_a_schema(reference, output):
-            assert description.urdf is not None
             refuse_to_replace(output, args.force)
             schema = schema_beside(output, "2", args.schema, description.urdf, args.force)
             reference = None if schema is None else schema.reference
         try:
-            migration = migrate(description, urdf_from(output or source.file, _urdf_of(description)), reference)
+            urdf_path = urdf_named(output or source.file, urdf)
+            migration = migrate(description, urdf_path, reference)
         except NotMigratable as reason:
             line = description.document.place(reason.pointer).line if reason.pointer else None
             where = f"{source.file}:{line}" if line else source.file
             raise CannotRun(f"cannot migrate: {where}: {reason}") from None
         text, notes = migration.text, migration.notes
+        if not urdf.is_file:
+            notes = (*notes, not_in_a_file(urdf, urdf_path))
         if output is not None:
             write_new(output, text, args.force)
             if schema is not None:
@@ -121,6 +127,16 @@ def write_yaml(text: str) -> None:
     write_text(text)
 
 
+def urdf_named(description: str | os.PathLike[str], urdf: Source) -> str:
+    """What a description names its URDF; ``robot.urdf`` where that is in no file."""
+    return urdf_from(description, urdf.file) if urdf.is_file else "robot.urdf"
+
+
+def not_in_a_file(urdf: Source, name: str) -> str:
+    """What is to be done where the URDF of a description came from elsewhere than a file."""
+    return f"the URDF came from {urdf.file}: write it to '{name}', which the description names"
+
+
 def urdf_from(description: str | os.PathLike[str], urdf: str | os.PathLike[str]) -> str:
     """Path of a URDF from the folder of a description, as the description names it."""
     home = os.path.realpath(Path(description).parent)
@@ -151,11 +167,6 @@ def tell(sentences: tuple[str, ...] | list[str]) -> None:
 
     for sentence in sentences:
         sys.stderr.write(f"{visible(sentence)}\n")
-
-
-def _urdf_of(description: Description) -> str:
-    assert description.urdf is not None
-    return description.urdf.document.source.file
 
 
 def _result(

@@ -22,6 +22,11 @@ def add_robot_path(parser: argparse.ArgumentParser, *, several: bool = False) ->
         parser.add_argument("path", metavar="PATH", help=_PATH)
 
 
+def add_urdf_path(parser: argparse.ArgumentParser) -> None:
+    """Add the path of a URDF."""
+    parser.add_argument("urdf", metavar="URDF", help="a .urdf or .xacro file, or - for standard input")
+
+
 def add_robot_options(parser: argparse.ArgumentParser) -> None:
     """Add what may be said of a robot beside its path."""
     parser.add_argument(

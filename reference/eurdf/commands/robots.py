@@ -7,6 +7,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from eurdf.commands.output import cell, columns, is_terminal, new_table, write_json, write_lines, write_rendered
+from eurdf.commands.robot_options import ending
 
 if TYPE_CHECKING:
     from eurdf.commands.collection_info import Collection
@@ -21,7 +22,8 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "robots",
         help="list the robots of the collection",
         description="List the robots that come with this package. Each can be loaded, checked and shown by its name.",
-        epilog="Exit codes: 0 listed, 1 a robot cannot be built, 2 the command cannot run.",
+        epilog=ending("0 listed, 1 a robot cannot be built, 2 the command cannot run.", "eurdf robots --json"),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--json", action="store_true", help="write one JSON object")
     parser.set_defaults(run=run)

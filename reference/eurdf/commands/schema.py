@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.check import write_reports
 from eurdf.commands.migrate import tell
 from eurdf.commands.output import write_text
 from eurdf.commands.output_file import write_new
+from eurdf.commands.robot_options import add_urdf_options, ending, require_urdf, urdf_options
+from eurdf.reading.given import shown
 
 if TYPE_CHECKING:
     from eurdf.diagnostics import Diagnostics
@@ -23,9 +25,13 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser = subparsers.add_parser(
         "schema",
         help="write the JSON Schema that an editor completes and checks a description with",
-        description="Write the JSON Schema (2020-12) of Extended URDF. The first line of a description names it: "
-        "# yaml-language-server: $schema=./robot.schema.json",
-        epilog="Exit codes: 0 written, 1 the URDF has errors, 2 the command cannot run.",
+        description="Write the JSON Schema (2020-12) of Extended URDF. The first line of a description names it:\n\n"
+        "  # yaml-language-server: $schema=./robot.schema.json",
+        epilog=ending(
+            "0 written, 1 the URDF has errors, 2 the command cannot run.",
+            "eurdf schema --for robot.urdf -o robot.schema.json",
+        ),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--version", choices=("1", "2"), default="2", help="version of the format; default: 2")
     parser.add_argument(
@@ -34,6 +40,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         metavar="URDF",
         help="name the links and joints of this robot, so that an editor completes them",
     )
+    add_urdf_options(parser)
     parser.add_argument("-o", "--output", metavar="OUT", help="the file to write; default: the standard output")
     parser.add_argument("--force", action="store_true", help="replace OUT if it is there already")
     parser.set_defaults(run=run)
@@ -46,14 +53,15 @@ def run(args: argparse.Namespace) -> int:
     from eurdf.format.schema import json_schema, names_of, schema_text
 
     names = None
+    if args.urdf is None and (args.package_dirs or args.xacro_args):
+        raise CannotRun("--package-dir and --xacro-arg go with --for")
     if args.urdf is not None:
-        if not os.path.exists(args.urdf):
-            raise CannotRun(f"'{args.urdf}' does not exist")
+        require_urdf(args.urdf)
         diagnostics = Diagnostics()
-        urdf = _read(args.urdf, diagnostics)
+        urdf = _read(args.urdf, diagnostics, urdf_options(args))
         if urdf is None:
             # The standard output is for a schema.
-            write_reports([Report(args.urdf, tuple(diagnostics))], stream=sys.stderr)
+            write_reports([Report(shown(args.urdf), tuple(diagnostics))], stream=sys.stderr)
             return 1
         names = names_of(urdf)
     text = schema_text(json_schema(args.version, names))
@@ -65,14 +73,14 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _read(path: str, diagnostics: Diagnostics) -> Urdf | None:
+def _read(path: str, diagnostics: Diagnostics, options: Mapping[str, Any]) -> Urdf | None:
+    from eurdf.description import read_urdf_source
     from eurdf.diagnostics import Fault
     from eurdf.format.urdf import read_urdf
-    from eurdf.reading.source import read_source
     from eurdf.reading.xml_reader import read_xml
 
     try:
-        return read_urdf(read_xml(read_source(path)), diagnostics)
+        return read_urdf(read_xml(read_urdf_source(path, diagnostics, **options)), diagnostics)
     except Fault as fault:
         diagnostics.add(fault.diagnostic)
         return None
