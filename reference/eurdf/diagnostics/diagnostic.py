@@ -20,6 +20,12 @@ LONGEST = 1000
 #: Characters of a name that is cut: as many at its beginning, and half as many at its end, are kept.
 NAME_KEPT = 60
 
+#: Names near a wrong one that are compared with the name beside it.
+_CLOSE = 20
+
+#: The ratio of difflib of a name that is about as near as another may be smaller by this much.
+_ABOUT = 0.1
+
 #: Pairs of letters that the search for the name that is meant may compare.
 COMPARED = 40_000
 
@@ -202,11 +208,19 @@ def _bounded(text: str) -> str:
     return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
 
 
-def did_you_mean(wrong: str, known: Iterable[str]) -> str | None:
+def did_you_mean(wrong: str, known: Iterable[str], beside: str = "") -> str | None:
     """The hint for a misspelt name: the nearest of the known ones, or None if none is near.
+
+    Where several names are about as near, it is the one most like the name beside it: joint 'right_knee' that mimics
+    'hip' means 'right_hip', although 'left_hip' has fewer letters to add.
 
     The time is bounded. Where there are too many names to compare with, those that share its first or second half are,
     as every name does that differs in one place.
+
+    Args:
+        wrong: The name that is not known.
+        known: The names that are.
+        beside: Name of the element that has the wrong name.
     """
     if " - " in wrong:
         known = list(known)
@@ -223,5 +237,20 @@ def did_you_mean(wrong: str, known: Iterable[str]) -> str | None:
             half = size // 2
             first, second = wrong[:half], wrong[size - half :]
             candidates = [name for name in candidates if name.startswith(first) or name.endswith(second)][:most]
-        nearest = next(iter(difflib.get_close_matches(wrong, candidates, n=1)), None)
+        close = difflib.get_close_matches(wrong, candidates, n=_CLOSE)
+        nearest = _most_alike(beside, _about_as_near(wrong, close)) if beside else next(iter(close), None)
     return None if nearest is None else f"did you mean '{nearest}'?"
+
+
+def _about_as_near(wrong: str, close: list[str]) -> list[str]:
+    """Of names near a wrong one, the nearest first, those about as near as the first."""
+    ratios = [_ratio(wrong, name) for name in close]
+    return [name for name, ratio in zip(close, ratios, strict=True) if ratio >= ratios[0] - _ABOUT]
+
+
+def _most_alike(beside: str, names: list[str]) -> str | None:
+    return max(names, key=lambda name: _ratio(beside, name), default=None)
+
+
+def _ratio(one: str, other: str) -> float:
+    return difflib.SequenceMatcher(None, one, other).ratio()
