@@ -94,6 +94,15 @@ class RejectsFloating(WrongReader):
         return super().load(description, urdf)
 
 
+class RejectsMimics(WrongReader):
+    """Says that a joint must not mimic."""
+
+    def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
+        if "<mimic" in urdf.read_text("utf-8"):
+            return rejected("no coordinate of its own")
+        return super().load(description, urdf)
+
+
 class RejectsRedundancy(WrongReader):
     """Takes a redundant row for a fault."""
 

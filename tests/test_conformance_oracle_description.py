@@ -170,8 +170,6 @@ def test_version_1_finds_a_ball_and_names_it_by_its_last() -> None:
             "",
         ),
         ('<link name="x"/>', '<link name="x"/><link name="tool"/>' + joint("t", "fixed", "x", "tool"), "note: 1"),
-        ('<axis xyz="1.0 0.0 0.0"/>', '<axis xyz="1 0 0"/><mimic joint="other"/>', "note: 1"),
-        ('<parent link="base"/><child link="far"/>', '<parent link="base"/><child link="far"/><mimic joint="rz"/>', ""),
         ("", "", "joint_name: [ry]\njoint_type: [SPHERICAL]"),
         ("", "", "closed_loop: [[x, far]]"),
         ("", "", "closed_loop: [[far, ry]]"),
@@ -181,6 +179,29 @@ def test_version_1_merges_nothing_where_one_condition_fails(before: str, after: 
     elements = "".join(ONE_BALL).replace(before, after, 1)
     kinds = [found.type for found in robot([elements], yaml or "note: 1").canonical().joints]
     assert kinds.count("spherical") == yaml.count("SPHERICAL")
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ('<axis xyz="1.0 0.0 0.0"/>', '<axis xyz="1 0 0"/><mimic joint="other"/>'),
+        ('<parent link="base"/><child link="far"/>', '<parent link="base"/><child link="far"/><mimic joint="nobody"/>'),
+    ],
+)
+def test_version_1_ignores_mimics(before: str, after: str) -> None:
+    elements = "".join(ONE_BALL)
+    assert elements.count(before) == 1
+    found = robot([elements.replace(before, after)], "name_mot: [other]").canonical()
+    assert [(joint.name, joint.type, joint.mimic) for joint in found.joints] == [
+        ("rz", "spherical", None),
+        ("other", "revolute", None),
+    ]
+
+
+def test_the_mimic_of_a_fixed_joint_has_no_effect() -> None:
+    text = joint("weld", "fixed", "far", "tool", more='<mimic joint="other" multiplier="2"/>')
+    found = robot([*ONE_BALL, '<link name="tool"/>', text], two("actuators: [other]")).canonical()
+    assert [joint.mimic for joint in found.joints] == [None] * 4
 
 
 def test_of_four_revolutes_in_a_row_the_first_three_from_the_root_are_a_ball() -> None:

@@ -278,24 +278,6 @@ _SIDE = body("side")
 #: title: URDF, description of version 1
 NOT_MERGED = {
     "one of them is continuous": (_chain(X, Y, Z, kinds=("revolute", "continuous", "revolute")), ""),
-    "one of them mimics": (
-        _chain(X, Y, Z).replace(
-            _joint("j2", "l1", "l2", Y, 2),
-            joint_element("j2", "revolute", "l1", "l2", f'<axis xyz="{Y}"/>' + _MIMIC.format("j1")),
-        ),
-        "",
-    ),
-    "one of them mimics a joint beside them": (
-        _chain(X, Y, Z, more=_SIDE + joint_element("s", "revolute", "base", "side", _LIMIT)).replace(
-            _joint("j2", "l1", "l2", Y, 2),
-            joint_element("j2", "revolute", "l1", "l2", f'<axis xyz="{Y}"/>' + _MIMIC.format("s")),
-        ),
-        "",
-    ),
-    "one of them is mimicked": (
-        _chain(X, Y, Z, more=_SIDE + joint_element("s", "revolute", "l3", "side", _MIMIC.format("j1"))),
-        "",
-    ),
     "one of them is locked": (_chain(X, Y, Z), "joint_name: [j2]\njoint_type: [FIXED]\n"),
     "one of them is split": (_chain(X, Y, Z), "joint_name: [j2]\njoint_type: [UJOINT_XY]\n"),
     "a link between carries a frame of a closure": (
@@ -327,6 +309,24 @@ def test_version_1_leaves_three_revolutes_apart_where(title: str) -> None:
 
 #: title: URDF, description of version 1
 MERGED = {
+    "one of them mimics": (
+        _chain(X, Y, Z).replace(
+            _joint("j2", "l1", "l2", Y, 2),
+            joint_element("j2", "revolute", "l1", "l2", f'<axis xyz="{Y}"/>' + _MIMIC.format("j1")),
+        ),
+        "",
+    ),
+    "one of them mimics a joint beside them": (
+        _chain(X, Y, Z, more=_SIDE + joint_element("s", "revolute", "base", "side", _LIMIT)).replace(
+            _joint("j2", "l1", "l2", Y, 2),
+            joint_element("j2", "revolute", "l1", "l2", f'<axis xyz="{Y}"/>' + _MIMIC.format("s")),
+        ),
+        "",
+    ),
+    "one of them is mimicked": (
+        _chain(X, Y, Z, more=_SIDE + joint_element("s", "revolute", "l3", "side", _MIMIC.format("j1"))),
+        "",
+    ),
     "a link between weighs less than 1e-5 kg": (_chain(X, Y, Z, between=inertial(0.99e-5)), ""),
     "the axes pass one another by less than 0.1 mm": (_chain(X, Y, Z, origins=_moved(1e-4)), ""),
     "the link beyond carries two joints and a frame of a closure": (

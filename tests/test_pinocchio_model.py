@@ -94,13 +94,13 @@ def assert_equal(model: pin.Model, expected: pin.Model) -> None:
 @given(text=trees(), root=ROOTS, mimic=st.booleans())
 @settings(deadline=None)
 def test_a_plain_urdf_gives_pinocchios_own_model_to_the_last_bit(text: str, root: Root, mimic: bool) -> None:
-    assert_equal(build_model(mechanism_of(text, root), mimic), pinocchios_own(text, root, mimic))
+    assert_equal(build_model(mechanism_of(text, root, mimic)), pinocchios_own(text, root, mimic))
 
 
 @pytest.mark.parametrize("root", ["fixed", "floating"])
 @pytest.mark.parametrize("mimic", [True, False])
 def test_a_urdf_with_every_feature_gives_pinocchios_own_model(root: Root, mimic: bool) -> None:
-    model = build_model(mechanism_of(EVERYTHING, root), mimic)
+    model = build_model(mechanism_of(EVERYTHING, root, mimic))
     assert_equal(model, pinocchios_own(EVERYTHING, root, mimic))
     assert len(model.mimicking_joints) == (1 if mimic else 0)
 
@@ -232,8 +232,8 @@ def test_pinocchios_own_parser_refuses(title: str) -> None:
 @pytest.mark.parametrize("root", ["fixed", "floating"])
 @pytest.mark.parametrize("title", FOLLOWING)
 def test_coupled_joints_move_as_free_ones_that_keep_the_law(title: str, root: Root) -> None:
-    mechanism = mechanism_of(_coupled(*FOLLOWING[title]), root)
-    coupled, free = build_model(mechanism), build_model(mechanism, mimic=False)
+    mechanism, uncoupled = (mechanism_of(_coupled(*FOLLOWING[title]), root, mimic) for mimic in (True, False))
+    coupled, free = build_model(mechanism), build_model(uncoupled)
     followers = [joint.name for joint in mechanism.joints if joint.mimic]
     assert coupled.nv == free.nv - len(followers)
     random = np.random.default_rng(3)
@@ -247,7 +247,7 @@ def test_coupled_joints_move_as_free_ones_that_keep_the_law(title: str, root: Ro
         law = by_name[name].mimic
         assert law is not None
         assert coordinates[name][0] == pytest.approx(law.multiplier * coordinates[law.joint][0] + law.offset)
-    q_free = configuration_vector(mechanism, free, coordinates)
+    q_free = configuration_vector(uncoupled, free, coordinates)
 
     # G takes the velocities of the coupled model to those of the free one.
     G = np.zeros((free.nv, coupled.nv))

@@ -9,12 +9,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Literal
 
 from eurdf.collection import find_robot
 from eurdf.diagnostics import Diagnostics, Fault, Place
 from eurdf.exceptions import CannotExpand
 from eurdf.format.extension import Extension
-from eurdf.format.read_extension import read_extension
+from eurdf.format.read_extension import read_extension, version_of
 from eurdf.format.urdf import Urdf, read_urdf
 from eurdf.format.yaml_text import scalar
 from eurdf.mechanism.inertia import check_inertias, check_leaves
@@ -28,6 +29,9 @@ from eurdf.reading.xml_reader import read_xml
 from eurdf.reading.yaml_reader import YamlDocument, read_yaml
 
 _NO_XACRO = "only a .xacro file takes arguments; give one as the robot or as its URDF"
+
+#: What to do about errors in which joint mimics which: report and refuse the URDF, only report, or not even that.
+_MimicErrors = Literal["refused", "kept", "ignored"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,6 +79,7 @@ def describe(
     root: Root | None = None,
     *,
     geometry: bool = True,
+    mimic: bool = True,
     package_dirs: Sequence[str | os.PathLike[str]] = (),
     xacro_args: Mapping[str, str] | None = None,
 ) -> Description:
@@ -87,6 +92,8 @@ def describe(
         urdf: A URDF in place of the one that the description names.
         root: In place of the root that the description states.
         geometry: Whether to read the geometry; else bodies have none, and it is not checked.
+        mimic: Whether mimic joints follow; if not, each is free, and an error in which joint it mimics is reported but
+            leaves a mechanism. With a description of version 1 they are free in any case, and not checked.
         package_dirs: Folders to look for packages in, which a xacro finds files in.
         xacro_args: Values of the arguments of a xacro.
 
@@ -107,8 +114,8 @@ def describe(
         raise CannotExpand(name, _NO_XACRO)
     if files.description is None:
         assert given is not None
-        tree = _read_urdf(given, diagnostics, geometry)
-        mechanism = None if tree is None else link(tree, None, None, diagnostics, root)
+        tree = _read_urdf(given, diagnostics, geometry, "refused" if mimic else "kept")
+        mechanism = None if tree is None else link(tree, None, None, diagnostics, root, mimic=mimic)
         return _finish(Description(name, diagnostics, mechanism, tree))
     document = _read_yaml(files.description, diagnostics)
     extension = None if document is None else read_extension(document, diagnostics)
@@ -118,10 +125,13 @@ def describe(
         if extension is not None and document is not None:
             _urdf_not_found(urdf_path, extension, document, diagnostics)
         return Description(name, diagnostics, None, None, extension, document)
-    tree = _read_urdf(urdf_path, diagnostics, geometry)
+    # Without a version, whether a mimic has an effect is not known.
+    version = None if document is None else version_of(document)
+    mimic_errors: _MimicErrors = "ignored" if version in (None, "1") else "refused" if mimic else "kept"
+    tree = _read_urdf(urdf_path, diagnostics, geometry, mimic_errors)
     mechanism = None
     if tree is not None and extension is not None:
-        mechanism = link(tree, extension, document, diagnostics, root)
+        mechanism = link(tree, extension, document, diagnostics, root, mimic=mimic)
     return _finish(Description(name, diagnostics, mechanism, tree, extension, document))
 
 
@@ -187,13 +197,20 @@ def _source(path: Path | Source) -> Source:
     return path if isinstance(path, Source) else read_source(path)
 
 
-def _read_urdf(path: Path | Source, diagnostics: Diagnostics, geometry: bool) -> Urdf | None:
+def _read_urdf(
+    path: Path | Source, diagnostics: Diagnostics, geometry: bool, mimic_errors: _MimicErrors
+) -> Urdf | None:
     try:
         document = read_xml(_source(path))
     except Fault as fault:
         diagnostics.add(fault.diagnostic)
         return None
-    return read_urdf(document, diagnostics, geometry=geometry)
+    mimic_diagnostics = diagnostics if mimic_errors == "refused" else Diagnostics()
+    urdf = read_urdf(document, diagnostics, geometry=geometry, mimic_diagnostics=mimic_diagnostics)
+    if mimic_errors == "kept":
+        for found in mimic_diagnostics:
+            diagnostics.add(found)
+    return urdf
 
 
 def _named_urdf(description: Path | Source, extension: Extension | None, document: YamlDocument | None) -> Path:

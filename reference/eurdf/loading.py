@@ -40,8 +40,11 @@ def load(
         geometry: Whether to load the visual and collision geometry, meshes too. Without it, bodies have no shapes, and
             nothing wrong with shapes is looked for. Where a mesh is missing, the robot is loaded and
             ``robot.diagnostics`` says so (EU-URD-028); asking it for its geometry raises `InvalidRobot`.
-        mimic: Whether joints that mimic follow, as Pinocchio's own with ``mimic=True``; else they are free.
-        strict: Whether to refuse errors of the inertia and closure phases too.
+        mimic: Whether the mimic joints of the URDF follow the joints that drive them, as in
+            ``pin.buildModelFromUrdf(path, mimic=True)``. If not, each is free, as in
+            ``pin.buildModelFromUrdf(path)``, and an error in which joint it mimics is kept in ``robot.diagnostics``.
+            With a description of version 1 they are free in any case (EU-ONE-009).
+        strict: Whether to refuse every error, those of the inertia and closure phases too.
         package_dirs: Folders to look for the packages of meshes in, before ``ROS_PACKAGE_PATH`` and
             ``AMENT_PREFIX_PATH``.
         xacro_args: Values of the arguments of a xacro.
@@ -58,9 +61,11 @@ def load(
     """
     if root not in (None, "fixed", "floating"):
         raise ValueError(f"root is {root!r}; it must be 'fixed' or 'floating'")
-    description = describe(path, urdf, root, geometry=geometry, package_dirs=package_dirs, xacro_args=xacro_args)
+    description = describe(
+        path, urdf, root, geometry=geometry, mimic=mimic, package_dirs=package_dirs, xacro_args=xacro_args
+    )
     diagnostics = description.diagnostics
-    if diagnostics.refused or description.mechanism is None:
+    if description.mechanism is None:
         raise InvalidRobot(description.path, tuple(diagnostics))
     files: dict[str, str] = {}
     lacks_mesh = False
@@ -71,7 +76,7 @@ def load(
             diagnostics.add(found)
         lacks_mesh = any(found.code == "urdf-mesh-missing" for found in missing)
     try:
-        robot = build_robot(description.mechanism, geometry=geometry and not lacks_mesh, mimic=mimic, resolve=files.get)
+        robot = build_robot(description.mechanism, geometry=geometry and not lacks_mesh, resolve=files.get)
     except UnreadableMesh as mesh:
         place = partial(place_of_file, description, "mesh", mesh.uri)
         diagnostics.report("urdf-mesh-unreadable", f"mesh '{mesh.uri}' cannot be read: {mesh.reason}", place)

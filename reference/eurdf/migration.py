@@ -6,11 +6,15 @@ from dataclasses import dataclass
 
 from eurdf.description import Description
 from eurdf.format.migrate import NotMigratable, migrated, own_keys
+from eurdf.format.urdf import Urdf
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.same_model import differences, with_universal_joints
 from eurdf.reading.yaml_node import json_pointer
 from eurdf.rereading import reread
+
+#: Joints that a refusal names.
+_NAMED = 50
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +56,7 @@ def migrate(description: Description, urdf_path: str = "robot.urdf", schema: str
     assert document is not None
     assert urdf is not None
     assert before is not None
+    _refuse_mimics(urdf)
     result = migrated(document, extension, urdf, merged_by_rule(description), urdf_path, schema)
     after, diagnostics = reread(result.text, urdf, document.source.file)
     if after is None:
@@ -64,6 +69,23 @@ def migrate(description: Description, urdf_path: str = "robot.urdf", schema: str
     if found:
         raise NotMigratable(f"version 2 would not be the same model: {'; '.join(found)}", ())
     return Migration(result.text, (*result.notes, *_order(before, after)), after)
+
+
+def _refuse_mimics(urdf: Urdf) -> None:
+    """Refuse mimic joints: version 1 ignores what version 2 does not (EU-ONE-009).
+
+    Raises:
+        NotMigratable: There are some.
+    """
+    names = [f"'{joint.name}'" for joint in urdf.joints.values() if joint.mimic]
+    if names:
+        shown = ", ".join(names[:_NAMED]) + (f" and {len(names) - _NAMED} more" if len(names) > _NAMED else "")
+        what = f"joint {shown} has" if len(names) == 1 else f"joints {shown} have"
+        raise NotMigratable(
+            f"{what} a <mimic> in the URDF, which version 1 ignores and version 2 does not; "
+            "remove <mimic> from the URDF and migrate again: in version 1 this changes nothing",
+            (),
+        )
 
 
 def merged_by_rule(description: Description) -> dict[str, tuple[str, str, str]]:

@@ -66,7 +66,7 @@ def parent_and_child_swapped() -> Deviation:
     return canonical_joints(lambda joint: {"parent": joint.child, "child": joint.parent})
 
 
-@mutant("EU-CAN-001")
+@mutant("EU-CAN-001", versions=("2",))  # in version 1 no joint mimics
 def mimics_are_not_said() -> Deviation:
     """That a joint mimics is not said."""
     return canonical_joints(lambda joint: {"mimic": None})

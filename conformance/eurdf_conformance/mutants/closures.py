@@ -213,13 +213,13 @@ def motion_of_a_forgotten() -> Deviation:
     return _loops(lambda loop: _on_path(loop, signs=np.maximum(loop.path.signs, 0.0)))
 
 
-@mutant("EU-CLO-010")
+@mutant("EU-CLO-010", versions=("2",))  # in version 1 no joint mimics
 def one_of_two_followers_forgotten() -> Deviation:
     """Where several joints of a loop follow one coordinate, the last one alone counts in K."""
     return _loops(lambda loop: _on_path(loop, mimics=False))
 
 
-@mutant("EU-CLO-010")
+@mutant("EU-CLO-010", versions=("2",))  # in version 1 no joint mimics
 def turning_after_a_slide_forgotten() -> Deviation:
     """K leaves out a joint that turns as the prismatic one slides that it follows."""
 

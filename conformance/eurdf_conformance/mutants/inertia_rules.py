@@ -102,7 +102,7 @@ def one_armature_is_enough() -> Deviation:
     return around(description, "check_leaves", check)
 
 
-@mutant("EU-INR-004")
+@mutant("EU-INR-004", versions=("2",))  # in version 1 no joint mimics
 def followers_must_have_inertia() -> Deviation:
     """A leaf must have inertia though its joint mimics another."""
 

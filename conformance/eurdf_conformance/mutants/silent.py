@@ -15,6 +15,7 @@ _UNTOLD = {
     "urdf-no-range": "That a joint cannot move is not told.",
     "urdf-unknown-element": "A misspelt element is passed over, without a word.",
     "urdf-closure-ignored": "A closure in another dialect is passed over, without a word.",
+    "urdf-mimic-fixed": "The mimic of a fixed joint has no effect, without a word.",
     "urdf-mesh-missing": "Nobody looks whether meshes exist.",
     "urdf-texture-missing": "Nobody looks whether textures exist.",
     "urdf-unknown-material": "A material that is not defined is grey, without a word.",

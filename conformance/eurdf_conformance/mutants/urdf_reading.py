@@ -62,27 +62,28 @@ def multiplier_the_other_way() -> Deviation:
 def chain_of_mimics_cut() -> Deviation:
     """Of a joint that mimics one that mimics, its own law alone counts."""
 
-    def follow(original: Any, name: str, mimics: Mapping[str, Mimic], laws: dict[str, Mimic]) -> None:
-        original(name, mimics, laws)
-        laws.update({follower: replace(mimics[follower], joint=law.joint) for follower, law in laws.items()})
+    def drivers(original: Any, mimics: Mapping[str, Mimic]) -> dict[str, Mimic]:
+        laws = original(mimics)
+        return {follower: replace(mimics[follower], joint=law.joint) for follower, law in laws.items()}
 
-    return around(mimic, "_follow_chain", follow)
+    return around(mimic, "drivers", drivers)
 
 
 @mutant("EU-URD-032")
 def chain_of_three_mimics_cut() -> Deviation:
     """Of a chain of joints that mimic, the two laws nearest to a joint count, as if what they lead to led them all."""
 
-    def follow(original: Any, name: str, mimics: Mapping[str, Mimic], laws: dict[str, Mimic]) -> None:
-        original(name, mimics, laws)
+    def drivers(original: Any, mimics: Mapping[str, Mimic]) -> dict[str, Mimic]:
+        laws: dict[str, Mimic] = original(mimics)
         for follower, law in laws.items():
             one = mimics[follower]
             other = mimics.get(one.joint)
             if other is not None and other.joint in mimics:
                 offset = one.multiplier * other.offset + one.offset
                 laws[follower] = Mimic(law.joint, one.multiplier * other.multiplier, offset)
+        return laws
 
-    return around(mimic, "_follow_chain", follow)
+    return around(mimic, "drivers", drivers)
 
 
 def _without_turns(kind: JointType) -> Deviation:
@@ -111,7 +112,11 @@ def turns_of_a_revolute_leader_lost() -> Deviation:
 @mutant("EU-URD-032")
 def mimics_are_free() -> Deviation:
     """A joint that mimics moves by itself, as in Pinocchio unless it is asked."""
-    return around(robot, "build_model", lambda original, mechanism, _: original(mechanism, False))
+
+    def build(original: Any, mechanism: Mechanism) -> Any:
+        return original(replace(mechanism, joints=tuple(replace(joint, mimic=None) for joint in mechanism.joints)))
+
+    return around(robot, "build_model", build)
 
 
 @mutant("EU-URD-007")

@@ -124,7 +124,7 @@ def quaternion_rates_of_a_ball() -> Deviation:
     return _velocities(JointType.SPHERICAL, other)
 
 
-@mutant("EU-PRO-007")
+@mutant("EU-PRO-007", versions=("2",))  # in version 1 no joint mimics
 def followers_have_columns() -> Deviation:
     """A joint that mimics has columns of its own, of zeros."""
 

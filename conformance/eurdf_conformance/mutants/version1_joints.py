@@ -8,11 +8,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from eurdf.format.urdf import Urdf
 from eurdf.mechanism import merging, replacement
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Joint
 from eurdf.mechanism.merging import Chain
 from eurdf.mechanism.replacement import _Replacement
+from eurdf.mechanism.spanning_tree import joint_of
 from eurdf_conformance.adapters.reference import Reference
 from eurdf_conformance.mutants.deviation import Deviation, around, instead
 from eurdf_conformance.mutants.mutant import mutant
@@ -164,10 +166,13 @@ def merged_although_heavy() -> Deviation:
 
 @mutant("EU-ONE-007")
 def merged_although_listed() -> Deviation:
-    """Three joints are merged though one of them is replaced, or mimicked."""
-    return around(
-        replacement, "find_chains", lambda original, urdf, joints, _, links: original(urdf, joints, (), links)
-    )
+    """Three joints are merged though one of them is replaced."""
+
+    def find(original: Any, urdf: Urdf, joints: Any, excluded: Any, links: Any) -> list[Chain]:
+        chains: list[Chain] = original(urdf, {name: joint_of(joint) for name, joint in urdf.joints.items()}, (), links)
+        return chains
+
+    return around(replacement, "find_chains", find)
 
 
 @mutant("EU-ONE-007")

@@ -81,8 +81,7 @@ def chain(urdf: Urdf, names: tuple[str, ...]) -> list[UrdfJoint]:
 def with_merges_found(description: Description, urdf: Urdf) -> Description:
     """A description of version 1, with a change for each three joints that become one, EU-ONE-007."""
     held = {reference.name for closure in description.closures for reference in (closure.a, closure.b)}
-    mimics = {joint.mimic.joint: joint.name for joint in urdf.joints.values() if joint.mimic}
-    taken = {*description.changes, *mimics, *mimics.values()}
+    taken = set(description.changes)
     changes = dict(description.changes)
     outwards = list(urdf.below(urdf.root))  # each joint after the one that it hangs from
     for joint in outwards:

@@ -40,6 +40,7 @@ def read(description: Path | None, urdf: Path, version: Version | None = None) -
             raise NotRead("a closure or an actuator that stands twice")
     source = read_urdf(urdf)
     if found.version == "1":
+        source = source.without_mimics()
         found = with_merges_found(found, source)
     robot = OracleRobot(source, found, build(source, found))
     robot.canonical()  # so that every name in the description is looked up

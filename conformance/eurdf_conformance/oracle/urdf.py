@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.parsers import expat
 
@@ -80,6 +80,10 @@ class Urdf:
         carried = {joint.child for joint in self.joints.values()}
         (root,) = (name for name in self.links if name not in carried)
         return root
+
+    def without_mimics(self) -> Urdf:
+        """The URDF as version 1 has it, EU-ONE-009."""
+        return replace(self, joints={name: replace(joint, mimic=None) for name, joint in self.joints.items()})
 
     def below(self, link: str) -> list[UrdfJoint]:
         """The joints on a link, in the order of the file."""
@@ -190,7 +194,7 @@ def inertia(link: Element) -> Inertia | None:
 
 
 def joint(element: Element) -> UrdfJoint:
-    """A joint, with what the table of chapter The URDF says of what is left out."""
+    """A joint, with what the table of chapter The URDF says of what is left out. A fixed one mimics none."""
     kind = element.text("type")
     if kind not in _TYPES:
         raise NotRead(f"a joint of type {kind!r}")
@@ -206,6 +210,7 @@ def joint(element: Element) -> UrdfJoint:
     if ranged and not limited:
         raise NotRead("a joint without the limit that it must have")
     limit, dynamics = element.one("limit"), element.one("dynamics")
+    follows = mimic(element.one("mimic")) if element.all("mimic") else None
     return UrdfJoint(
         name=element.text("name"),
         type=kind,
@@ -219,7 +224,7 @@ def joint(element: Element) -> UrdfJoint:
         effort=limit.number("effort") if limited else None,
         damping=dynamics.number("damping", 0.0) if spoken_of else 0.0,
         friction=dynamics.number("friction", 0.0) if spoken_of else 0.0,
-        mimic=mimic(element.one("mimic")) if element.all("mimic") else None,
+        mimic=None if kind == "fixed" else follows,
     )
 
 

@@ -130,6 +130,7 @@ urdf-negative-limit        EU-URD-020 error   A limit of velocity or effort, a d
 urdf-mimic-unknown         EU-URD-021 error   A joint mimics a joint that does not exist.
 urdf-mimic-cycle           EU-URD-022 error   Joints mimic one another in a cycle.
 urdf-mimic-kind            EU-URD-023 error   A joint mimics, or is mimicked, that has not exactly one coordinate.
+urdf-mimic-fixed           EU-URD-036 warning A fixed joint mimics another, which has no effect.
 urdf-geometry              EU-URD-024 error   A geometry is not one shape of positive size.
 urdf-no-range              EU-URD-025 warning A revolute or prismatic joint has the range 0 to 0, which is no range.
 urdf-unknown-element       EU-URD-026 warning An element or attribute is nearly one that URDF has.

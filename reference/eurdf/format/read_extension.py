@@ -56,6 +56,11 @@ def read_extension(document: YamlDocument, diagnostics: Diagnostics) -> Extensio
     return from_version2(two, data) if known else None
 
 
+def version_of(document: YamlDocument) -> Literal["1", "2.0"] | None:
+    """The version whose rules a file is to be read by; None if it has an error that leaves this unknown."""
+    return _version(document, Diagnostics())
+
+
 def _version(document: YamlDocument, diagnostics: Diagnostics) -> Literal["1", "2.0"] | None:
     """The version whose rules a file is to be read by (EU-VER-002, EU-VER-003); None if unknown."""
     data = document.data

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import dropwhile
 from typing import Literal, NamedTuple, cast
@@ -20,6 +20,7 @@ from eurdf.diagnostics import Diagnostics, Hint, did_you_mean
 from eurdf.format.near import near
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Inertia, Mimic, Shape
+from eurdf.mechanism.mimic import MIMIC_TYPES
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 from eurdf.reading.xml_reader import XmlDocument
 
@@ -76,6 +77,9 @@ _LIMIT = {"effort": None, "velocity": None, "lower": "0", "upper": "0"}
 _DYNAMICS = {"damping": "0", "friction": "0"}
 _MIMIC = {"multiplier": "1", "offset": "0"}
 
+#: Codes of what is wrong with which joint mimics which.
+_OF_MIMICS = frozenset({"urdf-mimic-unknown", "urdf-mimic-cycle", "urdf-mimic-kind", "urdf-mimic-fixed"})
+
 #: The attributes that an element may have, but need not.
 _OPTIONAL_ATTRIBUTES: dict[str, tuple[str, ...]] = {
     "origin": ("xyz", "rpy"),
@@ -128,7 +132,7 @@ class UrdfJoint(NamedTuple):
         limit: None where the URDF gives none.
         damping: N·m·s/rad or N·s/m.
         friction: N·m or N.
-        mimic: The joint it follows, or None.
+        mimic: The joint that it mimics as the file has it, or None. A fixed joint mimics none.
     """
 
     name: str
@@ -164,6 +168,14 @@ class Urdf:
     root: str
     children: Mapping[str, tuple[UrdfJoint, ...]]
 
+    def without_mimics(self) -> Urdf:
+        """The same URDF in which no joint mimics another."""
+        if all(joint.mimic is None for joint in self.joints.values()):
+            return self
+        joints = {name: joint._replace(mimic=None) for name, joint in self.joints.items()}
+        children = {link: tuple(joints[joint.name] for joint in of) for link, of in self.children.items()}
+        return replace(self, joints=joints, children=children)
+
     def walk(self) -> Iterator[UrdfJoint]:
         """The joints depth first from the root; the joints of one link in the byte order of their names."""
         stack = list(reversed(self.children.get(self.root, ())))
@@ -173,19 +185,27 @@ class Urdf:
             stack.extend(reversed(self.children.get(joint.child, ())))
 
 
-def read_urdf(document: XmlDocument, diagnostics: Diagnostics, *, geometry: bool = True) -> Urdf | None:
+def read_urdf(
+    document: XmlDocument,
+    diagnostics: Diagnostics,
+    *,
+    geometry: bool = True,
+    mimic_diagnostics: Diagnostics | None = None,
+) -> Urdf | None:
     """Read a URDF and check it by itself.
 
     Args:
         document: The XML file.
         diagnostics: Gets what is found.
         geometry: Whether to read what is seen and what collides; else links have neither, and it is not checked.
+        mimic_diagnostics: Gets what is wrong with which joint mimics which, in place of `diagnostics`: for a caller
+            that ignores mimics, to whom this is no error.
 
     Returns:
-        The URDF, or None where an error was found.
+        The URDF, or None where an error was added to `diagnostics`.
     """
     before = diagnostics.error_count
-    reader = _Reader(document, diagnostics, geometry)
+    reader = _Reader(document, diagnostics, geometry, diagnostics if mimic_diagnostics is None else mimic_diagnostics)
     urdf = reader.robot()
     return None if diagnostics.error_count > before else urdf
 
@@ -220,9 +240,12 @@ def _floats(text: str, separator: str | None = None) -> tuple[float, ...] | None
 class _Reader:
     """Walks the elements once; every method reads one kind of element and reports what is wrong with it."""
 
-    def __init__(self, document: XmlDocument, diagnostics: Diagnostics, geometry: bool) -> None:
+    def __init__(
+        self, document: XmlDocument, diagnostics: Diagnostics, geometry: bool, mimic_diagnostics: Diagnostics
+    ) -> None:
         self.document = document
         self.diagnostics = diagnostics
+        self.mimic_diagnostics = mimic_diagnostics
         self.geometry_too = geometry
         self.floats: dict[str, tuple[float, ...] | None] = {}
         self.joined: dict[str, tuple[float, ...] | None] = {}
@@ -236,7 +259,8 @@ class _Reader:
     def report(
         self, code: str, message: str, element: Element, attribute: str | None = None, hint: Hint = None
     ) -> None:
-        self.diagnostics.report(code, message, partial(self.document.place, element, attribute), hint)
+        diagnostics = self.mimic_diagnostics if code in _OF_MIMICS else self.diagnostics
+        diagnostics.report(code, message, partial(self.document.place, element, attribute), hint)
 
     # -- attributes -----------------------------------------------------------------------------------------------
 
@@ -602,7 +626,7 @@ class _Reader:
         damping = friction = 0.0
         if "dynamics" in found:
             damping, friction = self.dynamics(found["dynamics"])
-        mimic = self.mimic(found["mimic"]) if "mimic" in found else None
+        mimic = self.mimic(name, kind, found["mimic"]) if "mimic" in found else None
         if name is None or parent is None or child is None or axis is None:
             return None
         if name == "universe":
@@ -696,11 +720,22 @@ class _Reader:
                 message = f"'{attribute}' of {_named(element)} is negative"
                 self.report("urdf-negative-limit", message, element, attribute)
 
-    def mimic(self, element: Element) -> Mimic | None:
+    def mimic(self, name: str | None, kind: JointType, element: Element) -> Mimic | None:
+        """EU-URD-036: a fixed joint, which has no coordinate, has no use for a `<mimic>`."""
         joint = self.name(element, "joint")
         self.attributes(element)
         values = self.several(element, _MIMIC)
-        return None if joint is None or values is None else Mimic(joint, *values)
+        if joint is None or values is None:
+            return None
+        if kind is JointType.FIXED:
+            self.report(
+                "urdf-mimic-fixed",
+                f"joint '{name}' is fixed: its <mimic> of '{joint}' has no effect",
+                element,
+                hint="remove <mimic>, or change the type if the joint moves",
+            )
+            return None
+        return Mimic(joint, *values)
 
     # -- the tree -------------------------------------------------------------------------------------------------
 
@@ -727,7 +762,7 @@ class _Reader:
                         f"joint '{joint.name}' names the {tag} link '{link_name}', which does not exist",
                         joint.element.find(tag),  # type: ignore[arg-type]
                         "link",
-                        partial(did_you_mean, link_name, link_by_name),
+                        partial(did_you_mean, link_name, link_by_name, joint.name),
                     )
         if self.diagnostics.error_count > before:
             return None
@@ -800,7 +835,6 @@ class _Reader:
 
     def mimics(self, joints: Mapping[str, UrdfJoint]) -> None:
         """EU-URD-021 to -023: a mimic follows another joint of one coordinate, and not itself round a cycle."""
-        single = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
         following = [joint for joint in joints.values() if joint.mimic]
         done: set[str] = set()
         for joint in following:
@@ -813,11 +847,11 @@ class _Reader:
                     f"joint '{joint.name}' mimics '{joint.mimic.joint}', which is no joint",
                     element,
                     "joint",
-                    partial(did_you_mean, joint.mimic.joint, joints),
+                    partial(did_you_mean, joint.mimic.joint, joints.keys() - {joint.name}, joint.name),
                 )
                 continue
             roles = {"mimics another": joint, "is mimicked": target}
-            wrong = next((role for role, other in roles.items() if other.type not in single), None)
+            wrong = next((role for role, other in roles.items() if other.type not in MIMIC_TYPES), None)
             if wrong:
                 other = roles[wrong]
                 self.report(

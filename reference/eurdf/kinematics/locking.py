@@ -91,10 +91,9 @@ def lock(
     if ROOT_JOINT in names and robot.mechanism.root == "floating":
         raise CannotLock(ROOT_JOINT, "it is the robot's place in the world; load the robot with root='fixed'")
     q = start(robot, q)
-    mimic = len(robot.model.mimicking_joints) > 0
-    locked = lock_joints(robot.mechanism, names, joint_coordinates(robot.mechanism, robot.model, q), mimic=mimic)
+    locked = lock_joints(robot.mechanism, names, joint_coordinates(robot.mechanism, robot.model, q))
     _check_closed(robot, q, {closure.name for closure in locked.closures}, tolerance)
-    built = build_robot(locked.mechanism, geometry=False, mimic=mimic)
+    built = build_robot(locked.mechanism, geometry=False)
     for kind in ("visual_model", "collision_model"):
         if robot.no_geometry is None and getattr(robot, kind) is not None:
             setattr(built, kind, _carried_over(getattr(robot, kind), robot.model, built.model))

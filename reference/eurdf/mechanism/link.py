@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
 from types import MappingProxyType
 
 from eurdf.diagnostics import Diagnostics
@@ -12,7 +14,8 @@ from eurdf.mechanism.closures import link_closures
 from eurdf.mechanism.configurations import link_configurations
 from eurdf.mechanism.frame_names import FrameNames
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import ROOT_JOINT, Frame, Joint, Mechanism, Root
+from eurdf.mechanism.mechanism import ROOT_JOINT, Frame, Joint, Mechanism, Mimic, Root
+from eurdf.mechanism.mimic import MIMIC_TYPES, drivers
 from eurdf.mechanism.ranges import check_ranges
 from eurdf.mechanism.replacement import Joints, replace_joints
 from eurdf.mechanism.spanning_tree import bodies_of, depth_first, joint_of, rigid_roots
@@ -35,8 +38,12 @@ def link(
     document: YamlDocument | None,
     diagnostics: Diagnostics,
     root: Root | None = None,
+    *,
+    mimic: bool = True,
 ) -> Mechanism | None:
     """Link a URDF and its description.
+
+    EU-ONE-009: with a description of version 1, no joint mimics another.
 
     Args:
         urdf: The URDF, sound by itself.
@@ -44,15 +51,21 @@ def link(
         document: Where the description was read from; None with it.
         diagnostics: Gets what is found.
         root: In place of the root that the description states.
+        mimic: Whether mimic joints follow; if not, each is free, as if the URDF had no ``<mimic>``. Where a named
+            configuration does not state it, it is where it would follow to.
 
     Returns:
         The mechanism, or None where an error was found.
     """
     before = diagnostics.error_count
+    mimics = {} if mimic else {joint.name: joint.mimic for joint in urdf.joints.values() if joint.mimic}
+    if not mimic or (extension is not None and extension.version == "1"):
+        urdf = urdf.without_mimics()
     if extension is None or document is None:
         mechanism = _bare(urdf, diagnostics, root or "fixed")
     else:
         mechanism = _described(urdf, extension, document, diagnostics, root or extension.root)
+        mechanism = replace(mechanism, configurations=_led(mechanism, drivers(mimics)))
         _reserve_names(extension, document, diagnostics, mechanism.root)
     if mechanism.root == "floating":
         _reserve_root_joint(urdf, diagnostics)
@@ -135,6 +148,25 @@ def _described(
         MappingProxyType(dict(extension.metadata)),
         MappingProxyType({json_pointer(pointer): value for pointer, value in extension.own_data.items()}),
     )
+
+
+def _led(mechanism: Mechanism, laws: Mapping[str, Mimic]) -> Mapping[str, Mapping[str, tuple[float, ...]]]:
+    """The named configurations, with mimic joints that are free where they would follow to."""
+    joints = {joint.name: joint for joint in mechanism.joints}
+    led = {
+        name: law
+        for name, law in laws.items()
+        if all(other in joints and joints[other].type in MIMIC_TYPES for other in (name, law.joint))
+    }
+    if not led:
+        return mechanism.configurations
+    configurations = {}
+    for key, stated in mechanism.configurations.items():
+        followed = {
+            name: (law.multiplier * stated.get(law.joint, (0.0,))[0] + law.offset,) for name, law in led.items()
+        }
+        configurations[key] = MappingProxyType({**followed, **stated})
+    return MappingProxyType(configurations)
 
 
 def _own_keys(extension: Extension, urdf: Urdf, document: YamlDocument, diagnostics: Diagnostics) -> None:

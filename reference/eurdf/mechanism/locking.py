@@ -12,6 +12,7 @@ from eurdf.exceptions import CannotLock
 from eurdf.mechanism.joint_transform import joint_transform
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Closure, Joint, Mechanism, Mimic
+from eurdf.mechanism.mimic import drivers
 from eurdf.mechanism.pose import Pose
 from eurdf.mechanism.spanning_tree import rigid_roots
 
@@ -40,9 +41,7 @@ class LockedMechanism:
     configurations: tuple[str, ...]
 
 
-def lock_joints(
-    mechanism: Mechanism, joints: Iterable[str], coordinates: Coordinates, *, mimic: bool = True
-) -> LockedMechanism:
+def lock_joints(mechanism: Mechanism, joints: Iterable[str], coordinates: Coordinates) -> LockedMechanism:
     """Fix joints at given coordinates.
 
     The placement of a locked joint becomes ``placement * joint_transform(joint, c) * offset``, so that its child, and
@@ -52,19 +51,18 @@ def lock_joints(
     Args:
         mechanism: The mechanism.
         joints: Names of joints. With a joint, those that follow it are locked; one that is fixed stays so.
-        coordinates: For each joint its coordinates as files have them. A joint left out stands at its neutral; where
-            joints that mimic follow, what is said of one of them is not looked at.
-        mimic: Whether joints that mimic follow their leaders; if not, each is locked by itself, and one whose leader
-            is locked alone no longer mimics.
+        coordinates: For each joint its coordinates as files have them. A joint left out stands at its neutral; what is
+            said of a mimic joint is not looked at.
 
     Raises:
         CannotLock: A name is that of no joint, or of one that follows another that is not locked.
         ValueError: A joint is given too few or too many coordinates, or a quaternion of length 0.
     """
     by_name = {joint.name: joint for joint in mechanism.joints}
-    locked = _locked(by_name, joints, mimic)
-    at = {name: joint_transform(by_name[name], _coordinates(by_name, name, coordinates, mimic)) for name in locked}
-    ordered = tuple(_without(joint, at) for joint in mechanism.joints)
+    laws = drivers({joint.name: joint.mimic for joint in mechanism.joints if joint.mimic is not None})
+    locked = _locked(by_name, joints, laws)
+    at = {name: joint_transform(by_name[name], _coordinates(by_name, name, coordinates, laws)) for name in locked}
+    ordered = tuple(_fixed(joint, at) for joint in mechanism.joints)
     rigid = rigid_roots(mechanism.bodies[0].name, ordered)
     movable: list[Closure] = []
     constant: list[Closure] = []
@@ -74,7 +72,7 @@ def lock_joints(
         name: MappingProxyType({joint: values for joint, values in configuration.items() if joint not in at})
         for name, configuration in mechanism.configurations.items()
         if all(
-            _near(pose, joint_transform(by_name[joint], _coordinates(by_name, joint, configuration, mimic)))
+            _near(pose, joint_transform(by_name[joint], _coordinates(by_name, joint, configuration, laws)))
             for joint, pose in at.items()
         )
     }
@@ -93,15 +91,15 @@ def lock_joints(
     )
 
 
-def _locked(by_name: Mapping[str, Joint], names: Iterable[str], mimic: bool) -> list[str]:
+def _locked(by_name: Mapping[str, Joint], names: Iterable[str], laws: Mapping[str, Mimic]) -> list[str]:
     """The joints to be locked, in the mechanism's order: those named, but fixed ones, and all that follow them."""
     named = set(names)
     for name in sorted(named - by_name.keys()):
         near = difflib.get_close_matches(name, list(by_name), n=1)
         raise CannotLock(name, "there is no such joint" + (f"; did you mean '{near[0]}'?" if near else ""))
     locked = []
-    for name, joint in by_name.items():
-        leader = _law(by_name, joint).joint if mimic else name
+    for name in by_name:
+        leader = laws[name].joint if name in laws else name
         if leader in named:
             locked.append(name)
         elif name in named:
@@ -109,33 +107,22 @@ def _locked(by_name: Mapping[str, Joint], names: Iterable[str], mimic: bool) -> 
     return [name for name in locked if by_name[name].type is not JointType.FIXED]
 
 
-def _coordinates(by_name: Mapping[str, Joint], name: str, coordinates: Coordinates, mimic: bool) -> Sequence[float]:
-    joint = by_name[name]
-    if mimic and joint.mimic is not None:
-        law = _law(by_name, joint)
+def _coordinates(
+    by_name: Mapping[str, Joint], name: str, coordinates: Coordinates, laws: Mapping[str, Mimic]
+) -> Sequence[float]:
+    if name in laws:
+        law = laws[name]
         (leading,) = coordinates.get(law.joint, by_name[law.joint].coordinates.neutral)
         return (law.multiplier * leading + law.offset,)
-    return coordinates.get(name, joint.coordinates.neutral)
+    return coordinates.get(name, by_name[name].coordinates.neutral)
 
 
-def _law(by_name: Mapping[str, Joint], joint: Joint) -> Mimic:
-    """How it follows the joint that leads it in the end; itself where it follows none."""
-    law = Mimic(joint.name)
-    while joint.mimic is not None:
-        offset = law.multiplier * joint.mimic.offset + law.offset
-        law = Mimic(joint.mimic.joint, law.multiplier * joint.mimic.multiplier, offset)
-        joint = by_name[law.joint]
-    return law
-
-
-def _without(joint: Joint, at: Mapping[str, Pose]) -> Joint:
-    """The joint as it is among joints that are locked."""
-    if joint.name in at:
-        placement = joint.placement * at[joint.name] * joint.offset
-        return Joint(joint.name, JointType.FIXED, joint.parent, joint.child, placement)
-    if joint.mimic is not None and joint.mimic.joint in at:
-        return replace(joint, mimic=None)
-    return joint
+def _fixed(joint: Joint, at: Mapping[str, Pose]) -> Joint:
+    """The joint, fixed where it is if it is locked."""
+    if joint.name not in at:
+        return joint
+    placement = joint.placement * at[joint.name] * joint.offset
+    return Joint(joint.name, JointType.FIXED, joint.parent, joint.child, placement)
 
 
 def _near(one: Pose, other: Pose) -> bool:

@@ -148,7 +148,7 @@ def find_chains(
     Args:
         urdf: The URDF.
         joints: Its joints by name.
-        excluded: Joints that the description replaces, or that mimic or are mimicked.
+        excluded: Joints that the description replaces.
         closure_links: Links that carry a frame of a closure.
     """
     revolute = (JointType.REVOLUTE,)

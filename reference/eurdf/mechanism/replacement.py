@@ -107,8 +107,7 @@ def replace_joints(
         if len(diagnostics) > before:
             faulty.update({entry.name, *entry.merges, *(f"{entry.name}_{letter}" for letter in entry.split)})
     if merges_revolutes:
-        excluded = {*seen, *mimicking, *mimicked}
-        for chain in find_chains(urdf, joints.by_name, excluded, closure_links):
+        for chain in find_chains(urdf, joints.by_name, seen, closure_links):
             first, second, ball = merge(chain, chain.joints[2].name)
             for joint in (first, second, ball):
                 joints.by_name[joint.name] = joint

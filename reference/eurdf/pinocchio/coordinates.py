@@ -8,7 +8,7 @@ import pinocchio as pin
 
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Joint, Mechanism
-from eurdf.pinocchio.mimic import NONE, following
+from eurdf.pinocchio.mimic import following
 
 
 class Slot(NamedTuple):
@@ -30,13 +30,13 @@ class Slot(NamedTuple):
 
 
 def slots(mechanism: Mechanism, model: pin.Model) -> dict[str, Slot]:
-    """The slots of all joints but fixed ones and, in a model with followers, those that follow another.
+    """The slots of all joints but fixed ones and mimic joints.
 
     Args:
         mechanism: The mechanism.
         model: What `build_model` made of it.
     """
-    led = following(mechanism) if len(model.mimicking_joints) else NONE
+    led = following(mechanism)
     idx_qs, idx_vs = model.idx_qs.tolist(), model.idx_vs.tolist()
     joint_id = 1 + (mechanism.root == "floating") + len(led.late)
     found = {}

@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Joint, Mechanism, Mimic
-
-_FOLLOWERS = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC})
+from eurdf.mechanism.mimic import MIMIC_TYPES, drivers
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,38 +28,18 @@ class Following:
     counted: frozenset[str] = frozenset()
 
 
-NONE = Following()
-
-
 def following(mechanism: Mechanism) -> Following:
     """EU-URD-032: which joint follows which, and by what law."""
     mimics = {
-        joint.name: joint.mimic for joint in mechanism.joints if joint.mimic is not None and joint.type in _FOLLOWERS
+        joint.name: joint.mimic for joint in mechanism.joints if joint.mimic is not None and joint.type in MIMIC_TYPES
     }
     if not mimics:
-        return NONE
-    laws: dict[str, Mimic] = {}
-    for name in mimics:
-        _follow_chain(name, mimics, laws)
+        return Following()
+    laws = drivers(mimics)
     place = {joint.name: index for index, joint in enumerate(mechanism.joints)}
     overtaken = {law.joint for name, law in laws.items() if place[name] < place[law.joint]}
     late = tuple(joint for joint in mechanism.joints if joint.name in overtaken)
     return Following(laws, late, _counted(mechanism, laws))
-
-
-def _follow_chain(name: str, mimics: Mapping[str, Mimic], laws: dict[str, Mimic]) -> None:
-    """Find the law that leads a joint in the end, m₂ (m₁ q + o₁) + o₂, and those of the joints on the way to it."""
-    chain = []
-    while name in mimics and name not in laws:
-        chain.append(name)
-        name = mimics[name].joint
-    for follower in reversed(chain):
-        mimic = mimics[follower]
-        step = laws.get(mimic.joint)
-        if step is not None:
-            offset = mimic.multiplier * step.offset + mimic.offset
-            mimic = Mimic(step.joint, mimic.multiplier * step.multiplier, offset)
-        laws[follower] = mimic
 
 
 def _counted(mechanism: Mechanism, laws: Mapping[str, Mimic]) -> frozenset[str]:

@@ -1,7 +1,8 @@
 """The spanning tree of a mechanism as a Pinocchio model, equal to the one Pinocchio's URDF parser builds.
 
-For a mechanism that is a plain URDF the result equals ``pin.buildModelFromUrdf(path, mimic=True)`` to the last bit:
-the same operations in the same order, through the same functions where Python can reach them.
+For a mechanism that is a plain URDF the result equals ``pin.buildModelFromUrdf(path, mimic=True)`` to the last bit
+where Pinocchio builds one: the same operations in the same order, through the same functions if Python can reach them.
+For a mechanism linked with ``mimic=False`` it equals ``pin.buildModelFromUrdf(path)``.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from eurdf.mechanism.pose import IDENTITY
 from eurdf.pinocchio.inertia import inertia_of, is_zero
 from eurdf.pinocchio.joint_model import joint_model
 from eurdf.pinocchio.limits import set_limits
-from eurdf.pinocchio.mimic import NONE, following
+from eurdf.pinocchio.mimic import following
 from eurdf.pinocchio.placement import placement_of
 
 _Indices = tuple[int, int, int, int]  # of a joint: its own, and where its q, its v and its v with followers start
@@ -33,7 +34,7 @@ _BODY, _JOINT, _FIXED_JOINT, _OP_FRAME = (
 )
 
 
-def build_model(mechanism: Mechanism, mimic: bool = True) -> pin.Model:
+def build_model(mechanism: Mechanism) -> pin.Model:
     """Build the model of the spanning tree, with every link, joint and named frame of the mechanism.
 
     Pinocchio's own URDF parser fails on a joint that mimics one that comes later or itself mimics, and on one that
@@ -46,7 +47,6 @@ def build_model(mechanism: Mechanism, mimic: bool = True) -> pin.Model:
 
     Args:
         mechanism: A sound mechanism.
-        mimic: Whether joints that mimic follow their leaders; if not, they move by themselves.
 
     Returns:
         The model. Frames that the description adds are OP_FRAME; the frame of a joint that was split in two is
@@ -54,7 +54,7 @@ def build_model(mechanism: Mechanism, mimic: bool = True) -> pin.Model:
     """
     model = pin.Model()
     model.name = mechanism.name
-    led = following(mechanism) if mimic else NONE
+    led = following(mechanism)
     root = mechanism.bodies[0]
     joint_id, body_frame = _add_root(model, mechanism)
     root_nq, root_nv = model.nq, model.nv

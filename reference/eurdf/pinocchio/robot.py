@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import pinocchio as pin
@@ -14,7 +14,6 @@ from eurdf.pinocchio.configuration import Vector, configuration_vector, own_coor
 from eurdf.pinocchio.constraint import build_constraint_models
 from eurdf.pinocchio.coordinates import slots
 from eurdf.pinocchio.geometry import Meshes, Resolve, build_geometry
-from eurdf.pinocchio.mimic import following
 from eurdf.pinocchio.model import build_model
 
 
@@ -144,7 +143,6 @@ def build_robot(
     mechanism: Mechanism,
     *,
     geometry: bool,
-    mimic: bool = True,
     resolve: Resolve | None = None,
     diagnostics: tuple[Diagnostic, ...] = (),
 ) -> Robot:
@@ -153,7 +151,6 @@ def build_robot(
     Args:
         mechanism: A sound mechanism.
         geometry: Whether to build the visual and collision geometry.
-        mimic: Whether joints that mimic follow their leaders; if not, they move by themselves.
         resolve: Path of the file that a URI of the URDF means; needed for geometry with meshes.
         diagnostics: What was found wrong with it so far.
 
@@ -161,7 +158,7 @@ def build_robot(
         UnreadableMesh: A mesh file is no mesh.
         FileNotFoundError: `resolve` does not find a mesh.
     """
-    model = build_model(mechanism, mimic)
+    model = build_model(mechanism)
     visual_model = collision_model = None
     if geometry:
         find = _nothing if resolve is None else resolve
@@ -177,20 +174,11 @@ def build_robot(
         visual_model,
         collision_model,
         {
-            name: configuration_vector(mechanism, model, coordinates if mimic else _led(mechanism, coordinates), at)
+            name: configuration_vector(mechanism, model, coordinates, at)
             for name, coordinates in mechanism.configurations.items()
         },
         diagnostics,
     )
-
-
-def _led(mechanism: Mechanism, coordinates: Mapping[str, Sequence[float]]) -> Mapping[str, Sequence[float]]:
-    """A named configuration with the joints that follow, where it does not state them: free, they stand there too."""
-    laws = following(mechanism).laws
-    followers = {
-        name: (law.multiplier * coordinates.get(law.joint, (0.0,))[0] + law.offset,) for name, law in laws.items()
-    }
-    return {**followers, **coordinates}
 
 
 def _nothing(uri: str) -> None:

@@ -1,4 +1,4 @@
-"""A joint that mimics moves as one that does not, held to its law."""
+"""A joint that mimics moves as one that does not, held to its law; in version 1 it does not mimic."""
 
 from __future__ import annotations
 
@@ -7,11 +7,13 @@ import numpy as np
 from eurdf_conformance.level import Level, Version
 from eurdf_conformance.properties.asked import ask
 from eurdf_conformance.properties.example import Example
+from eurdf_conformance.properties.files import Files
 from eurdf_conformance.properties.law import Law
-from eurdf_conformance.properties.mechanism import Configuration, Limit, Mechanism
+from eurdf_conformance.properties.mechanism import Configuration, Limit, Mechanism, Mimic
 from eurdf_conformance.properties.pair import Pair, related
 from eurdf_conformance.properties.relations.changing import in_velocities
 from eurdf_conformance.properties.truth import truth
+from eurdf_conformance.properties.urdf import urdf_text
 from eurdf_conformance.protocol.message import Values
 
 _WIDE = Limit(effort=1.0, velocity=1.0, lower=-100.0, upper=100.0)
@@ -63,6 +65,32 @@ def freed(mechanism: Mechanism) -> Mechanism:
     )
 
 
+def ignoring(example: Example, version: Version) -> Pair:
+    """A mechanism without mimics, and the same one whose URDF has some, right or wrong."""
+    mechanism, chance = example.mechanism, example.chance
+    names = [*(joint.name for joint in mechanism.joints), "nobody"]
+    joints = tuple(
+        joint.model_copy(
+            update={
+                "mimic": Mimic(
+                    joint=chance.one_of(names), multiplier=chance.between(-2.0, 2.0), offset=chance.between(-0.5, 0.5)
+                )
+                if chance.is_so(0.7)
+                else None
+            }
+        )
+        for joint in mechanism.joints
+    )
+    asked = ask(mechanism, version)
+    files = Files(asked.files.description, urdf_text(mechanism.replace(joints=joints)).encode())
+    return Pair(asked, ask(mechanism, version, files=files))
+
+
+def has_joint(mechanism: Mechanism) -> bool:
+    """Whether there is a joint that could have a mimic."""
+    return bool(mechanism.joints)
+
+
 def has_mimic(mechanism: Mechanism) -> bool:
     """Whether a joint follows another."""
     return any(joint.mimic for joint in mechanism.joints)
@@ -75,6 +103,16 @@ LAWS = (
         ("EU-URD-032", "EU-CLO-010", "EU-INR-006"),
         (Level.KINEMATICS, Level.DYNAMICS),
         related(following),
+        versions=("2",),
         applies=has_mimic,
+    ),
+    Law(
+        "mimics-ignored",
+        "In version 1 a `mimic` changes nothing.",
+        ("EU-ONE-009",),
+        (Level.STRUCTURE, Level.KINEMATICS, Level.DYNAMICS),
+        related(ignoring),
+        versions=("1",),
+        applies=has_joint,
     ),
 )

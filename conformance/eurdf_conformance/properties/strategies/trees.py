@@ -91,7 +91,8 @@ def grown(draw: DrawFn, growth: Growth) -> bool:
     All that is drawn for a joint is drawn here, so that Hypothesis can leave out any one of them.
     """
     version = growth.version
-    kinds = [*PLAIN, "mimic", "merged", *(kind for kind in BECOMES if version == "2" or kind not in _VERSION_2)]
+    kinds = ["merged", *(kind for kind in BECOMES if version == "2" or kind not in _VERSION_2)]
+    kinds = [*PLAIN, *(["mimic"] if version == "2" else []), *kinds]  # in version 1 no joint mimics
     kind = draw(st.sampled_from(kinds))
     if kind == "merged":
         grow_ball(draw, growth)

@@ -1,0 +1,40 @@
+"""Mimic joints: which joints can be one, and which joint drives each of them in the end."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mechanism import Mimic
+
+#: The types of the joints that can mimic and be mimicked (EU-URD-023): those of URDF with one coordinate.
+MIMIC_TYPES = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC})
+
+
+def drivers(mimics: Mapping[str, Mimic]) -> dict[str, Mimic]:
+    """For each mimic joint, the joint at the end of its chain, and the law between the two.
+
+    A chain q₂ = m₂ q₁ + o₂, q₁ = m₁ q + o₁ becomes q₂ = m₂ m₁ q + (m₂ o₁ + o₂). A joint whose chain ends in a cycle is
+    left out.
+
+    Args:
+        mimics: For each mimic joint, the joint that it names and the law between the two, in rad or m.
+    """
+    laws: dict[str, Mimic] = {}
+    endless: set[str] = set()
+    for name in mimics:
+        chain: dict[str, None] = {}
+        while name in mimics and not (name in laws or name in chain or name in endless):
+            chain[name] = None
+            name = mimics[name].joint
+        if name in chain or name in endless:
+            endless.update(chain)
+            continue
+        for follower in reversed(chain):
+            mimic = mimics[follower]
+            step = laws.get(mimic.joint)
+            if step is not None:
+                offset = mimic.multiplier * step.offset + mimic.offset
+                mimic = Mimic(step.joint, mimic.multiplier * step.multiplier, offset)
+            laws[follower] = mimic
+    return laws
