@@ -395,6 +395,17 @@ def test_a_joint_that_mimics_moves_as_the_free_joint_bound_to_its_leader() -> No
     np.testing.assert_allclose(found.a, np.linalg.solve(M, np.array([3.0, 0.0]) - h), rtol=1e-9)
 
 
+def test_a_leader_that_comes_after_its_mimic_joint_has_its_own_name_in_errors() -> None:
+    late = FOLLOWING.replace(
+        '<mimic joint="a" multiplier="-1.5" offset="0.3"/>', '<mimic joint="c" multiplier="-1.5"/>'
+    )
+    robot = load(late)
+    assert "c/coordinate" in list(robot.model.names)
+    with pytest.raises(eurdf.UnderactuatedMotion) as refused:
+        inverse_dynamics(robot, np.zeros(2), np.zeros(2), np.ones(2))
+    assert set(refused.value.missing) == {"a", "c"}
+
+
 def test_a_loop_with_a_joint_that_mimics_is_solved() -> None:
     geared = FOLLOWING.replace("</robot>", "") + body("tip")
     geared += joint_element("d", "revolute", "lower", "tip", LIMITED.format("0 1 0"), '<origin xyz="0.4 0 0"/>')

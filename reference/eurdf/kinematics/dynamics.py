@@ -31,6 +31,7 @@ from eurdf.kinematics.mass_matrix import mass_times
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.kinematics.velocity_names import velocity_names
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -469,11 +470,11 @@ def _per_closure(loops: tuple[Loop, ...], lambdas: Vector) -> tuple[Vector, ...]
 def _by_joint(model: Any, values: Vector) -> dict[str, tuple[float, ...]]:
     """The values (nv,) of the joints in which one is more than rounding, by joint name."""
     least = 1e-6 * np.abs(values).max(initial=0.0)
-    found = {}
-    for name, first, width in zip(model.names, model.idx_vs, model.nvs, strict=True):
+    found, names = {}, velocity_names(model)
+    for first, width in zip(model.idx_vs, model.nvs, strict=True):
         own = values[first : first + width]
         if width and (np.abs(own) > least).any():
-            found[name] = tuple(own.tolist())
+            found[names[first]] = tuple(own.tolist())
     return found
 
 
