@@ -13,7 +13,7 @@ import pytest
 from hypothesis import settings
 
 #: Files whose tests are run by one worker, since they share something that takes long to make.
-TOGETHER = ("test_specification_site.py", "test_editor.py", "test_conformance_explore.py")
+TOGETHER = ("test_specification_site.py", "test_editor.py", "test_conformance_explore.py", "test_examples.py")
 
 #: Files with the longest tests. They are started first, so that no worker is left with one at the end.
 FIRST = (
