@@ -57,6 +57,12 @@ def test_version_1_does_not_look_at_which_joint_a_mimic_names(title: str) -> Non
     assert load(MISTAKES[title], "name_mot: [left]\n").model.nv == 2
 
 
+def test_version_1_advises_on_a_mimic_joint_that_nothing_else_says_is_free() -> None:
+    assert codes(gripper(), "name_mot: [drive]\n") == ["x-mimic-ignored"]
+    assert codes(gripper(), "name_mot: [drive]\njoint_name: [left]\njoint_type: [SPHERICAL]\n") == []
+    assert codes(gripper(), "note: 1\n") == codes(gripper(), "actuators: [drive]\n") == codes(gripper()) == []
+
+
 def test_version_1_changes_joints_with_a_mimic_and_those_that_it_names() -> None:
     found = load(gripper(), "joint_name: [left, drive]\njoint_type: [SPHERICAL, FIXED]\n")
     assert [joint.shortname() for joint in found.model.joints][1:] == ["JointModelSpherical"]
@@ -167,7 +173,7 @@ def test_the_mimic_of_a_fixed_joint_has_no_effect_and_is_reported(joint: str) ->
     for yaml in ("", "actuators: [drive]\n"):
         assert codes(text, yaml) == ["urdf-mimic-fixed"]
     assert load(text).model == load(gripper()).model
-    assert codes(text, "name_mot: [drive]\n") == []
+    assert codes(text, "name_mot: [drive, left]\n") == []
 
 
 def test_a_joint_must_not_mimic_a_fixed_one_though_that_has_a_mimic() -> None:

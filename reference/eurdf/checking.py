@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from eurdf.advice.angles import advise_on_angles
 from eurdf.advice.lengths import advise_on_lengths
+from eurdf.advice.mimics import advise_on_mimics
 from eurdf.advice.quaternions import advise_on_quaternions, closes_w_first
 from eurdf.description import Description, describe, find_meshes
 from eurdf.diagnostics import Diagnostics
@@ -63,6 +64,7 @@ def check(
             _check_loops(description, mechanism)
         else:
             advise_on_quaternions(description, None, diagnostics)
+        advise_on_mimics(description, diagnostics)
         advise_on_angles(description, diagnostics)
         advise_on_lengths(description, meshes, diagnostics)
     return Report(description.path, tuple(diagnostics))

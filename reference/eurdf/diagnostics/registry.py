@@ -210,6 +210,7 @@ x-no-actuator              A robot with closures has no actuator.
 x-dependent-actuators      Actuators cannot move independently of one another, or at all.
 x-uncontrolled-motion      A motion is possible with every actuator held that is not the spin of a rod.
 x-closes-beyond-limits     The loops close only where joints are beyond their limits.
+x-mimic-ignored            A mimic joint moves by itself, since version 1 ignores mimics, and has no motor.
 x-massless-link            A link of a loop has no mass.
 x-xacro-warning            A xacro file was expanded with warnings.
 x-loops-not-checked        Whether the loops can be closed was not computed: too many of them share joints.
