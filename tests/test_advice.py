@@ -577,3 +577,26 @@ def test_a_massless_cross_of_a_cardan_joint_is_no_mistake_unless_its_axes_are_on
     hinge = next(joint for joint in etree.parse(ROBOTS / "four_bar" / "robot.urdf").iter("joint"))
     same = hinge.find("axis").get("xyz").split() == axes.split()
     assert ("x-massless-link" in codes(found)) == same
+
+
+def test_loops_that_rounded_numbers_of_the_urdf_keep_open_are_named_so(advice) -> None:
+    def out_of_plane(distance: str) -> Callable[[str], str]:
+        def edit(urdf: str) -> str:
+            tree = etree.fromstring(urdf.encode())
+            weld = next(each for each in tree.iter("joint") if each.get("name") == "weld_tip_a")
+            weld.append(etree.fromstring(f'<origin xyz="0 {distance} 0"/>'))
+            return etree.tostring(tree).decode()
+
+        return edit
+
+    for distance, rounded in (("0.000006", True), ("0.006", False)):
+        (found,) = advice("five_bar_6d", without_configurations, out_of_plane(distance))
+        assert found.code == "closure-cannot-close"
+        assert ("with more digits" in (found.hint or "")) == rounded
+        assert ("closed to" in (found.hint or "")) == rounded
+
+
+@pytest.mark.parametrize("number", ["1e200", "-1e15"])
+def test_a_number_that_fits_no_unit_is_not_taken_for_one_in_another(tmp_path: Path, number: str) -> None:
+    urdf = chain(joint("shoulder", "a", "b"), joint("elbow", "b", "c"), joint("wrist", "c", "d", xyz=f"0 0 {number}"))
+    assert checked(tmp_path, urdf.replace('xyz="0.01 0 0"', f'xyz="0.01 0 0" rpy="0 0 {number}"', 1)) == []

@@ -45,7 +45,7 @@ def load_changed(folder: Path, old: str, new: str, *, assembled: bool = True) ->
     (folder / "robot.yaml").write_text(changed, encoding="utf-8")
     report = eurdf.check(folder)
     robot = eurdf.load(folder)
-    assert robot.diagnostics == report.diagnostics
+    assert robot.diagnostics == tuple(found for found in report.diagnostics if found.clause is not None)  # not advice
     return robot
 
 

@@ -35,6 +35,8 @@ def check(
 ) -> Report:
     """Check a robot: EU-DIA-001, EU-DIA-003, each fault is told that no error hides.
 
+    Beside what breaks a clause it gives advice (EU-DIA-006): warnings without a clause, whose codes begin with ``x-``.
+
     Args:
         path: A folder, a YAML file, a bare URDF or xacro, the name of a robot of the collection, ``-`` for standard
             input, a pipe, or a text: one that begins with ``<`` is a URDF, any other a description.

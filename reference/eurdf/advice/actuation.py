@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
+from itertools import zip_longest
 from typing import TYPE_CHECKING
 
-from eurdf.advice.passive import needs_no_actuator, without_spins
+from eurdf.advice.passive import PassiveMotions
 from eurdf.kinematics.analysis import Analysis, LoopAnalysis, analyze
+from eurdf.kinematics.loop import independent_groups
 from eurdf.pinocchio.robot import build_robot
 
 if TYPE_CHECKING:
@@ -20,6 +22,10 @@ if TYPE_CHECKING:
 # Warnings of what changes which joints are actuated or constrained.
 _REASONS = frozenset({"near-miss-key", "closure-type-unknown", "urdf-closure-ignored"})
 
+# Multiplications that the rank of one group of loops may take, about a second: a group of more than some 800 joints
+# that all depend on one another is not analyzed.
+_MOST_WORK = 5e8
+
 # Of a group of loops, so many closures at most are tried one by one.
 _MOST_TRIED = 12
 
@@ -31,7 +37,8 @@ _MOTIONS_LISTED = 3
 def advise_on_actuation(description: Description, robot: Robot, q: Vector, diagnostics: Diagnostics) -> None:
     """Report loops without an actuator; else actuators that depend on one another, and motions left uncontrolled.
 
-    Nothing is said where an earlier warning may be the reason: a misspelt key, or a closure that is left out.
+    Nothing is said where an earlier warning may be the reason: a misspelt key, or a closure that is left out; nor of
+    the motions of loops that are coupled by the hundred, whose analysis takes minutes.
 
     Args:
         description: The robot as read; it has closures.
@@ -51,24 +58,26 @@ def advise_on_actuation(description: Description, robot: Robot, q: Vector, diagn
             f"list the joints that its motors drive under '{_actuators_key(mechanism)}'",
         )
         return
+    groups = independent_groups(robot)
+    if any(float(len(each.rows)) * len(each.velocities) ** 2 > _MOST_WORK for each in groups):
+        return
     analysis = analyze(robot, q)
-    for loop in analysis.loops:
-        if loop.fighting:
-            _report_dependent(description, robot, analysis.q, loop, diagnostics)
+    dependent = [loop for loop in analysis.loops if loop.fighting]
+    for loop, locking in zip(dependent, _locking(robot, analysis.q, dependent), strict=True):
+        _report_dependent(description, robot, loop, locking, diagnostics)
     _report_uncontrolled(description, robot, analysis, diagnostics)
 
 
 def _report_dependent(
-    description: Description, robot: Robot, q: Vector, loop: LoopAnalysis, diagnostics: Diagnostics
+    description: Description, robot: Robot, loop: LoopAnalysis, locking: Sequence[str], diagnostics: Diagnostics
 ) -> None:
-    """Report the dependent actuators of a group of loops, and the 6d closures to blame where they are found."""
+    """Report the dependent actuators of a group of loops, and the 6d closures that lock them where some were found."""
     dependent = [name for together in loop.fighting for name in together]
     locked = len(dependent) == len(loop.fighting)  # each alone in its set
     message = (
         f"{_counted('actuator', dependent)} cannot move{'' if locked else ' independently'}: "
         f"{'locked' if locked else 'coupled'} by {_counted('closure', loop.closures)}"
     )
-    locking = _locking(robot, q, loop, dependent)
     if locking:
         place = description.place_of_closure(next(each for each in robot.mechanism.closures if each.name == locking[0]))
         hint = (
@@ -81,38 +90,51 @@ def _report_dependent(
     diagnostics.report("x-dependent-actuators", message, place, hint)
 
 
-def _locking(robot: Robot, q: Vector, loop: LoopAnalysis, dependent: Sequence[str]) -> tuple[str, ...]:
-    """The 6d closures of a group that, as 3d ones, let its dependent actuators move and leave no motion uncontrolled.
+def _locking(robot: Robot, q: Vector, loops: Sequence[LoopAnalysis]) -> list[tuple[str, ...]]:
+    """For each group, the 6d closures that as 3d ones free its dependent actuators and leave no motion uncontrolled.
 
-    Found by trial: each alone, then all of the group.
+    Found by trial: each alone, then all of the group; of all groups at once, since none changes another.
     """
-    mechanism = robot.mechanism
-    group = [closure for closure in mechanism.closures if closure.name in loop.closures]
-    uncontrolled = len(without_spins(robot, loop))
-    for names in _trials([closure.name for closure in group if closure.type == "6d"]):
-        closures = tuple(replace(closure, type="3d") if closure.name in names else closure for closure in group)
+    mechanism, passive = robot.mechanism, PassiveMotions(robot)
+    members = {name for loop in loops for name in loop.closures}
+    group = [closure for closure in mechanism.closures if closure.name in members]
+    spatial = {closure.name for closure in group if closure.type == "6d"}
+    uncontrolled = [len(passive.without_spins(loop)) for loop in loops]
+    trials = [_trials([name for name in loop.closures if name in spatial]) for loop in loops]
+    found: list[tuple[str, ...]] = [()] * len(loops)
+    for tried in zip_longest(*trials, fillvalue=()):
+        pending = [index for index, names in enumerate(tried) if names and not found[index]]
+        if not pending:
+            continue
+        changed = {name for index in pending for name in tried[index]}
+        closures = tuple(replace(closure, type="3d") if closure.name in changed else closure for closure in group)
         trial = build_robot(replace(mechanism, closures=closures), geometry=False)
-        found = analyze(trial, q)
-        still = {name for each in found.fighting for name in each}
-        left = sum(len(without_spins(trial, each)) for each in found.loops)
-        if found.closes and left <= uncontrolled and still.isdisjoint(dependent):
-            return names
-    return ()
+        after = {loop.closures: loop for loop in analyze(trial, q).loops}
+        passive = PassiveMotions(trial)
+        for index in pending:
+            loop, freed = loops[index], after.get(loops[index].closures)
+            if freed is None:  # not even so do the loops close
+                continue
+            still = {name for together in freed.fighting for name in together}
+            if still.isdisjoint(name for together in loop.fighting for name in together) and (
+                len(passive.without_spins(freed)) <= uncontrolled[index]
+            ):
+                found[index] = tried[index]
+    return found
 
 
-def _trials(names: Sequence[str]) -> Iterator[tuple[str, ...]]:
+def _trials(names: Sequence[str]) -> list[tuple[str, ...]]:
     """Each name alone, where they are not many, then all together."""
-    if len(names) <= _MOST_TRIED:
-        yield from ((name,) for name in names)
-    if len(names) > 1:
-        yield tuple(names)
+    alone: list[tuple[str, ...]] = [(name,) for name in names] if len(names) <= _MOST_TRIED else []
+    return [*alone, tuple(names)] if len(names) > 1 else alone
 
 
 def _report_uncontrolled(description: Description, robot: Robot, analysis: Analysis, diagnostics: Diagnostics) -> None:
     """Report the motions that are possible with every actuator held, but for those that need none."""
+    passive = PassiveMotions(robot)
     in_loops = sum(len(loop.motions) for loop in analysis.loops)
-    motions = [motion for loop in analysis.loops for motion in without_spins(robot, loop)]
-    motions += [motion for motion in analysis.motions[in_loops:] if not needs_no_actuator(robot, motion)]
+    motions = [motion for loop in analysis.loops for motion in passive.without_spins(loop)]
+    motions += [motion for motion in analysis.motions[in_loops:] if not passive.is_root_or_wheel(motion)]
     if motions:
         count = len(motions)
         moved = list(dict.fromkeys(_quoted(motion.joints) for motion in motions))

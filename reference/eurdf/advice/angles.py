@@ -125,7 +125,7 @@ def _in_extension(description: Description, extension: Extension, mechanism: Mec
 
 
 def _orientation_in_degrees(value: float) -> bool:
-    return abs(value) > _MOST_ORIENTATION and not _is_quarter_turns(value)
+    return _MOST_ORIENTATION < abs(value) <= _MOST and not _is_quarter_turns(value)
 
 
 def _position_in_degrees(value: float) -> bool:

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 # A length beyond this, in m, is looked at. In a hundred published robots the longest is 2.9 m.
 _LONG = 10.0
 
+# Beyond this, in m, a length would be a kilometre and more in millimetres: it is wrong in another way.
+_MOST = 1e6
+
 # A single length is likely in millimetres where it is so many times the median of the distances between joints.
 _TIMES = 100.0
 
@@ -43,7 +46,7 @@ def advise_on_lengths(description: Description, meshes: Mapping[str, str], diagn
     if not joints:
         return
     median = statistics.median(length for length, _, _ in joints)
-    if median > _LONG:
+    if _LONG < median <= _MOST:
         mass = sum(link.inertia.mass for link in urdf.links.values() if link.inertia is not None)
         if mass <= _HEAVY * median:
             length, what, place = next(found for found in joints if found[0] >= median)
@@ -54,12 +57,12 @@ def advise_on_lengths(description: Description, meshes: Mapping[str, str], diagn
     in_urdf, in_extension = [*joints, *_centres_of_mass(urdf)], list(_of_extension(description))
     in_meshes = list(_of_meshes(urdf, meshes))
     for of_a_kind in (in_urdf, in_extension, in_meshes):
-        long = [found for found in of_a_kind if found[0] > max(_LONG, _TIMES * median)]
+        long = [found for found in of_a_kind if max(_LONG, _TIMES * median) < found[0] <= _MOST]
         if not long:
             continue
         length, what, place = long[0]
         more = f"; {len(long) - 1} more are as long" if len(long) > 1 else ""
-        message = f"{what} is {length:.4g} m, {length / median:.0f} times the usual distance of joints, {median:.3g} m"
+        message = f"{what} is {length:.4g} m, {length / median:.3g} times the usual distance of joints, {median:.3g} m"
         hint = _hint(length)
         if of_a_kind is in_meshes:
             hint = """if it is drawn in millimetres, add scale="0.001 0.001 0.001" to <mesh>"""

@@ -51,6 +51,10 @@ def advise_on_massless_links(description: Description, robot: Robot, q: Vector, 
     children: dict[int, list[int]] = {}
     for joint in range(1, model.njoints):
         children.setdefault(model.parents[joint], []).append(joint)
+    anchors: dict[int, list[Any]] = {}
+    for constraint in robot.constraint_models:
+        anchors.setdefault(constraint.joint1_id, []).append(constraint.joint1_placement)
+        anchors.setdefault(constraint.joint2_id, []).append(constraint.joint2_placement)
     child_of = {joint.name: joint.child for joint in robot.mechanism.joints}
     for top in sorted(massless):
         if model.parents[top] in massless:
@@ -70,8 +74,10 @@ def advise_on_massless_links(description: Description, robot: Robot, q: Vector, 
             )
             continue
         for joint in joints:
-            reach = _reach(robot, joint, children)
-            if joint in massless and joint in looped and reach > _REACH and not _has_armature(model, joint):
+            if joint not in massless or joint not in looped or _has_armature(model, joint):
+                continue
+            reach = _reach(model, joint, children, anchors)
+            if reach > _REACH:
                 why = f"reaches {reach:.3g} m from its joint: its mass is missing from the dynamics"
                 _report(description, [child_of[model.names[joint]]], why, diagnostics)
 
@@ -90,13 +96,9 @@ def _report(description: Description, links: list[str], why: str, diagnostics: D
         )
 
 
-def _reach(robot: Robot, joint: int, children: dict[int, list[int]]) -> float:
+def _reach(model: Any, joint: int, children: dict[int, list[int]], anchors: dict[int, list[Any]]) -> float:
     """Distance from a joint to the furthest joint or frame of a closure on what it carries, m."""
-    model = robot.model
-    carried = [model.jointPlacements[child] for child in children.get(joint, [])]
-    for constraint in robot.constraint_models:
-        carried += [constraint.joint1_placement] if constraint.joint1_id == joint else []
-        carried += [constraint.joint2_placement] if constraint.joint2_id == joint else []
+    carried = [model.jointPlacements[child] for child in children.get(joint, [])] + anchors.get(joint, [])
     return max((float(np.linalg.norm(placement.translation)) for placement in carried), default=0.0)
 
 

@@ -23,64 +23,66 @@ _CENTRED = 0.02
 _ROOT_JOINTS = frozenset({"JointModelFreeFlyer", "JointModelPlanar"})
 
 
-def without_spins(robot: Robot, loop: LoopAnalysis) -> list[Motion]:
-    """The uncontrolled motions of a group of loops, but for those of rods that spin about their own lines.
+class PassiveMotions:
+    """Tells the motions that need no actuator, of one robot whose structure was looked at once."""
 
-    A spin is a motion by which all bodies that move turn about one fixed line: their twists, seen from a point of the
-    line, are multiples of one that only turns.
-    """
-    if not loop.motions:
-        return []
-    q = loop.motions[0].q
-    _, J = jacobian_along(robot, q)
-    length = characteristic_length(robot)
-    return [motion for motion in loop.motions if not _turns_about_one_line(_twists(robot, J, motion), length)]
+    def __init__(self, robot: Robot) -> None:
+        self._robot = robot
+        model = robot.model
+        self._parents, self._widths = model.parents.tolist(), model.nvExtendeds.tolist()
+        self._first, self._columns = model.idx_vs.tolist(), model.idx_vExtendeds.tolist()
+        self._joints: dict[int, list[int]] = {}  # by velocity; several where joints mimic another
+        for joint in range(1, model.njoints):
+            for velocity in range(self._first[joint], self._first[joint] + self._widths[joint]):
+                self._joints.setdefault(velocity, []).append(joint)
+        self._inner = frozenset(self._parents)
+        self._length = characteristic_length(robot)
+        self._jacobian: tuple[Vector, Matrix] | None = None
 
+    def without_spins(self, loop: LoopAnalysis) -> list[Motion]:
+        """The uncontrolled motions of a group of loops, but for those of rods that spin about their own lines.
 
-def needs_no_actuator(robot: Robot, motion: Motion) -> bool:
-    """Whether a motion outside of the loops is one of a floating or planar root, or of a wheel.
+        A spin is a motion by which all bodies that move turn about one fixed line: their twists, seen from a point of
+        the line, are multiples of one that only turns.
+        """
+        return [motion for motion in loop.motions if not _turns_about_one_line(self._twists(motion), self._length)]
 
-    A wheel is what a hinge carries at the end of the tree with its centre of mass on the axis.
-    """
-    model = robot.model
-    (velocity,) = motion.velocities.tolist()
-    joint = max(j for j in range(1, model.njoints) if model.nvs[j] and model.idx_vs[j] <= velocity)
-    if model.nvs[joint] > 1:
-        return bool(model.parents[joint] == 0 and model.joints[joint].shortname() in _ROOT_JOINTS)
-    if joint in model.parents.tolist():
-        return False
-    joint_model, inertia = model.joints[joint], model.inertias[joint]
-    data = joint_model.createData()
-    joint_model.calc(data, motion.q)
-    axis = data.S.reshape(6)[3:]
-    if data.S.reshape(6)[:3].any() or not inertia.mass > 0.0:
-        return False
-    radius = np.sqrt(np.trace(inertia.inertia) / (2.0 * inertia.mass))
-    return bool(np.linalg.norm(np.cross(axis, inertia.lever)) <= _CENTRED * radius)
+    def is_root_or_wheel(self, motion: Motion) -> bool:
+        """Whether a motion outside of the loops is one of a floating or planar root, or of a wheel.
 
+        A wheel is what a hinge carries at the end of the tree with its centre of mass on the axis.
+        """
+        model = self._robot.model
+        joint = self._joints[int(motion.velocities[0])][0]
+        joint_model, inertia = model.joints[joint], model.inertias[joint]
+        if self._widths[joint] > 1:
+            return self._parents[joint] == 0 and joint_model.shortname() in _ROOT_JOINTS
+        if joint in self._inner or not inertia.mass > 0.0:
+            return False
+        data = joint_model.createData()
+        joint_model.calc(data, motion.q)
+        slides, axis = np.split(data.S.reshape(6), 2)
+        radius = np.sqrt(np.trace(inertia.inertia) / (2.0 * inertia.mass))
+        return bool(not slides.any() and np.linalg.norm(np.cross(axis, inertia.lever)) <= _CENTRED * radius)
 
-def _twists(robot: Robot, J: Matrix, motion: Motion) -> list[Vector]:
-    """Twists (6,) in the world, linear and angular, of the bodies of the joints that a motion moves.
+    def _twists(self, motion: Motion) -> list[Vector]:
+        """Twists (6,) in the world, linear and angular, of the bodies of the joints that a motion of loops moves.
 
-    Bodies further out move as one of these does.
-
-    Args:
-        robot: The robot.
-        J: World Jacobian (6, nvExtended) at the configuration of the motion.
-        motion: A motion of loops.
-    """
-    model = robot.model
-    velocity = dict(zip(motion.velocities.tolist(), motion.values.tolist(), strict=True))
-    twists: dict[int, Vector] = {}
-    for joint in range(1, model.njoints):  # a parent has a lower index than its child
-        first, column = model.idx_vs[joint], model.idx_vExtendeds[joint]
-        own = [velocity.get(first + k, 0.0) for k in range(model.nvExtendeds[joint])]
-        if any(own):
-            above = model.parents[joint]
+        Bodies further out move as one of these does.
+        """
+        if self._jacobian is None or self._jacobian[0] is not motion.q:
+            self._jacobian = motion.q, jacobian_along(self._robot, motion.q)[1]
+        J = self._jacobian[1]
+        velocity = dict(zip(motion.velocities.tolist(), motion.values.tolist(), strict=True))
+        twists: dict[int, Vector] = {}
+        for joint in sorted({joint for index in velocity for joint in self._joints[index]}):  # parents come first
+            first, column, width = self._first[joint], self._columns[joint], self._widths[joint]
+            own = np.array([velocity.get(first + k, 0.0) for k in range(width)])
+            above = self._parents[joint]
             while above and above not in twists:
-                above = model.parents[above]
-            twists[joint] = twists.get(above, np.zeros(6)) + J[:, column : column + len(own)] @ np.array(own)
-    return list(twists.values())
+                above = self._parents[above]
+            twists[joint] = twists.get(above, np.zeros(6)) + J[:, column : column + width] @ own
+        return list(twists.values())
 
 
 def _turns_about_one_line(twists: list[Vector], length: float) -> bool:
