@@ -590,7 +590,7 @@ def test_loops_that_rounded_numbers_of_the_urdf_keep_open_are_named_so(advice) -
         return edit
 
     for distance, rounded in (("0.000006", True), ("0.006", False)):
-        (found,) = advice("five_bar_6d", without_configurations, out_of_plane(distance))
+        (found,) = advice("five_bar", without_configurations, out_of_plane(distance))
         assert found.code == "closure-cannot-close"
         assert ("with more digits" in (found.hint or "")) == rounded
         assert ("closed to" in (found.hint or "")) == rounded
