@@ -63,8 +63,9 @@ def advise_on_actuation(description: Description, robot: Robot, q: Vector, diagn
         return
     analysis = analyze(robot, q)
     dependent = [loop for loop in analysis.loops if loop.fighting]
-    for loop, locking in zip(dependent, _locking(robot, analysis.q, dependent), strict=True):
-        _report_dependent(description, robot, loop, locking, diagnostics)
+    if dependent:
+        for loop, locking in zip(dependent, _locking(robot, analysis.q, dependent), strict=True):
+            _report_dependent(description, robot, loop, locking, diagnostics)
     _report_uncontrolled(description, robot, analysis, diagnostics)
 
 
@@ -131,6 +132,8 @@ def _trials(names: Sequence[str]) -> list[tuple[str, ...]]:
 
 def _report_uncontrolled(description: Description, robot: Robot, analysis: Analysis, diagnostics: Diagnostics) -> None:
     """Report the motions that are possible with every actuator held, but for those that need none."""
+    if not analysis.motions:
+        return
     passive = PassiveMotions(robot)
     in_loops = sum(len(loop.motions) for loop in analysis.loops)
     motions = [motion for loop in analysis.loops for motion in passive.without_spins(loop)]

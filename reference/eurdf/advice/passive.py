@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pinocchio as pin
 
 from eurdf.kinematics.analysis import LoopAnalysis, Motion
 from eurdf.kinematics.array import Matrix, Vector
@@ -92,15 +93,20 @@ def _turns_about_one_line(twists: list[Vector], length: float) -> bool:
         twists: Of bodies, each (6,), linear and angular, rad/s and m/s; the velocities that they come from are about 1.
         length: Characteristic length, m.
     """
-    turning, axis, point = 0.0, np.zeros(3), np.zeros(3)
-    for twist in twists:
-        speed = float(np.linalg.norm(twist[3:]))
-        if speed > turning:
-            turning, axis = speed, twist[3:] / speed
-            point = np.cross(axis, twist[:3]) / speed  # of the line, the nearest to the origin of the world
-    bound = _SAME_LINE * max(turning, _SAME_LINE)
-    return all(
-        np.linalg.norm(np.cross(axis, twist[3:])) <= bound
-        and np.linalg.norm(twist[:3] + np.cross(twist[3:], point)) <= bound * length
-        for twist in twists
+    if not twists:
+        return True
+    linear, angular = np.split(np.array(twists), 2, axis=1)
+    speeds = np.sqrt((angular * angular).sum(axis=1))
+    fastest = int(np.argmax(speeds))
+    turning = float(speeds[fastest])
+    if not turning > _SAME_LINE:
+        return False
+    axis = angular[fastest] / turning
+    # The point of the line that is nearest to the origin of the world, from which each ω × p + v is seen.
+    point = pin.skew(axis) @ linear[fastest] / turning
+    sliding = linear + angular @ pin.skew(point)
+    tilting = angular @ pin.skew(axis)
+    bound = (_SAME_LINE * turning) ** 2
+    return bool(
+        (sliding * sliding).sum(axis=1).max() <= bound * length**2 and (tilting * tilting).sum(axis=1).max() <= bound
     )
