@@ -600,3 +600,10 @@ def test_loops_that_rounded_numbers_of_the_urdf_keep_open_are_named_so(advice) -
 def test_a_number_that_fits_no_unit_is_not_taken_for_one_in_another(tmp_path: Path, number: str) -> None:
     urdf = chain(joint("shoulder", "a", "b"), joint("elbow", "b", "c"), joint("wrist", "c", "d", xyz=f"0 0 {number}"))
     assert checked(tmp_path, urdf.replace('xyz="0.01 0 0"', f'xyz="0.01 0 0" rpy="0 0 {number}"', 1)) == []
+
+
+def test_loops_that_are_too_large_for_their_motions_to_be_computed_are_named(advice, monkeypatch) -> None:
+    monkeypatch.setattr("eurdf.kinematics.analysis._MOST_WORK", 10.0)
+    (found,) = advice("digit_leg_3d", typed("6d", "achilles"))
+    assert (found.code, found.pointer) == ("x-loops-not-checked", "/closures")
+    assert "ranks are not computed" in found.message

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 from eurdf.advice.passive import PassiveMotions
 from eurdf.kinematics.analysis import Analysis, LoopAnalysis, analyze
-from eurdf.kinematics.loop import independent_groups
 from eurdf.pinocchio.robot import build_robot
 
 if TYPE_CHECKING:
@@ -22,10 +21,6 @@ if TYPE_CHECKING:
 # Warnings of what changes which joints are actuated or constrained.
 _REASONS = frozenset({"near-miss-key", "closure-type-unknown", "urdf-closure-ignored"})
 
-# Multiplications that the rank of one group of loops may take, about a second: a group of more than some 800 joints
-# that all depend on one another is not analyzed.
-_MOST_WORK = 5e8
-
 # Of a group of loops, so many closures at most are tried one by one.
 _MOST_TRIED = 12
 
@@ -37,8 +32,7 @@ _MOTIONS_LISTED = 3
 def advise_on_actuation(description: Description, robot: Robot, q: Vector, diagnostics: Diagnostics) -> None:
     """Report loops without an actuator; else actuators that depend on one another, and motions left uncontrolled.
 
-    Nothing is said where an earlier warning may be the reason: a misspelt key, or a closure that is left out; nor of
-    the motions of loops that are coupled by the hundred, whose analysis takes minutes.
+    Nothing is said where an earlier warning may be the reason: a misspelt key, or a closure that is left out.
 
     Args:
         description: The robot as read; it has closures.
@@ -54,14 +48,15 @@ def advise_on_actuation(description: Description, robot: Robot, q: Vector, diagn
         diagnostics.report(
             "x-no-actuator",
             f"the robot has {count} {'closure' if count == 1 else 'closures'} and no actuator",
-            _place_of_key(description, "closed_loop" if mechanism.version == "1" else "closures"),
+            _place_of_key(description, _closures_key(mechanism)),
             f"list the joints that its motors drive under '{_actuators_key(mechanism)}'",
         )
         return
-    groups = independent_groups(robot)
-    if any(float(len(each.rows)) * len(each.velocities) ** 2 > _MOST_WORK for each in groups):
-        return
     analysis = analyze(robot, q)
+    if analysis.left_out:
+        place = _place_of_key(description, _closures_key(mechanism))
+        diagnostics.report("x-loops-not-checked", analysis.left_out, place, "analyze parts of the robot by themselves")
+        return
     dependent = [loop for loop in analysis.loops if loop.fighting]
     if dependent:
         for loop, locking in zip(dependent, _locking(robot, analysis.q, dependent), strict=True):
@@ -148,6 +143,10 @@ def _report_uncontrolled(description: Description, robot: Robot, analysis: Analy
             _place_of_key(description, _actuators_key(robot.mechanism)),
             "actuate a joint of each, add the closure that is missing, or use type 6d where orientation is held too",
         )
+
+
+def _closures_key(mechanism: Mechanism) -> str:
+    return "closed_loop" if mechanism.version == "1" else "closures"
 
 
 def _actuators_key(mechanism: Mechanism) -> str:

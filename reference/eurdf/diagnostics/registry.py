@@ -213,7 +213,7 @@ x-closes-beyond-limits     The loops close only where joints are beyond their li
 x-mimic-ignored            A mimic joint moves by itself, since version 1 ignores mimics, and has no motor.
 x-massless-link            A link of a loop has no mass.
 x-xacro-warning            A xacro file was expanded with warnings.
-x-loops-not-checked        Whether the loops can be closed was not computed: too many of them share joints.
+x-loops-not-checked        The loops were not checked in full: too many of them share joints.
 """,
     ),
 ]
