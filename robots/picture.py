@@ -216,7 +216,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for robot in robots:
         try:
             files = find_robot(robot)
-            file = options.output or (files.description or files.urdf or Path(robot)).parent / "picture.png"
+            found = files.description or files.urdf
+            folder = found.parent if isinstance(found, Path) else Path()
+            file = options.output or folder / "picture.png"
             save(picture(eurdf.load(robot)), file)
         except (eurdf.EurdfError, ValueError, OSError) as error:
             failed = True

@@ -32,7 +32,8 @@ class Candidate:
         """
         files = find_robot(path)
         found = files.description or files.urdf
-        assert found is not None
+        if not isinstance(found, Path):
+            raise eurdf.RobotNotFound(str(path), f"'{path}' is no file: the rules are about a robot's folder")
         return cls(found.resolve())
 
     @property
