@@ -1,21 +1,29 @@
-"""Time per link of reading, of `eurdf.load` and of `pin.buildModelFromUrdf`, for 10 to 10,000 links.
+"""How time grows with the size of a robot: reading and loading by links; load, check, assemble and analyze by loops.
 
-The links stand in chains of ten; Pinocchio's own parser, which recurses, crashes on one chain of 10,000.
+Links are in chains of ten; Pinocchio's own parser, which recurses, crashes on one chain of 10,000. Loops are those of
+100 to 1,000 independent four-bars, side by side on the ground or each on the rocker of the one before. The exponent p
+of time ~ loops^p is fitted: 1 is linear. The models of Pinocchio are quadratic by themselves, and measured apart.
 """
 
 from __future__ import annotations
 
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
+import numpy as np
 import pinocchio as pin
 
 import eurdf
+from benchmarks.loops import four_bars
 from eurdf.description import describe
+from eurdf.mechanism.mechanism import Closure, Joint, Mechanism
+from eurdf.pinocchio.constraint import build_constraint_models
+from eurdf.pinocchio.model import build_model
 
-SIZES = (10, 100, 1000, 10_000)
+SIZES = (10, 100, 1000, 4000)
+LOOPS = (100, 200, 500, 1000)
 
 
 def forest(links: int, length: int = 10) -> str:
@@ -32,6 +40,32 @@ def forest(links: int, length: int = 10) -> str:
     return "".join(parts) + "</robot>"
 
 
+def write_loops(mechanism: Mechanism, folder: Path) -> Path:
+    """Write the files of four-bars: revolute joints about z, closures in 3d between poses on links."""
+    inertial = '<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
+
+    def element(joint: Joint) -> str:
+        xyz = " ".join(map(repr, joint.placement.xyz))
+        return (
+            f'<joint name="{joint.name}" type="revolute"><origin xyz="{xyz}"/><parent link="{joint.parent}"/>'
+            f'<child link="{joint.child}"/><axis xyz="0 0 1"/><limit lower="-9" upper="9" effort="1" velocity="1"/>'
+            "</joint>"
+        )
+
+    def entry(closure: Closure) -> str:
+        ends = ", ".join(f"{{link: {end.body}, xyz: {list(end.pose.xyz)}}}" for end in (closure.a, closure.b))
+        return f"- {{name: {closure.name}, type: 3d, frames: [{ends}]}}\n"
+
+    links = "".join(f'<link name="{body.name}">{inertial}</link>' for body in mechanism.bodies)
+    joints = "".join(map(element, mechanism.joints))
+    (folder / "robot.urdf").write_text(f'<robot name="r">{links}{joints}</robot>', encoding="utf-8")
+    closures, actuators = "".join(map(entry, mechanism.closures)), ", ".join(mechanism.actuators)
+    (folder / "robot.yaml").write_text(
+        f'extended_urdf: "2.0"\nactuators: [{actuators}]\nclosures:\n{closures}', encoding="utf-8"
+    )
+    return folder
+
+
 def best(function: Callable[[], object], seconds: float = 1.0) -> float:
     """Shortest time of a function, in s."""
     shortest = float("inf")
@@ -45,7 +79,12 @@ def best(function: Callable[[], object], seconds: float = 1.0) -> float:
     return shortest
 
 
-def main() -> None:
+def exponent(sizes: Sequence[float], times: Sequence[float]) -> float:
+    """The p of the line log time = p log size + c that fits best."""
+    return float(np.polyfit(np.log(sizes), np.log(times), 1)[0])
+
+
+def by_links() -> None:
     """Print a table, in µs a link."""
     print(f"{'links':>7} {'reading and checks':>20} {'eurdf.load':>12} {'pin':>10} {'load/pin':>9}   (µs a link)")
     with tempfile.TemporaryDirectory() as folder:
@@ -65,3 +104,39 @@ def main() -> None:
                 )
             )
             print(f"{links:7} {read:20.1f} {load:12.1f} {peer:10.1f} {load / peer:8.2f}x")
+
+
+def by_loops() -> None:
+    """Print tables, in ms a loop, and the exponents."""
+    names = ("read", "pin models", "load", "assemble", "analyze", "check")
+    for in_series in (False, True):
+        print(f"\nfour-bars {'in series' if in_series else 'side by side'}, ms a loop")
+        print(f"{'loops':>8} " + " ".join(f"{name:>11}" for name in names))
+        rows = []
+        for count in LOOPS:
+            with tempfile.TemporaryDirectory() as folder:
+                mechanism = four_bars(count, in_series).mechanism
+                path = write_loops(mechanism, Path(folder))
+                robot = eurdf.load(path, geometry=False)
+
+                def models(mechanism: Mechanism = mechanism) -> None:
+                    build_constraint_models(mechanism, build_model(mechanism))
+
+                tasks: tuple[Callable[[], object], ...] = (
+                    lambda p=path: describe(p),  # type: ignore[misc]
+                    models,
+                    lambda p=path: eurdf.load(p, geometry=False),  # type: ignore[misc]
+                    lambda r=robot: eurdf.assemble(r),  # type: ignore[misc]
+                    lambda r=robot: eurdf.analyze(r),  # type: ignore[misc]
+                    lambda p=path: eurdf.check(p),  # type: ignore[misc]
+                )
+                rows.append([best(task, 0.0) for task in tasks])
+            print(f"{count:8} " + " ".join(f"{seconds / count * 1e3:11.3f}" for seconds in rows[-1]))
+        fitted = (exponent(LOOPS, times) for times in zip(*rows, strict=True))
+        print(f"{'exponent':>8} " + " ".join(f"{p:11.2f}" for p in fitted))
+
+
+def main() -> None:
+    """Print the tables."""
+    by_links()
+    by_loops()

@@ -823,7 +823,8 @@ class _Reader:
                 name = parent_joint[name].parent
             cycle = list(reversed(path[seen[name] :]))
             # The last one in the file: whoever closed the cycle mostly wrote it last.
-            last = max((parent_joint[link] for link in cycle), key=[*urdf.joints.values()].index)
+            order = {name: index for index, name in enumerate(urdf.joints)}
+            last = max((parent_joint[link] for link in cycle), key=lambda joint: order[joint.name])
             self.report(
                 "urdf-cycle",
                 "links form a cycle: " + _round(cycle),

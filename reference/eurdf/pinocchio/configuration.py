@@ -42,6 +42,7 @@ def configuration_vector(
     """
     q: Vector = pin.neutral(model)
     at = slots(mechanism, model) if at is None else at
+    mimics = {joint.name for joint in mechanism.joints if joint.mimic is not None}
     for name, given in coordinates.items():
         values = [float(value) for value in given]
         if name == ROOT_JOINT and mechanism.root == "floating":
@@ -49,7 +50,7 @@ def configuration_vector(
             continue
         slot = at.get(name)
         if slot is None:
-            if any(joint.name == name and joint.mimic is not None for joint in mechanism.joints):
+            if name in mimics:
                 continue
             raise ValueError(f"'{name}' is no joint with coordinates")
         values = _checked(name, values, slot.joint.coordinates)

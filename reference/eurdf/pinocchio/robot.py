@@ -59,7 +59,10 @@ class Robot:
 
     @property
     def data(self) -> pin.Data:
-        """Pinocchio's working memory for the model; it takes O(nv²) memory and is made when first asked for."""
+        """Pinocchio's working memory for the model, made when first asked for.
+
+        It takes some 64 nv³ bytes, 64 MB for 100 velocities. What needs none: `load`, `check`, `assemble`, `analyze`.
+        """
         if self._data is None:
             self._data = self.model.createData()
         return self._data
