@@ -98,6 +98,7 @@ class _Open:
     """An assembly that did not close."""
 
     closes = False
+    reason = "not closed"
 
     def __init__(self, openings: Any) -> None:
         self.open = openings

@@ -78,8 +78,10 @@ def root_is_always_fixed() -> Deviation:
 def root_floats_unless_fixed() -> Deviation:
     """The root floats where the description does not say that it is fixed."""
 
-    def linked(original: Any, urdf: Any, extension: Any, document: Any, *arguments: Any) -> Mechanism | None:
-        robot: Mechanism | None = original(urdf, extension, document, *arguments)
+    def linked(
+        original: Any, urdf: Any, extension: Any, document: Any, *arguments: Any, **named: Any
+    ) -> Mechanism | None:
+        robot: Mechanism | None = original(urdf, extension, document, *arguments, **named)
         return replace(robot, root="floating") if robot and "root" not in document.data else robot
 
     return around(description, "link", linked)
