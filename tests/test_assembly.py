@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import gc
-import time
 import weakref
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -534,11 +533,10 @@ def test_published_robots_close_from_their_neutral_configuration_in_few_steps(na
 
 
 @needs_wild
-def test_a_published_robot_that_does_not_close_is_known_in_bounded_time() -> None:
+def test_a_published_robot_that_does_not_close_is_known_in_bounded_steps() -> None:
     robot = eurdf.load(WILD / "kangaroo_like", geometry=False)
-    begin = time.process_time()
     assembly = assemble(robot)
-    assert time.process_time() - begin < 4.0  # a second, with room for a loaded machine
+    assert assembly.iterations <= (20 + 2) * (60 + 1)  # the descents and steps that `assemble` states
     assert not assembly.closes
     assert assembly.residual == pytest.approx(FACTS["kangaroo_like"]["residual"], rel=0.05)
     closed = [opening.name for opening in assembly.open if max(opening.position, opening.angle) < 1e-9]

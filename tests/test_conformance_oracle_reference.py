@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, get_args
@@ -23,6 +22,7 @@ from eurdf_conformance.corpus.case import ValidCase
 from eurdf_conformance.corpus.read import CorpusCase, read_cases
 from eurdf_conformance.oracle import OracleRobot, read
 from eurdf_conformance.protocol.message import Accepted, Quantity, Values
+from watchdog import watchdog
 from wild import FACTS, WILD
 
 QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
@@ -139,9 +139,8 @@ def both(folder: Path, urdf: str, description: dict[str, Any]) -> Sequence[Any]:
     return read(folder / "robot.yaml", folder / "robot.urdf"), eurdf.load(folder, geometry=False)
 
 
-def test_a_large_robot_is_evaluated_in_seconds() -> None:
+def test_a_large_robot_is_evaluated() -> None:
     found = read(ROBOTS / "kangaroo_2legs" / "robot.v1.yaml", ROBOTS / "kangaroo_2legs" / "robot.urdf")
-    start = time.process_time()
-    found.evaluate({}, list(found.tree.links), QUANTITIES)
+    with watchdog():
+        found.evaluate({}, list(found.tree.links), QUANTITIES)
     assert len(found.velocities) == 126
-    assert time.process_time() - start < 5.0  # some 0.1 s, with room for a slow machine

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any
 
 import numpy as np
@@ -151,13 +150,12 @@ def test_a_foot_follows_a_trajectory_without_leaps() -> None:
 
 
 @pytest.mark.parametrize("name", [name for name in ("digit_leg", "four_bar", "wild/talos_like") if name in ROBOTS])
-def test_a_target_out_of_reach_ends_in_bounded_time_as_near_as_can_be(name: str) -> None:
+def test_a_target_out_of_reach_ends_in_bounded_steps_as_near_as_can_be(name: str) -> None:
     robot, frame = robot_called(name), LED[name]
     q0 = assemble(robot).q
     target = pose(robot, q0, frame).translation + np.array([0.0, 0.4, -3.0])
-    begin = time.process_time()
     answer = inverse_kinematics(robot, {frame: target}, q0, limits=False)
-    assert time.process_time() - begin < 5.0  # half a second, with room for a loaded machine
+    assert answer.iterations <= (10 + 2) * 60  # the descents and steps that `inverse_kinematics` states
     assert not answer.converged
     assert np.abs(residual(robot, answer.q)).max() <= 1e-10
     (error,) = answer.errors

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import random
-import time
 from dataclasses import dataclass, field
 
 import pytest
@@ -17,6 +16,7 @@ from eurdf.reading import xml_reader
 from eurdf.reading.source import Source
 from eurdf.reading.xml_reader import TAG_LIMIT, XmlDocument, read_xml
 from eurdf.reading.xml_syntax import DEPTH_LIMIT
+from watchdog import watchdog
 
 SAMPLE = """\
 <?xml version="1.0" encoding="utf-8"?>
@@ -51,10 +51,8 @@ def read(text: str) -> XmlDocument:
 
 def fault_of(text: str) -> Diagnostic:
     source = source_of(text)
-    begin = time.process_time()
-    with pytest.raises(Fault) as caught:
+    with watchdog(), pytest.raises(Fault) as caught:
         read_xml(source)
-    assert time.process_time() - begin < 2
     return caught.value.diagnostic
 
 
@@ -270,9 +268,7 @@ BOMB = (
     ],
 )
 def test_a_document_type_declaration_is_refused_before_it_is_parsed(text: str) -> None:
-    begin = time.process_time()
     diagnostic = fault_of(text)
-    assert time.process_time() - begin < 2
     assert (diagnostic.code, meant(text, diagnostic.place)) == ("xml-doctype", "<!DOCTYPE")
 
 
@@ -319,12 +315,11 @@ def test_more_than_a_description_may_have_is_refused(text: str) -> None:
 
 def test_a_hundred_thousand_siblings_are_read_and_each_has_its_place() -> None:
     source = source_of("<robot>\n" + '<link name="a"/>\n' * 100_000 + "</robot>")
-    begin = time.process_time()
-    document = read_xml(source)
-    for number, element in list(enumerate(document.root, 1))[::100]:
-        place = document.place(element)
-        assert (place.line, place.pointer) == (number + 1, f"/robot/link[{number}]")
-    assert time.process_time() - begin < 2
+    with watchdog():
+        document = read_xml(source)
+        for number, element in list(enumerate(document.root, 1))[::100]:
+            place = document.place(element)
+            assert (place.line, place.pointer) == (number + 1, f"/robot/link[{number}]")
 
 
 @pytest.mark.parametrize(
@@ -344,11 +339,9 @@ def test_a_hundred_thousand_siblings_are_read_and_each_has_its_place() -> None:
 )
 def test_no_text_within_the_limits_takes_long(text: str) -> None:
     source = source_of(text)
-    begin = time.process_time()
-    with contextlib.suppress(Fault):
+    with watchdog(), contextlib.suppress(Fault):
         document = read_xml(source)
         document.place(document.root)
-    assert time.process_time() - begin < 2
 
 
 def test_damaged_files_give_a_document_or_a_fault_and_nothing_else() -> None:

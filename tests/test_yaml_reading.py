@@ -6,7 +6,6 @@ import contextlib
 import json
 import random
 import re
-import time
 from typing import Any
 
 import pytest
@@ -17,6 +16,7 @@ from eurdf.diagnostics import Diagnostic, Fault, Place
 from eurdf.reading.core_schema import resolve
 from eurdf.reading.source import FILE_LIMIT, Source
 from eurdf.reading.yaml_reader import DEPTH_LIMIT, DIRECTIVE_LIMIT, NODE_LIMIT, YamlDocument, read_yaml
+from watchdog import watchdog
 
 Pointer = tuple[str | int, ...]
 
@@ -55,10 +55,8 @@ def read(text: str) -> YamlDocument:
 
 
 def fault_of(text: str) -> Diagnostic:
-    begin = time.process_time()
-    with pytest.raises(Fault) as caught:
+    with watchdog(), pytest.raises(Fault) as caught:
         read(text)
-    assert time.process_time() - begin < 2
     return caught.value.diagnostic
 
 
@@ -480,10 +478,8 @@ def test_some_tag_directives_are_no_attack() -> None:
     ],
 )
 def test_no_text_within_the_limits_takes_long(text: str) -> None:
-    begin = time.process_time()
-    with contextlib.suppress(Fault):
+    with watchdog(), contextlib.suppress(Fault):
         read(text)
-    assert time.process_time() - begin < 2
 
 
 @pytest.mark.parametrize("character", ["\0", "\x01", "\x1b", "\x7f", "\x80", "\ufffe"])
