@@ -199,6 +199,12 @@ def test_both_files_come_by_process_substitution(folder: Path) -> None:
     assert SHOWN in done.stdout
 
 
+def test_the_urdf_that_a_piped_description_lacks_is_named_from_the_working_directory(folder: Path) -> None:
+    (folder / "a.yaml").write_text(DESCRIPTION, encoding="utf-8")
+    (folder / "a.urdf").write_text(URDF, encoding="utf-8")
+    assert "hint: there is 'a.urdf': write urdf: a.urdf\n" in in_bash("eurdf check <(cat a.yaml)").stdout
+
+
 def test_a_program_that_writes_nothing_is_an_error() -> None:
     done = in_bash("eurdf check <(false)")
     assert done.returncode == 1

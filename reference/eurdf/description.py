@@ -228,7 +228,7 @@ def _named_urdf(description: Path | Source, extension: Extension | None, documen
 
 def _urdf_not_found(path: Path, extension: Extension, document: YamlDocument, diagnostics: Diagnostics) -> None:
     """EU-FIL-004: the URDF that the description names exists."""
-    home = Path(document.source.file).parent
+    home = document.source.folder
     near = _urdfs_near(path, home)
     message = f"the URDF '{extension.urdf}' does not exist"
     if extension.version != "1" and "urdf" not in document.data:
