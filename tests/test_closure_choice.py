@@ -82,6 +82,16 @@ def test_a_loop_that_closes_in_neither_way_is_6d_and_the_note_says_so() -> None:
     assert note.startswith("'closing_rocker_pin' is 6d, though no configuration closes the loops: with 3d no config")
 
 
+def test_a_note_says_where_the_motion_was_not_computed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("eurdf.kinematics.analysis._MOST_WORK", 1.0)
+    weld = mechanism_of("five_bar_6d")
+    (name,) = [closure.name for closure in weld.closures]
+    choice = choose_types(weld, [name], [name])
+    assert choice.types == {name: "6d"}
+    (note,) = choice.notes
+    assert note.startswith(f"'{name}' is 6d: ranks are not computed: the loops that share joints with that of '{name}'")
+
+
 def test_types_in_names_are_not_judged() -> None:
     welded = four_bar(("closing_rocker_pin_1", "closedloop6D_1A"), ("closing_rocker_pin_2", "closedloop6D_1B"))
     assert notes_of(welded) == (["6d"], ())

@@ -37,11 +37,12 @@ class _Candidate:
 
     Attributes:
         types: By the name of the closure.
-        closes: Whether the loops can be closed.
+        closes: Whether the loops can be closed; False where that was not computed.
         mobility: Motions that the loops leave.
         uncontrolled: Of these, motions left with every actuator held.
         dependent: Actuators whose velocities depend on one another, set by set; one alone in its set cannot move.
         locked: Loops without an actuator that cannot move at all.
+        left_out: Why the motion was not computed; else empty.
     """
 
     types: Mapping[str, ClosureType]
@@ -50,6 +51,7 @@ class _Candidate:
     uncontrolled: int = 0
     dependent: tuple[tuple[str, ...], ...] = ()
     locked: int = 0
+    left_out: str = ""
 
     @property
     def overconstrained(self) -> int:
@@ -106,11 +108,11 @@ def _choose(mechanism: Mechanism, names: Sequence[str], words: Mapping[str, str]
         return _are([words[name] for name in names], kind)
 
     with_6d = _candidate(mechanism, dict.fromkeys(names, "6d"))
-    if with_6d.closes and not with_6d.overconstrained:
-        return with_6d, f"{are(names, '6d')}: {_told(with_6d)}"
+    if with_6d.left_out or (with_6d.closes and not with_6d.overconstrained):
+        return with_6d, f"{are(names, '6d')}: {_effect(with_6d)}"
     with_3d = _candidate(mechanism, dict.fromkeys(names, "3d"))
     if not with_3d.closes or (with_6d.closes and with_3d.overconstrained >= with_6d.overconstrained):
-        return with_6d, f"{are(names, '6d')}, though {_told(with_6d)}: with 3d {_told(with_3d)}"
+        return with_6d, f"{are(names, '6d')}, though {_effect(with_6d)}: with 3d {_effect(with_3d)}"
     chosen = with_3d
     for name in names if 1 < len(names) <= _MOST_CLOSURES else ():
         stiffer = _candidate(mechanism, {**chosen.types, name: "6d"})
@@ -122,7 +124,7 @@ def _choose(mechanism: Mechanism, names: Sequence[str], words: Mapping[str, str]
             chosen = stiffer
     by_type = {kind: [name for name in names if chosen.types[name] == kind] for kind in ("3d", "6d")}
     said = " and ".join(are(those, kind) for kind, those in by_type.items() if those)
-    return chosen, f"{said}: {_told(chosen)}; with 6d {_told(with_6d)}"
+    return chosen, f"{said}: {_effect(chosen)}; with 6d {_effect(with_6d)}"
 
 
 def _candidate(mechanism: Mechanism, types: Mapping[str, ClosureType]) -> _Candidate:
@@ -131,8 +133,8 @@ def _candidate(mechanism: Mechanism, types: Mapping[str, ClosureType]) -> _Candi
 
     closures = tuple(replace(closure, type=types.get(closure.name, closure.type)) for closure in mechanism.closures)
     analysis: Analysis = analyze(build_robot(replace(mechanism, closures=closures), geometry=False))
-    if not analysis.closes:
-        return _Candidate(types, False)
+    if analysis.left_out or not analysis.closes:
+        return _Candidate(types, False, left_out=analysis.left_out)
     return _Candidate(
         types,
         True,
@@ -158,8 +160,10 @@ def _names(names: Sequence[str]) -> str:
     return " and ".join(filter(None, (", ".join(quoted[:-1]), quoted[-1])))
 
 
-def _told(candidate: _Candidate) -> str:
+def _effect(candidate: _Candidate) -> str:
     """What a candidate does to its loops, as a clause of a sentence."""
+    if candidate.left_out:
+        return candidate.left_out
     if not candidate.closes:
         return "no configuration closes the loops"
     if not candidate.mobility:
