@@ -178,6 +178,22 @@ def test_a_module_of_that_name_beside_the_robot_is_not_run(folder: Path) -> None
     assert eurdf.check("arm.urdf.xacro").ok
 
 
+@pytest.mark.parametrize(
+    ("program", "reason"),
+    [
+        ("import no_such_module", "exit code 1: ModuleNotFoundError: No module named 'no_such_module'"),
+        ("import os; os.abort()", "exit code -6: it printed no reason"),
+    ],
+)
+def test_a_process_that_fails_gives_its_reason(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, program: str, reason: str
+) -> None:
+    (folder / "program.py").write_text(program, encoding="utf-8")
+    monkeypatch.setattr(xacro, "_PROGRAM", folder / "program.py")
+    with pytest.raises(eurdf.CannotExpand, match=f"{reason}$"):
+        eurdf.check("arm.urdf.xacro")
+
+
 def test_an_expansion_is_bounded_in_time_and_size(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     doubled = "".join(f'<xacro:macro name="m{i + 1}"><xacro:m{i}/><xacro:m{i}/></xacro:macro>' for i in range(40))
     text = robot_with(f'<xacro:macro name="m0"><link name="l"/></xacro:macro>{doubled}<xacro:m40/>')

@@ -92,6 +92,8 @@ def _answer(file: str, request: Mapping[str, object]) -> dict[str, Any]:
     except subprocess.TimeoutExpired:
         raise CannotExpand(file, f"it takes longer than {TIME_LIMIT:g} s") from None
     if done.returncode:
-        raise CannotExpand(file, "xacro ended without an answer, out of memory perhaps")
+        said = done.stderr.decode(errors="replace").split("\n")
+        reason = next((line.strip() for line in reversed(said) if line.strip()), "it printed no reason")
+        raise CannotExpand(file, f"its process ended with exit code {done.returncode}: {reason}")
     answer: dict[str, Any] = json.loads(done.stdout)
     return answer
