@@ -268,6 +268,16 @@ def test_a_path_that_leads_nowhere_suggests_a_near_one(folder: Path, path: str, 
     assert "cassie" not in said
 
 
+def test_of_files_with_one_name_the_one_with_the_nearest_ending_is_suggested(folder: Path) -> None:
+    for name in ("arm.urdf", "arm.yaml", "arm.urdf.xacro"):
+        (folder / name).touch()
+    assert [near_path(name) for name in ("arm.yml", "arm.urd", "arm.xacro")] == [
+        "arm.yaml",
+        "arm.urdf",
+        "arm.urdf.xacro",
+    ]
+
+
 def test_an_empty_path_is_not_the_working_directory(folder: Path) -> None:
     (folder / "robot.urdf").write_text(URDF, encoding="utf-8")
     with pytest.raises(eurdf.RobotNotFound, match="is empty"):

@@ -54,13 +54,16 @@ def _entries(folder: Path, endings: tuple[str, ...], *, folders_only: bool) -> l
 
 def _nearest(name: str, known: Iterable[str]) -> str | None:
     """The nearest name, endings aside: nearly all files have the same ones."""
-    by_stem: dict[str, str] = {}
+    by_stem: dict[str, list[str]] = {}
     for one in known:
         if one.casefold() == name.casefold():
             return one
-        by_stem.setdefault(_stem(one), one)
+        by_stem.setdefault(_stem(one), []).append(one)
     close = difflib.get_close_matches(_stem(name), by_stem, n=1)
-    return by_stem[close[0]] if close else None
+    if not close:
+        return None
+    # Of those, the one whose ending is the nearest: 'arm.yml' means 'arm.yaml' rather than 'arm.urdf'.
+    return difflib.get_close_matches(name, by_stem[close[0]], n=1, cutoff=0.0)[0]
 
 
 def _stem(name: str) -> str:
