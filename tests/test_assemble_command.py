@@ -258,8 +258,9 @@ def test_a_bare_urdf_has_no_loops(folder: Path, run: Run, options: tuple[str, ..
     bench(folder)
     code, out, err = run("workbench.urdf", *options)
     assert (code, out) == (2, "")
-    assert err.startswith("eurdf: 'workbench.urdf' is a bare URDF, which has no ")
-    assert "`eurdf generate` writes a description" in err
+    assert err == (
+        "eurdf: 'workbench.urdf' is a bare URDF, which has no loops; `eurdf generate` writes a description with them\n"
+    )
 
 
 def test_a_robot_with_errors_is_refused_with_its_diagnostics(folder: Path, run: Run) -> None:

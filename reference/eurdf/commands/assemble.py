@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import difflib
 import os
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -84,11 +83,11 @@ def run(args: argparse.Namespace) -> int:
     if description.diagnostics.refused or description.mechanism is None:
         show_refusal(description.path, tuple(description.diagnostics), args.json)
         return 1
-    file = _file_to_write(args.path, description) if args.write else None
     if description.extension is None:
         raise CannotRun(
             f"'{description.path}' is a bare URDF, which has no loops; `eurdf generate` writes a description with them"
         )
+    file = _file_to_write(args.path, description) if args.write else None
 
     from eurdf.assembled import beyond_limits
     from eurdf.commands.assembly_info import assembly_info
@@ -116,8 +115,8 @@ def run(args: argparse.Namespace) -> int:
 
 def _file_to_write(path: str, description: Description) -> str:
     """The file that can have a configuration."""
-    if description.extension is None or description.document is None:
-        raise CannotRun(f"'{path}' is a bare URDF, which has no configurations; `eurdf generate` writes a description")
+    assert description.extension is not None
+    assert description.document is not None
     file = description.document.source.file
     if not description.document.source.is_file:
         raise CannotRun(f"--write needs a file to write to, and the description came from {file}")
@@ -135,6 +134,7 @@ def _start(robot: Robot, name: str | None) -> tuple[str, Vector]:
     import pinocchio as pin
 
     from eurdf.assembled import NAME
+    from eurdf.diagnostics import did_you_mean
 
     if name is None:
         name = NAME if NAME in robot.configurations else _NEUTRAL
@@ -143,8 +143,7 @@ def _start(robot: Robot, name: str | None) -> tuple[str, Vector]:
     if name == _NEUTRAL:
         return name, pin.neutral(robot.model)
     known = [*robot.configurations, _NEUTRAL]
-    near = difflib.get_close_matches(name, known, n=1)
-    hint = f"did you mean '{near[0]}'?" if near else f"there are: {', '.join(known)}"
+    hint = did_you_mean(name, known) or f"there are: {', '.join(known)}"
     raise CannotRun(f"there is no configuration '{name}'; {hint}")
 
 
