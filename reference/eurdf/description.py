@@ -143,12 +143,12 @@ def _finish(description: Description) -> Description:
     return description
 
 
-def read_urdf_source(
+def read_urdf_alone(
     path: Given,
     diagnostics: Diagnostics,
     package_dirs: Sequence[str | os.PathLike[str]] = (),
     xacro_args: Mapping[str, str] | None = None,
-) -> Source:
+) -> Urdf | None:
     """Read what is given as a URDF, without looking for a description.
 
     Args:
@@ -157,14 +157,21 @@ def read_urdf_source(
         package_dirs: Folders to look for packages in, which a xacro finds files in.
         xacro_args: Values of the arguments of a xacro.
 
+    Returns:
+        The URDF, or None where an error was added to `diagnostics`.
+
     Raises:
-        Fault: It cannot be read.
         CannotExpand: A xacro has an error, or arguments are given for what is no xacro.
         MissingExtra: A xacro is given, and the extra ``xacro`` is not installed.
     """
-    text = source_of(path)
-    file = Path(shown(path)) if text is None else text
-    return _source(_expanded(file, shown(path), diagnostics, package_dirs, xacro_args))
+    try:
+        text = source_of(path)
+        file = Path(shown(path)) if text is None else text
+        urdf = _expanded(file, shown(path), diagnostics, package_dirs, xacro_args)
+    except Fault as fault:
+        diagnostics.add(fault.diagnostic)
+        return None
+    return _read_urdf(urdf, diagnostics, geometry=True, mimic_errors="refused")
 
 
 def _expanded(

@@ -72,12 +72,10 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(args: argparse.Namespace) -> int:
     """Generate, write, tell what was found, and return the exit code."""
-    from eurdf.description import read_urdf_source
-    from eurdf.diagnostics import Diagnostics, Fault
+    from eurdf.description import read_urdf_alone
+    from eurdf.diagnostics import Diagnostics
     from eurdf.format.generate import BadPattern, conventions, hints
-    from eurdf.format.urdf import read_urdf
     from eurdf.generation import generate
-    from eurdf.reading.xml_reader import read_xml
 
     if args.version == "1" and args.root != "fixed":
         raise CannotRun("version 1 cannot say that the root floats")
@@ -88,11 +86,7 @@ def run(args: argparse.Namespace) -> int:
     except BadPattern as reason:
         raise CannotRun(str(reason)) from None
     diagnostics = Diagnostics()
-    try:
-        urdf = read_urdf(read_xml(read_urdf_source(args.urdf, diagnostics, **options)), diagnostics)
-    except Fault as fault:
-        diagnostics.add(fault.diagnostic)
-        urdf = None
+    urdf = read_urdf_alone(args.urdf, diagnostics, **options)
     if urdf is None:
         show_refusal(shown(args.urdf), tuple(diagnostics), args.json)
         return 1

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
 
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.check import write_reports
@@ -14,10 +12,6 @@ from eurdf.commands.output import write_text
 from eurdf.commands.output_file import write_new
 from eurdf.commands.robot_options import add_urdf_options, ending, require_urdf, urdf_options
 from eurdf.reading.given import shown
-
-if TYPE_CHECKING:
-    from eurdf.diagnostics import Diagnostics
-    from eurdf.format.urdf import Urdf
 
 
 def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -48,17 +42,19 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(args: argparse.Namespace) -> int:
     """Write the schema and return the exit code."""
-    from eurdf.diagnostics import Diagnostics
-    from eurdf.diagnostics.report import Report
     from eurdf.format.schema import json_schema, names_of, schema_text
 
     names = None
     if args.urdf is None and (args.package_dirs or args.xacro_args):
         raise CannotRun("--package-dir and --xacro-arg go with --for")
     if args.urdf is not None:
+        from eurdf.description import read_urdf_alone
+        from eurdf.diagnostics import Diagnostics
+        from eurdf.diagnostics.report import Report
+
         require_urdf(args.urdf)
         diagnostics = Diagnostics()
-        urdf = _read(args.urdf, diagnostics, urdf_options(args))
+        urdf = read_urdf_alone(args.urdf, diagnostics, **urdf_options(args))
         if urdf is None:
             # The standard output is for a schema.
             write_reports([Report(shown(args.urdf), tuple(diagnostics))], stream=sys.stderr)
@@ -71,16 +67,3 @@ def run(args: argparse.Namespace) -> int:
         write_new(args.output, text, args.force)
         tell([f"wrote '{args.output}'"])
     return 0
-
-
-def _read(path: str, diagnostics: Diagnostics, options: Mapping[str, Any]) -> Urdf | None:
-    from eurdf.description import read_urdf_source
-    from eurdf.diagnostics import Fault
-    from eurdf.format.urdf import read_urdf
-    from eurdf.reading.xml_reader import read_xml
-
-    try:
-        return read_urdf(read_xml(read_urdf_source(path, diagnostics, **options)), diagnostics)
-    except Fault as fault:
-        diagnostics.add(fault.diagnostic)
-        return None
