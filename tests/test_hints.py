@@ -182,6 +182,7 @@ def test_a_key_that_is_one_level_off_is_said_where_to_begin(body: str, hint: str
         "configurations:\n  a:\n  b: {hip: 1}\n",
         "joints:\n  a:\n    type: fixed\n    dampin: 1\n",
         "closures:\n  - {name: a, type: 3d}\nframes: []\n",
+        "x-note: '\u2028'\nclosures:\n  - {name: a, type: 3d}\nframes: []\n",  # no line of YAML ends there
         "x-more: {frames: []}\nclosures:\n  - name: a\n    type: 3d\n",
     ],
 )

@@ -27,7 +27,7 @@ from eurdf.format.yaml_text import (
     section,
     text_of,
 )
-from eurdf.reading.source import Source
+from eurdf.reading.source import BREAK, Source
 from eurdf.reading.yaml_reader import YamlDocument, read_yaml
 
 # The comment by which an editor finds the schema.
@@ -35,8 +35,6 @@ _MODELINE = re.compile(r"#\s*yaml-language-server:\s*\$schema=(.*)")
 
 # The keys of version 1 that become one key of version 2.
 _SECTIONS = {"closures": ("closed_loop", "type"), "joints": ("joint_name", "joint_type"), "actuators": ("name_mot",)}
-
-_BREAK = re.compile("\r\n?|\n")
 
 
 class NotMigratable(Exception):  # noqa: N818 - said to the user as it stands
@@ -255,7 +253,7 @@ class _Migration:
         """The user's own entries, as they are written where that is possible; and the comments that are not in them."""
         document = self.document
         source = document.source
-        starts = [0, *(found.end() for found in _BREAK.finditer(source.text))]
+        starts = [0, *(found.end() for found in BREAK.finditer(source.text))]
 
         def index(line: int | None, column: int | None) -> int:
             assert line is not None
@@ -280,7 +278,7 @@ class _Migration:
             inside = comments[bisect_left(indices, begin) : bisect_left(indices, end)]
             while inside and not inside[-1].beside:
                 end = inside.pop().index
-            verbatim = _BREAK.sub("\n", scalar(name) + source.text[begin:end].rstrip())
+            verbatim = BREAK.sub("\n", scalar(name) + source.text[begin:end].rstrip())
             if _says(verbatim, name, document.data[key]):
                 entries[key] = Entry(tuple(verbatim.split("\n")))
                 kept.update(comment.index for comment in inside)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from eurdf.format.extension import Pointer
 from eurdf.format.version2 import JOINT_TYPES, KEYS
+from eurdf.reading.source import BREAK
 
 if TYPE_CHECKING:
     from eurdf.reading.yaml_reader import YamlDocument
@@ -83,11 +84,11 @@ def key_outside_hint(mapping: Pointer, key: str, document: YamlDocument) -> str 
     if around is None or key not in around:
         return None
     item, outside = document.place(mapping), document.place((*mapping[:-2], key), True)
-    if None in (item.line, item.column, outside.line) or outside.line < item.line:  # type: ignore[operator]
+    if item.line is None or item.column is None or outside.line is None or outside.line < item.line:
         return None
-    if document.source.text.splitlines()[item.line - 1][item.column - 1 :].startswith("{"):  # type: ignore[operator]
+    if BREAK.split(document.source.text)[item.line - 1].startswith("{", item.column - 1):
         return None
-    return f"if '{key}' on line {outside.line} belongs to it, indent it by {item.column - 1} spaces"  # type: ignore[operator]
+    return f"if '{key}' on line {outside.line} belongs to it, indent it by {item.column - 1} spaces"
 
 
 def _mapping_at(data: Any, pointer: Pointer) -> dict[str, Any] | None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-_BREAK = re.compile("\r\n?|\n")
+from eurdf.reading.source import BREAK
+
 _ITEM = re.compile(r"-(?: +|$)")
 _KEY = re.compile(r"""("[^"\n]*"|'[^'\n]*'|[^\s"'#&*!|>%@`{}\[\],:-][^#:]*?|-[^\s#:][^#:]*?)\s*:(?: +|$)""")
 
@@ -37,7 +38,7 @@ def indentation_hint(text: str, line: int) -> str | None:
     Returns:
         The hint; None where the line does not begin with a key or ``-``, or its indentation is none to mend.
     """
-    lines = _BREAK.split(text)
+    lines = BREAK.split(text)
     wrong = lines[line - 1] if line <= len(lines) else ""
     column, body = _indent(wrong)
     key = _KEY.match(body)
@@ -63,7 +64,7 @@ def indentation_hint(text: str, line: int) -> str | None:
 
 def first_line_hint(text: str) -> str | None:
     """How to indent the first line of a file that is indented deeper than what follows; None where it is not."""
-    for number, line in enumerate(_BREAK.split(text), 1):
+    for number, line in enumerate(BREAK.split(text), 1):
         column, body = _indent(line)
         if body and not body.startswith("#"):
             key = _KEY.match(body)
