@@ -325,6 +325,13 @@ def test_a_robot_without_closures_or_motors_gets_hints_with_names_of_its_own() -
     assert hints(urdf, generated(*LEG).found, conventions()) == ()
 
 
+@pytest.mark.parametrize("joint", ["motor_weld fixed base thigh", None], ids=["a fixed joint", "no joint"])
+def test_a_robot_in_which_no_joint_moves_gets_a_hint_as_well(joint: str | None) -> None:
+    urdf = read(urdf_text(joint) if joint else '<robot name="r"><link name="base"/></robot>')
+    *_, motor = hints(urdf, find(urdf, conventions()), conventions())
+    assert motor == "no joint can be actuated: each is fixed or mimics another; change its type in the URDF"
+
+
 def test_a_hint_says_that_a_pattern_of_the_user_matches_nothing() -> None:
     given_ = conventions(closures=["(?P<side>top|bottom)_rod"], motors=["drive"])
     urdf = read(urdf_text("knee revolute base thigh"))

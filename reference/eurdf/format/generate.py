@@ -333,6 +333,8 @@ def hints(urdf: Urdf, found: Found, convention: Conventions) -> tuple[str, ...]:
                 f"{why}: give a pattern that is found in the names of the actuated joints, such as "
                 f"--motor {shlex.quote(f'^{re.escape(likely)}$')}; the joints that move: {_some(moving)}"
             )
+        else:
+            said.append("no joint can be actuated: each is fixed or mimics another; change its type in the URDF")
     return tuple(said)
 
 
