@@ -227,6 +227,12 @@ def test_a_description_in_a_folder_without_robot_yaml_is_told_by_its_keys(folder
     assert select(["."]) == ["./one.yml", "./quoted.yaml", "./two.yaml"]
 
 
+def test_a_description_may_have_all_the_bytes_of_a_file_before_its_key(folder: Path) -> None:
+    for name in ("one.yaml", "two.yaml"):
+        (folder / name).write_text("#" * (5 << 20) + '\nextended_urdf: "2.0"\n', encoding="utf-8")
+    assert select(["."]) == ["./one.yaml", "./two.yaml"]
+
+
 def test_other_descriptions_beside_robot_yaml_belong_to_that_robot(folder: Path) -> None:
     robot(folder / "arm")
     (folder / "arm" / "robot.v1.yaml").write_text("closed_loop: []\n", encoding="utf-8")

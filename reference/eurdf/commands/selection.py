@@ -11,13 +11,13 @@ from eurdf.collection import find_robot
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.exceptions import RobotNotFound
 from eurdf.reading.given import is_stream, is_text
+from eurdf.reading.source import FILE_LIMIT
 
 _DESCRIPTIONS = ("robot.yaml", "robot.yml")
 _YAML_SUFFIXES = (".yaml", ".yml")
 
 # A key at the top level that only a description of a robot has, in version 2 or in version 1.
 _FORMAT_KEY = re.compile(rb"""^(["']?)(?:extended_urdf|closed_loop)\1[ \t]*:""", re.MULTILINE)
-_LARGEST_DESCRIPTION = 4 * 2**20
 
 
 def select(paths: Iterable[str], allow_none: bool = False) -> list[str]:
@@ -95,6 +95,6 @@ def _describes_robot(file: Path) -> bool:
         if not file.is_file():
             return False
         with file.open("rb") as stream:
-            return _FORMAT_KEY.search(stream.read(_LARGEST_DESCRIPTION)) is not None
+            return _FORMAT_KEY.search(stream.read(FILE_LIMIT)) is not None
     except OSError:
         return False
