@@ -227,6 +227,13 @@ def test_a_description_in_a_folder_without_robot_yaml_is_told_by_its_keys(folder
     assert select(["."]) == ["./one.yml", "./quoted.yaml", "./two.yaml"]
 
 
+def test_a_description_named_as_one_is_checked_whatever_its_keys(folder: Path) -> None:
+    for name in ("left.eurdf.yaml", "right.eurdf.yml"):
+        (folder / name).write_text('extended_urfd: "2.0"\n', encoding="utf-8")
+    (folder / "mkdocs.yml").write_text("site_name: A site\n", encoding="utf-8")
+    assert select(["."]) == select(["."], allow_none=True) == ["./left.eurdf.yaml", "./right.eurdf.yml"]
+
+
 def test_a_description_may_have_all_the_bytes_of_a_file_before_its_key(folder: Path) -> None:
     for name in ("one.yaml", "two.yaml"):
         (folder / name).write_text("#" * (5 << 20) + '\nextended_urdf: "2.0"\n', encoding="utf-8")

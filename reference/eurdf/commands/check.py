@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 _DESCRIPTION = """\
 Check robots: the description, the URDF it extends, and whether the loops close.
 
-In a folder that is searched, each folder with a robot.yaml is a robot; elsewhere each YAML file is one that has
-extended_urdf or closed_loop at its top level. From standard input, as from a pipe, comes one text: a URDF, which
-begins with <, or a description, whose paths are relative to the working directory.
+In a folder that is searched, each folder with a robot.yaml is a robot; elsewhere each YAML file is one that is named
+*.eurdf.yaml, or has extended_urdf or closed_loop at its top level. From standard input, as from a pipe, comes one
+text: a URDF, which begins with <, or a description, whose paths are relative to the working directory.
 
 A warning whose code begins with x- is advice: the file follows the rules, but is likely not what is meant.
 """

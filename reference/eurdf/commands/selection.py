@@ -15,6 +15,8 @@ from eurdf.reading.source import FILE_LIMIT
 
 _DESCRIPTIONS = ("robot.yaml", "robot.yml")
 _YAML_SUFFIXES = (".yaml", ".yml")
+# The ending of a description in a folder with other YAML files, which catalogues of schemas know.
+_OWN_SUFFIXES = (".eurdf.yaml", ".eurdf.yml")
 
 # A key at the top level that only a description of a robot has, in version 2 or in version 1.
 _FORMAT_KEY = re.compile(rb"""^(["']?)(?:extended_urdf|closed_loop)\1[ \t]*:""", re.MULTILINE)
@@ -24,13 +26,13 @@ def select(paths: Iterable[str], allow_none: bool = False) -> list[str]:
     """The robots that paths stand for, each once, in the order given.
 
     A folder with a ``robot.yaml`` or ``robot.yml`` is one robot. Any other folder is searched: each folder in it with
-    such a file is a robot; in the others, each YAML file that has ``extended_urdf`` or ``closed_loop`` at its top level
-    is one. Hidden folders and links to folders are not entered. What is no folder, or a folder in which nothing is
-    found so, is what it is to `eurdf.load`.
+    such a file is a robot; in the others, each YAML file is one that is named ``*.eurdf.yaml``, or that has
+    ``extended_urdf`` or ``closed_loop`` at its top level. Hidden folders and links to folders are not entered. What is
+    no folder, or a folder in which nothing is found so, is what it is to `eurdf.load`.
 
     Args:
         paths: As the user gave them.
-        allow_none: Whether a folder may hold no robot. A YAML file in it is then one only if it says so.
+        allow_none: Whether a folder may hold no robot. Its only YAML file is then one as those of any other folder are.
 
     Raises:
         RobotNotFound: There is no such path, or no robot in it.
@@ -85,7 +87,7 @@ def _robots_below(folder: str) -> list[str]:
         found += [
             os.path.join(place, name)
             for name in sorted(files)
-            if name.endswith(_YAML_SUFFIXES) and _describes_robot(Path(place, name))
+            if name.endswith(_OWN_SUFFIXES) or (name.endswith(_YAML_SUFFIXES) and _describes_robot(Path(place, name)))
         ]
     return found
 
