@@ -250,6 +250,18 @@ def test_the_urdf_that_is_there_is_what_to_write(
     assert "urdf-not-found" not in [found.code for found in check(tmp_path / place).diagnostics]
 
 
+def test_the_folder_urdf_beside_the_working_directory_is_looked_into(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "config").mkdir()
+    (tmp_path / "urdf").mkdir()
+    (tmp_path / "urdf" / "leg.urdf").write_bytes(WORKBENCH.read_bytes())
+    monkeypatch.chdir(tmp_path / "config")
+    Path("leg.yaml").write_text(VERSION2, encoding="utf-8")
+    (found,) = check("leg.yaml").diagnostics
+    assert found.hint == "there is '../urdf/leg.urdf': write urdf: ../urdf/leg.urdf"
+
+
 def test_of_several_urdfs_none_is_taken_for_the_one(tmp_path: Path) -> None:
     hint = hint_of(tmp_path, ["a.urdf", "b.urdf"], VERSION2)
     assert hint == "there are 'a.urdf', 'b.urdf': write urdf: a.urdf, or another of them"

@@ -267,7 +267,7 @@ def _urdf_hint(near: Sequence[str], path: Path, home: Path, extension: Extension
 
 def _urdfs_near(path: Path, home: Path) -> list[str]:
     """Paths, from the folder of the description, of the URDFs in the first folder around that has some."""
-    for folder in dict.fromkeys((path.parent, home, home / "urdf", home.parent / "urdf")):
+    for folder in dict.fromkeys((path.parent, home, home / "urdf", home / ".." / "urdf")):
         try:
             files = sorted(other for other in folder.iterdir() if other.suffix.lower() == ".urdf" and other.is_file())
         except (OSError, ValueError):
