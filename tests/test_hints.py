@@ -262,6 +262,14 @@ def test_the_folder_urdf_beside_the_working_directory_is_looked_into(
     assert found.hint == "there is '../urdf/leg.urdf': write urdf: ../urdf/leg.urdf"
 
 
+@pytest.mark.parametrize("text", [VERSION2, "name_mot: []\n"], ids=["version 2", "version 1"])
+def test_a_xacro_nearby_is_given_by_the_option(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert (
+        hint_of(Path(), ["leg.urdf.xacro"], text) == "there is 'leg.urdf.xacro': use the option --urdf leg.urdf.xacro"
+    )
+
+
 def test_of_several_urdfs_none_is_taken_for_the_one(tmp_path: Path) -> None:
     hint = hint_of(tmp_path, ["a.urdf", "b.urdf"], VERSION2)
     assert hint == "there are 'a.urdf', 'b.urdf': write urdf: a.urdf, or another of them"

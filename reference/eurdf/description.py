@@ -236,15 +236,18 @@ def _named_urdf(description: Path | Source, extension: Extension | None, documen
 def _urdf_not_found(path: Path, extension: Extension, document: YamlDocument, diagnostics: Diagnostics) -> None:
     """EU-FIL-004: the URDF that the description names exists."""
     home = document.source.folder
-    near = _urdfs_near(path, home)
     message = f"the URDF '{extension.urdf}' does not exist"
     if extension.version != "1" and "urdf" not in document.data:
         message += ", the one meant where the key 'urdf' is left out"
-    diagnostics.report("urdf-not-found", message, document.place(("urdf",)), _urdf_hint(near, path, home, extension))
+    diagnostics.report("urdf-not-found", message, document.place(("urdf",)), _urdf_hint(path, home, extension))
 
 
-def _urdf_hint(near: Sequence[str], path: Path, home: Path, extension: Extension) -> str:
+def _urdf_hint(path: Path, home: Path, extension: Extension) -> str:
     """How to name the URDF that is meant: one of those nearby, by their paths from the description."""
+    near = _files_near(path, home, ".urdf")
+    xacro = None if near else next(iter(_files_near(path, home, ".xacro")), None)
+    if xacro is not None:
+        return f"there is '{xacro}': use the option --urdf {shlex.quote(os.path.normpath(home / xacro))}"
     likely = near[0] if len(near) == 1 else None
     if len(near) > 1:
         alike = difflib.get_close_matches(path.stem, [Path(other).stem for other in near], n=1)
@@ -265,11 +268,11 @@ def _urdf_hint(near: Sequence[str], path: Path, home: Path, extension: Extension
     return f"there are {shown}: {fix}, or another of them"
 
 
-def _urdfs_near(path: Path, home: Path) -> list[str]:
-    """Paths, from the folder of the description, of the URDFs in the first folder around that has some."""
+def _files_near(path: Path, home: Path, suffix: str) -> list[str]:
+    """Paths, from the folder of the description, of the files of a kind in the first folder around that has some."""
     for folder in dict.fromkeys((path.parent, home, home / "urdf", home / ".." / "urdf")):
         try:
-            files = sorted(other for other in folder.iterdir() if other.suffix.lower() == ".urdf" and other.is_file())
+            files = sorted(other for other in folder.iterdir() if other.suffix.lower() == suffix and other.is_file())
         except (OSError, ValueError):
             continue
         if files:

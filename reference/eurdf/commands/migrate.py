@@ -134,7 +134,7 @@ def urdf_named(description: str | os.PathLike[str], urdf: Source) -> str:
 
 def not_in_a_file(urdf: Source, name: str) -> str:
     """What is to be done where the URDF of a description came from elsewhere than a file."""
-    return f"the URDF came from {urdf.file}: write it to '{name}', which the description names"
+    return f"the URDF came from {urdf.file}: write it to '{name}', which the description names, or use --urdf each time"
 
 
 def urdf_from(description: str | os.PathLike[str], urdf: str | os.PathLike[str]) -> str:
