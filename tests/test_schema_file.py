@@ -118,6 +118,15 @@ def test_a_migrated_description_keeps_the_place_where_its_schema_is(folder: Path
     assert not list(folder.glob("*.json"))
 
 
+@pytest.mark.parametrize("argv", [["generate", "robot.urdf"], ["migrate", "old.yaml"], ["schema"]])
+def test_a_dash_is_the_standard_output(folder: Path, argv: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(argv) == 0
+    shown = capsys.readouterr()
+    assert main([*argv, "-o", "-"]) == 0
+    assert capsys.readouterr() == shown
+    assert not (folder / "-").exists()
+
+
 @pytest.mark.parametrize("argv", [["generate", "robot.urdf"], ["migrate", "old.yaml"]])
 def test_what_goes_to_the_standard_output_names_no_schema(
     folder: Path, argv: list[str], capsys: pytest.CaptureFixture[str]

@@ -11,7 +11,7 @@ from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.editor_schema import NOT_BESIDE, EditorSchema, add_schema_option, schema_beside, write_schema
 from eurdf.commands.migrate import not_in_a_file, show_refusal, tell, tell_schema, urdf_named, write_yaml
 from eurdf.commands.output import write_json
-from eurdf.commands.output_file import refuse_to_replace, write_new
+from eurdf.commands.output_file import add_output_option, refuse_to_replace, write_new
 from eurdf.commands.robot_options import add_urdf_options, add_urdf_path, ending, require_urdf, urdf_options
 from eurdf.reading.given import shown
 
@@ -52,7 +52,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     add_urdf_path(parser)
     add_urdf_options(parser)
-    parser.add_argument("-o", "--output", metavar="OUT", help="the file to write; default: the standard output")
+    add_output_option(parser)
     parser.add_argument("--force", action="store_true", help="replace OUT, and its schema, if they are there already")
     add_schema_option(parser)
     for option, what in (

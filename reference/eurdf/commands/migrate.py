@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.editor_schema import NOT_BESIDE, EditorSchema, add_schema_option, schema_beside, write_schema
 from eurdf.commands.output import write_json, write_text
-from eurdf.commands.output_file import refuse_to_replace, write_new
+from eurdf.commands.output_file import add_output_option, refuse_to_replace, write_new
 from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
 from eurdf.commands.selection import select_one
 
@@ -43,7 +43,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     add_robot_path(parser)
     add_robot_options(parser)
-    parser.add_argument("-o", "--output", metavar="OUT", help="the file to write; default: the standard output")
+    add_output_option(parser)
     parser.add_argument("--force", action="store_true", help="replace OUT, and its schema, if they are there already")
     add_schema_option(parser)
     parser.add_argument("--json", action="store_true", help="write one JSON object: the text, and what was done")

@@ -2,10 +2,25 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 from pathlib import Path
 
 from eurdf.commands.cannot_run import CannotRun
+
+#: The path that means the standard output.
+STDOUT = "-"
+
+
+def add_output_option(parser: argparse.ArgumentParser) -> None:
+    """Add ``--output`` to the parser of a command that writes one file; None where it is the standard output."""
+    parser.add_argument(
+        "-o",
+        "--output",
+        metavar="OUT",
+        type=lambda path: None if path == STDOUT else path,
+        help="the file to write; default, and for -: the standard output",
+    )
 
 
 def refuse_to_replace(path: str | os.PathLike[str], force: bool) -> None:

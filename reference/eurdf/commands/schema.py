@@ -9,7 +9,7 @@ from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.check import write_reports
 from eurdf.commands.migrate import tell
 from eurdf.commands.output import write_text
-from eurdf.commands.output_file import write_new
+from eurdf.commands.output_file import add_output_option, write_new
 from eurdf.commands.robot_options import add_urdf_options, ending, require_urdf, urdf_options
 from eurdf.reading.given import shown
 
@@ -35,7 +35,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="name the links and joints of this robot, so that an editor completes them",
     )
     add_urdf_options(parser)
-    parser.add_argument("-o", "--output", metavar="OUT", help="the file to write; default: the standard output")
+    add_output_option(parser)
     parser.add_argument("--force", action="store_true", help="replace OUT if it is there already")
     parser.set_defaults(run=run)
 
