@@ -59,7 +59,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument("--write", action="store_true", help="write it to the description as 'assembled'")
     parser.add_argument("--force", action="store_true", help="replace a different 'assembled' that is there already")
     parser.add_argument(
-        "--hold", metavar="JOINT", action="append", default=[], help="keep a joint where it is; may be repeated"
+        "--hold", metavar="JOINT", action="append", default=[], help="keep a joint where it is (repeatable)"
     )
     parser.add_argument("--limits", action="store_true", help="never leave the limits of the joints")
     parser.add_argument(

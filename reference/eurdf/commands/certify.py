@@ -32,7 +32,7 @@ program which speaks the protocol. --verify runs a certificate's parser again, b
 look at that first, or give your own with --parser.
 """
 _EPILOG = ending(
-    "0 every level claimed and asked for is certified (--smoke: the cases passed; --verify: the same came of it),\n"
+    "0 every level claimed and asked for is certified (--smoke: the cases passed; --verify: the result is the same),\n"
     "1 not, 2 the command cannot run. A known failure is no pass.",
     "eurdf certify --parser 'cmd:./my_parser --flag' --certificate out",
 )

@@ -61,7 +61,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         ("--spherical", "spherical joints"),
     ):
         parser.add_argument(
-            option, metavar="PATTERN", action="append", default=[], help=f"names of {what}; may be repeated"
+            option, metavar="PATTERN", action="append", default=[], help=f"names of {what} (repeatable)"
         )
     parser.add_argument("--type", choices=("3d", "6d"), help="type of every closure, whatever its name or motion says")
     parser.add_argument("--root", choices=("fixed", "floating"), default="fixed", help="default: fixed")
