@@ -1,4 +1,4 @@
-"""3d or 6d, where a name does not tell: by the motion that is left."""
+"""3d or 6d, where a name does not state it: by the motion that is left."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def test_each_robot_of_the_collection_gets_the_types_that_it_has(name: str) -> N
     assert len(choice.notes) == len(analyze(build_robot(mechanism, geometry=False)).loops)
 
 
-def test_only_what_is_asked_for_is_chosen_and_notes_call_it_as_they_are_told() -> None:
+def test_only_undecided_closures_are_chosen_and_notes_use_the_given_words() -> None:
     mechanism = mechanism_of("five_bar_3d")
     (name,) = [closure.name for closure in mechanism.closures]
     choice = choose_types(mechanism, [name], ["the pin"])

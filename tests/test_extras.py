@@ -1,4 +1,4 @@
-"""What is said where an optional dependency is not installed."""
+"""The message where an optional dependency is not installed."""
 
 from __future__ import annotations
 

@@ -176,7 +176,7 @@ def test_a_revolute_mate_of_onshape_is_two_closures_in_position() -> None:
     assert note.startswith("'closing_pin' is a revolute mate")
 
 
-def test_half_of_an_axis_is_told_and_decides_nothing() -> None:
+def test_half_of_an_axis_is_reported_and_decides_nothing() -> None:
     found = generated(*LEG[:3], *HINGE[:3]).found
     assert [(closure.name, closure.frames) for closure in found.closures] == [
         ("closing_pin", ("closing_pin_1", "closing_pin_2"))

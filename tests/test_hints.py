@@ -89,7 +89,7 @@ SYNTAX = [
 
 @pytest.mark.parametrize("break_", ["\n", "\r\n"])
 @pytest.mark.parametrize(("body", "position", "hint"), SYNTAX)
-def test_a_line_that_continues_nothing_is_said_where_to_begin(
+def test_a_hint_says_where_a_line_that_continues_nothing_begins(
     body: str, position: tuple[int, int], hint: str, break_: str
 ) -> None:
     (found,) = found_in((HEAD + body).replace("\n", break_))
@@ -171,7 +171,7 @@ SCHEMA = [
 
 
 @pytest.mark.parametrize(("body", "hint"), SCHEMA)
-def test_a_key_that_is_one_level_off_is_said_where_to_begin(body: str, hint: str) -> None:
+def test_a_hint_says_where_a_key_that_is_one_level_off_begins(body: str, hint: str) -> None:
     assert [found for found in found_in(HEAD + body) if (found.hint or "").startswith(hint)]
 
 
@@ -186,7 +186,7 @@ def test_a_key_that_is_one_level_off_is_said_where_to_begin(body: str, hint: str
         "x-more: {frames: []}\nclosures:\n  - name: a\n    type: 3d\n",
     ],
 )
-def test_nothing_is_said_of_indentation_where_another_reason_is_likelier(body: str) -> None:
+def test_no_hint_is_about_indentation_where_another_reason_is_likelier(body: str) -> None:
     found = found_in(HEAD + body)
     assert found
     assert not [one for one in found if "indent" in (one.hint or "")]

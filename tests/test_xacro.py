@@ -160,7 +160,7 @@ def test_the_commands_take_a_xacro_with_arguments(capsys: pytest.CaptureFixture[
     assert "NAME:=VALUE" in capsys.readouterr().err
 
 
-def test_without_the_extra_the_command_that_installs_it_is_said(
+def test_without_the_extra_the_message_has_the_command_that_installs_it(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(xacro, "find_spec", lambda name: None)

@@ -46,9 +46,8 @@ def find_robot(path: Given, urdf: Given | None = None) -> RobotFiles:
 
     Args:
         path: A folder, a YAML file, a bare URDF or xacro, the name of a robot of the collection, ``-`` for standard
-            input, a pipe, or a text. A file is told by its ending: ``.urdf``, ``.xml`` and ``.xacro`` are URDFs,
-            anything else is a description; a text and what comes from a stream, by its first character: ``<`` begins
-            a URDF.
+            input, a pipe, or a text. A file that ends in ``.urdf``, ``.xml`` or ``.xacro`` is a URDF, any other a
+            description. A text, or what comes from a stream, is a URDF if it begins with ``<``.
         urdf: A URDF in place of the one that the description names: a file, ``-``, a pipe or a text.
 
     Raises:

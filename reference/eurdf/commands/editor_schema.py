@@ -16,7 +16,7 @@ from eurdf.commands.output_file import write_new
 if TYPE_CHECKING:
     from eurdf.format.urdf import Urdf
 
-#: Said where a description goes to the standard output.
+#: The message where a description goes to the standard output.
 NOT_BESIDE = "the text names no schema; with -o FILE, the schema that editors complete it with is written beside it"
 
 # What the YAML language server reads in its comment as it is written.

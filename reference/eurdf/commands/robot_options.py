@@ -28,7 +28,7 @@ def add_urdf_path(parser: argparse.ArgumentParser) -> None:
 
 
 def add_robot_options(parser: argparse.ArgumentParser) -> None:
-    """Add what may be said of a robot beside its path."""
+    """Add the options that go with the path of a robot."""
     parser.add_argument(
         "--urdf",
         metavar="FILE",
@@ -38,7 +38,7 @@ def add_robot_options(parser: argparse.ArgumentParser) -> None:
 
 
 def add_urdf_options(parser: argparse.ArgumentParser) -> None:
-    """Add what may be said of a URDF beside its path."""
+    """Add the options that go with the path of a URDF."""
     parser.add_argument(
         "--package-dir",
         metavar="DIR",

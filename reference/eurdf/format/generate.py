@@ -106,7 +106,7 @@ class NamedClosure:
 
     Attributes:
         name: What its frames have in common.
-        type: None where the names do not tell it.
+        type: None where the names do not state it.
         frames: Names of frame A and frame B.
         hinge: Whether it is one of the two that hold a hinge: a point on its axis, and a second one.
     """
@@ -159,11 +159,11 @@ def with_type(found: Found, closure_type: ClosureType) -> Found:
 
 @dataclass(slots=True)
 class _Loop:
-    """What names say of one loop.
+    """What names state of one loop.
 
     Attributes:
         sides: For each side, the names of links and joints.
-        types: Those that the names say.
+        types: Those that the names state.
         axis_of: Name of the loop that it is the axis of, where it is a second point on a hinge.
     """
 
@@ -226,9 +226,9 @@ def _loops(names: Iterable[str], patterns: Iterable[re.Pattern[str]]) -> dict[st
             side = loop.sides.setdefault(match["side"].upper(), [])
             if name not in side:
                 side.append(name)
-            told = (groups.get("type") or "").lower()
-            if told in ("3d", "6d"):
-                loop.types.add(cast(ClosureType, told))
+            stated = (groups.get("type") or "").lower()
+            if stated in ("3d", "6d"):
+                loop.types.add(cast(ClosureType, stated))
     return loops
 
 
