@@ -79,7 +79,7 @@ def test_an_open_linkage_closes_whatever_its_size(build: Callable[[], Linkage], 
     # Evaluated in another order than assembly does: up to 20 bars of this size, each rounded to 1e-16 of it.
     rounding = 1e-13 * max(size, 1.0)
     assert np.abs(r).max() <= 1e-10 + rounding
-    assert assembly.residual <= np.sqrt(len(r)) * 1e-10
+    assert assembly.residual == pytest.approx(np.linalg.norm(r), abs=max(1e-12, rounding))
     assert assembly.iterations < 60
 
 
