@@ -17,6 +17,9 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 
+#: Seconds after which a program that has not ended is killed.
+TIMEOUT = 300
+
 
 def run_module(
     module: str, arguments: Sequence[str], *, cwd: Path | None = None, environment: Mapping[str, str] | None = None
@@ -81,8 +84,10 @@ def _serve() -> None:
 
 def _run(argv: list[str], cwd: str, environment: dict[str, str], streams: list[str]) -> int:
     import runpy
+    import signal
     import traceback
 
+    signal.alarm(TIMEOUT)
     os.close(0)
     os.open(os.devnull, os.O_RDONLY)
     for number, stream in enumerate(streams, start=1):
