@@ -110,6 +110,12 @@ def constraint_rows_without_bound() -> Deviation:
     return instead(link, "ROW_LIMIT", 10**9)
 
 
+@mutant("EU-FIL-002", versions=("2",))  # the same bound in version 1, for which there is no case
+def velocities_without_bound() -> Deviation:
+    """The joints of a robot may have any number of velocities."""
+    return instead(link, "VELOCITY_LIMIT", 10**9)
+
+
 def _own_types(entries: Iterable[ClosureEntry]) -> tuple[list[ClosureEntry], list[ClosureEntry]]:
     """The closures of types of the user's own, and the others."""
     entries = list(entries)
