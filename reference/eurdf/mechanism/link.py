@@ -51,8 +51,8 @@ def link(
         document: Where the description was read from; None with it.
         diagnostics: Gets what is found.
         root: In place of the root that the description states.
-        mimic: Whether mimic joints follow; if not, each is free, as if the URDF had no ``<mimic>``. Where a named
-            configuration does not state it, it is where it would follow to.
+        mimic: Whether a mimic joint depends on its leader; if not, it is free, as if the URDF had no ``<mimic>``. In a
+            named configuration that does not state it, it has the value that its leader would give it.
 
     Returns:
         The mechanism, or None where an error was found.
@@ -151,7 +151,7 @@ def _described(
 
 
 def _led(mechanism: Mechanism, laws: Mapping[str, Mimic]) -> Mapping[str, Mapping[str, tuple[float, ...]]]:
-    """The named configurations, with mimic joints that are free where they would follow to."""
+    """The named configurations, in which each free mimic joint has the value that its leader would give it."""
     joints = {joint.name: joint for joint in mechanism.joints}
     led = {
         name: law
