@@ -11,7 +11,7 @@ from eurdf_conformance.needed import REQUIRED, missing, needs
 
 _ROOT = Path(__file__).parents[1]
 
-# Of eurdf the reference parser is made, and its dependencies are those of the suite; pyproject.toml asks for xdist.
+# The reference parser is eurdf, and the suite uses its dependencies; the options in pyproject.toml are those of xdist.
 _NEEDED = ("eurdf", *REQUIRED, "xdist")
 
 # All tests are in `suite`: to look for some in every folder of the corpus takes longer than to read it.

@@ -1,4 +1,4 @@
-"""Options of the tests, how they are spread over processes, and what the summary says of tests that were skipped."""
+"""Options of the tests, how they are spread over processes, and the summary of skipped tests."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """Say how many tests were skipped, why, and what to do to run them."""
+    """Print how many tests were skipped, why, and how to run them."""
     reasons = Counter[str]()
     for report in terminalreporter.stats.get("skipped", ()):
         reason = report.longrepr[2] if isinstance(report.longrepr, tuple) else str(report.longrepr)

@@ -1,6 +1,6 @@
 """What the suite needs beside the dependencies of eurdf; the extra ``conformance`` installs it.
 
-Nothing but the standard library is imported here, so that what is missing can be said before an import fails.
+Nothing but the standard library is imported here, so that a missing package is reported before an import fails.
 """
 
 from __future__ import annotations
@@ -27,5 +27,5 @@ def is_installed(name: str) -> bool:
 
 
 def needs(names: Iterable[str]) -> str:
-    """What is missing, as a sentence that a command to install it may follow."""
+    """The message that packages are missing, to which the caller adds how to install them."""
     return f"the conformance suite needs packages that are not installed ({', '.join(names)})"

@@ -26,7 +26,7 @@ from eurdf_conformance.verdict.known_failures import KnownFailure, KnownFailures
 from eurdf_conformance.verdict.result import Key, Result
 from eurdf_conformance.verdict.verdict import Verdict
 
-# How far numbers in what is said of a failure may be apart, relative and absolute: those of answers may have been
+# How far apart numbers in the description of a failure may be, relative and absolute: those of answers may have been
 # computed on another processor. What they are compared with has tolerances of 1e-9 and more.
 _RELATIVE, _ABSOLUTE = 1e-6, 1e-9
 

@@ -1,4 +1,4 @@
-"""Whether two texts with computed numbers in them say the same, on whatever processor each was written."""
+"""Compare texts with computed numbers in them, of which the last digits depend on the processor."""
 
 from __future__ import annotations
 

@@ -66,7 +66,7 @@ def _by_cases(mutant: Mutant, found: Collection[Version]) -> Catches:
 
 @cache
 def _soonest_first() -> tuple[CorpusCase, ...]:
-    """The cases, those first that are about the fewest clauses, and of these the smallest: they tell soonest."""
+    """The cases, first those that cite the fewest clauses, and of these the smallest: they catch a mutant soonest."""
     return tuple(sorted(all_cases(), key=lambda case: (len(case.case.clauses), _size(case))))
 
 

@@ -29,7 +29,7 @@ def _in_version1(where: Callable[[Description, UrdfJoint], bool]) -> Deviation:
 
 @mutant("EU-ONE-009")
 def mimic_joints_of_version_1_follow() -> Deviation:
-    """In version 1 a joint that mimics follows, as in version 2."""
+    """In version 1 a mimic joint depends on its leader, as in version 2."""
 
     def followed(read: Description) -> Description:
         assert read.urdf is not None

@@ -46,7 +46,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
-    """Let one worker ask all levels of a case, whose reader then loads it once; and the rules of the protocol, alike.
+    """Let one worker judge all levels of a case, which is then loaded once, and one worker all rules of the protocol.
 
     Of pytest-xdist's own ``--dist`` only `loadgroup` is replaced: 3.8 sees no groups with pytest 9.2
     (https://github.com/pytest-dev/pytest-xdist/issues/1386).

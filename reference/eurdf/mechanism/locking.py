@@ -51,8 +51,8 @@ def lock_joints(mechanism: Mechanism, joints: Iterable[str], coordinates: Coordi
     Args:
         mechanism: The mechanism.
         joints: Names of joints. With a joint, those that follow it are locked; one that is fixed stays so.
-        coordinates: For each joint its coordinates as files have them. A joint left out stands at its neutral; what is
-            said of a mimic joint is not looked at.
+        coordinates: For each joint its coordinates as files have them. A joint left out is at its neutral; those of a
+            mimic joint are ignored.
 
     Raises:
         CannotLock: A name is that of no joint, or of one that follows another that is not locked.
