@@ -338,6 +338,24 @@ def test_an_orientation_beyond_a_turn_is_likely_in_degrees(tmp_path: Path, rpy: 
     assert all(each.pointer.endswith("/origin/@rpy") for each in found)
 
 
+@pytest.mark.parametrize("rpy", ["90 0 0", "${pi} x 0"])
+def test_an_orientation_outside_of_links_and_joints_is_not_read(tmp_path: Path, rpy: str) -> None:
+    gazebo = f'<gazebo reference="a"><visual><origin rpy="{rpy}"/></visual></gazebo>'
+    assert checked(tmp_path, chain(joint("knee", "a", "b"), links=gazebo)) == []
+
+
+@pytest.mark.parametrize(
+    ("limits", "message"),
+    [
+        ("-90 1", "limit 'lower' of joint 'knee' is -90 rad, 14.3 turns"),
+        ("-90 90", "limit 'lower' of joint 'knee' is -90 rad, 14.3 turns; so is 1 other angle of this file"),
+    ],
+)
+def test_the_first_angle_in_degrees_is_named(tmp_path: Path, limits: str, message: str) -> None:
+    (found,) = checked(tmp_path, chain(joint("knee", "a", "b", limits=limits)))
+    assert found.message == message
+
+
 @pytest.mark.parametrize(
     ("yaml", "pointer"),
     [

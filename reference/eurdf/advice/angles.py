@@ -56,10 +56,10 @@ def _report(found: list[_Found], diagnostics: Diagnostics) -> None:
         return
     value, what, place = found[0]
     more = len(found) - 1
-    others = "" if not more else f"; so is {more} other angle" if more == 1 else f"; so are {more} other angles"
+    others = "" if not more else f"; so {'is 1 other angle' if more == 1 else f'are {more} other angles'} of this file"
     diagnostics.report(
         "x-angle-in-degrees",
-        f"{what} is {value:g} rad, {abs(value) / (2.0 * math.pi):.3g} turns{others} of this file",
+        f"{what} is {value:g} rad, {abs(value) / (2.0 * math.pi):.3g} turns{others}",
         place,
         f"angles are in rad: {value:g} degrees are {math.radians(value):.6g} rad",
     )
@@ -83,8 +83,8 @@ def _in_urdf(urdf: Urdf) -> Iterator[_Found]:
         if owner is None or owner.tag not in ("joint", "inertial", "visual", "collision"):
             continue
         above = owner if owner.tag == "joint" else owner.getparent()
-        if above is None or above.getparent() is not urdf.document.root:
-            continue
+        if above is None or above.tag not in ("joint", "link") or above.getparent() is not urdf.document.root:
+            continue  # elements such as <gazebo> are not checked as URDF
         for value in map(float, (origin.get("rpy") or "").split()):
             if _orientation_in_degrees(value):
                 what = f"an angle of 'rpy' of {above.tag!s} '{above.get('name')}'"
