@@ -531,9 +531,13 @@ def test_coordinates_that_are_wrong_are_not_taken_for_rounded_ones(advice) -> No
     def edit(description: dict) -> None:
         description["configurations"]["assembled"] = {"motor_crank": 0.02}
 
-    (found,) = advice("four_bar", edit)
-    assert found.code == "assembled-open"
-    assert "digits" not in (found.hint or "")
+    def too_far(urdf: str) -> str:
+        return urdf.replace('<origin xyz="0.43 0 0"/>', '<origin xyz="5 0 0"/>')
+
+    for urdf in (str, too_far):
+        (found,) = advice("four_bar", edit, urdf)
+        assert found.code == "assembled-open"
+        assert found.hint == "`eurdf assemble --write --force` writes a configuration that closes them, if it finds one"
 
 
 def massless(*names: str) -> Callable[[str], str]:

@@ -160,7 +160,7 @@ def _hint_for_assembled(robot: Robot, openings: Sequence[Opening]) -> str:
     if closes_w_first(robot, "assembled"):
         return "they close where its quaternions are read w first: the order is x, y, z, w"
     if not _is_rounding(robot, openings):
-        return "`eurdf assemble` finds a configuration that closes them; --write --force states it"
+        return "`eurdf assemble --write --force` writes a configuration that closes them, if it finds one"
     from eurdf.kinematics.assembly import assemble
 
     least = assemble(robot)
