@@ -9,10 +9,10 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from eurdf.advice.mesh_size import mesh_size
+from eurdf.description import Description, place_of_file
 from eurdf.mechanism.joint_type import JointType
 
 if TYPE_CHECKING:
-    from eurdf.description import Description
     from eurdf.diagnostics import Diagnostics, Place
     from eurdf.format.urdf import Urdf
 
@@ -28,7 +28,7 @@ _TIMES = 100.0
 # In kg for each metre of the median of the distances between joints: what weighs more, as a crane does, may be so long.
 _HEAVY = 10.0
 
-# A length in m, whose it is, and where it stands.
+# A length in m, what it is the length of, and its place.
 _Found = tuple[float, str, Callable[[], "Place"]]
 
 
@@ -51,11 +51,11 @@ def advise_on_lengths(description: Description, meshes: Mapping[str, str], diagn
         if mass <= _HEAVY * median:
             length, what, place = next(found for found in joints if found[0] >= median)
             weight = f", and all links weigh {mass:.3g} kg" if mass > 0.0 else ""
-            message = f"{what} is {length:.4g} m, as half of those of the robot are or more{weight}"
+            message = f"{what} is {length:.4g} m, the median of all joints {median:.4g} m{weight}"
             diagnostics.report("x-length-in-millimetres", message, place, _hint(length))
         return
     in_urdf, in_extension = [*joints, *_centres_of_mass(urdf)], list(_of_extension(description))
-    in_meshes = list(_of_meshes(urdf, meshes))
+    in_meshes = list(_of_meshes(description, meshes))
     for of_a_kind in (in_urdf, in_extension, in_meshes):
         long = [found for found in of_a_kind if max(_LONG, _TIMES * median) < found[0] <= _MOST]
         if not long:
@@ -100,19 +100,15 @@ def _of_extension(description: Description) -> Iterator[_Found]:
             yield math.hypot(*reference.xyz), "the distance of a frame", place
 
 
-def _of_meshes(urdf: Urdf, meshes: Mapping[str, str]) -> Iterator[_Found]:
+def _of_meshes(description: Description, meshes: Mapping[str, str]) -> Iterator[_Found]:
     """The sizes of meshes that are not scaled."""
+    assert description.urdf is not None
     seen: set[str] = set()
-    for link in urdf.links.values():
+    for link in description.urdf.links.values():
         for shape in (*link.visuals, *link.collisions):
             if shape.filename in seen or shape.filename not in meshes or shape.size != (1.0, 1.0, 1.0):
                 continue
             seen.add(shape.filename)
             size = mesh_size(meshes[shape.filename])
             if size is not None:
-                yield size, f"mesh '{shape.filename}'", partial(_place_of_mesh, urdf, shape.filename)
-
-
-def _place_of_mesh(urdf: Urdf, uri: str) -> Place:
-    element = next(each for each in urdf.document.root.iter("mesh") if each.get("filename") == uri)
-    return urdf.document.place(element, "filename")
+                yield size, f"mesh '{shape.filename}'", partial(place_of_file, description, "mesh", shape.filename)
