@@ -465,6 +465,7 @@ def test_the_identity_written_w_first_is_reported(tmp_path: Path, numbers: str, 
     found = checked(tmp_path, chain(joint("neck", "a", "b")), BALL % numbers)
     assert codes(found) == ["x-quaternion-order"] * expected
     assert all(each.pointer == "/configurations/look/neck" for each in found)
+    assert all("it is the identity only then" in each.message for each in found)
     assert all("x, y, z, w" in (each.hint or "") for each in found)
 
 

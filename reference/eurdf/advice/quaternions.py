@@ -23,7 +23,7 @@ def advise_on_quaternions(description: Description, robot: Robot | None, diagnos
     """Report the quaternions of named configurations that are likely w x y z, in place of x y z w.
 
     They are so where the loops close by them in that order alone; or where they are the identity in that order,
-    ``[1, 0, 0, 0]``, and no closed loop bears out that half a turn about x is meant.
+    ``[1, 0, 0, 0]``, and no loop closes by half a turn about x, which that is in the order of the format.
 
     Args:
         description: The robot as read.
@@ -47,7 +47,7 @@ def advise_on_quaternions(description: Description, robot: Robot | None, diagnos
         for joint, values in turned.items():
             is_identity = abs(values[-1]) > 1.0 - _SAME
             if (by_turned and joint in looped) or (is_identity and not (closed and joint in looped)):
-                why = "the loops close" if by_turned and joint in looped else "it is no rotation"
+                why = "the loops close" if by_turned and joint in looped else "it is the identity"
                 quaternion = ", ".join(f"{value + 0.0:g}" for value in values[-4:])
                 diagnostics.report(
                     "x-quaternion-order",
