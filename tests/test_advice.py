@@ -572,6 +572,15 @@ def test_a_massless_link_that_can_move_while_all_else_is_at_rest_makes_the_mass_
     assert "the mass matrix is singular" in found.message
 
 
+def test_a_massless_link_of_a_floating_root_is_reported(tmp_path: Path) -> None:
+    arm = chain(joint("shoulder", "a", "b"), joint("elbow", "b", "c"), joint("wrist", "c", "d"))
+    pin = "{name: pin, type: 3d, frames: [{link: d, xyz: [0.2, 0, 0]}, {link: a, xyz: [0.7, 0, 0]}]}"
+    yaml = f"root: floating\nclosures: [{pin}]\nactuators: [shoulder]\n"
+    (found,) = checked(tmp_path, massless("a", "b")(arm), yaml)
+    assert (found.code, found.pointer) == ("x-massless-link", "/robot/link[1]")
+    assert "link 'a' of a loop has no mass and can move by 'root_joint' and " in found.message
+
+
 def test_an_armature_stands_for_the_mass_of_a_link(advice) -> None:
     def edit(description: dict) -> None:
         description["joints"] = {"motor_crank": {"armature": 0.01}}

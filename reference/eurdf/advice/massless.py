@@ -11,6 +11,7 @@ import pinocchio as pin
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.loop import find_loops, joints_of_loops
 from eurdf.kinematics.scale import characteristic_length
+from eurdf.mechanism.mechanism import ROOT_JOINT
 
 if TYPE_CHECKING:
     from eurdf.description import Description
@@ -55,7 +56,8 @@ def advise_on_massless_links(description: Description, robot: Robot, q: Vector, 
     for constraint in robot.constraint_models:
         anchors.setdefault(constraint.joint1_id, []).append(constraint.joint1_placement)
         anchors.setdefault(constraint.joint2_id, []).append(constraint.joint2_placement)
-    child_of = {joint.name: joint.child for joint in robot.mechanism.joints}
+    child_of = {ROOT_JOINT: robot.mechanism.bodies[0].name}
+    child_of |= {joint.name: joint.child for joint in robot.mechanism.joints}
     for top in sorted(massless):
         if model.parents[top] in massless:
             continue
