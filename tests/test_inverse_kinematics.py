@@ -228,6 +228,17 @@ def test_an_arm_that_is_too_short_is_singular_where_it_ends() -> None:
     assert "'end' by 3.3e+03 mm" in repr(answer)
 
 
+def test_loops_that_are_folded_at_the_start_are_no_reason() -> None:
+    # All pins of the parallelogram are on a line: there, it has two motions.
+    linkage = loop([("R", (0, 0, 0), Z), ("R", (0.5, 0, 0), Z), ("R", (1.5, 0, 0), Z)], "3d", (1.0, 0.0, 0.0))
+    for joint in (1, 2):
+        frame = pin.Frame(f"bar{joint}", joint, 0, translation(0.3, 0.2, 0.0), pin.FrameType.OP_FRAME)
+        linkage.model.addFrame(frame)
+    target = translation(0.5, 2.0, 0.0)
+    answer = inverse_kinematics(actuated(linkage), {"bar1": target, "bar2": target}, np.zeros(3), restarts=0)
+    assert answer.reason == "out of reach"
+
+
 def test_a_descent_that_has_no_steps_left_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("eurdf.kinematics.inverse_kinematics._MOST_STEPS", 1)
     answer = inverse_kinematics(arm(1.0, 0.7), {"end": [0.0, 1.2, 0.0]}, np.array([0.3, 0.8]), restarts=0)

@@ -166,7 +166,8 @@ class _Search:
         self.iterations = 0
         self.limits = chosen_limits(robot.model, limits)
         self.velocities = np.arange(robot.model.nv)
-        self.rank, self.smallest = 0, 0.0  # of E Z where it was the farthest from singular
+        # Of E Z, where it was the farthest from singular.
+        self.motions, self.rank, self.smallest = robot.model.nv, 0, 0.0
 
     def run(self, q: Vector, restarts: int) -> InverseKinematics:
         openings = closure_openings(self.robot, q)
@@ -211,6 +212,7 @@ class _Search:
         e, E = self._error_and_jacobian(q)
         Z = self._free_motions(q)
         A = E @ Z
+        self._look_at_rank(A)
         slope, size = A.T @ e, np.linalg.norm(A, 2) * np.linalg.norm(e) if A.size else 0.0
         at_limits = () if self.limits is None else self.limits.pressed(q, -Z @ slope)
         if np.linalg.norm(slope) <= _FLAT * size:
@@ -271,12 +273,15 @@ class _Search:
         return orthonormal(self.spaces.at(K).basis, np.diag(self.spaces.scale**-2.0))
 
     def _look_at_rank(self, A: Matrix) -> None:
-        """Keep the largest rank of A = E Z that was met, and with it the largest of its smallest singular values."""
+        """Keep the largest rank of A = E Z that was met, and with it the largest of its smallest singular values.
+
+        Only where Z has the fewest columns: where the loops themselves are singular, it has more, and so may the rank.
+        """
         values = _singular_values(A)
-        rank = numerical_rank(values, values.max(initial=0.0))
+        motions, rank = A.shape[1], numerical_rank(values, values.max(initial=0.0))
         smallest = float(values[rank - 1]) if rank else 0.0
-        if (rank, smallest) > (self.rank, self.smallest):
-            self.rank, self.smallest = rank, smallest
+        if (-motions, rank, smallest) > (-self.motions, self.rank, self.smallest):
+            self.motions, self.rank, self.smallest = motions, rank, smallest
 
     def _bounds(self, q: Vector, Z: Matrix) -> tuple[Matrix, Vector]:
         """G and h such that v = Z y keeps the limits where G y ≤ h: those that a step of 1 rad or length can reach."""
