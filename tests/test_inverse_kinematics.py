@@ -228,6 +228,12 @@ def test_an_arm_that_is_too_short_is_singular_where_it_ends() -> None:
     assert "'end' by 3.3e+03 mm" in repr(answer)
 
 
+@pytest.mark.parametrize(("name", "frame"), [("four_bar", "rocker_pin_a"), ("five_bar", "tip_b")])
+def test_a_frame_at_its_dead_point_is_singular(name: str, frame: str) -> None:
+    answer = inverse_kinematics(robot_called(name), {frame: [0.0, 0.0, 9.0]}, restarts=1)
+    assert (answer.reason, answer.at_limits) == ("singular", ())
+
+
 def test_loops_that_are_folded_at_the_start_are_no_reason() -> None:
     # All pins of the parallelogram are on a line: there, it has two motions.
     linkage = loop([("R", (0, 0, 0), Z), ("R", (0.5, 0, 0), Z), ("R", (1.5, 0, 0), Z)], "3d", (1.0, 0.0, 0.0))

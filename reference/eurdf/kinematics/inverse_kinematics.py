@@ -33,7 +33,7 @@ _IDLE_AT_LAST = 1e-8
 _LEAST_GAIN = 1e-12
 # How far from the start further descents begin (rad, or characteristic lengths); the last one is repeated.
 _SPREADS = (0.2, 0.5, 1.0, 2.0)
-# The squared error has no slope where it is below this part of what it may be, |A| |e|.
+# The squared error has no slope where that is below this part of |A| |e|, |A| no less than its least value elsewhere.
 _FLAT = 0.02
 # A configuration is singular where the smallest singular value of A is below this part of what it was elsewhere.
 _SINGULAR = 0.05
@@ -213,10 +213,10 @@ class _Search:
         Z = self._free_motions(q)
         A = E @ Z
         self._look_at_rank(A)
-        slope, size = A.T @ e, np.linalg.norm(A, 2) * np.linalg.norm(e) if A.size else 0.0
+        slope, values = A.T @ e, _singular_values(A)
+        size = max(values.max(initial=0.0), self.smallest) * np.linalg.norm(e)
         at_limits = () if self.limits is None else self.limits.pressed(q, -Z @ slope)
         if np.linalg.norm(slope) <= _FLAT * size:
-            values = _singular_values(A)
             singular = self.rank > 0 and not values[self.rank - 1] > _SINGULAR * self.smallest
             return ("singular" if singular else "out of reach"), ()
         if at_limits:
