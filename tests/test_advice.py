@@ -215,8 +215,8 @@ def test_loops_that_close_only_beyond_limits_are_reported(advice, edit, lower, u
         assert (found[0].severity, found[0].clause, found[0].pointer) == ("warning", None, "/closures/0")
         assert "at the best, 'rocker_pin' by " in found[0].message
         side, limit = ("below", lower) if lower > 0.0 else ("above", upper)
-        said = rf"they close with 'free_rocker' (\S+) rad {side} its \w+ limit {limit}: correct"
-        match = re.search(said, found[0].hint or "")
+        hint = rf"they close with 'free_rocker' (\S+) rad {side} its \w+ limit {limit}: correct"
+        match = re.search(hint, found[0].hint or "")
         assert match is not None
         farthest = 0.031 if lower > 0.0 else -0.798  # where the rocker comes nearest to its limits
         assert float(match[1]) >= abs(limit - farthest) - 1e-3
@@ -321,7 +321,7 @@ def test_limits_of_what_does_not_turn_in_a_range_are_no_angles(tmp_path: Path, k
     assert checked(tmp_path, chain(joint("knee", "a", "b", kind, limits="-90 90"))) == []
 
 
-def test_limits_that_may_stand_for_none_are_in_degrees_beside_others_that_are(tmp_path: Path) -> None:
+def test_limits_that_may_mean_none_are_in_degrees_beside_others(tmp_path: Path) -> None:
     urdf = chain(joint("knee", "a", "b", limits="-100 100"), joint("hip", "b", "c", limits="-90 100"))
     (found,) = checked(tmp_path, urdf)
     assert "'hip' is -90 rad" in found.message
@@ -404,7 +404,7 @@ def test_a_crane_may_be_long_if_it_is_heavy(tmp_path: Path, xyz: str, mass: floa
     assert codes(checked(tmp_path, urdf)) == ["x-length-in-millimetres"] * expected
 
 
-def test_a_single_length_far_beyond_the_others_is_reported_where_it_stands(tmp_path: Path) -> None:
+def test_a_single_length_far_beyond_the_others_is_reported_at_its_place(tmp_path: Path) -> None:
     arm = (joint("shoulder", "a", "b"), joint("elbow", "b", "c"))
     for xyz, place in (("0 0 -250", "joint"), ("0 0 -19", None)):
         found = checked(tmp_path, chain(*arm, joint("wrist", "c", "d", xyz=xyz)))
@@ -581,7 +581,7 @@ def test_a_massless_link_of_a_floating_root_is_reported(tmp_path: Path) -> None:
     assert "link 'a' of a loop has no mass and can move by 'root_joint' and " in found.message
 
 
-def test_an_armature_stands_for_the_mass_of_a_link(advice) -> None:
+def test_an_armature_is_enough_in_place_of_mass(advice) -> None:
     def edit(description: dict) -> None:
         description["joints"] = {"motor_crank": {"armature": 0.01}}
 

@@ -88,10 +88,10 @@ def test_migrate_refuses_mimics_that_version_1_ignores(
 ) -> None:
     folder = written(tmp_path, text, "name_mot: [left]\n").parent
     assert main(["migrate", str(folder)]) == 2
-    told = capsys.readouterr()
-    assert told.out == ""
-    assert "joint 'left' has a <mimic> in the URDF" in told.err
-    assert "remove <mimic> from the URDF and migrate again" in told.err
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert "joint 'left' has a <mimic> in the URDF" in printed.err
+    assert "remove <mimic> from the URDF and migrate again" in printed.err
     plain = text.replace(MIMIC.format("drive", -2, 0.1), "").replace(MIMIC.format("nobody", -2, 0.1), "")
     (folder / "robot.urdf").write_text(plain, encoding="utf-8")
     assert main(["migrate", str(folder)]) == 0

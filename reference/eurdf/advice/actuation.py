@@ -32,7 +32,7 @@ _MOTIONS_LISTED = 3
 def advise_on_actuation(description: Description, robot: Robot, q: Vector, diagnostics: Diagnostics) -> None:
     """Report loops without an actuator; else actuators that depend on one another, and motions left uncontrolled.
 
-    Nothing is said where an earlier warning may be the reason: a misspelt key, or a closure that is left out.
+    Nothing is reported where an earlier warning may be the reason: a misspelt key, or a closure that is left out.
 
     Args:
         description: The robot as read; it has closures.

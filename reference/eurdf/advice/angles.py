@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _MOST_ORIENTATION = 2.0 * math.pi * 1.001
 _MOST_POSITION = 4.0 * math.pi * 1.001
 
-# Nobody gives an angle of more than two turns in degrees; larger limits, such as 1e16, stand for none.
+# Nobody gives an angle of more than two turns in degrees; larger limits, such as 1e16, mean no limit.
 _MOST = 720.0
 
 # Limits of either sign that people write where there is none.
@@ -89,7 +89,7 @@ def _in_urdf(urdf: Urdf) -> Iterator[_Found]:
             if _orientation_in_degrees(value):
                 what = f"an angle of 'rpy' of {above.tag!s} '{above.get('name')}'"
                 limits.append((value, what, partial(urdf.document.place, origin, "rpy")))
-    # A limit that may stand for none is one in degrees only where another angle is.
+    # A limit that may mean no limit is one in degrees only where another angle is.
     yield from limits
     if limits:
         yield from open_ended

@@ -33,8 +33,8 @@ def advise_on_massless_links(description: Description, robot: Robot, q: Vector, 
     """Report links of loops without mass, unless they only part the axes of a joint of several, such as a ball.
 
     A link that reaches to another place than its joint is a part whose mass was forgotten. Any link that can move while
-    all that has mass is at rest, as a rod between two balls can spin, makes the mass matrix singular. Nothing is said
-    of a link whose joint has an armature.
+    all that has mass is at rest, as a rod between two balls can spin, makes the mass matrix singular. Nothing is
+    reported of a link whose joint has an armature.
 
     Args:
         description: The robot as read; it has closures.

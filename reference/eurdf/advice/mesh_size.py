@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 
-# Bytes that are read of a file: the coordinates of a thousand triangles tell its unit.
+# Bytes that are read of a file: the coordinates of a thousand triangles show its unit.
 _READ = 2**16
 
 _STL_HEADER, _TRIANGLE = 84, 50

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 def advise_on_mimics(description: Description, diagnostics: Diagnostics) -> None:
     """Report mimic joints that a description of version 1 leaves free (EU-ONE-009) and that no motor moves.
 
-    One that is actuated, locked or replaced is meant to be a joint of its own. A description without actuators does not
-    say which joints move by themselves.
+    One that is actuated, locked or replaced is meant to be a joint of its own. A description without actuators leaves
+    open which joints move by themselves.
 
     Args:
         description: The robot as read, with a mechanism.

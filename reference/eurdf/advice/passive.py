@@ -25,7 +25,7 @@ _ROOT_JOINTS = frozenset({"JointModelFreeFlyer", "JointModelPlanar"})
 
 
 class PassiveMotions:
-    """Tells the motions that need no actuator, of one robot whose structure was looked at once."""
+    """Finds the motions that need no actuator, of one robot whose structure was looked at once."""
 
     def __init__(self, robot: Robot) -> None:
         self._robot = robot
