@@ -138,6 +138,18 @@ def test_more_actuators_than_motions_are_named_where_no_closure_is_to_blame(advi
     assert "only actuators that can move independently" in (found.hint or "")
 
 
+@pytest.mark.parametrize(
+    ("kind", "verb"), [("helical, pitch: 0.01", "cannot move: "), ("cylindrical", "independently: ")]
+)
+def test_an_actuator_that_can_still_turn_is_not_called_locked(tmp_path: Path, kind: str, verb: str) -> None:
+    arm = chain(joint("shoulder", "a", "b"), joint("elbow", "b", "c"), joint("wrist", "c", "d"))
+    pin = "{name: pin, type: 3d, frames: [{link: d, xyz: [0.2, 0, 0]}, {link: a, xyz: [0.7, 0, 0]}]}"
+    found = checked(tmp_path, arm, f"joints: {{elbow: {{type: {kind}}}}}\nclosures: [{pin}]\nactuators: [elbow]\n")
+    (dependent,) = [each for each in found if each.code == "x-dependent-actuators"]
+    assert "actuator 'elbow' cannot move" in dependent.message
+    assert verb in dependent.message
+
+
 ACTUATORS = [
     (name, actuated(each))
     for name in collection_names()

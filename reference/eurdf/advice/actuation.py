@@ -69,7 +69,9 @@ def _report_dependent(
 ) -> None:
     """Report the dependent actuators of a group of loops, and the 6d closures that lock them where some were found."""
     dependent = [name for together in loop.fighting for name in together]
-    locked = len(dependent) == len(loop.fighting)  # each alone in its set
+    # Each is alone in its set, and has one velocity: of several, others may be free.
+    one_each = len(frozenset(loop.joints).intersection(robot.actuation.joints)) == loop.actuated
+    locked = one_each and len(dependent) == len(loop.fighting)
     message = (
         f"{_counted('actuator', dependent)} cannot move{'' if locked else ' independently'}: "
         f"{'locked' if locked else 'coupled'} by {_counted('closure', loop.closures)}"
