@@ -507,7 +507,7 @@ sys.exit(start())
 
 
 def interrupted(moment: str, handler: Any) -> subprocess.CompletedProcess[str]:
-    """A check that is interrupted when it imports a module; SIGINT is first as whoever starts it leaves it."""
+    """A check that is interrupted when it imports a module; SIGINT is first as the parent process left it."""
     return subprocess.run(
         [sys.executable, "-c", _INTERRUPT_AT_IMPORT, moment, "check", "."],
         capture_output=True,

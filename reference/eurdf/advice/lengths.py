@@ -74,7 +74,7 @@ def _hint(length: float) -> str:
 
 
 def _between_joints(urdf: Urdf) -> Iterator[_Found]:
-    """The origins of the joints, but for those of what only places the robot in its world."""
+    """The origins of the joints, except those that only place the robot in its world."""
     for joint in urdf.joints.values():
         if joint.parent != urdf.root or joint.type is not JointType.FIXED:
             origin = joint.element.find("origin")

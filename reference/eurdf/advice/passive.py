@@ -41,7 +41,7 @@ class PassiveMotions:
         self._jacobian: tuple[Vector, Matrix] | None = None
 
     def without_spins(self, loop: LoopAnalysis) -> list[Motion]:
-        """The uncontrolled motions of a group of loops, but for those of rods that spin about their own lines.
+        """The uncontrolled motions of a group of loops, except those of rods that spin about their own lines.
 
         A spin is a motion by which all bodies that move turn about one fixed line: their twists, seen from a point of
         the line, are multiples of one that only turns.
@@ -87,7 +87,7 @@ class PassiveMotions:
 
 
 def _turns_about_one_line(twists: list[Vector], length: float) -> bool:
-    """Whether twists are such, but for those of bodies that stay where they are.
+    """Whether twists are such, except those of bodies that do not move.
 
     Args:
         twists: Of bodies, each (6,), linear and angular, rad/s and m/s; the velocities that they come from are about 1.
