@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Literal
 
 from eurdf.collection import find_robot
-from eurdf.diagnostics import Diagnostics, Fault, Place
+from eurdf.diagnostics import Diagnostics, Fault, Place, quoted
 from eurdf.exceptions import CannotExpand
 from eurdf.format.extension import Extension
 from eurdf.format.read_extension import read_extension, version_of
@@ -304,11 +304,10 @@ def find_meshes(
             else:
                 found[uri] = path
         if missing:
-            names = ", ".join(f"'{uri}'" for uri in missing[:3]) + (", ..." if len(missing) > 3 else "")
             count = f"1 {tag} file is" if len(missing) == 1 else f"{len(missing)} {tag} files are"
             diagnostics.report(
                 f"urdf-{tag}-missing",
-                f"{count} not found: {names}",
+                f"{count} not found: {quoted(missing)}",
                 partial(place_of_file, description, tag, missing[0]),
                 HINT,
             )

@@ -8,6 +8,7 @@ from itertools import zip_longest
 from typing import TYPE_CHECKING
 
 from eurdf.advice.passive import PassiveMotions
+from eurdf.diagnostics import quoted
 from eurdf.kinematics.analysis import Analysis, LoopAnalysis, analyze
 from eurdf.pinocchio.robot import build_robot
 
@@ -128,7 +129,7 @@ def _trials(names: Sequence[str]) -> list[tuple[str, ...]]:
 
 
 def _report_uncontrolled(description: Description, robot: Robot, analysis: Analysis, diagnostics: Diagnostics) -> None:
-    """Report the motions that are possible with every actuator held, but for those that need none."""
+    """Report the motions that are possible with every actuator held, except those that need no actuator."""
     if not analysis.motions:
         return
     passive = PassiveMotions(robot)
@@ -137,7 +138,7 @@ def _report_uncontrolled(description: Description, robot: Robot, analysis: Analy
     motions += [motion for motion in analysis.motions[in_loops:] if not passive.is_root_or_wheel(motion)]
     if motions:
         count = len(motions)
-        moved = list(dict.fromkeys(_quoted(motion.joints) for motion in motions))
+        moved = list(dict.fromkeys(quoted(motion.joints, _NAMES_LISTED) for motion in motions))
         shown = "; ".join(moved[:_MOTIONS_LISTED]) + ("; ..." if len(moved) > _MOTIONS_LISTED else "")
         diagnostics.report(
             "x-uncontrolled-motion",
@@ -170,10 +171,4 @@ def _place_of_last_actuator(description: Description, joints: Sequence[str]) -> 
 
 def _counted(noun: str, names: Sequence[str]) -> str:
     """A noun, in the plural where there are several, and the names in quotes."""
-    return f"{noun if len(names) == 1 else noun + 's'} {_quoted(names)}"
-
-
-def _quoted(names: Sequence[str]) -> str:
-    """Names in quotes, a few at most."""
-    more = ", ..." if len(names) > _NAMES_LISTED else ""
-    return ", ".join(f"'{name}'" for name in names[:_NAMES_LISTED]) + more
+    return f"{noun if len(names) == 1 else noun + 's'} {quoted(names, _NAMES_LISTED)}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
+from eurdf.diagnostics import quoted
 from eurdf.mechanism.mimic import MIMIC_TYPES
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ def advise_on_mimics(description: Description, diagnostics: Diagnostics) -> None
     found = [joint for joint in urdf.joints.values() if joint.mimic is not None and joint.name in free]
     if not found:
         return
-    names = ", ".join(f"'{joint.name}'" for joint in found[:3]) + (", ..." if len(found) > 3 else "")
+    names = quoted([joint.name for joint in found])
     count = "1 joint has" if len(found) == 1 else f"{len(found)} joints have"
     diagnostics.report(
         "x-mimic-ignored",

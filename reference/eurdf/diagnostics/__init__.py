@@ -1,6 +1,6 @@
 """Findings: codes, places, messages, and how they are shown."""
 
-from eurdf.diagnostics.diagnostic import Diagnostic, Diagnostics, Fault, Hint, Place, did_you_mean
+from eurdf.diagnostics.diagnostic import Diagnostic, Diagnostics, Fault, Hint, Place, did_you_mean, quoted
 from eurdf.diagnostics.registry import REGISTRY, Phase, Rule, Severity
 
 __all__ = [
@@ -14,4 +14,5 @@ __all__ = [
     "Rule",
     "Severity",
     "did_you_mean",
+    "quoted",
 ]

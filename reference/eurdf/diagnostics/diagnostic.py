@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -206,6 +206,11 @@ def _bounded(text: str) -> str:
         return text
     text = _LONG_NAME.sub(r"'\1...\2'", text)
     return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
+
+
+def quoted(names: Sequence[str], most: int = 3) -> str:
+    """Names in quotes for a message: the first ones, and dots where there are more than ``most``."""
+    return ", ".join(f"'{name}'" for name in names[:most]) + (", ..." if len(names) > most else "")
 
 
 def did_you_mean(wrong: str, known: Iterable[str], beside: str = "") -> str | None:

@@ -16,7 +16,7 @@ from typing import Literal, NamedTuple, cast
 
 from lxml import etree
 
-from eurdf.diagnostics import Diagnostics, Hint, did_you_mean
+from eurdf.diagnostics import Diagnostics, Hint, did_you_mean, quoted
 from eurdf.format.near import near
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Inertia, Mimic, Shape
@@ -789,7 +789,7 @@ class _Reader:
         if not self.acyclic(links, roots, urdf, parent_joint):
             return None
         if len(roots) > 1:
-            names = ", ".join(f"'{link.name}'" for link in roots[:5]) + (", ..." if len(roots) > 5 else "")
+            names = quoted([link.name for link in roots], 5)
             self.report(
                 "urdf-two-roots",
                 f"{len(roots)} links have no parent: {names}; a robot has one root",

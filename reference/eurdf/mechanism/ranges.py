@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import partial
 
-from eurdf.diagnostics import Diagnostics
+from eurdf.diagnostics import Diagnostics, quoted
 from eurdf.format.urdf import Urdf, UrdfJoint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Joint
@@ -25,7 +25,7 @@ def check_ranges(urdf: Urdf, joints: Mapping[str, Joint], diagnostics: Diagnosti
     found = [joint for joint in urdf.joints.values() if _has_no_range(joint, joints.get(joint.name))]
     if not found:
         return
-    names = ", ".join(f"'{joint.name}'" for joint in found[:3]) + (", ..." if len(found) > 3 else "")
+    names = quoted([joint.name for joint in found])
     count = "1 joint has" if len(found) == 1 else f"{len(found)} joints have"
     diagnostics.report(
         "urdf-no-range",
