@@ -13,6 +13,7 @@ import jsonschema
 import pytest
 
 import eurdf
+from arm import DESCRIPTION, URDF
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.main import main
 from eurdf.commands.output_file import write_new
@@ -22,21 +23,6 @@ from eurdf.diagnostics import Diagnostic, Place
 from eurdf.diagnostics.report import Report
 from terminal import on_a_terminal
 
-URDF = """\
-<robot name="arm">
-  <link name="base"/>
-  <link name="upper">
-    <inertial><mass value="2"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>
-  </link>
-  <joint name="shoulder" type="continuous">
-    <parent link="base"/><child link="upper"/><axis xyz="0 0 1"/>
-  </joint>
-</robot>
-"""
-DESCRIPTION = """\
-extended_urdf: "2.0"
-actuators: [shoulder]
-"""
 ACTUATES_NOTHING = """\
 extended_urdf: "2.0"
 actuators: [sholder]

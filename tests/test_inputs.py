@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import eurdf
+from arm import DESCRIPTION, URDF
 from eurdf.collection.near_paths import near_path
 from eurdf.diagnostics import Fault
 from eurdf.diagnostics.sarif import sarif_log
@@ -19,18 +20,6 @@ from eurdf.reading import given
 from eurdf.reading.given import source_of
 
 FOUR_BAR = Path(__file__).parents[1] / "robots" / "four_bar"
-URDF = """\
-<robot name="arm">
-  <link name="base"/>
-  <link name="upper">
-    <inertial><mass value="2"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>
-  </link>
-  <joint name="shoulder" type="continuous">
-    <parent link="base"/><child link="upper"/><axis xyz="0 0 1"/>
-  </joint>
-</robot>
-"""
-DESCRIPTION = 'extended_urdf: "2.0"\nactuators: [shoulder]\n'
 MISSPELT = DESCRIPTION.replace("shoulder", "sholder")
 SHOWN = "    2 | actuators: [sholder]\n      |             ^^^^^^^\n"
 
