@@ -13,18 +13,18 @@ import pytest
 from hypothesis import settings
 
 #: Files whose tests are run by one worker, since they share something that takes long to make.
-TOGETHER = ("test_specification_site.py", "test_editor.py", "test_conformance_explore.py", "test_examples.py")
+TOGETHER = ("test_site.py", "test_editor.py", "test_explore.py", "test_examples.py")
 
 #: Files with the longest tests. They are started first, so that no worker is left with one at the end.
 FIRST = (
-    "test_specification_site.py",
+    "test_site.py",
     "test_editor.py",
     "test_write_an_adapter.py",
-    "test_conformance_explore.py",
-    "test_conformance_random.py",
-    "test_conformance_suite.py",
-    "test_conformance_certify.py",
-    "test_conformance_case.py",
+    "test_explore.py",
+    "test_random_mechanisms.py",
+    "test_suite.py",
+    "test_certify.py",
+    "test_cases.py",
     "test_bad_input.py",
     "test_examples.py",
     "test_schema.py",

@@ -3,7 +3,7 @@
 A mutant is a function that returns a deviation: a context manager in which one function of the reference is another.
 Its docstring says what is broken, and its decorator which clause. Each is a reader, such as
 ``--parser=eurdf_conformance.mutants:angular_rows_first``. `kills` looks for a case or a property that catches it and
-cites its clause; the tests ask that there is one in each version. ``pytest tests/test_conformance_mutants.py -k NAME``
+cites its clause; the tests ask that there is one in each version. ``pytest tests/conformance/test_mutants.py -k NAME``
 asks it for one mutant.
 
 How they are broken: those of `accepting` and `silent` lack the rule of one diagnostic each, and the former build no

@@ -1,0 +1,337 @@
+"""``eurdf assemble``: a closed configuration, shown and written to the description."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import numpy as np
+import pytest
+
+import eurdf
+from eurdf.commands.main import main
+from eurdf.commands.output_schema import output_schemas
+from support.terminal import on_a_terminal
+
+DATA = Path(__file__).parents[1] / "data"
+ROBOTS = Path(__file__).parents[2] / "robots"
+
+Run = Callable[..., tuple[int, str, str]]
+
+#: The workbench without its `assembled`, with the crank turned: open until it is assembled.
+DESCRIPTION = """\
+# A bench
+extended_urdf: "2.0"
+urdf: workbench.urdf   # beside it
+closures:
+  - name: pin  # of the rocker
+    type: 3d
+    frames: [rod_tip, rocker_top]
+joints:
+  hand_ball: {type: spherical, merges: [wrist_x, wrist_y, wrist_z]}
+actuators:   # two
+  - motor
+  - grip
+frames:
+  - {name: rocker_top, link: rocker, xyz: [0, 0.3, 0]}
+
+# ours
+x-note: kept
+"""
+READY = """\
+configurations:
+  # a place to start from
+  ready: {motor: 0.5, grip: 0.1}  # open
+"""
+
+
+@pytest.fixture
+def run(capsys: pytest.CaptureFixture[str]) -> Run:
+    """Run the command in this process: exit code, standard output, standard error."""
+
+    def run_here(*argv: str | Path) -> tuple[int, str, str]:
+        code = main(["assemble", *(str(argument) for argument in argv)])
+        captured = capsys.readouterr()
+        return code, captured.out, captured.err
+
+    return run_here
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def bench(folder: Path, description: str = DESCRIPTION, urdf: Callable[[str], str] = str) -> Path:
+    file = folder / "robot.yaml"
+    file.write_bytes(description.encode())
+    (folder / "workbench.urdf").write_text(urdf((DATA / "workbench.urdf").read_text(encoding="utf-8")))
+    return file
+
+
+def largest_row(path: Path) -> float:
+    robot = eurdf.load(path, geometry=False)
+    return float(np.abs(eurdf.residual(robot, robot.configurations["assembled"])).max())
+
+
+def test_the_coordinates_of_each_joint_are_shown_with_their_units(folder: Path, run: Run) -> None:
+    bench(folder, DESCRIPTION + READY)
+    code, out, err = run("robot.yaml", "--from", "ready", "--hold", "motor")
+    assert (code, err) == (0, "")
+    assert re.fullmatch(r"workbench  closed, residual \d\.\de-1\d, from ready", out.splitlines()[0])
+    assert [re.split(r"  +", line)[1:] for line in out.splitlines()[3:6]] == [
+        ["spherical", "0", "0", "0", "1", "quaternion x y z w"],
+        ["prismatic", "0.1", "m", "actuated"],
+        ["revolute", "0.5", "rad", "held, actuated"],
+    ]
+    assert (folder / "robot.yaml").read_text() == DESCRIPTION + READY
+
+
+def test_a_terminal_shows_the_same_table(folder: Path) -> None:
+    bench(folder, DESCRIPTION + READY)
+    code, shown = on_a_terminal(["-m", "eurdf", "assemble", "robot.yaml"], columns=120)
+    assert code == 0
+    assert "hand_ball" in shown
+    assert "quaternion x y z w" in shown
+
+
+@pytest.mark.parametrize("name", ["delta", "digit_leg", "kangaroo_2legs", "slider_crank", "tesla_optimus_ankle"])
+def test_json_fits_its_schema_and_has_every_coordinate(name: str, run: Run) -> None:
+    code, out, err = run(name, "--json")
+    assert (code, err) == (0, "")
+    found = json.loads(out)
+    jsonschema.Draft202012Validator(output_schemas()["assemble.schema.json"]).validate(found)
+    robot = eurdf.load(name, geometry=False)
+    shown = {joint["name"]: tuple(one["value"] for one in joint["coordinates"]) for joint in found["joints"]}
+    assert shown == robot.coordinates(robot.configurations["assembled"])
+    assert (found["start"], found["closes"], found["file"], found["written"]) == ("assembled", True, None, False)
+
+
+def test_a_configuration_is_written_and_all_else_stays_as_it_was(folder: Path, run: Run) -> None:
+    file = bench(folder)
+    code, _, err = run("robot.yaml", "--write")
+    assert (code, err) == (0, "wrote the configuration 'assembled' to 'robot.yaml'\n")
+    text = file.read_text(encoding="utf-8")
+    (line,) = re.findall(r"^  assembled: .*\n", text, re.MULTILINE)
+    assert text.replace(f"configurations:\n{line}", "") == DESCRIPTION
+    assert text.index("rocker_top, link") < text.index("configurations:\n") < text.index("\n# ours")
+    assert largest_row(file) <= 1e-12
+    assert eurdf.check(file).ok
+    assert run("robot.yaml", "--write")[::2] == (
+        0,
+        "'robot.yaml' has this configuration as 'assembled' already: nothing to do\n",
+    )
+    assert file.read_text(encoding="utf-8") == text
+
+
+def test_a_byte_order_mark_and_line_breaks_stay(folder: Path, run: Run) -> None:
+    file = bench(folder)
+    before = b"\xef\xbb\xbf" + DESCRIPTION.replace("\n", "\r\n").encode()
+    file.write_bytes(before)
+    assert run("robot.yaml", "--write")[0] == 0
+    after = file.read_bytes()
+    assert after.startswith(b"\xef\xbb\xbf# A bench\r\n")
+    assert re.sub(rb"configurations:\r\n  assembled: .*\r\n", b"", after) == before
+    assert largest_row(file) <= 1e-12
+
+
+def test_a_different_assembled_is_replaced_only_by_force(folder: Path, run: Run) -> None:
+    file = bench(folder, DESCRIPTION + READY + "  assembled:\n    # the motor\n    motor: 0.1  # rad\n")
+    before = file.read_text()
+    code, out, err = run("robot.yaml", "--write", "--hold", "motor")
+    assert code == 2
+    assert out.startswith("workbench  closed")
+    assert err == ("eurdf: 'robot.yaml' has a different configuration 'assembled' already; --force replaces it\n")
+    assert file.read_text() == before
+    code, _, err = run("robot.yaml", "--write", "--hold", "motor", "--force")
+    assert (code, err) == (0, "wrote the configuration 'assembled' to 'robot.yaml'\n")
+    after = file.read_text()
+    assert after.startswith(before.removesuffix("\n"))  # the motor is held at 0.1
+    assert [line.split(":")[0].strip() for line in after[len(before) :].splitlines()] == ["elbow", "pivot"]
+    assert largest_row(file) <= 1e-12
+
+
+def test_a_joint_that_is_stated_stays_stated_where_it_is_at_its_neutral(folder: Path, run: Run) -> None:
+    file = bench(folder, DESCRIPTION + READY + "  assembled: {stage: 0.1, pivot: 0.3}\n")
+    assert run("robot.yaml", "--write", "--from", "neutral", "--hold", "motor", "--force")[0] == 0
+    assert re.search(r"^  assembled: \{stage: 0, pivot: 0\}$", file.read_text(), re.MULTILINE)
+
+
+def test_the_json_of_a_write_names_the_file(folder: Path, run: Run) -> None:
+    bench(folder)
+    written = [json.loads(run("robot.yaml", "--write", "--json")[1]) for _ in range(2)]
+    assert [(each["file"], each["written"]) for each in written] == [("robot.yaml", True), ("robot.yaml", False)]
+
+
+def test_a_floating_root_is_stated_only_where_it_has_moved(folder: Path, run: Run) -> None:
+    floating = DESCRIPTION.replace("closures:", "root: floating\nclosures:")
+    file = bench(folder, floating + "configurations: {up: {root_joint: [0, 0, 1, 0, 0, 0, 1], motor: 0.5}}\n")
+    assert run("robot.yaml", "--write", "--from", "up")[0] == 0
+    assert "assembled: {root_joint: [0, 0, 1, 0, 0, 0, 1], " in file.read_text().replace("\n    ", " ")
+    assert eurdf.check(file).ok
+
+
+def open_bench(urdf: str) -> str:
+    return urdf.replace('<origin xyz="0.6 -0.3 0.1"/>', '<origin xyz="1.6 -0.3 0.1"/>')
+
+
+@pytest.mark.parametrize("options", [(), ("--write",), ("--write", "--force", "--json")])
+def test_loops_that_cannot_close_exit_with_1_and_list_the_openings(
+    folder: Path, run: Run, options: tuple[str, ...]
+) -> None:
+    file = bench(folder, urdf=open_bench)
+    code, out, err = run("robot.yaml", *options)
+    assert code == 1
+    # A rocker of 0.3 m is 0.7 m or more away from the end of 0.2 m and 0.4 m.
+    first, *rest = err.splitlines()
+    assert re.match(r"no configuration was found that closes the loops; at the best, 'pin' by \d{3} mm$", first)
+    assert rest == (["nothing was written to 'robot.yaml'"] if options else [])
+    assert file.read_text() == DESCRIPTION
+    if "--json" in options:
+        found = json.loads(out)
+        assert [(closure["name"], closure["closed"]) for closure in found["closures"]] == [("pin", False)]
+        assert found["closures"][0]["position"] > 0.1
+    else:
+        assert re.search(r"^pin +\d\.\de-01 +0\.0e\+00  open$", out, re.MULTILINE)
+
+
+def narrow(urdf: str) -> str:
+    """The rocker closes at 0 alone where the motor is at 0; here it may not come near."""
+    return urdf.replace('<limit lower="-3" upper="3" effort="5"', '<limit lower="0.05" upper="0.3" effort="5"')
+
+
+def test_a_closed_configuration_keeps_the_limits_where_it_can(folder: Path, run: Run) -> None:
+    file = bench(folder, urdf=narrow)
+    assert run("robot.yaml", "--write")[0] == 0
+    robot = eurdf.load(file, geometry=False)
+    (pivot,) = robot.coordinates(robot.configurations["assembled"])["pivot"]
+    assert 0.05 - 1e-9 <= pivot <= 0.3 + 1e-9
+    assert largest_row(file) <= 1e-12
+    assert eurdf.check(file).ok
+
+
+def test_a_configuration_beyond_limits_is_shown_but_not_written(folder: Path, run: Run) -> None:
+    file = bench(folder, urdf=narrow)
+    code, out, err = run("robot.yaml", "--hold", "motor")
+    assert code == 0
+    assert re.search(r"^pivot +revolute +0 +rad +beyond its limits$", out, re.MULTILINE)
+    message = "the loops close only beyond the limits of joints: 'pivot' at 0 rad (limits 0.05 to 0.3)\n"
+    assert re.sub("at -?[0-9.e-]+ rad", "at 0 rad", err) == message
+    code, _, err = run("robot.yaml", "--hold", "motor", "--write")
+    assert (code, err.splitlines()[1]) == (1, "nothing was written to 'robot.yaml'")
+    assert file.read_text() == DESCRIPTION
+    code, _, err = run("robot.yaml", "--hold", "motor", "--limits")
+    assert code == 1
+    first, second = err.splitlines()
+    assert first.startswith(
+        "no configuration was found that closes the loops with 'motor' held; at the best, 'pin' by "
+    )
+    assert second == "at their limits: 'pivot' (lower limit 0.05)"
+
+
+def test_a_range_of_0_to_0_keeps_nothing_from_being_written(folder: Path, run: Run) -> None:
+    given, none = 'lower="-3" upper="3" effort="5"', 'lower="0" upper="0" effort="5"'
+    file = bench(folder, urdf=lambda urdf: urdf.replace(given, none))
+    code, out, _ = run("robot.yaml", "--write")
+    assert code == 0
+    assert "beyond its limits" not in out
+    assert eurdf.check(file).ok
+
+
+def test_version_1_is_assembled_but_has_no_configurations(folder: Path, run: Run) -> None:
+    shutil.copytree(ROBOTS / "four_bar", folder / "bar")
+    code, out, err = run("bar/robot.v1.yaml")
+    assert (code, err) == (0, "")
+    assert out.startswith("four_bar  closed")
+    message = "'bar/robot.v1.yaml' is of version 1, which has no configurations; `eurdf migrate` writes it in version 2"
+    assert run("bar/robot.v1.yaml", "--write") == (2, "", f"eurdf: {message}\n")
+
+
+@pytest.mark.parametrize("options", [(), ("--write",)])
+def test_a_bare_urdf_has_no_loops(folder: Path, run: Run, options: tuple[str, ...]) -> None:
+    bench(folder)
+    code, out, err = run("workbench.urdf", *options)
+    assert (code, out) == (2, "")
+    assert err == (
+        "eurdf: 'workbench.urdf' is a bare URDF, which has no loops; `eurdf generate` writes a description with them\n"
+    )
+
+
+def test_a_robot_with_errors_is_refused_with_its_diagnostics(folder: Path, run: Run) -> None:
+    bench(folder, DESCRIPTION.replace("rod_tip", "rod_tpi"))
+    code, out, err = run("robot.yaml")
+    assert (code, out) == (1, "")
+    assert "did you mean 'rod_tip'?" in err
+    code, out, err = run("robot.yaml", "--json")
+    assert (code, err) == (1, "")
+    jsonschema.Draft202012Validator(output_schemas()["diagnostics-report.schema.json"]).validate(json.loads(out))
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--hold", "motr"), "the model has no joint 'motr'; did you mean 'motor'?"),
+        (("--from", "raedy"), "there is no configuration 'raedy'; did you mean 'ready'?"),
+        (("--from", "x"), "there is no configuration 'x'; there are: ready, neutral"),
+        (("--urdf", "none.urdf"), "the URDF 'none.urdf' does not exist"),
+        (("--force",), "--force replaces what --write would write: give --write too"),
+    ],
+)
+def test_a_wrong_option_is_reported(folder: Path, run: Run, options: tuple[str, ...], message: str) -> None:
+    bench(folder, DESCRIPTION + READY)
+    assert run("robot.yaml", *options) == (2, "", f"eurdf: {message}\n")
+
+
+def test_a_robot_of_the_collection_is_not_written_to(run: Run) -> None:
+    code, _, err = run("four_bar", "--write")
+    assert code == 2
+    assert err.startswith("eurdf: 'four_bar' is a robot of the collection: copy its folder")
+
+
+def test_a_file_that_cannot_be_edited_is_left_alone(folder: Path, run: Run) -> None:
+    text = DESCRIPTION + "x-c: &c {ready: {}}\nconfigurations: *c\n"
+    file = bench(folder, text)
+    code, _, err = run("robot.yaml", "--write")
+    assert code == 2
+    assert err == "eurdf: cannot write to 'robot.yaml': 'configurations' is an alias; write it by hand\n"
+    assert file.read_text() == text
+
+
+def test_a_file_that_another_program_changed_is_left_alone(
+    folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import eurdf.assembled
+
+    file = bench(folder)
+    compute = eurdf.assembled.with_assembled
+
+    def meanwhile(*arguments: Any) -> Any:
+        file.write_text("changed\n")
+        return compute(*arguments)
+
+    monkeypatch.setattr(eurdf.assembled, "with_assembled", meanwhile)
+    code, _, err = run("robot.yaml", "--write")
+    assert (code, file.read_text()) == (2, "changed\n")
+    assert err == "eurdf: 'robot.yaml' was changed by another program in the meantime; nothing was written\n"
+
+
+@pytest.mark.parametrize(
+    ("stated", "message"),
+    [
+        ("", "residual 0; `eurdf assemble` shows a configuration"),
+        ("configurations: {assembled: {}}\n", "residual 0"),
+    ],
+)
+def test_info_names_the_command_where_no_configuration_is_stated(
+    folder: Path, capsys: pytest.CaptureFixture[str], stated: str, message: str
+) -> None:
+    bench(folder, DESCRIPTION + stated)
+    assert main(["info", "robot.yaml"]) == 0
+    (line,) = re.findall(r"^loops +close  (.*)$", capsys.readouterr().out, re.MULTILINE)
+    assert re.sub(r"\d\.\de[-+]\d\d", "0", line) == message

@@ -1,0 +1,614 @@
+"""The command line."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+
+import eurdf
+from eurdf.commands.cannot_run import CannotRun
+from eurdf.commands.main import main
+from eurdf.commands.output_file import write_new
+from eurdf.commands.output_schema import output_schemas
+from eurdf.commands.selection import select
+from eurdf.diagnostics import Diagnostic, Place
+from eurdf.diagnostics.report import Report
+from support.arm import DESCRIPTION, URDF
+from support.terminal import on_a_terminal
+
+ACTUATES_NOTHING = """\
+extended_urdf: "2.0"
+actuators: [sholder]
+"""
+
+Run = Callable[..., tuple[int, str, str]]
+
+
+@pytest.fixture(autouse=True)
+def _processes_import_the_same_package(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PYTHONPATH", str(Path(eurdf.__file__).parents[1]), prepend=os.pathsep)
+
+
+@pytest.fixture
+def run(capsys: pytest.CaptureFixture[str]) -> Run:
+    """Run the command line in this process: exit code, standard output, standard error."""
+
+    def run_here(*argv: str | Path) -> tuple[int, str, str]:
+        code = main([str(argument) for argument in argv])
+        captured = capsys.readouterr()
+        return code, captured.out, captured.err
+
+    return run_here
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def robot(folder: Path, description: str = DESCRIPTION, urdf: str = URDF) -> Path:
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "robot.urdf").write_text(urdf, encoding="utf-8")
+    (folder / "robot.yaml").write_text(description, encoding="utf-8")
+    return folder
+
+
+def finds(monkeypatch: pytest.MonkeyPatch, *codes: str) -> None:
+    """Let every check find just these."""
+    found = tuple(Diagnostic(code, "it is wrong", Place("robot.yaml", 1)) for code in codes)
+    monkeypatch.setitem(vars(eurdf), "check", lambda path, **options: Report(path, found))
+
+
+def in_a_process(*argv: str, **options: Any) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "eurdf.commands.main", *argv], capture_output=True, text=True, timeout=60, **options
+    )
+
+
+# --- check -----------------------------------------------------------------------------------------------------------
+
+
+def test_a_sound_robot_exits_with_0(folder: Path, run: Run) -> None:
+    robot(folder / "arm")
+    assert run("check", "arm") == (0, "arm: sound\n", "")
+
+
+def test_an_error_is_shown_where_it_is_and_exits_with_1(folder: Path, run: Run) -> None:
+    robot(folder / "arm", ACTUATES_NOTHING)
+    code, out, err = run("check", "arm")
+    assert code == 1
+    assert out.startswith("arm/robot.yaml:2:13: error: ")
+    assert "    2 | actuators: [sholder]\n      |             ^^^^^^^\n" in out
+    assert "did you mean 'shoulder'?" in out
+    assert out.endswith("arm: 1 error\n")
+    assert err == ""
+
+
+def test_every_robot_below_a_folder_is_checked_and_counted(folder: Path, run: Run) -> None:
+    robot(folder / "robots" / "a")
+    robot(folder / "robots" / "b", ACTUATES_NOTHING)
+    robot(folder / "robots" / "deep" / "c")
+    code, out, _ = run("check", "robots")
+    assert code == 1
+    assert [line for line in out.splitlines() if line.startswith("robots/") and " error: " not in line] == [
+        "robots/a: sound",
+        "robots/b: 1 error",
+        "robots/deep/c: sound",
+    ]
+    assert out.endswith("3 robots: 2 passed, 1 failed (1 error)\n")
+
+
+def test_a_robot_named_twice_is_checked_once(folder: Path, run: Run) -> None:
+    robot(folder / "arm")
+    assert run("check", "arm", "arm")[1] == "arm: sound\n"
+
+
+def test_a_robot_of_the_collection_is_checked_by_its_name(folder: Path, run: Run) -> None:
+    assert run("check", "four_bar") == (0, "four_bar: sound\n", "")
+
+
+def test_a_urdf_other_than_the_one_named_is_used_where_asked_for(folder: Path, run: Run) -> None:
+    robot(folder / "arm", urdf="<robot")
+    (folder / "other.urdf").write_text(URDF, encoding="utf-8")
+    assert run("check", "arm")[0] == 1
+    assert run("check", "arm", "--urdf", "other.urdf")[0] == 0
+
+
+def test_a_warning_fails_a_strict_check_alone(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    robot(folder)
+    finds(monkeypatch, "near-miss-key")
+    assert run("check", ".")[0] == 0
+    assert run("check", ".", "--strict")[0] == 1
+    assert json.loads(run("check", ".", "--format", "json")[1])["ok"]
+    assert not json.loads(run("check", ".", "--format", "json", "--strict")[1])["ok"]
+
+
+def test_the_json_of_a_check_fits_its_published_schema(folder: Path, run: Run) -> None:
+    robot(folder / "a")
+    robot(folder / "b", ACTUATES_NOTHING)
+    code, out, _ = run("check", "a", "b", "--format", "json")
+    document = json.loads(out)
+    jsonschema.Draft202012Validator(output_schemas()["diagnostics-report.schema.json"]).validate(document)
+    assert code == 1
+    assert [(entry["path"], entry["ok"]) for entry in document["robots"]] == [("a", True), ("b", False)]
+    (found,) = document["robots"][1]["diagnostics"]
+    assert (found["code"], found["line"], found["column"]) == ("unknown-actuator", 2, 13)
+
+
+def test_the_sarif_of_a_check_names_the_place(folder: Path, run: Run) -> None:
+    robot(folder / "my arm", ACTUATES_NOTHING)
+    code, out, _ = run("check", "my arm", "--format", "sarif")
+    (result,) = json.loads(out)["runs"][0]["results"]
+    place = result["locations"][0]["physicalLocation"]
+    assert code == 1
+    assert place["artifactLocation"]["uri"] == "my%20arm/robot.yaml"
+    assert place["region"] == {"startLine": 2, "startColumn": 13, "endColumn": 20}
+
+
+@pytest.mark.parametrize("format_", ["text", "json", "sarif"])
+def test_a_path_that_is_not_there_exits_with_2_and_says_so(folder: Path, run: Run, format_: str) -> None:
+    code, out, err = run("check", "nowhere", "--format", format_)
+    assert (code, out) == (2, "")
+    assert "'nowhere'" in err
+    assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize("path", ["x" * 5000, "a\0b", "a\x1b[31mb", ""])
+def test_a_path_that_cannot_be_one_exits_with_2_in_one_line(folder: Path, run: Run, path: str) -> None:
+    code, out, err = run("check", path)
+    assert (code, out) == (2, "")
+    assert err.endswith("\n")
+    assert err[:-1].isprintable()
+
+
+def test_a_urdf_that_is_not_there_exits_with_2(folder: Path, run: Run) -> None:
+    robot(folder)
+    code, _, err = run("check", ".", "--urdf", "nowhere.urdf")
+    assert code == 2
+    assert "'nowhere.urdf'" in err
+
+
+def test_a_folder_without_a_robot_exits_with_2(folder: Path, run: Run) -> None:
+    (folder / "empty").mkdir()
+    code, out, err = run("check", "empty")
+    assert (code, out) == (2, "")
+    assert "'empty'" in err
+
+
+@pytest.mark.parametrize(
+    "argv", [[], ["chek"], ["check"], ["check", "a", "--format", "xml"], ["info"], ["schema", "--version", "3"]]
+)
+def test_a_bad_usage_exits_with_2(argv: list[str]) -> None:
+    with pytest.raises(SystemExit) as exit_:
+        main(argv)
+    assert exit_.value.code == 2
+
+
+@pytest.mark.parametrize("name", ["stdout", "stderr"])
+def test_a_stream_that_is_closed_changes_nothing_else(name: str, folder: Path) -> None:
+    robot(folder)
+    program = f"import sys; sys.{name} = None; from eurdf.commands.main import main; sys.exit(main(['check', '.']))"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout == ("" if name == "stdout" else ".: sound\n")
+
+
+# --- which robots a path stands for ----------------------------------------------------------------------------------
+
+
+def test_a_description_in_a_folder_without_robot_yaml_is_told_by_its_keys(folder: Path) -> None:
+    (folder / "two.yaml").write_text('# arm\nextended_urdf: "2.0"\n', encoding="utf-8")
+    (folder / "one.yml").write_text("'closed_loop' : []\n", encoding="utf-8")
+    (folder / "quoted.yaml").write_text('"extended_urdf": "2.0"\n', encoding="utf-8")
+    (folder / "other.yaml").write_text("ros:\n  closed_loop: []\nnot_extended_urdf: 1\n", encoding="utf-8")
+    (folder / "binary.yaml").write_bytes(bytes(range(256)))
+    assert select(["."]) == ["./one.yml", "./quoted.yaml", "./two.yaml"]
+
+
+def test_a_description_named_as_one_is_checked_whatever_its_keys(folder: Path) -> None:
+    for name in ("left.eurdf.yaml", "right.eurdf.yml"):
+        (folder / name).write_text('extended_urfd: "2.0"\n', encoding="utf-8")
+    (folder / "mkdocs.yml").write_text("site_name: A site\n", encoding="utf-8")
+    assert select(["."]) == select(["."], allow_none=True) == ["./left.eurdf.yaml", "./right.eurdf.yml"]
+
+
+def test_a_description_may_have_all_the_bytes_of_a_file_before_its_key(folder: Path) -> None:
+    for name in ("one.yaml", "two.yaml"):
+        (folder / name).write_text("#" * (5 << 20) + '\nextended_urdf: "2.0"\n', encoding="utf-8")
+    assert select(["."]) == ["./one.yaml", "./two.yaml"]
+
+
+def test_other_descriptions_beside_robot_yaml_belong_to_that_robot(folder: Path) -> None:
+    robot(folder / "arm")
+    (folder / "arm" / "robot.v1.yaml").write_text("closed_loop: []\n", encoding="utf-8")
+    assert select(["arm"]) == ["arm"]
+    assert select(["."]) == ["./arm"]
+
+
+def test_hidden_folders_and_links_are_not_searched(folder: Path) -> None:
+    robot(folder / "arm")
+    robot(folder / ".git" / "arm")
+    (folder / "loop").symlink_to(folder)
+    assert select(["."]) == ["./arm"]
+
+
+def test_a_folder_with_a_urdf_alone_is_a_robot(folder: Path) -> None:
+    (folder / "robot.urdf").write_text(URDF, encoding="utf-8")
+    assert select(["."]) == ["."]
+
+
+def test_a_folder_without_robots_is_an_error_unless_none_are_allowed(folder: Path, run: Run) -> None:
+    (folder / "mkdocs.yml").write_text("site_name: A site\n", encoding="utf-8")
+    assert run("check", ".")[0] == 1  # the one YAML file of a folder is its description
+    assert run("check", "--allow-none", ".") == (0, ".: no robot\n", "")
+    assert json.loads(run("check", "--allow-none", ".", "--format", "json")[1])["robots"] == []
+    robot(folder / "arm")
+    assert run("check", "--allow-none", ".")[1] == "./arm: sound\n"
+    assert run("check", "--allow-none", "nowhere")[0] == 2
+
+
+# --- info ------------------------------------------------------------------------------------------------------------
+
+
+def test_info_of_a_four_bar_says_how_it_moves(folder: Path, run: Run) -> None:
+    code, out, _ = run("info", "four_bar", "--json")
+    info = json.loads(out)
+    jsonschema.Draft202012Validator(output_schemas()["info.schema.json"]).validate(info)
+    assert code == 0
+    expected = {
+        "version": "2.0",
+        "root": "fixed",
+        "nv": 3,
+        "joints": 3,
+        "closures": 1,
+        "nc": 3,
+        "rank": 2,
+        "mobility": 1,
+        "redundant": 1,
+        "uncontrolled": 0,
+        "actuated": 1,
+        "closes": True,
+    }
+    assert {key: info[key] for key in expected} == expected
+    assert info["residual"] < 1e-9
+    assert [joint["actuated"] for joint in info["joint_list"]].count(True) == 1
+    assert [closure["rows"] for closure in info["closure_list"]] == [3]
+
+
+def test_info_counts_the_root_that_was_asked_for(folder: Path, run: Run) -> None:
+    robot(folder)
+    fixed = json.loads(run("info", ".", "--json")[1])
+    floating = json.loads(run("info", ".", "--json", "--root", "floating")[1])
+    assert (fixed["root"], floating["root"]) == ("fixed", "floating")
+    assert (fixed["nv"], floating["nv"]) == (1, 7)
+    assert (fixed["joints"], floating["joints"]) == (1, 2)
+    assert floating["joint_list"][0]["type"] == "floating"
+    assert fixed["mass"] == floating["mass"] == 2.0
+
+
+def test_info_counts_the_mass_of_the_root_link_too(folder: Path, run: Run) -> None:
+    inertial = '<inertial><mass value="3"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
+    robot(folder, urdf=URDF.replace('<link name="base"/>', f'<link name="base">{inertial}</link>'))
+    assert json.loads(run("info", ".", "--json")[1])["mass"] == 5.0
+
+
+def test_info_tells_a_joint_that_mimics_from_the_one_that_leads_it(folder: Path, run: Run) -> None:
+    follower = """\
+  <link name="finger">
+    <inertial><mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>
+  </link>
+  <joint name="a_follower" type="continuous">
+    <parent link="base"/><child link="finger"/><axis xyz="0 0 1"/><mimic joint="shoulder" multiplier="2"/>
+  </joint>
+</robot>"""
+    robot(folder, urdf=URDF.replace("</robot>", follower))
+    for root, extra in (("fixed", []), ("floating", [("root_joint", 6, False, None)])):
+        info = json.loads(run("info", ".", "--json", "--root", root)[1])
+        assert [(j["name"], j["nv"], j["actuated"], j["mimics"]) for j in info["joint_list"]] == [
+            *extra,
+            ("a_follower", 0, False, "shoulder"),
+            ("shoulder", 1, True, None),
+        ]
+        assert info["joints"] == len(info["joint_list"])
+        assert info["nv"] == sum(joint["nv"] for joint in info["joint_list"])
+        assert info["nq"] == sum(joint["nq"] for joint in info["joint_list"])
+
+
+def test_info_of_a_robot_without_closures_needs_none(folder: Path, run: Run) -> None:
+    (folder / "arm.urdf").write_text(URDF, encoding="utf-8")
+    info = json.loads(run("info", "arm.urdf", "--json")[1])
+    jsonschema.Draft202012Validator(output_schemas()["info.schema.json"]).validate(info)
+    assert info["version"] == ""
+    assert (info["closures"], info["nc"], info["rank"], info["mobility"], info["uncontrolled"]) == (0, 0, 0, 1, 1)
+    assert info["closes"] is True
+    assert info["residual"] == 0.0
+
+
+def test_info_is_shown_as_tables_in_plain_ascii_when_it_is_not_read_by_a_person(folder: Path, run: Run) -> None:
+    code, out, _ = run("info", "four_bar")
+    assert code == 0
+    assert out.isascii()
+    assert "\x1b" not in out
+    assert not any(line != line.rstrip() for line in out.splitlines())
+    words = [line.split() for line in out.splitlines()]
+    assert ["mobility", "1"] in [line[:2] for line in words]
+    assert ["uncontrolled", "0"] in [line[:2] for line in words]
+
+
+def test_info_shows_names_with_markup_and_controls_as_they_are(folder: Path, run: Run) -> None:
+    name = "[red]up&#27;per[/red]"
+    robot(folder, urdf=URDF.replace("upper", "[red]upper[/red]").replace('name="arm"', 'name="&#x202e;[b]arm"'))
+    out = run("info", ".")[1]
+    assert "[red]upper[/red]" in out
+    assert r"\u202e[b]arm" in out
+    assert name not in out
+
+
+def test_info_of_a_refused_robot_shows_why_and_exits_with_1(folder: Path, run: Run) -> None:
+    robot(folder, ACTUATES_NOTHING)
+    code, out, _ = run("info", ".")
+    assert code == 1
+    assert "did you mean 'shoulder'?" in out
+    code, out, _ = run("info", ".", "--json")
+    assert code == 1
+    assert [found["code"] for found in json.loads(out)["robots"][0]["diagnostics"]] == ["unknown-actuator"]
+
+
+def test_info_of_a_folder_with_several_robots_asks_for_one(folder: Path, run: Run) -> None:
+    robot(folder / "a")
+    robot(folder / "b")
+    code, _, err = run("info", ".")
+    assert code == 2
+    assert "2 robots" in err
+
+
+# --- schema ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("version", ["1", "2"])
+def test_the_schema_of_each_version_is_written(run: Run, version: str) -> None:
+    code, out, _ = run("schema", "--version", version)
+    assert code == 0
+    jsonschema.Draft202012Validator.check_schema(json.loads(out))
+
+
+def test_the_schema_written_by_default_is_of_version_2(run: Run) -> None:
+    schema = json.loads(run("schema")[1])
+    assert jsonschema.Draft202012Validator(schema).is_valid({"extended_urdf": "2.0"})
+
+
+def test_the_schema_for_a_robot_knows_its_joints(folder: Path, run: Run) -> None:
+    robot(folder)
+    code, out, _ = run("schema", "--for", "robot.urdf")
+    validator = jsonschema.Draft202012Validator(json.loads(out))
+    assert code == 0
+    assert validator.is_valid({"extended_urdf": "2.0", "actuators": ["shoulder"]})
+    assert not validator.is_valid({"extended_urdf": "2.0", "actuators": ["sholder"]})
+
+
+def test_the_schema_for_a_broken_urdf_is_refused_with_the_reason(folder: Path, run: Run) -> None:
+    (folder / "robot.urdf").write_text("<robot name='arm'>", encoding="utf-8")
+    code, out, err = run("schema", "--for", "robot.urdf")
+    assert (code, out) == (1, "")
+    assert err.startswith("robot.urdf:1:")
+    code, out, err = run("schema", "--for", "nowhere.urdf")
+    assert (code, out) == (2, "")
+    assert "'nowhere.urdf'" in err
+
+
+# --- the process -----------------------------------------------------------------------------------------------------
+
+
+def test_the_help_names_every_command_and_the_version_is_told() -> None:
+    result = in_a_process("--help")
+    assert result.returncode == 0
+    for command in ("check", "info", "schema"):
+        assert f"\n    {command} " in result.stdout
+    assert in_a_process("--version").stdout == f"eurdf {eurdf.__version__}\n"
+
+
+@pytest.mark.parametrize("argv", [["--help"], ["schema"], ["check", "--help"]])
+def test_what_needs_no_simulator_loads_none(argv: list[str]) -> None:
+    code = (
+        "import sys\nfrom eurdf.commands.main import main\n"
+        "try:\n    main(sys.argv[1:])\nexcept SystemExit: pass\n"
+        "sys.stderr.write(str('pinocchio' in sys.modules))"
+    )
+    result = subprocess.run([sys.executable, "-c", code, *argv], capture_output=True, text=True, timeout=60)
+    assert result.stderr == "False"
+
+
+def test_a_locale_without_unicode_shows_escapes_rather_than_failing(folder: Path) -> None:
+    robot(folder / "名", ACTUATES_NOTHING + "x-note: é名\n")
+    result = in_a_process("check", "名", env={**os.environ, "PYTHONIOENCODING": "ascii", "PYTHONUTF8": "0"})
+    assert result.returncode == 1
+    assert result.stdout.isascii()
+    assert result.stderr == ""
+
+
+def test_what_is_to_become_a_file_is_utf8_in_every_locale() -> None:
+    code = "from eurdf.commands.output import write_text; write_text('name: é名\\n')"
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii", "PYTHONUTF8": "0"}
+    written = subprocess.run([sys.executable, "-c", code], capture_output=True, timeout=60, env=environment).stdout
+    assert written.decode("utf-8") == "name: é名\n"
+
+
+@pytest.mark.parametrize(("variables", "coloured"), [({}, False), ({"FORCE_COLOR": "1"}, True)])
+def test_a_pipe_is_coloured_only_where_it_is_asked_for(folder: Path, variables: dict[str, str], coloured: bool) -> None:
+    robot(folder)
+    environment = {name: value for name, value in os.environ.items() if name not in ("FORCE_COLOR", "NO_COLOR")}
+    result = in_a_process("check", ".", env={**environment, "TERM": "xterm-256color", **variables})
+    assert ("\x1b[32msound" in result.stdout) == coloured
+
+
+def test_a_reader_that_stops_reading_ends_the_command_quietly(folder: Path) -> None:
+    robot(folder, ACTUATES_NOTHING)
+    paths = [f"./{'./' * i}robot.yaml" for i in range(500)]
+    process = subprocess.Popen(
+        [sys.executable, "-c", _CHECK_QUICKLY, *paths], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    assert process.stdout is not None
+    assert process.stderr is not None
+    process.stdout.readline()
+    process.stdout.close()
+    errors = process.stderr.read()
+    process.stderr.close()
+    assert process.wait(timeout=60) == 141
+    assert errors == ""
+
+
+_CHECK_QUICKLY = """
+import sys
+import eurdf
+from eurdf.diagnostics import Diagnostic, Place
+from eurdf.diagnostics.report import Report
+from eurdf.commands.main import main
+eurdf.check = lambda path, **options: Report(path, (Diagnostic("wrong-type", "it is wrong", Place(path, 1, 1)),))
+sys.exit(main(["check", *sys.argv[1:]]))
+"""
+
+_INTERRUPT_AT_IMPORT = """
+import atexit, os, signal, sys
+from eurdf.commands.start import start
+moment = sys.argv.pop(1)
+def interrupt():
+    os.kill(os.getpid(), signal.SIGINT)
+class Finder:
+    def find_spec(name, path, target=None):
+        if name == moment:
+            interrupt()
+if moment == "the end":
+    atexit.register(interrupt)
+sys.meta_path.insert(0, Finder)
+sys.exit(start())
+"""
+
+
+def interrupted(moment: str, handler: Any) -> subprocess.CompletedProcess[str]:
+    """A check that is interrupted when it imports a module; SIGINT is first as the parent process left it."""
+    return subprocess.run(
+        [sys.executable, "-c", _INTERRUPT_AT_IMPORT, moment, "check", "."],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, handler),
+    )
+
+
+@pytest.mark.parametrize("moment", ["eurdf.commands.main", "eurdf.checking", "lxml", "the end"])
+def test_an_interrupt_ends_the_command_quietly(folder: Path, moment: str) -> None:
+    robot(folder)
+    ended = interrupted(moment, signal.SIG_DFL)
+    assert ended.returncode in (130, -signal.SIGINT)  # a shell reports both as 130
+    assert ended.stderr == ""
+    assert moment == "the end" or ended.stdout == ""
+
+
+def test_a_command_that_was_started_with_interrupts_ignored_goes_on(folder: Path) -> None:
+    robot(folder)
+    ended = interrupted("lxml", signal.SIG_IGN)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (0, ".: sound\n", "")
+
+
+def test_an_interrupt_of_main_is_an_exit_code(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted_check(path: str, **options: Any) -> Report:
+        raise KeyboardInterrupt
+
+    robot(folder)
+    monkeypatch.setitem(vars(eurdf), "check", interrupted_check)
+    assert run("check", ".") == (130, "", "")
+
+
+def test_a_fault_of_the_program_is_not_taken_for_one_of_the_robot(
+    folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(path: str, **options: Any) -> Report:
+        raise RuntimeError("impossible")
+
+    robot(folder)
+    monkeypatch.setitem(vars(eurdf), "check", broken)
+    code, _, err = run("check", ".")
+    assert code == 2
+    assert "RuntimeError: impossible" in err
+    assert err.endswith("eurdf: this is a fault of eurdf itself, not of the robot\n")
+
+
+def test_a_person_sees_colours_and_no_line_of_the_file_wraps(folder: Path) -> None:
+    robot(folder, ACTUATES_NOTHING + "x-note: " + "long " * 100 + "\n")
+    _, seen = on_a_terminal(["-m", "eurdf.commands.main", "check", "."])
+    assert "\x1b[1;31merror\x1b[0m" in seen
+    assert "│" in seen
+    piped = in_a_process("check", ".").stdout
+    assert "\x1b" not in piped
+    assert "│" not in piped
+
+
+def test_a_person_sees_how_far_the_check_of_many_robots_is(folder: Path) -> None:
+    for name in "abcdef":
+        robot(folder / name)
+    _, seen = on_a_terminal(["-c", _CHECK_QUICKLY, "."])
+    assert "checking" in seen
+    assert seen.index("checking") < seen.index("error")
+
+
+# --- files written ---------------------------------------------------------------------------------------------------
+
+
+def test_a_file_is_written_in_utf8_with_the_rights_of_any_new_file(folder: Path) -> None:
+    (folder / "plain").touch()
+    write_new("new.yaml", "é: 1\r\n")
+    assert (folder / "new.yaml").read_bytes() == "é: 1\r\n".encode()
+    assert (folder / "new.yaml").stat().st_mode == (folder / "plain").stat().st_mode
+    assert sorted(os.listdir()) == ["new.yaml", "plain"]
+
+
+def test_a_file_that_exists_is_replaced_only_with_force(folder: Path) -> None:
+    file = folder / "old.yaml"
+    file.write_text("old", encoding="utf-8")
+    file.chmod(0o600)
+    with pytest.raises(CannotRun, match=r"'old\.yaml' exists"):
+        write_new("old.yaml", "new")
+    assert file.read_text(encoding="utf-8") == "old"
+    write_new("old.yaml", "new", force=True)
+    assert file.read_text(encoding="utf-8") == "new"
+    assert file.stat().st_mode & 0o777 == 0o600
+
+
+def test_a_link_is_followed_when_its_file_is_replaced(folder: Path) -> None:
+    (folder / "file.yaml").write_text("old", encoding="utf-8")
+    (folder / "link.yaml").symlink_to("file.yaml")
+    write_new("link.yaml", "new", force=True)
+    assert (folder / "link.yaml").is_symlink()
+    assert (folder / "file.yaml").read_text(encoding="utf-8") == "new"
+
+
+def test_a_file_that_cannot_be_written_leaves_nothing_behind(folder: Path) -> None:
+    (folder / "sub").mkdir()
+    with pytest.raises(CannotRun, match=r"cannot write 'missing/new\.yaml'"):
+        write_new("missing/new.yaml", "new")
+    with pytest.raises(CannotRun, match="cannot write 'sub'"):
+        write_new("sub", "new", force=True)
+    with pytest.raises(UnicodeEncodeError):
+        write_new("new.yaml", "half \udc80" * 10)
+    assert os.listdir() == ["sub"]
+
+
+def test_a_write_that_fails_half_way_keeps_the_old_file(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (folder / "old.yaml").write_text("old", encoding="utf-8")
+
+    def full(self: Path, target: Path) -> Path:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "replace", full)
+    with pytest.raises(CannotRun, match="No space left on device"):
+        write_new("old.yaml", "new", force=True)
+    assert (folder / "old.yaml").read_text(encoding="utf-8") == "old"
+    assert os.listdir() == ["old.yaml"]

@@ -1,0 +1,196 @@
+"""In an editor with the YAML language server: completion, hover text, underlines, from the first-line comment alone."""
+
+from __future__ import annotations
+
+import re
+import shutil
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("pygls", reason="pygls is not installed: pip install -e '.[test]'")
+
+from eurdf.commands.main import main
+from support.language_server import MISSING, Editor, in_editor
+
+ROOT = Path(__file__).parents[2]
+
+pytestmark = pytest.mark.skipif(bool(MISSING), reason=MISSING)
+
+HEAD = '# yaml-language-server: $schema={}\nextended_urdf: "2.0"\n'
+TOP = ["urdf", "root", "closures", "joints", "actuators", "frames", "configurations", "metadata"]
+
+
+def written(folder: Path, body: str, *, schema: str | None = None, name: str = "robot.yaml") -> tuple[Path, int, int]:
+    """A description with the first-line comment, and the place of the cursor, ``|``, in it: line and column from 1."""
+    reference = schema or (ROOT / "schema" / "extended-urdf-2.0.schema.json").as_uri()
+    text = HEAD.format(reference) + body
+    before = text.partition("|")[0]
+    path = folder / name
+    path.write_text(text.replace("|", "", 1), encoding="utf-8")
+    return path, before.count("\n") + 1, len(before) - before.rfind("\n")
+
+
+def completed(folder: Path, body: str, *, schema: str | None = None) -> list[str]:
+    path, line, column = written(folder, body, schema=schema)
+
+    async def session(editor: Editor) -> list[str]:
+        await editor.open(path)
+        return await editor.completions(path, line, column)
+
+    return in_editor(session)
+
+
+def test_the_keys_of_a_description_are_completed_but_for_those_that_stand_there(tmp_path: Path) -> None:
+    assert completed(tmp_path, "|\n") == TOP
+    assert completed(tmp_path, "closures: []\n|\n") == [key for key in TOP if key != "closures"]
+
+
+@pytest.mark.parametrize(
+    ("body", "offered"),
+    [
+        ("root: |\n", {"fixed", "floating"}),
+        ("closures:\n  - name: rod\n    type: |\n    frames: [a, b]\n", {"3d", "6d"}),
+        ("joints:\n  hip: |\n", {"spherical", "cylindrical", "fixed"}),
+        ("joints:\n  hip: {type: |}\n", {"spherical", "universal", "cylindrical", "helical", "fixed"}),
+        ("joints:\n  hip: {type: universal, axes: |}\n", {"xy", "xz", "yx", "yz", "zx", "zy"}),
+    ],
+)
+def test_the_values_of_a_key_are_completed(tmp_path: Path, body: str, offered: set[str]) -> None:
+    assert offered <= set(completed(tmp_path, body))
+
+
+def test_the_keys_of_a_closure_are_completed(tmp_path: Path) -> None:
+    assert "frames" in completed(tmp_path, "closures:\n  - name: rod\n    type: 6d\n    f|\n")
+
+
+def test_hover_text_says_what_a_key_means_and_its_unit(tmp_path: Path) -> None:
+    path, line, column = written(tmp_path, "joints:\n  screw: {type: helical, pi|tch: 0.005}\n")
+
+    async def session(editor: Editor) -> str:
+        await editor.open(path)
+        return await editor.hover(path, line, column)
+
+    text = in_editor(session)
+    assert "Pitch" in text
+    assert "m per revolution" in text
+
+
+#: One fault of each kind that a schema can see: the file's body, the place that is underlined, and part of the message.
+FAULTS = [
+    ("|closurs: []\n", "Property closurs is not allowed"),
+    ("root: |flying\n", 'Valid values: "fixed", "floating"'),
+    ("closures:\n  - name: rod\n    type: |4d\n    frames: [a, b]\n", 'Valid values: "3d", "6d"'),
+    ("closures:\n  - name: rod\n    type: 6d\n    frames: |[a]\n", "too few items"),
+    ("closures:\n  - |name: rod\n    type: 6d\n", 'Missing property "frames"'),
+    ("joints:\n  |screw: {type: helical}\n", 'Missing property "pitch"'),
+    ("joints:\n  ball: {type: spherical, |pitch: 1}\n", "Property pitch is not allowed"),
+    ("joints:\n  cross: {type: universal, axes: |xx}\n", 'Valid values: "xy"'),
+    ("joints:\n  knee: {armature: |-1}\n", "below the minimum of 0"),
+    ("actuators:\n  - {joint: knee, gear_ratio: |fast}\n", 'Expected "number"'),
+    ("frames:\n  - {name: tip, link: foot, xyz: |[0, 0]}\n", "too few items"),
+]
+
+
+@pytest.fixture(scope="module")
+def underlined(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[tuple[int, int, str]]]:
+    """What is underlined in the file of each fault, all opened in one editor."""
+    folder = tmp_path_factory.mktemp("faults")
+
+    async def session(editor: Editor) -> dict[str, list[tuple[int, int, str]]]:
+        return {
+            body: await editor.open(written(folder, body, name=f"fault_{index}.yaml")[0])
+            for index, (body, _) in enumerate(FAULTS)
+        }
+
+    return in_editor(session)
+
+
+@pytest.mark.parametrize(("body", "said"), FAULTS, ids=[said for _, said in FAULTS])
+def test_a_fault_of_the_schema_is_underlined_where_it_is(
+    tmp_path: Path, underlined: dict[str, list[tuple[int, int, str]]], body: str, said: str
+) -> None:
+    _, line, column = written(tmp_path, body)
+    ((at_line, at_column, message),) = underlined[body]
+    assert (at_line, at_column) == (line, column)
+    assert said in message
+
+
+def test_the_names_of_a_robot_are_completed_from_its_own_schema(tmp_path: Path) -> None:
+    robot = ROOT / "robots" / "four_bar" / "robot.urdf"
+    assert main(["schema", "--for", str(robot), "-o", str(tmp_path / "four_bar.schema.json")]) == 0
+    assert "motor_crank" in completed(tmp_path, "actuators:\n  - |\n", schema="four_bar.schema.json")
+    assert "rocker_pin_a" in completed(
+        tmp_path, "closures:\n  - name: pin\n    type: 3d\n    frames:\n      - |\n", schema="four_bar.schema.json"
+    )
+    assert "free_rocker" in completed(tmp_path, "joints:\n  |\n", schema="four_bar.schema.json")
+
+
+def test_the_robots_of_the_collection_are_opened_without_an_underline() -> None:
+    robots = sorted(ROOT.glob("robots/*/robot*.yaml"))
+
+    async def session(editor: Editor) -> dict[Path, list[tuple[int, int, str]]]:
+        return {path: await editor.open(path) for path in robots}
+
+    assert len(robots) >= 4
+    assert in_editor(session) == {path: [] for path in robots}
+
+
+#: Commands that write a description in a folder that has a URDF, and a description of version 1, alone.
+WRITING = {
+    "generate": ["generate", "robot.urdf", "-o", "leg.yaml"],
+    "migrate": ["migrate", "old.yaml", "-o", "leg.yaml"],
+}
+
+
+@pytest.mark.parametrize("choice", ["format", "robot"])
+@pytest.mark.parametrize("command", sorted(WRITING))
+def test_what_a_command_wrote_is_completed_without_another_step(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str, choice: str
+) -> None:
+    robot = ROOT / "robots" / "four_bar"
+    shutil.copy(robot / "robot.urdf", tmp_path)
+    (tmp_path / "old.yaml").write_text("closed_loop: [[rocker_pin_a, rocker_pin_b]]\nname_mot: [motor_crank]\n")
+    monkeypatch.chdir(tmp_path)
+    assert main([*WRITING[command], "--schema", choice]) == 0
+    path = tmp_path / "leg.yaml"
+    text = path.read_text(encoding="utf-8")
+    first = "leg.schema.json" if choice == "robot" else "extended-urdf-2.0.schema.json"
+    assert text.splitlines()[0] == f"# yaml-language-server: $schema=./{first}"
+    path.write_text(text + "frames: [{name: tip, link: }]\n\n", encoding="utf-8")
+    line = text.count("\n") + 1
+
+    async def session(editor: Editor) -> tuple[list[tuple[int, int, str]], list[str], list[str]]:
+        underlined = await editor.open(path)
+        keys = await editor.completions(path, line + 1, 1)
+        links = await editor.completions(path, line, len("frames: [{name: tip, link: ") + 1)
+        return underlined, keys, links
+
+    underlined, keys, links = in_editor(session)
+    assert {at for at, _, _ in underlined} == {line}  # the link that is not written yet
+    assert {"root", "configurations", "metadata"} <= set(keys)
+    assert ("coupler" in links) == (choice == "robot")
+
+
+def test_the_schema_that_the_readme_shows_is_found_by_the_first_line_that_it_shows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    shutil.copy(ROOT / "robots" / "four_bar" / "robot.urdf", tmp_path)
+    monkeypatch.chdir(tmp_path)
+    shown = re.findall(
+        r"^eurdf (schema .*?) +# line 1: (# yaml-language-server: .*)$", (ROOT / "README.md").read_text(), re.M
+    )
+    assert len(shown) == 2
+    for command, first_line in shown:
+        assert main(command.split()) == 0
+        path = tmp_path / f"{len(command)}.yaml"
+        path.write_text(f'{first_line}\nextended_urdf: "2.0"\nactuators: []\nframes: []\n\n', encoding="utf-8")
+
+        async def session(editor: Editor, path: Path = path) -> tuple[list[tuple[int, int, str]], list[str], list[str]]:
+            underlined = await editor.open(path)
+            return underlined, await editor.completions(path, 5, 1), await editor.completions(path, 3, 13)
+
+        underlined, keys, motors = in_editor(session)
+        assert underlined == []
+        assert "closures" in keys
+        assert ("motor_crank" in motors) == ("--for" in command)

@@ -1,0 +1,88 @@
+"""The message where an optional dependency is not installed."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from importlib.metadata import PackageNotFoundError
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from eurdf import extras
+
+ROOT = Path(__file__).parents[2]
+WITHOUT = "import sys; sys.modules.update(dict.fromkeys({names})); import pytest; sys.exit(pytest.main(sys.argv[1:]))"
+
+
+def installed_from(monkeypatch: pytest.MonkeyPatch, origin: dict[str, Any] | None) -> None:
+    """Let the package be one that was installed from somewhere; None for an index."""
+
+    class Package:
+        def read_text(self, name: str) -> str | None:
+            assert name == "direct_url.json"
+            return None if origin is None else json.dumps(origin)
+
+    monkeypatch.setattr(extras, "distribution", lambda name: Package())
+    monkeypatch.setattr(extras, "_pip_is_ours", lambda: True)
+
+
+def not_installed(name: str) -> None:
+    raise PackageNotFoundError(name)
+
+
+@pytest.mark.parametrize(
+    ("origin", "command"),
+    [
+        ({"url": "HERE", "dir_info": {}}, 'pip install ".[xacro]"'),
+        ({"url": "HERE", "dir_info": {"editable": True}}, 'pip install -e ".[xacro]"'),
+        ({"url": "file:///elsewhere", "dir_info": {}}, 'pip install "eurdf[xacro]"'),
+        ({"url": "file:///a/eurdf.whl", "archive_info": {}}, 'pip install "eurdf[xacro]"'),
+        (None, 'pip install "eurdf[xacro]"'),
+    ],
+    ids=["clone", "editable", "another folder", "wheel", "index"],
+)
+def test_the_command_fits_where_the_package_came_from(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, origin: dict[str, Any] | None, command: str
+) -> None:
+    clone = tmp_path / "a clone"
+    clone.mkdir()
+    if origin is not None:
+        origin = {**origin, "url": origin["url"].replace("HERE", clone.as_uri())}
+    installed_from(monkeypatch, origin)
+    monkeypatch.chdir(clone)
+    assert extras.install_command("xacro") == command
+
+
+def test_a_checkout_that_is_not_installed_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(extras, "distribution", not_installed)
+    monkeypatch.setattr(extras, "_pip_is_ours", lambda: True)
+    monkeypatch.chdir(tmp_path)
+    assert extras.install_command("xacro") == f'pip install "{ROOT}[xacro]"'
+    monkeypatch.chdir(ROOT)
+    assert extras.install_command("xacro") == 'pip install ".[xacro]"'
+
+
+def test_a_pip_of_another_python_is_not_proposed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", "/nowhere")
+    assert extras.install_command("xacro").startswith(f"{sys.executable} -m pip install ")
+
+
+@pytest.mark.parametrize("names", [["hypothesis", "ruamel.yaml", "xdist"], ["eurdf"]], ids=["extra", "eurdf"])
+def test_the_suite_names_what_is_not_installed_and_the_command(names: list[str]) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", WITHOUT.format(names=names), "conformance/", "--collect-only"],
+        cwd=ROOT,
+        env={**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"},
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert done.returncode == pytest.ExitCode.USAGE_ERROR
+    said = done.stdout + done.stderr
+    assert f'not installed ({", ".join(names)}); install them with: pip install ".[conformance]"' in said
+    assert "Traceback" not in said

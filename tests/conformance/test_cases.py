@@ -1,0 +1,413 @@
+"""The cases: what they say, how they are read, and that the reference answers each as it says."""
+
+import ast
+import json
+import posixpath
+import re
+import sys
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+import jsonschema
+import pytest
+import yaml
+from pydantic import ValidationError
+
+from eurdf_conformance.adapters.reference import READER
+from eurdf_conformance.comparison.text import same_text
+from eurdf_conformance.corpus import archive, expect, read
+from eurdf_conformance.corpus.case import CASE, SCHEMA_FILE, InvalidCase, ValidCase, case_schema, schema_text
+from eurdf_conformance.corpus.clause import read_clauses
+from eurdf_conformance.corpus.coverage import missing
+from eurdf_conformance.corpus.expect import stale
+from eurdf_conformance.corpus.expected import EXPECTED_FILE, Expected, expected_text
+from eurdf_conformance.corpus.lint import lint
+from eurdf_conformance.corpus.protocol_rule import OF_RUNNERS, RULES
+from eurdf_conformance.corpus.read import CASE_FILE, CorpusCase, NotACase, collection_folder, read_case, read_cases
+from eurdf_conformance.level import Level
+from eurdf_conformance.suite.conversation import Conversation
+from eurdf_conformance.suite.in_process import InProcess
+from eurdf_conformance.suite.judge import judge
+from eurdf_conformance.verdict.verdict import Verdict
+
+ROOT = Path(__file__).parents[2]
+CASES = read_cases()
+VALID = [case for case in CASES if isinstance(case.case, ValidCase)]
+
+
+# The cases of the suite
+
+
+def test_the_lint_finds_nothing_wrong_with_the_cases() -> None:
+    assert [str(fault) for fault in lint()] == []
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.path)
+def test_the_reference_answers_each_case_as_it_says(case: CorpusCase) -> None:
+    """An invalid one gives exactly its code at its place, and its twin is accepted."""
+    conversation = Conversation(InProcess(READER))
+    judged = {level: judge(case, level, conversation) for level in case.levels}
+    assert {level: found for level, found in judged.items() if found.verdict != Verdict.PASSED} == {}
+
+
+def test_the_schema_of_a_case_is_current_and_takes_every_case() -> None:
+    assert SCHEMA_FILE.read_text(encoding="utf-8") == schema_text()
+    validator = jsonschema.Draft202012Validator(case_schema())
+    for case in CASES:
+        said = yaml.safe_load((case.folder / CASE_FILE).read_text(encoding="utf-8"))
+        assert list(validator.iter_errors(said)) == [], case.path
+
+
+def test_an_expectation_that_is_written_is_read_back_the_same() -> None:
+    for case in VALID:
+        again = Expected.model_validate_json(expected_text(case.expected))
+        assert again == case.expected
+
+
+def test_every_clause_that_a_case_can_test_has_its_cases() -> None:
+    elsewhere = {clause for rule in RULES for clause in rule.clauses} | set(OF_RUNNERS)
+    assert list(missing([case.case for case in CASES], read_clauses(), elsewhere)) == []
+
+
+def imports_the_reference(text: str) -> bool:
+    nodes = list(ast.walk(ast.parse(text)))
+    names = [alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names]
+    names += [node.module for node in nodes if isinstance(node, ast.ImportFrom) if node.module and not node.level]
+    return "eurdf" in {name.split(".")[0] for name in names}
+
+
+def test_only_the_adapters_of_the_reference_and_its_mutants_import_it() -> None:
+    package = Path(read.__file__).parents[1]
+    texts = {path.relative_to(package).as_posix(): path.read_text(encoding="utf-8") for path in package.rglob("*.py")}
+    importing = sorted(path for path, text in texts.items() if imports_the_reference(text))
+    assert "adapters/reference.py" in importing
+    assert [path for path in importing if not re.fullmatch(r"adapters/reference\w*\.py|mutants/.*", path)] == []
+
+
+@pytest.mark.parametrize(
+    ("text", "so"),
+    [
+        ("import eurdf", True),
+        ("import os, eurdf.mechanism as m", True),
+        ("from eurdf import load", True),
+        ("def f():\n    from eurdf.mechanism import joint_type", True),
+        ("import eurdf_conformance.oracle\nfrom eurdf_conformance import level\nfrom . import eurdf", False),
+    ],
+)
+def test_an_import_of_the_reference_is_seen_in_every_form(text: str, so: bool) -> None:
+    assert imports_the_reference(text) is so
+
+
+# One case
+
+VALID_CASE = {
+    "id": "ab12cd",
+    "title": "A sentence.",
+    "version": "2",
+    "clauses": ["EU-FRM-001"],
+    "valid": True,
+    "provenance": {"expectation": "hand"},
+}
+INVALID_CASE = VALID_CASE | {
+    "valid": False,
+    "code": "unknown-frame",
+    "place": {"file": "robot.yaml", "line": 1, "column": 1},
+    "twin": "ef34gh",
+    "repair": "Mend it.",
+}
+
+
+def test_a_case_is_valid_or_says_its_fault() -> None:
+    assert isinstance(CASE.validate_python(VALID_CASE), ValidCase)
+    assert isinstance(CASE.validate_python(INVALID_CASE), InvalidCase)
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        VALID_CASE | {"id": "AB12CD"},
+        VALID_CASE | {"id": "ab12c"},
+        VALID_CASE | {"id": 123456},
+        VALID_CASE | {"title": "No sentence"},
+        VALID_CASE | {"version": 2},
+        VALID_CASE | {"version": "2.0"},
+        VALID_CASE | {"clauses": []},
+        VALID_CASE | {"clauses": ["EU-FRM-1"]},
+        VALID_CASE | {"code": "unknown-frame"},
+        VALID_CASE | {"twin": "ef34gh"},
+        VALID_CASE | {"colour": "red"},
+        VALID_CASE | {"valid": "yes"},
+        VALID_CASE | {"configurations": [{"j": 1.0}]},
+        VALID_CASE | {"configurations": [{"j": [float("nan")]}]},
+        VALID_CASE | {"provenance": {"expectation": "reference"}},
+        VALID_CASE | {"description": "../robot.yaml"},
+        INVALID_CASE | {"configurations": []},
+        INVALID_CASE | {"code": "Unknown frame"},
+        INVALID_CASE | {"place": {"file": "robot.yaml", "line": 0, "column": 1}},
+        INVALID_CASE | {"place": {"file": "robot.yaml", "line": 1}},
+        INVALID_CASE | {"place": {"file": "robot.yaml", "column": 1}},
+        {key: value for key, value in INVALID_CASE.items() if key != "repair"},
+        {key: value for key, value in INVALID_CASE.items() if key != "twin"},
+    ],
+    ids=str,
+)
+def test_what_is_no_case_is_refused(said: object) -> None:
+    with pytest.raises(ValidationError):
+        CASE.validate_python(said)
+
+
+WriteCase = Callable[[str], Path]
+
+
+@pytest.fixture
+def written(tmp_path: Path) -> WriteCase:
+    """Writes a `case.yaml`, and gives its folder."""
+
+    def write(text: str) -> Path:
+        folder = tmp_path / "frames" / "ab12cd"
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / CASE_FILE).write_text(text, encoding="utf-8")
+        return folder
+
+    return write
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("", "object"),
+        ("id: [", "while parsing"),
+        (json.dumps(VALID_CASE)[:-1] + ', "title": "Twice."}', "stands twice"),
+        (json.dumps(VALID_CASE | {"robot": "no_such_robot"}), "no_such_robot"),
+        (json.dumps(INVALID_CASE | {"place": {"file": "robot.yaml", "line": "x"}}), "place/line"),
+    ],
+)
+def test_of_a_file_that_says_no_case_it_is_told_why(written: WriteCase, text: str, why: str) -> None:
+    with pytest.raises(NotACase, match=why) as caught:
+        read_case(written(text))
+    assert caught.value.path.name == CASE_FILE
+
+
+def test_a_case_names_its_files(written: WriteCase) -> None:
+    folder = written(json.dumps(VALID_CASE | {"description": "other.yml", "urdf": "sub/other.urdf"}))
+    case = read_case(folder)
+    assert (case.topic, case.path) == ("frames", "frames/ab12cd")
+    assert (case.description, case.urdf) == (folder / "other.yml", folder / "sub" / "other.urdf")
+
+
+def test_a_number_with_an_exponent_is_a_number(written: WriteCase) -> None:
+    text = "id: ab12cd\ntitle: One.\nversion: '2'\nclauses: [EU-FRM-001]\nvalid: true\n"
+    text += "configurations: [{j: [1e-3, -2E5, +3, .5, 4.]}]\nprovenance: {expectation: hand}\n"
+    case = read_case(written(text)).case
+    assert isinstance(case, ValidCase)
+    assert case.configurations == [{"j": [1e-3, -2e5, 3, 0.5, 4.0]}]
+
+
+def test_a_robot_of_the_collection_is_read_where_it_is(written: WriteCase) -> None:
+    home = collection_folder()
+    assert home is not None
+    folder = written(json.dumps(VALID_CASE | {"robot": "four_bar", "description": "robot.v1.yaml"}))
+    assert read_case(folder).description == home / "four_bar" / "robot.v1.yaml"
+
+
+def test_the_collection_of_an_installed_package_is_found_and_the_package_not_imported(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "eurdf" / "collection" / "robots").mkdir(parents=True)
+    (tmp_path / "eurdf" / "__init__.py").write_text("raise SystemError('imported')")
+    elsewhere = tmp_path / "site" / "eurdf_conformance" / "corpus"
+    monkeypatch.setattr(read, "__file__", str(elsewhere / "read.py"))
+    monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.delitem(sys.modules, "eurdf", raising=False)
+    assert collection_folder() == tmp_path / "eurdf" / "collection" / "robots"
+
+
+def test_a_case_is_asked_at_the_levels_that_it_can_be(written: WriteCase) -> None:
+    levels = {
+        "valid": read_case(written(json.dumps(VALID_CASE))).levels,
+        "evaluated": read_case(written(json.dumps(VALID_CASE | {"configurations": [{}]}))).levels,
+        "invalid": read_case(written(json.dumps(INVALID_CASE))).levels,
+    }
+    assert levels == {
+        "valid": ("accept", "structure", "diagnose"),
+        "evaluated": ("accept", "structure", "kinematics", "dynamics", "diagnose"),
+        "invalid": ("accept", "diagnose"),
+    }
+
+
+# Expectations
+
+
+def evaluated_case(tmp_path: Path) -> CorpusCase:
+    """A copy of a case that is evaluated."""
+    case = next(case for case in VALID if case.case.robot is None and case.levels[2] == "kinematics")
+    folder = tmp_path / case.path
+    folder.mkdir(parents=True)
+    for path in case.folder.iterdir():
+        (folder / path.name).write_bytes(path.read_bytes())
+    return read_case(folder)
+
+
+def test_an_expectation_is_stale_where_one_number_of_it_is_another(tmp_path: Path) -> None:
+    case = evaluated_case(tmp_path)
+    path = case.folder / EXPECTED_FILE
+    assert list(stale(case)) == []
+    said = json.loads(path.read_text(encoding="utf-8"))
+    for pointer, change in {
+        "/values/0/mass": lambda: said["values"][0].update(mass=said["values"][0]["mass"] + 1e-6),
+        "/sizes/0": lambda: said["sizes"].__setitem__(0, said["sizes"][0] * 1.01),
+        "/name": lambda: said["robot"].update(name="another"),
+        "bodies": lambda: said["bodies"].append(["another"]),
+        "sizes: 1": lambda: said["sizes"].pop(),
+    }.items():
+        change()
+        path.write_text(json.dumps(said), encoding="utf-8")
+        assert any(pointer in fault for fault in stale(read_case(case.folder))), pointer
+
+
+def test_values_by_hand_may_be_some_of_all_and_are_held_against_the_oracle(tmp_path: Path) -> None:
+    case = evaluated_case(tmp_path)
+    text = (case.folder / CASE_FILE).read_text(encoding="utf-8").replace("expectation: oracle", "expectation: hand")
+    (case.folder / CASE_FILE).write_text(text, encoding="utf-8")
+    some = case.expected.model_dump(mode="json")
+    some["values"] = [{"mass": values["mass"]} for values in some["values"]]
+    (case.folder / EXPECTED_FILE).write_text(json.dumps(some), encoding="utf-8")
+    assert list(stale(read_case(case.folder))) == []
+    some["values"][0]["mass"] *= 2
+    (case.folder / EXPECTED_FILE).write_text(json.dumps(some), encoding="utf-8")
+    assert any("/values/0/mass" in fault for fault in stale(read_case(case.folder)))
+
+
+def test_an_expectation_is_written_where_it_is_missing_or_stale_and_by_hand_it_is_left(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    case = evaluated_case(tmp_path)
+    path, right = case.folder / EXPECTED_FILE, (case.folder / EXPECTED_FILE).read_text(encoding="utf-8")
+    wrong = right.replace('"mass": ', '"mass": 1')
+    monkeypatch.setattr(expect, "read_cases", lambda: [read_case(case.folder)])
+
+    def main(*arguments: str) -> tuple[int, str]:
+        return expect.main(arguments), path.read_text(encoding="utf-8") if path.exists() else ""
+
+    path.unlink()
+    assert main("--check") == (1, "")
+    code, written = main(case.id)
+    assert code == 0
+    # What the oracle computes may have other last digits on this processor; they are rounded to 12.
+    assert same_text(written, right, relative=1e-9, absolute=1e-11)
+    path.write_text(right + "\n", encoding="utf-8")
+    assert main() == (0, right + "\n")
+    path.write_text(wrong, encoding="utf-8")
+    assert main("--check") == (1, wrong)
+    assert "/values/0/mass" in capsys.readouterr().out
+    assert main() == (0, written)
+    said = (case.folder / CASE_FILE).read_text(encoding="utf-8").replace("expectation: oracle", "expectation: hand")
+    (case.folder / CASE_FILE).write_text(said, encoding="utf-8")
+    path.write_text(wrong, encoding="utf-8")
+    assert main() == (1, wrong)
+    with pytest.raises(SystemExit):
+        main("nobody")
+
+
+# The archive
+
+
+def test_the_archive_holds_every_file_and_has_the_same_bytes_whenever_it_is_written(tmp_path: Path) -> None:
+    archive.write_archive(tmp_path / "a", CASES)
+    archive.write_archive(tmp_path / "b", reversed(CASES))
+    zips = [(tmp_path / folder / f"{archive.NAME}.zip").read_bytes() for folder in "ab"]
+    assert zips[0] == zips[1]
+    with zipfile.ZipFile(tmp_path / "a" / f"{archive.NAME}.zip") as whole:
+        names = set(whole.namelist())
+        assert {info.date_time for info in whole.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+        for case in CASES:
+            for name, path in archive.case_files(case):
+                assert whole.read(name) == path.read_bytes()
+                names.remove(name)
+        assert names == {"README.txt", "LICENSE", "clauses.json", "case.schema.json"}
+        assert json.loads(whole.read("clauses.json")) == {id_: each.text for id_, each in read_clauses().items()}
+        assert whole.read("LICENSE") == (ROOT / "LICENSE").read_bytes()
+
+
+def test_in_the_zip_a_case_leads_to_its_schema_and_the_readme_to_what_it_names(tmp_path: Path) -> None:
+    archive.write_archive(tmp_path, VALID[:3])
+    with zipfile.ZipFile(tmp_path / f"{archive.NAME}.zip") as whole:
+        for case in VALID[:3]:
+            name = f"cases/{case.path}/{CASE_FILE}"
+            link = whole.read(name).decode().splitlines()[0].partition("$schema=")[2]
+            schema = posixpath.normpath(posixpath.join(posixpath.dirname(name), link))
+            assert whole.read(schema) == SCHEMA_FILE.read_bytes()
+        readme = whole.read("README.txt").decode()
+        clauses = json.loads(whole.read("clauses.json"))
+        assert set(re.findall(r"EU-[A-Z]{3}-[0-9]{3}", readme)) <= clauses.keys()
+        assert set(re.findall(r"[\w.]+\.(?:json|yaml|urdf)", readme)) <= {Path(name).name for name in whole.namelist()}
+    assert all(re.search(rf"^  {level} ", readme, re.MULTILINE) for level in Level)
+
+
+def archived(*arguments: str | Path) -> int:
+    return archive.main(list(map(str, arguments)))
+
+
+def test_the_archive_says_what_it_writes_and_replaces_nothing_unasked(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(archive, "read_cases", lambda: CASES[:3])
+    out = tmp_path / "new" / "out"
+    assert archived(out) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        f"{out / archive.NAME}.zip: 3 cases",
+        f"{out / archive.NAME}.json: the same as one JSON value",
+    ]
+    (out / f"{archive.NAME}.zip").unlink()
+    (out / f"{archive.NAME}.json").write_text("mine", encoding="utf-8")
+    assert archived(out) == 2
+    assert "exists already; --force replaces it" in capsys.readouterr().err
+    assert [path.read_text() for path in out.iterdir()] == ["mine"]
+    assert archived(out, "--force") == 0
+    assert len(list(out.iterdir())) == 2
+
+
+def test_an_archive_that_cannot_be_written_is_said_in_one_line_and_leaves_nothing(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(archive, "read_cases", lambda: CASES[:3])
+    Path("file").write_text("mine", encoding="utf-8")
+    Path("out", f"{archive.NAME}.json").mkdir(parents=True)
+    for wrong in (["file"], ["file/out"], ["out"], ["out", "--force"]):
+        assert archived(*wrong) == 2
+        written = capsys.readouterr()
+        assert (written.out, written.err.count("\n")) == ("", 1)
+        assert not list(Path("out").glob("*.zip"))
+    with pytest.raises(SystemExit) as shown:
+        archived("--help")
+    assert shown.value.code == 0
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "out"]
+
+
+def test_the_license_is_found_where_there_is_no_checkout(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(archive, "__file__", str(tmp_path / "eurdf_conformance" / "corpus" / "archive.py"))
+    found = archive.find_license()
+    assert found is not None
+    assert found.read_bytes() == (ROOT / "LICENSE").read_bytes()
+
+
+def test_the_manifest_says_every_case_with_the_texts_of_its_files(tmp_path: Path) -> None:
+    archive.write_archive(tmp_path, CASES)
+    manifest = json.loads((tmp_path / f"{archive.NAME}.json").read_text(encoding="utf-8"))
+    assert [entry["case"]["id"] for entry in manifest["cases"]] == [case.id for case in CASES]
+    for entry, case in zip(manifest["cases"], CASES, strict=True):
+        assert CASE.validate_json(json.dumps(entry["case"])) == case.case
+        assert (entry["expected"] is None) == isinstance(case.case, InvalidCase)
+        if case.description.is_file():
+            text = entry["files"][case.case.description]
+            assert isinstance(text, dict) or text.encode() == case.description.read_bytes()
+    assert set(manifest["clauses"]) == {clause for case in CASES for clause in case.case.clauses}
+
+
+def test_a_file_that_is_no_text_or_not_there_is_in_the_manifest_too(written: WriteCase) -> None:
+    folder = written(json.dumps(INVALID_CASE | {"urdf": "nowhere.urdf"}))
+    (folder / "robot.yaml").write_bytes(b"a: \xff")
+    (entry,) = archive.manifest([read_case(folder)])["cases"]
+    assert entry["files"] == {"robot.yaml": {"base64": "YTog/w=="}, "nowhere.urdf": None}

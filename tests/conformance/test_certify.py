@@ -1,0 +1,406 @@
+"""The command ``eurdf certify``."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+
+from eurdf.commands.certificate_output import show
+from eurdf.commands.main import main
+from eurdf_conformance.certificate import suite_run
+from eurdf_conformance.certificate.certificate import certificate_schema, read_certificate
+from eurdf_conformance.certificate.issue import issue
+from eurdf_conformance.certificate.replay import replay_schema
+from eurdf_conformance.corpus.case import InvalidCase
+from eurdf_conformance.corpus.read import read_cases
+from eurdf_conformance.level import Level
+from eurdf_conformance.suite.smoke import smoke_lines
+from eurdf_conformance.verdict.verdict import Verdict
+from support.suite_runs import INVALID, PLANNED, VALID, item, result, run
+from support.terminal import on_a_terminal
+from support.warm import run_module
+
+REFERENCE = "eurdf_conformance.adapters.reference:READER"
+
+#: Failures that are shown, so many at most.
+MOST_SHOWN = 20
+
+#: What is tested where it does not matter what.
+SOME = ("--level", "accept", "--format-version", "1", "--jobs", "0")
+
+
+def one_answer(word: str, *options: str) -> str:
+    """The parser that says the same of every description."""
+    reader = Path(__file__).parents[1] / "support" / "fakes" / "one_answer.py"
+    return "cmd:" + shlex.join([sys.executable, "-I", "-S", str(reader), word, *options])
+
+
+ACCEPTS, REJECTS = one_answer("accepted"), one_answer("rejected")
+
+
+def certify(*argv: str | Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    # The suite runs pytest, which no test of pytest can do within its own process.
+    return run_module("eurdf", ["certify", *map(str, argv)], environment=os.environ | environment)
+
+
+def certificate_of(*argv: str | Path) -> dict[str, Any]:
+    done = certify(*argv, "--json")
+    assert done.returncode in (0, 1), done.stderr
+    value: dict[str, Any] = json.loads(done.stdout)
+    return value
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+# --- what it says ----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.slow
+def test_the_reference_is_certified_and_its_certificate_says_so_again_when_it_is_replayed(folder: Path) -> None:
+    done = certify("--parser", REFERENCE, *SOME, "--certificate", "mine", "--date", "2026-01-31")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.endswith(": Certified for version 1: accept\n")
+    assert sorted(path.name for path in Path("mine").iterdir()) == ["badge.svg", "certificate.json", "report.html"]
+    certificate = read_certificate(folder / "mine")
+    assert (certificate.certified, certificate.date) == (True, "2026-01-31")
+
+    again = certify("--verify", "mine", "--jobs", "0")
+    assert (again.returncode, again.stdout) == (0, "mine: the same\n")
+    assert again.stderr == f"running {REFERENCE}\n"
+
+
+@pytest.mark.slow
+def test_a_parser_that_accepts_everything_fails_on_every_invalid_case_and_on_no_valid_one(folder: Path) -> None:
+    given = certificate_of("--parser", ACCEPTS, "--level", "accept", "--jobs", "0")
+    failed = {failure["id"] for failure in given["failures"]}
+    cases = read_cases()
+    right = {case.path for case in cases if not isinstance(case.case, InvalidCase) or case.case.either}
+    wrong = {case.path for case in cases} - right
+    assert wrong <= failed
+    assert not right & failed
+    assert not given["certified"]
+    assert not any(level["certified"] for level in given["levels"])
+
+
+@pytest.mark.slow
+def test_a_parser_that_rejects_everything_fails_on_every_valid_case_and_on_no_invalid_one(folder: Path) -> None:
+    given = certificate_of("--parser", REJECTS, "--level", "accept", "--jobs", "0")
+    failed = {failure["id"] for failure in given["failures"]}
+    cases = read_cases()
+    wrong = {case.path for case in cases if not isinstance(case.case, InvalidCase)}
+    assert wrong <= failed
+    assert not {case.path for case in cases if isinstance(case.case, InvalidCase)} & failed
+    assert not any(level["certified"] for level in given["levels"])
+
+
+def test_what_failed_is_shown_with_the_reason_and_the_command_that_runs_it_again(folder: Path) -> None:
+    done = certify("--parser", ACCEPTS, *SOME)
+    assert done.returncode == 1
+    shown = re.findall(r"^failed (\w+)/([\w-]+)/accept: \S", done.stdout, re.MULTILINE)
+    assert len(shown) == MOST_SHOWN
+    for _, id_ in shown:
+        assert f"-k {id_}/accept" in done.stdout
+    assert re.search(r"^\d+ more did not pass", done.stdout, re.MULTILINE)
+    assert done.stdout.endswith("always_accepted 1: Not certified at any level\n")
+
+
+@pytest.mark.slow
+def test_the_json_is_the_certificate_and_fits_its_schema_however_the_run_is_spread(folder: Path) -> None:
+    here = certificate_of("--parser", REJECTS, *SOME)
+    spread = certificate_of("--parser", REJECTS, *SOME[:-1], "2", "--certificate", "mine")
+    jsonschema.Draft202012Validator(certificate_schema()).validate(here)
+    assert here == spread == json.loads(Path("mine/certificate.json").read_text(encoding="utf-8"))
+
+
+# --- a first try -----------------------------------------------------------------------------------------------------
+
+
+def test_a_first_try_tells_a_wrong_adapter_from_a_wrong_parser(folder: Path) -> None:
+    parser = certify("--parser", REJECTS, "--smoke")
+    assert parser.returncode == 1
+    assert parser.stdout.startswith("your adapter is right so far")
+    assert "your parser is wrong" in parser.stdout
+    told = '/accept: failed: /outcome: it rejects what is right: expected "accepted", given "rejected"\n'
+    assert told in parser.stdout
+    adapter = certify("--parser", one_answer("rejected", "--chatter"), "--smoke")
+    assert adapter.returncode == 1
+    assert adapter.stdout.startswith("your adapter is wrong")
+
+
+def test_a_first_try_says_of_each_failure_what_it_is_before_it_says_why() -> None:
+    lacking = result(item(VALID, Level.ACCEPT), Verdict.UNSUPPORTED, "version 2")
+    silent = result(item(INVALID, Level.ACCEPT), Verdict.SKIPPED)
+    lines = list(smoke_lines([lacking, silent], asked=True))
+    assert f"  {VALID}/accept: unsupported: version 2" in lines
+    assert f"  {INVALID}/accept: skipped" in lines
+
+
+def test_a_first_try_that_passes_certifies_nothing(folder: Path) -> None:
+    done = certify("--parser", REFERENCE, "--smoke", "--json")
+    assert done.returncode == 0, done.stderr
+    given = json.loads(done.stdout)
+    assert given["failures"] == []
+    assert not any(level["certified"] for level in given["levels"])
+
+
+def test_a_first_try_runs_on_a_terminal_too(folder: Path) -> None:
+    code, seen = on_a_terminal(["-m", "eurdf.commands.main", "certify", "--parser", REFERENCE, "--smoke"])
+    assert (code, "certifying" in seen) == (0, True)
+
+
+def test_whoever_explores_is_told_where_the_cases_are(capsys: pytest.CaptureFixture[str]) -> None:
+    law = item("properties/agreement-2", Level.ACCEPT)
+    failed = result(law, Verdict.FAILED, "it is not so")
+    show(issue(run(planned=(*PLANNED, law), results=(failed,), explore=20, explore_seed=7)))
+    assert "what exploring from seed 7 has found, if anything, is in explored/" in capsys.readouterr().out
+    show(issue(run(planned=(*PLANNED, law), results=(failed,))))
+    assert "explor" not in capsys.readouterr().out
+
+
+# --- known failures --------------------------------------------------------------------------------------------------
+
+
+def known_failures(folder: Path, *ids: str) -> Path:
+    file = folder / "known.yaml"
+    entries = [f"- {{id: {id_}, level: accept, verdict: failed, reason: An open issue.}}\n" for id_ in ids]
+    file.write_text("".join(entries), encoding="utf-8")
+    return file
+
+
+def test_known_failures_are_counted_and_do_not_certify(folder: Path) -> None:
+    failed = [each["id"] for each in certificate_of("--parser", REJECTS, *SOME)["failures"]]
+    file = known_failures(folder, *failed)
+    done = certify("--parser", REJECTS, *SOME, "--known-failures", file)
+    assert done.returncode == 1
+    assert len(failed) > MOST_SHOWN
+    assert done.stdout.count("failed (known) ") == MOST_SHOWN
+    assert f"known failures: {len(failed)}" in done.stdout
+
+
+def test_a_known_failure_that_passes_or_that_the_suite_lacks_is_told(folder: Path) -> None:
+    file = known_failures(folder, "version1/n8t4uq", "version1/aaaaaa")
+    given = certificate_of("--parser", REJECTS, *SOME, "--known-failures", file)
+    assert [said.partition(":")[0] for said in given["unexpected"]] == [
+        "version1/n8t4uq/accept",
+        "version1/aaaaaa/accept",
+    ]
+
+
+def test_a_file_of_known_failures_that_cannot_be_used_is_refused_before_anything_runs(folder: Path) -> None:
+    (folder / "known.yaml").write_text("- id: version1/n8t4uq\n", encoding="utf-8")
+    done = certify("--parser", "cmd:nowhere", "--known-failures", "known.yaml")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.startswith("eurdf: known.yaml: [0].level: ")
+
+
+# --- what does not run -----------------------------------------------------------------------------------------------
+
+
+def test_a_parser_that_does_not_start_exits_with_2_and_shows_what_it_wrote(folder: Path) -> None:
+    done = certify("--parser", f"cmd:{shlex.quote(sys.executable)} nowhere.py")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "nowhere.py" in done.stderr.splitlines()[0]
+    assert "could not be started: crashed: ended with exit code 2" in done.stderr.splitlines()[1]
+
+
+def test_a_level_that_was_asked_for_and_is_not_claimed_is_not_certified(folder: Path) -> None:
+    done = certify("--parser", REJECTS, "--level", "dynamics", "--jobs", "0")
+    assert done.returncode == 1
+    assert done.stdout.endswith("always_rejected 1: Not certified at any level\n")
+
+
+def test_without_the_suites_packages_it_says_what_to_install(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(suite_run, "missing", lambda: ["hypothesis"])
+    assert main(["certify", "--parser", ACCEPTS]) == 2
+    said = capsys.readouterr().err
+    assert "packages that are not installed (hypothesis); install them with: " in said
+    assert said.endswith('pip install "eurdf[conformance]"\n')
+    assert said.count("\n") == 1
+
+
+def test_the_users_own_settings_of_pytest_have_no_part_in_it(folder: Path) -> None:
+    (folder / "pytest.ini").write_text("[pytest]\naddopts = --no-such-option\n", encoding="utf-8")
+    (folder / "conftest.py").write_text("raise RuntimeError('not mine')\n", encoding="utf-8")
+    done = certify("--parser", REFERENCE, "--smoke", PYTEST_ADDOPTS="--no-such-option", PYTEST_PLUGINS="no_such_plugin")
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.parametrize(
+    "argv",
+    [
+        [],
+        ["--verify", "mine", "--level", "accept"],
+        ["--verify", "mine", "--known-failures", "known.yaml"],
+        ["--compare", "mine", "--parser", "cmd:mine"],
+        ["--compare", "mine", "--json", "-o", "page.html"],
+        ["--compare", "mine"],
+        ["--parser", "cmd:mine", "-o", "page.html"],
+        ["--parser", "cmd:mine", "--force"],
+        ["--parser", "cmd:mine", "--smoke", "--known-failures", "known.yaml"],
+        ["--parser", "cmd:mine", "--smoke", "--explore", "3"],
+        ["--verify", "mine", "--force"],
+        ["--verify", "nowhere"],
+        ["--compare", "nowhere", "-o", "page.html"],
+    ],
+)
+def test_what_cannot_be_done_exits_with_2_in_one_line(
+    argv: list[str], folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["certify", *argv]) == 2
+    written = capsys.readouterr()
+    assert written.out == ""
+    assert written.err.count("\n") == 1
+    assert written.err.startswith("eurdf: ")
+    assert list(folder.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", ["report.html", "badge.svg"])
+def test_no_certificate_is_written_over_what_is_none(
+    name: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("mine").mkdir()
+    Path("mine", name).write_text("of somebody else", encoding="utf-8")
+    assert main(["certify", "--parser", "cmd:no-such-parser", "--certificate", "mine"]) == 2
+    assert capsys.readouterr().err == (
+        f"eurdf: 'mine/{name}' exists already, and no certificate beside it; --force replaces it\n"
+    )
+    assert Path("mine", name).read_text(encoding="utf-8") == "of somebody else"
+    # By force it goes on to the parser, and there is none.
+    assert main(["certify", "--parser", "cmd:no-such-parser", "--certificate", "mine", "--force"]) == 2
+    assert "could not be started" in capsys.readouterr().err
+
+
+def test_an_earlier_certificate_is_replaced(folder: Path) -> None:
+    for parser in (REJECTS, ACCEPTS):
+        assert certify("--parser", parser, "--smoke", "--certificate", "mine").returncode == 1
+    reader = read_certificate(folder / "mine").reader
+    assert reader is not None
+    assert reader.name == "always_accepted"
+
+
+def test_a_file_in_the_place_of_the_folder_is_told_before_the_run(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("mine").write_text("", encoding="utf-8")
+    for place in ("mine", "mine/deeper"):
+        assert main(["certify", "--parser", "cmd:no-such-parser", "--certificate", place]) == 2
+        told = capsys.readouterr().err
+        assert f"'{place}'" in told
+        assert "Errno" not in told
+        assert "started" not in told
+
+
+@pytest.mark.parametrize(
+    ("option", "said"),
+    [
+        (("--date", "2026-13-01"), "'2026-13-01' is no day"),
+        (("--jobs", "-1"), "'-1' is no count"),
+        (("--parser-timeout", "0"), "'0' is no time"),
+        (("--parser-start-timeout", "nan"), "'nan' is no time"),
+        (("--level", "everything"), "invalid choice"),
+        (("--certificate", ""), "it names no folder"),
+    ],
+)
+def test_a_wrong_value_of_an_option_is_refused(
+    option: tuple[str, str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as refused:
+        main(["certify", "--parser", ACCEPTS, *option])
+    assert refused.value.code == 2
+    assert said in capsys.readouterr().err
+
+
+# --- again, and side by side -----------------------------------------------------------------------------------------
+
+
+def test_a_replay_by_another_parser_is_told_line_by_line(folder: Path) -> None:
+    assert certify("--parser", REJECTS, *SOME, "--certificate", "mine").returncode == 1
+    again = certify("--verify", "mine/certificate.json", "--parser", ACCEPTS, "--jobs", "0")
+    assert again.returncode == 1
+    assert again.stdout.startswith("reader, name: 'always_rejected' then, 'always_accepted' now\n")
+    assert "version1/n8t4uq/accept: no failure then, failed now\n" in again.stdout
+    assert again.stdout.endswith("mine/certificate.json: differs\n")
+    as_json = certify("--verify", "mine", "--parser", ACCEPTS, "--jobs", "0", "--json")
+    value = json.loads(as_json.stdout)
+    jsonschema.Draft202012Validator(replay_schema()).validate(value)
+    assert value == {"same": False, "differences": again.stdout.splitlines()[:-1]}
+
+
+def test_a_replay_tells_what_somebody_has_changed_in_the_file(folder: Path) -> None:
+    assert certify("--parser", REJECTS, "--smoke", "--certificate", "mine").returncode == 1
+    again = certify("--verify", "mine")
+    assert (again.returncode, again.stdout) == (0, "mine: the same\n")
+    file = Path("mine/certificate.json")
+    text = file.read_text(encoding="utf-8")
+    file.write_text(text.replace("-k tq4m8z/accept", "; reboot").replace('"known": false', '"known": true', 1))
+    again = certify("--verify", file)
+    assert again.returncode == 1
+    told = "closures/tq4m8z/accept: the command that is to run it again is none of the suite: pytest"
+    assert again.stdout.startswith(told)
+    assert again.stdout.endswith(
+        ": known failures: 0 by its count, 1 by its failures\nmine/certificate.json: differs\n"
+    )
+    file.write_text(text.replace('"parser"', '"parser": "cmd:theirs",\n  "parser"'), encoding="utf-8")
+    Path("mine/badge.svg").unlink()
+    again = certify("--verify", "mine")
+    assert again.stdout.splitlines() == [
+        "certificate.json: the whole: the key 'parser' stands twice in it",
+        "badge.svg: it is missing",
+        "mine: differs",
+    ]
+
+
+def test_what_a_reader_writes_that_does_not_start_steers_no_terminal(folder: Path) -> None:
+    program = r"import sys; sys.stderr.write('\x1b[2J\u202e no licence\n'); sys.exit(3)"
+    done = certify("--parser", "cmd:" + shlex.join([sys.executable, "-c", program]))
+    assert done.returncode == 2
+    assert r"\x1b[2J\u202e no licence" in done.stderr
+    assert "\x1b" not in done.stderr
+
+
+def test_a_comparison_is_one_page_of_all_its_certificates(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name, parser in (("a", REJECTS), ("b", ACCEPTS)):
+        certify("--parser", parser, *SOME, "--certificate", name)
+    assert main(["certify", "--compare", "a", "b/certificate.json", "-o", "page.html"]) == 0
+    page = Path("page.html").read_text(encoding="utf-8")
+    assert page.index("always_rejected 1") < page.index("always_accepted 1")
+    assert "Clauses on which they differ" in page
+
+
+def test_a_comparison_replaces_nothing_unasked(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    certify("--parser", REJECTS, "--smoke", "--certificate", "a")
+    Path("page.html").write_text("of somebody else", encoding="utf-8")
+    assert main(["certify", "--compare", "a", "-o", "page.html"]) == 2
+    assert capsys.readouterr().err == "eurdf: 'page.html' exists already; --force replaces it\n"
+    assert Path("page.html").read_text(encoding="utf-8") == "of somebody else"
+    assert main(["certify", "--compare", "a", "-o", "page.html", "--force"]) == 0
+    assert "always_rejected 1" in Path("page.html").read_text(encoding="utf-8")
+
+
+def test_readers_of_one_name_are_told_apart_on_the_page(folder: Path) -> None:
+    certify("--parser", REJECTS, "--smoke", "--certificate", "a")
+    (Path("a") / "certificate.json").rename("one.json")
+    text = Path("one.json").read_text(encoding="utf-8")
+    Path("two.json").write_text(text.replace('"language": "Python"', '"language": "C++"'), encoding="utf-8")
+    assert main(["certify", "--compare", "one.json", "two.json", "two.json", "-o", "page.html"]) == 0
+    heads = re.findall(r"<th[^>]*>(always_rejected[^<]*)</th>", Path("page.html").read_text(encoding="utf-8"))
+    assert list(dict.fromkeys(heads)) == [
+        "always_rejected 1 (Python)",
+        "always_rejected 1 (C++), no. 1",
+        "always_rejected 1 (C++), no. 2",
+    ]

@@ -1,0 +1,213 @@
+"""Exploring: a search beyond the frozen examples, that makes what it finds small and writes it as a case."""
+
+from __future__ import annotations
+
+import shlex
+from collections import Counter
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from eurdf_conformance.adapters.reference import READER
+from eurdf_conformance.corpus.lint import lint
+from eurdf_conformance.corpus.read import CASES, CorpusCase, read_cases
+from eurdf_conformance.level import VERSIONS, Level, Version
+from eurdf_conformance.properties.bench import Bench
+from eurdf_conformance.properties.catalogue import law_of
+from eurdf_conformance.properties.culprit import culprit
+from eurdf_conformance.properties.document import configuration
+from eurdf_conformance.properties.example import frozen_examples
+from eurdf_conformance.properties.explore import explore, search
+from eurdf_conformance.properties.mechanism import Mechanism
+from eurdf_conformance.properties.smaller import smaller
+from eurdf_conformance.properties.strategies.mechanisms import mechanisms
+from eurdf_conformance.properties.truth import truth
+from eurdf_conformance.properties.trying import try_example, try_law
+from eurdf_conformance.runner.outcome import Crashed, Outcome
+from eurdf_conformance.suite.conversation import Conversation
+from eurdf_conformance.suite.in_process import InProcess
+from eurdf_conformance.suite.judge import Judgement, judge
+from eurdf_conformance.suite.property import Trial
+from eurdf_conformance.verdict.verdict import Verdict
+from support.oracle_parser import OracleReader
+from support.wrong_parsers import ForgetsInlineAngles, UniversalBackwards
+
+#: What is drawn from a seed depends on the version of Hypothesis too: as many are drawn as find it from any.
+SEED, COUNT = 1, 400
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _small() -> Iterator[None]:
+    """Small to begin with, so that making it smaller is soon done."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("eurdf_conformance.properties.explore.mechanisms", partial(mechanisms, most=2))
+        patch.setattr("eurdf_conformance.properties.explore.SHRINKING", 600.0)
+        yield
+
+
+def explored(name: str, reader: OracleReader, folder: Path, count: int = COUNT) -> Judgement:
+    (folder / "files").mkdir()
+    trial = Trial(InProcess(reader), "2", count, folder / "files", SEED)
+    bench = Bench(trial.reader, trial.folder)
+    return explore(law_of(name), Level.KINEMATICS, trial, bench, folder / "explored")
+
+
+def the_case(folder: Path) -> CorpusCase:
+    (case,) = read_cases(folder / "explored")
+    return case
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Judgement]:
+    """What is found of a reader that turns a universal joint about its second axis first."""
+    folder = tmp_path_factory.mktemp("found")
+    return folder, explored("agreement", UniversalBackwards(), folder)
+
+
+def test_what_is_found_is_small(found: tuple[Path, Judgement]) -> None:
+    robot = the_case(found[0]).expected.robot
+    assert [joint.type for joint in robot.joints] == ["universal"]
+    assert (robot.closures, robot.actuators, robot.frames) == ([], [], [])
+
+
+def test_what_is_found_is_written_as_a_case_that_the_lint_takes(found: tuple[Path, Judgement]) -> None:
+    folder, judgement = found
+    assert judgement.verdict == Verdict.FAILED
+    assert lint(folder / "explored") == []
+    case = the_case(folder)
+    assert f"from seed {SEED}" in judgement.log
+    assert str(case.folder) in judgement.log
+    assert case.topic == "joints"
+
+
+def test_whoever_finds_a_case_is_told_how_to_keep_it_and_to_run_it_alone(found: tuple[Path, Judgement]) -> None:
+    folder, judgement = found
+    case = the_case(folder)
+    move, check = (line.strip() for line in judgement.log.splitlines() if line.startswith("  "))
+    program, source, target = shlex.split(move)
+    assert (program, source) == ("mv", str(case.folder))
+    assert Path(target).resolve() == CASES / case.topic
+    assert Path(target).is_dir()
+    assert check == f"python -m {lint.__module__}"
+    assert f"-k {case.id}" in judgement.log.splitlines()[-1]
+
+
+def test_the_case_is_one_that_the_wrong_reader_fails_and_the_reference_passes(found: tuple[Path, Judgement]) -> None:
+    case = the_case(found[0])
+    assert judge(case, Level.KINEMATICS, Conversation(InProcess(UniversalBackwards()))).verdict == Verdict.FAILED
+    for level in case.levels:
+        assert judge(case, level, Conversation(InProcess(READER))).verdict == Verdict.PASSED, level
+
+
+@pytest.mark.slow
+def test_of_two_robots_that_do_not_agree_the_one_that_is_read_wrong_is_written(tmp_path: Path) -> None:
+    # The law compares frames that are said in place, which this reader gets wrong, with others.
+    explored("frames", ForgetsInlineAngles(), tmp_path)
+    case = the_case(tmp_path)
+    assert "rpy" in case.description.read_text("utf-8")
+    assert judge(case, Level.KINEMATICS, Conversation(InProcess(ForgetsInlineAngles()))).verdict == Verdict.FAILED
+    assert case.topic == "closures"
+
+
+def test_where_there_is_nothing_to_find_nothing_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    judgement = explored("moving-base", OracleReader(), tmp_path, 60)
+    assert judgement.verdict == Verdict.PASSED
+    assert (
+        judgement.log
+        == f"exploring has found nothing wrong on 60 more mechanisms, drawn from seed {SEED}, and no case is written"
+    )
+    assert [path.name for path in tmp_path.iterdir()] == ["files"]
+
+
+def test_a_family_is_explored_by_its_size(tmp_path: Path) -> None:
+    class LosesLarge(OracleReader):
+        def evaluate(self, *asked: object) -> list:  # type: ignore[override, type-arg]
+            found = super().evaluate(*asked)  # type: ignore[arg-type]
+            assert self.robot is not None
+            large = len(self.robot.urdf.joints) > 9
+            return [values.model_copy(update={"jacobian": None}) if large else values for values in found]
+
+    law = law_of("spherical-polygon")
+    found = search(law, Level.KINEMATICS, "2", Bench(InProcess(LosesLarge()), tmp_path), COUNT, SEED)
+    assert found is not None
+    assert len(found[0].mechanism.joints) == 10
+
+
+def test_a_crash_is_made_small_as_a_crash(tmp_path: Path) -> None:
+    class CrashesOnBalls(InProcess):
+        def load(self, description: Path, urdf: Path) -> Outcome:
+            if "spherical" in description.read_text("utf-8"):
+                return Crashed(None, "SIGSEGV", "")
+            return super().load(description, urdf)
+
+    bench = Bench(CrashesOnBalls(OracleReader()), tmp_path)
+    found = search(law_of("accepted"), Level.ACCEPT, "2", bench, COUNT, SEED)
+    assert found is not None
+    example, judgement = found
+    assert judgement.verdict == Verdict.CRASHED
+    assert [change.type for change in example.mechanism.changes.values()] == ["spherical"]
+    assert len(example.mechanism.types()) == 1
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_a_mechanism_with_a_part_less_is_one_and_its_loops_are_closed(version: Version) -> None:
+    lost = Counter[str]()
+    examples = [example.mechanism for example in frozen_examples(version)[:24]]
+    # What holds no loop together may go too.
+    for mechanism in (*examples, *(each.replace(closures=()) for each in examples)):
+        for less in smaller(mechanism):
+            robot = truth(less, version)
+            at = configuration(less, less.configurations["assembled"], version)
+            assert all(np.abs(rows).max() < 1e-9 * max(1.0, robot.size(at)) for rows in robot.residuals(at).values())
+            gone = Counter(kinds(mechanism)) - Counter(kinds(less))
+            assert len(gone) == 1 or gone.keys() == {"joint", "actuator"}  # a motor goes with its joint
+            lost += gone
+    assert lost.keys() == {"closure", "actuator", "joint"} | ({"frame"} if version == "2" else set())
+
+
+def kinds(mechanism: Mechanism) -> Iterator[str]:
+    yield from ("closure" for _ in mechanism.closures)
+    yield from ("actuator" for _ in mechanism.actuators)
+    yield from ("frame" for _ in mechanism.frames)
+    yield from ("joint" for _ in mechanism.joints)
+
+
+def test_the_culprit_is_the_robot_that_is_read_wrong_not_the_one_asked_last(tmp_path: Path) -> None:
+    bench = Bench(InProcess(ForgetsInlineAngles()), tmp_path)
+    law = law_of("frames")
+    example = next(
+        each
+        for each in law.frozen("2")
+        if try_example(law, Level.KINEMATICS, "2", bench, each).verdict == Verdict.FAILED
+    )
+    try_example(law, Level.KINEMATICS, "2", bench, example)
+    assert culprit(bench, Level.KINEMATICS) == bench.asked[0][0]
+
+
+def test_exploring_goes_on_after_a_frozen_example_has_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "files").mkdir()
+    trial = Trial(InProcess(UniversalBackwards()), "2", COUNT, tmp_path / "files", SEED)
+    judgement = try_law(law_of("agreement"), Level.KINEMATICS, trial)
+    assert judgement.reason.startswith("example ")
+    assert "written as a case: explored/joints/" in judgement.log
+
+
+def test_where_only_a_frozen_example_fails_it_is_said_that_exploring_has_found_no_more(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "files").mkdir()
+    # A single mechanism, the plainest, which has no universal joint.
+    judgement = try_law(
+        law_of("agreement"), Level.KINEMATICS, Trial(InProcess(UniversalBackwards()), "2", 1, tmp_path / "files", SEED)
+    )
+    assert judgement.reason.startswith("example ")
+    assert judgement.verdict == Verdict.FAILED
+    assert "exploring has found nothing wrong on 1 more" in judgement.log
+    assert "written as a case: " not in judgement.log
+    assert not Path("explored").exists()

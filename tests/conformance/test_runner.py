@@ -1,0 +1,457 @@
+"""The runner tells the truth about readers that hang, crash, lie, are late, or talk too much; and goes on."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+import tracemalloc
+from pathlib import Path
+
+import pytest
+
+from eurdf_conformance.corpus.protocol_rule import START, STOP
+from eurdf_conformance.corpus.read import read_cases
+from eurdf_conformance.protocol.message import Errored, Evaluated, Rejected, Started, Stopped
+from eurdf_conformance.runner.outcome import (
+    Answered,
+    CannotStart,
+    Chatter,
+    Crashed,
+    Malformed,
+    Misplaced,
+    Outcome,
+    TimedOut,
+)
+from eurdf_conformance.runner.session import NotStarted, Session
+from eurdf_conformance.suite.judge import Judgement, judge_outcome
+from eurdf_conformance.suite.protocol_check import Asked, check
+from eurdf_conformance.verdict.verdict import Verdict
+from support.fake_parsers import FAKES, accepts, fake, has_ended, load, runs
+
+#: For each way to go wrong: what comes of it, words that tell it, and whether the process can be asked on.
+WAYS = [
+    ("hangs", TimedOut, "no answer in 0.5 s", False),
+    ("exits", Crashed, "exit code 3", False),
+    ("exits_with_success", Crashed, "exit code 0", False),
+    ("segfaults", Crashed, "SIGSEGV", False),
+    ("aborts_with_a_line", Crashed, "SIGABRT", False),
+    ("another_id", Misplaced, "answered by an answer to", False),
+    ("answer_before", Misplaced, "answered by an answer to", False),
+    ("late", TimedOut, "no answer in 0.5 s", False),
+    ("twice", Chatter, "a line on standard output that nobody asked for", True),
+    ("garbage", Malformed, "not JSON: Expecting value at character 1", False),
+    ("nothing_but_a_line_end", Malformed, "not JSON", False),
+    ("not_utf8", Malformed, "not UTF-8, from byte 44 on", False),
+    ("half_a_character", Malformed, "hex escape", True),
+    ("list_of_one", Malformed, "a JSON value, but no object", False),
+    ("cut_off", TimedOut, 'it wrote: \'{"id": 3, "outcome": "accepted\'', False),
+    ("no_line_end", TimedOut, 'it wrote: \'{"id": 3,', False),
+    ("unknown_member", Malformed, "/verdict: Extra inputs are not permitted", True),
+    ("member_missing", Malformed, "/robot: Field required", True),
+    ("another_outcome_before", Malformed, "the whole: the key 'outcome' stands twice in it", True),
+    ("two_ids", Malformed, "an answer in which the key 'id' stands twice", False),
+    ("number_too_long", Malformed, "/issues/0/line: a number is beyond the range of a double", True),
+    ("wrong_type", Malformed, "/issues/0/line: Input should be a valid integer", True),
+    ("no_outcome", Malformed, "'outcome'", True),
+    ("unknown_outcome", Malformed, "'valid'", True),
+    ("no_id", Malformed, "without the 'id'", False),
+    ("wrong_kind", Malformed, "'evaluated' is no answer to 'load'", True),
+    ("not_a_number", Malformed, "/robot/own/~1x-a: NaN is no JSON", True),
+    ("number_too_large", Malformed, "/robot/own/~1x-a: a number is beyond the range of a double", True),
+    ("null_for_a_number", Malformed, "/robot/joints/0/damping/0: Input should be a valid number, not null", True),
+    ("nested_deep", Malformed, "not JSON of a sensible depth", False),
+    ("endless_line", Malformed, "a line of more than 1,048,576 bytes", False),
+    ("endless_lines", Malformed, "not JSON", False),
+    ("chatter_before", Chatter, "2 lines on standard output that nobody asked for", True),
+    ("chatter_after", Chatter, "a line on standard output that nobody asked for", True),
+    ("floods_stderr_for_ever", TimedOut, "no answer in 0.5 s", False),
+    ("dies_before_its_child", Crashed, "exit code 5", False),
+    ("closes_stdout", Crashed, "closed its standard output", False),
+]
+
+
+@pytest.mark.parametrize(("way", "kind", "words", "goes_on"), WAYS, ids=[way for way, *_ in WAYS])
+def test_each_way_to_go_wrong_is_told_apart_and_survived(
+    way: str, kind: type[Outcome], words: str, goes_on: bool
+) -> None:
+    with Session(fake(way), timeout=0.5, line_limit=2**20) as session:
+        assert accepts(load(session, "first"), "first")
+        outcome = load(session, "fault")
+        assert isinstance(outcome, kind)
+        assert words in str(outcome)
+        assert outcome.word == {TimedOut: "timed out"}.get(kind, kind.__name__.lower())
+        assert accepts(load(session, "next"), "next")
+        assert session.restarts == (0 if goes_on else 1)
+    assert isinstance(session.ended, Answered)
+
+
+@pytest.mark.parametrize(
+    "way", ["sound", "in_pieces", "floods_stderr", "carriage_returns", "whole_numbers_with_a_point"]
+)
+def test_what_is_unusual_but_right_is_an_answer(way: str) -> None:
+    with Session(fake(way)) as session:
+        for name in ("first", "fault_Ω_関節", "next"):
+            assert accepts(load(session, name), name)
+        assert session.restarts == 0
+
+
+def test_no_way_to_go_wrong_is_a_rejection() -> None:
+    assert not any(issubclass(kind, Answered) for _, kind, _, _ in WAYS)
+    with Session(fake("errors")) as session:
+        outcome = load(session, "fault")
+        assert isinstance(outcome, Answered)
+        assert isinstance(outcome.answer, Errored)
+        assert not isinstance(outcome.answer, Rejected)
+        assert outcome.word == "errored"
+        assert session.restarts == 0
+
+
+def test_a_late_answer_is_not_taken_for_that_to_the_next_request() -> None:
+    with Session(fake("late"), timeout=0.3) as session:
+        assert isinstance(load(session, "fault"), TimedOut)
+        time.sleep(0.6)  # by now it would have answered
+        assert accepts(load(session, "next"), "next")
+        assert accepts(load(session, "fault", timeout=5.0), "fault")
+
+
+def test_what_ends_before_it_is_greeted_has_answered_nothing() -> None:
+    with Session("cmd:sh -c 'exit 127'") as session, pytest.raises(NotStarted) as refusal:
+        _ = session.started
+    assert str(refusal.value).splitlines()[0] == "crashed: ended with exit code 127 without an answer"
+
+
+def test_a_crash_after_an_answer_is_told_at_the_next_request_and_said_to_be_from_before() -> None:
+    with Session(fake("exits_after_answering")) as session:
+        assert accepts(load(session, "fault"), "fault")
+        time.sleep(0.2)
+        outcome = load(session, "next")
+        assert outcome == Crashed(4, None, "", before=True)
+        assert "after it had answered the request before" in str(outcome)
+        assert accepts(load(session, "next"), "next")
+
+
+def test_a_crash_right_after_an_answer_is_told_with_its_exit_code() -> None:
+    with Session(fake("exits_after_answering")) as session:
+        for _ in range(30):
+            assert accepts(load(session, "fault"), "fault")
+            outcome = load(session, "next")  # the process may be alive still, or be dying, or be dead
+            assert isinstance(outcome, Crashed)
+            assert outcome.code == 4
+
+
+def test_a_line_after_an_answer_is_told_at_the_next_request() -> None:
+    with Session(fake("chatter_later")) as session:
+        assert accepts(load(session, "fault"), "fault")
+        time.sleep(0.3)
+        outcome = load(session, "next")
+        assert isinstance(outcome, Chatter)
+        assert outcome.lines == ("cleaned up",)
+        assert outcome.answer is not None
+        assert accepts(load(session, "next"), "next")
+
+
+def test_a_reader_that_no_longer_listens_still_answers_and_is_restarted_when_it_does_not() -> None:
+    with Session(fake("closes_stdin"), timeout=0.5) as session:
+        assert accepts(load(session, "fault"), "fault")
+        assert isinstance(load(session, "next"), TimedOut)
+        assert accepts(load(session, "next"), "next")
+
+
+def test_a_request_larger_than_the_pipe_does_not_hang_up_on_a_reader_that_does_not_read() -> None:
+    configurations = [{f"joint_{index}": [0.123456789] for index in range(20_000)}]
+    with Session(fake("hangs"), timeout=0.5) as session:
+        assert isinstance(load(session, "fault"), TimedOut)
+        outcome = session.evaluate(configurations, [], ["mass"])
+        assert isinstance(outcome, Answered)
+        assert isinstance(outcome.answer, Evaluated)
+
+
+def test_values_at_another_number_of_configurations_are_malformed() -> None:
+    with Session(fake("sound")) as session:
+        outcome = session.evaluate([{}, {}], [], ["mass"])
+        assert isinstance(outcome, Malformed)
+        assert "values at 1 configurations; 2 were asked for" in str(outcome)
+
+
+def test_the_log_of_what_went_wrong_is_kept_and_bounded() -> None:
+    with Session(fake("exits")) as session:
+        outcome = load(session, "fault")
+        assert isinstance(outcome, Crashed)
+        assert outcome.log == "cannot go on\n"
+        assert "log: cannot go on" in str(outcome)
+    with Session(fake("floods_stderr_for_ever"), timeout=0.5) as session:
+        outcome = load(session, "fault")
+        assert isinstance(outcome, TimedOut)
+        assert len(outcome.log) == 2**14
+
+
+def test_of_a_long_log_enough_is_shown_to_see_what_node_js_misses() -> None:
+    trace = [f"    at somewhere (node:internal/modules/esm/{number})" for number in range(10)]
+    log = ["Error [ERR_MODULE_NOT_FOUND]: Cannot find package 'yaml'", *trace, "  code: 'ERR'", "}", "", "Node.js v24"]
+    assert log[0] in str(Crashed(1, None, "\n".join(log)))
+
+
+def test_a_headline_says_what_happened_once_and_the_rest_is_below() -> None:
+    with Session(fake("closes_stdout"), timeout=5.0) as session:
+        judgement = judge_outcome(load(session, "fault"))
+        assert judgement.reason == "the process closed its standard output, without an answer"
+    with Session(fake("null_for_a_number")) as session:
+        judgement = judge_outcome(load(session, "fault"))
+        assert "null, which some libraries write for NaN and infinity: these are no JSON" in judgement.reason
+        assert "a link" not in judgement.reason
+        assert "a link" in judgement.log
+        assert "Input should be" not in judgement.log
+
+
+def test_an_endless_line_takes_no_more_memory_than_is_allowed() -> None:
+    with Session(fake("endless_line"), line_limit=2**20) as session:
+        assert accepts(load(session, "first"), "first")
+        tracemalloc.start()
+        try:
+            outcome = load(session, "fault")
+            peak = tracemalloc.get_traced_memory()[1]
+        finally:
+            tracemalloc.stop()
+    assert isinstance(outcome, Malformed)
+    assert len(outcome.line) < 2100
+    assert peak < 5 * 2**20
+
+
+# -- starting --------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("way", "kind", "words"),
+    [
+        ("crashes_at_start", Crashed, "no licence found"),
+        ("hangs_at_start", TimedOut, "no answer in 0.5 s"),
+        ("refuses_to_start", Answered, "answered 'errored': no licence"),
+        ("speaks_another_protocol", Malformed, "/protocol: Input should be '1.0'"),
+        ("byte_order_mark", Malformed, "byte order mark"),
+        ("banner", Chatter, "Welcome to Fake 1.0!"),
+    ],
+)
+def test_a_reader_that_does_not_start_is_told_why_and_given_up(way: str, kind: type[Outcome], words: str) -> None:
+    with Session(fake(way), start_timeout=0.5 if way == "hangs_at_start" else 30.0) as session:
+        assert isinstance(session.start(), kind)
+        with pytest.raises(NotStarted) as caught:
+            _ = session.started
+        assert words in str(caught.value)
+        outcome = load(session, "robot")
+        assert isinstance(outcome, CannotStart)
+        assert words in str(outcome)
+        assert session.restarts == 0
+    assert session.ended is None
+
+
+def test_who_answers_to_start_that_it_failed_does_not_keep_the_rule_of_starting() -> None:
+    with Session(fake("refuses_to_start")) as session:
+        asked = Asked(session, lambda: Session(fake("refuses_to_start")), *read_cases()[:2])
+        for rule in (START, STOP):
+            judgement = check(rule, asked)
+            assert (judgement.verdict, judgement.reason) == (Verdict.ERRORED, "no licence")
+
+
+@pytest.mark.parametrize(
+    ("parser", "words"),
+    [
+        ("cmd:/no/such/program", "there is no program '/no/such/program'"),
+        ("cmd:no-such-program", "there is no program 'no-such-program' where programs are (PATH)"),
+        ("cmd:", "there is no command"),
+        ("cmd:'unclosed", "closing quotation"),
+        ("reader.py", "neither 'package.module:object' nor 'cmd:'"),
+        ("my-package:reader", "neither"),
+    ],
+)
+def test_what_cannot_be_started_is_said_so(parser: str, words: str) -> None:
+    with Session(parser) as session:
+        outcome = session.start()
+        assert isinstance(outcome, CannotStart)
+        assert words in str(outcome)
+        assert isinstance(load(session, "robot"), CannotStart)
+
+
+@pytest.mark.parametrize(
+    ("parser", "text", "mode", "words"),
+    [
+        ("cmd:mine.py", "", 0o644, "the file that is here is './mine.py', and it must be executable"),
+        ("cmd:./mine.py", "", 0o644, "'./mine.py' is not executable"),
+        ("cmd:./mine.py", "print(1)", 0o755, "'./mine.py' is no program; a script begins with a line"),
+        (
+            "cmd:./mine.py",
+            "#!/no/such/python",
+            0o755,
+            "'./mine.py' names in its first line a program that there is not",
+        ),
+        ("cmd:./folder", "", 0o644, "'./folder' is a folder"),
+    ],
+)
+def test_of_a_file_that_does_not_run_it_is_said_what_may_help(
+    parser: str, text: str, mode: int, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "mine.py").write_text(text)
+    (tmp_path / "mine.py").chmod(mode)
+    with Session(parser) as session:
+        assert words in str(session.start())
+
+
+def test_a_sound_reader_says_who_it_is() -> None:
+    with Session(fake("sound")) as session:
+        assert isinstance(session.started, Started)
+        assert session.started.reader.name == "fake"
+        assert session.started.claims == {"2": ["accept"]}
+
+
+def test_a_reader_that_starts_is_restarted_for_every_request_that_breaks_it() -> None:
+    with Session(fake("exits")) as session:
+        assert [load(session, "fault").word for _ in range(30)] == ["crashed"] * 30
+        assert accepts(load(session, "next"), "next")
+        assert session.restarts == 30
+
+
+@pytest.mark.parametrize("names", [["fault"], ["fault_1", "sound_1", "fault_2"]], ids=["all", "some"])
+def test_what_a_reader_comes_to_that_crashes_is_the_same_however_it_is_spread(names: list[str]) -> None:
+    asked = [f"{name}_{number}" for number in range(8) for name in names]
+
+    def judged(sessions: int) -> dict[str, Judgement]:
+        found = {}
+        for part in range(sessions):
+            with Session(fake("exits")) as session:
+                found |= {name: judge_outcome(load(session, name)) for name in asked[part::sessions]}
+        return found
+
+    found = judged(1)
+    assert found == judged(3)
+    crashed = {name for name, judgement in found.items() if judgement.verdict == Verdict.CRASHED}
+    assert crashed == {name for name in asked if name.startswith("fault")}
+
+
+def test_a_reader_that_does_not_start_again_is_no_crash_of_the_next_request_and_at_last_given_up(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("FAKE_STARTED", str(tmp_path / "started"))
+    with Session(fake("starts_once"), timeout=0.5, failed_starts=3) as session:
+        assert accepts(load(session, "first"), "first")
+        process = session._process
+        assert process is not None
+        process.end()  # as any outcome that breaks it does
+        assert [load(session, "next").word for _ in range(5)] == ["cannot start"] * 5
+        assert session.restarts == 3
+        (tmp_path / "started").unlink()
+        outcome = load(session, "next")
+        assert isinstance(outcome, CannotStart)
+        assert "given up, for it did not start 3 times in a row: crashed: ended with exit code 9" in str(outcome)
+
+
+def test_failed_starts_count_only_in_a_row(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("FAKE_STARTED", str(tmp_path / "started"))
+    with Session(fake("starts_once"), failed_starts=2) as session:
+        for _ in range(4):
+            assert accepts(load(session, "first"), "first")
+            assert session._process is not None
+            session._process.end()
+            assert load(session, "next").word == "cannot start"
+            (tmp_path / "started").unlink()
+
+
+def test_a_robot_is_loaded_again_before_it_is_evaluated_by_another_process() -> None:
+    with Session(fake("exits")) as session:
+        assert accepts(load(session, "first"), "first")
+        assert session._process is not None
+        session._process.end()
+        outcome = session.evaluate([{}], [], ["mass"])
+        assert isinstance(outcome, Answered)
+        assert isinstance(outcome.answer, Evaluated)
+        assert outcome.answer.id == 5  # start, load; start, load, evaluate
+
+
+# -- ending ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("way", "kind"), [("ignores_stop", TimedOut), ("does_not_end", TimedOut), ("crashes_at_the_end", Crashed)]
+)
+def test_a_reader_that_does_not_stop_in_order_is_ended_and_told(way: str, kind: type[Outcome]) -> None:
+    with Session(fake(way), stop_timeout=0.3) as session:
+        assert accepts(load(session, "fault"), "fault")
+        process = session._process
+    assert isinstance(session.ended, kind)
+    assert process is not None
+    assert not process.alive
+
+
+def test_a_reader_that_waits_for_more_after_stop_sees_the_end_of_its_input() -> None:
+    with Session(fake("ends_with_its_input"), stop_timeout=30.0) as session:
+        assert accepts(load(session, "robot"), "robot")
+    assert isinstance(session.ended, Answered)
+    assert isinstance(session.ended.answer, Stopped)
+
+
+def test_what_a_reader_started_ends_with_it() -> None:
+    with Session(fake("has_a_child")) as session:
+        outcome = load(session, "fault")
+        assert isinstance(outcome, Answered)
+        child = int(outcome.answer.issues[0].message)  # type: ignore[union-attr]
+        assert runs(child)
+    assert isinstance(session.ended, Answered)
+    assert isinstance(session.ended.answer, Stopped)
+    assert has_ended(child)
+
+
+def test_a_child_that_holds_the_pipes_of_a_dead_reader_does_not_keep_anybody_waiting() -> None:
+    with Session(fake("dies_before_its_child"), timeout=300.0) as session:
+        outcome = load(session, "fault")
+        assert isinstance(outcome, Crashed)  # and not that it timed out
+        assert has_ended(int(outcome.log))
+
+
+def test_an_error_on_this_side_ends_the_reader_at_once() -> None:
+    session = Session(fake("ignores_stop"), stop_timeout=60.0)
+
+    def interrupted() -> None:
+        with session:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    assert session._process is not None
+    assert not session._process.alive
+    assert session.ended is None
+
+
+RUNNER = """
+import sys
+from support.fake_parsers import fake, load
+from eurdf_conformance.runner.session import Session
+with Session(fake("spins"), timeout=60.0) as session:
+    load(session, "fault")
+"""
+
+
+@pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
+def test_a_reader_ends_with_a_runner_that_is_killed(end: signal.Signals, tmp_path: Path) -> None:
+    pids = tmp_path / "pids"
+    environment = os.environ | {"FAKE_PIDS": str(pids), "PYTHONPATH": str(FAKES.parents[1])}
+    with subprocess.Popen(
+        [sys.executable, "-c", RUNNER],
+        env=environment,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+        # Where the tests run as a background job of a script, SIGINT is ignored, also by what they start.
+        preexec_fn=lambda: signal.signal(end, signal.SIG_DFL) if end != signal.SIGKILL else None,
+    ) as runner:
+        for _ in range(300):
+            if pids.exists():
+                break
+            time.sleep(0.05)
+        reader, child = map(int, pids.read_text().split())
+        assert runs(reader)
+        assert runs(child)
+        os.killpg(runner.pid, end)  # as Ctrl-C does, all of the group
+    assert has_ended(reader)
+    assert has_ended(child)

@@ -1,0 +1,230 @@
+"""A Python object is served as a reader: over a pipe of its own, and whatever it prints or raises."""
+
+from __future__ import annotations
+
+import io
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from eurdf_conformance.protocol.message import Accepted, AnyAnswer, Errored, Evaluated, Rejected, Skipped, Unsupported
+from eurdf_conformance.protocol.serve import find_object, serve
+from eurdf_conformance.runner.outcome import Answered, Crashed, Malformed, Outcome
+from eurdf_conformance.runner.session import Session
+from eurdf_conformance.suite.judge import judge_outcome
+from eurdf_conformance.verdict.verdict import OF_THE_ADAPTER
+from support.fake_parsers import FAKES, load
+
+
+@pytest.fixture(autouse=True)
+def _where_the_readers_are(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    monkeypatch.chdir(FAKES)
+    monkeypatch.syspath_prepend(str(FAKES))
+    yield
+    sys.modules.pop("python_readers", None)
+
+
+def answer_of(outcome: Outcome) -> AnyAnswer:
+    assert isinstance(outcome, Answered), str(outcome)
+    return outcome.answer
+
+
+def served(name: str, *requests: dict[str, Any] | bytes) -> list[dict[str, Any]]:
+    """The answers of a reader to requests, served in this process."""
+    lines = [each if isinstance(each, bytes) else json.dumps(each).encode() for each in requests]
+    answers = io.BytesIO()
+    serve(find_object(f"python_readers:{name}"), lines, answers)
+    return [json.loads(line) for line in answers.getvalue().splitlines()]
+
+
+def load_request(name: str, number: int = 1) -> dict[str, Any]:
+    return {"id": number, "command": "load", "description": f"/{name}.yaml", "urdf": "/robot.urdf"}
+
+
+@pytest.mark.parametrize("path", ["python_readers:Plain", "python_readers:PLAIN", "python_readers:holder.inner"])
+def test_an_object_or_a_class_is_served_by_its_import_path(path: str) -> None:
+    with Session(path) as session:
+        assert session.started.reader.name == "plain"
+        answer = answer_of(load(session, "robot"))
+        assert isinstance(answer, Accepted)
+        assert answer.robot is None
+        assert [issue.message for issue in answer.issues] == ["/robot.yaml", "/robot.urdf"]
+    assert isinstance(session.ended, Answered)
+
+
+@pytest.mark.parametrize(
+    ("path", "words"),
+    [
+        ("no_such_module:READER", f"there is no module 'no_such_module': neither in the working folder, {FAKES}, nor "),
+        ("python_readers.inner:READER", "there is no module 'python_readers.inner': "),
+        ("python_readers:Nil", "python_readers has no 'Nil'"),
+        ("python_readers:holder.outer", "python_readers has no 'holder.outer'"),
+        ("python_readers:TakesArguments", "the class python_readers:TakesArguments is not made without arguments"),
+        ("python_readers:NoName", "is no reader: an object of the class NoName has no name"),
+        ("python_readers:NoLoad", "is no reader: an object of the class NoLoad has no load"),
+        ("python_readers:number", "is no reader: 3 has no name and no version and no language and no claims"),
+        ("python_readers:function", "is no reader: the function function has no name"),
+        ("python_readers:NumberForVersion", "its version is 1, and should be a text"),
+        ("python_readers:OnePath", "its method load(description) cannot be called as load(description, urdf)"),
+        ("python_readers:OneArgument", "cannot be called as evaluate(configurations, frames, quantities)"),
+        ("python_readers:number_for_version", "it claims version 2; versions are '1' and '2', texts"),
+        ("python_readers:no_mapping", "should say for each version the levels, as in {'2': ['accept']}"),
+        ("python_readers:no_level", "it claims level 'acept'; levels are accept, structure"),
+        ("python_readers:no_list", "what it claims for version 2 should be a list of levels"),
+    ],
+)
+def test_what_is_no_reader_ends_the_process_with_the_reason_in_a_line(path: str, words: str) -> None:
+    with Session(path) as session:
+        outcome = session.start()
+        assert isinstance(outcome, Crashed)
+        assert outcome.code == 1
+        assert words in outcome.log
+        assert len(outcome.log.splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("path", "first", "last"),
+    [
+        ("python_readers:Raises", "python_readers.py", "RuntimeError: no licence"),
+        ("imports_what_is_missing:X", "imports_what_is_missing.py", "No module named 'no_such_package'"),
+    ],
+)
+def test_what_the_module_of_a_reader_raises_is_told_with_its_own_lines_alone(path: str, first: str, last: str) -> None:
+    with Session(path) as session:
+        outcome = session.start()
+    assert isinstance(outcome, Crashed)
+    lines = outcome.log.splitlines()
+    assert lines[0].startswith("Traceback")
+    assert first in lines[1]
+    assert last in lines[-1]
+    assert "serve.py" not in outcome.log
+    assert "importlib" not in outcome.log
+
+
+def test_what_a_reader_prints_is_log_and_what_it_reads_is_nothing() -> None:
+    with Session("python_readers:Talkative") as session:
+        for _ in range(2):
+            answer = answer_of(load(session, "robot"))
+            assert isinstance(answer, Accepted)
+            assert [issue.message for issue in answer.issues] == ["read ''"]
+        assert session._process is not None
+        log = session._process._pipes.log
+    assert {"from Python", "from below", "from a child"} <= set(log.split("\n"))
+
+
+def test_an_exception_is_the_readers_word_that_it_failed() -> None:
+    with Session("python_readers:Failing") as session:
+        for name, error in (("key", "KeyError"), ("recursion", "RecursionError"), ("memory", "MemoryError")):
+            answer = answer_of(load(session, name))
+            assert isinstance(answer, Errored)
+            assert answer.message.startswith(f"{error}: ")
+        answer = answer_of(session.evaluate([{}], [], ["mass"]))
+        assert isinstance(answer, Errored)
+        assert answer.message == "ValueError: no robot was accepted"
+        assert session.restarts == 0
+        assert load(session, "exit") == Crashed(6, None, "")
+
+
+def test_every_kind_of_answer_gets_the_id_of_its_request() -> None:
+    with Session("python_readers:Answers") as session:
+        kinds = {"rejected": Rejected, "unsupported": Unsupported, "skipped": Skipped, "robot": Accepted}
+        for name, kind in kinds.items():
+            assert isinstance(answer_of(load(session, name)), kind)
+        answer = answer_of(session.evaluate([{"a": [1.0]}, {}], ["tool"], ["mass"]))
+        assert isinstance(answer, Evaluated)
+        assert [values.mass for values in answer.values] == [1.0, 0.0]
+        assert isinstance(answer_of(session.evaluate([{}], [], ["mass"])), Unsupported)
+
+
+def test_issues_are_sentences_or_say_more() -> None:
+    (answer,) = served("Answers", load_request("rejected", 4))
+    assert answer["id"] == 4
+    assert [issue["message"] for issue in answer["issues"]] == ["no such frame", "another"]
+    assert [issue["line"] for issue in answer["issues"]] == [3, None]
+
+
+def test_what_cannot_be_written_is_errored_and_no_rejection() -> None:
+    answers = served("Answers", load_request("half_a_character", 1), load_request("robot", 2))
+    assert [answer["outcome"] for answer in answers] == ["errored", "accepted"]
+
+
+RETURNS = "use accepted, rejected, unsupported or skipped of eurdf_conformance.protocol.reply"
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("nothing", f"load returned None; {RETURNS}"),
+        (
+            "no_canonical_description",
+            "given to accepted(): /robot/version: Field required; /robot/root: Field required",
+        ),
+        ("no_plain_data", "given to accepted(): /robot is no plain data: Object of type set is not JSON serializable"),
+        ("not_a_number", "given to accepted(): /robot/own/~1x/0/y: NaN and infinity are no JSON"),
+        ("no_issue", "given to rejected(): /issues/0: Input should be a valid dictionary or instance of Issue, not "),
+        ("values", "Values: /mass: Input should be a finite number, not inf: NaN and infinity are no JSON"),
+        ("pose", "Pose: /rotation: List should have at least 3 items after validation, not 1, not [[1.0, 0.0, 0.0]]"),
+    ],
+)
+def test_what_is_no_answer_is_the_fault_of_the_adapter_and_no_rejection(name: str, why: str) -> None:
+    with Session("python_readers:Answers") as session:
+        outcome = load(session, name)
+        assert isinstance(outcome, Malformed)
+        assert outcome.why.startswith(why)
+        judgement = judge_outcome(outcome)
+        assert judgement.verdict in OF_THE_ADAPTER
+        assert "it wrote" not in judgement.log
+        assert not any(inside in judgement.reason for inside in ("pydantic", "model_", "\n", "\\n"))
+        assert isinstance(answer_of(load(session, "robot")), Accepted)
+        assert session.restarts == 0
+
+
+def test_values_that_are_none_are_the_fault_of_the_adapter() -> None:
+    with Session("python_readers:Answers") as session:
+        outcome = session.evaluate([{}], ["nothing"], ["mass"])
+        assert isinstance(outcome, Malformed)
+        assert outcome.why.startswith("evaluate returned None; give a list of Values, one a configuration, or use ")
+
+
+def test_a_reader_that_does_not_evaluate_says_so() -> None:
+    request = {"id": 1, "command": "evaluate", "quantities": ["mass"], "frames": [], "configurations": [{}]}
+    assert served("Plain", request) == [{"id": 1, "outcome": "unsupported", "feature": "evaluate", "reason": ""}]
+
+
+@pytest.mark.parametrize(
+    ("line", "number"),
+    [
+        (b'{"id": 5, "command": "reload"}', 5),
+        (b'{"id": 5, "command": "load", "description": "/robot.yaml"}', 5),
+        (b'{"id": "5", "command": "stop"}', 0),
+        (b"[]", 0),
+        (b"start", 0),
+        (b"[" * 100_000, 0),
+    ],
+)
+def test_a_line_that_is_no_request_is_answered_too(line: bytes, number: int) -> None:
+    first, second = served("Plain", line, {"id": 6, "command": "stop"})
+    assert (first["id"], first["outcome"]) == (number, "errored")
+    assert second == {"id": 6, "outcome": "stopped"}
+
+
+def test_nothing_is_answered_after_stop() -> None:
+    assert [answer["id"] for answer in served("Plain", {"id": 1, "command": "stop"}, load_request("robot", 2))] == [1]
+
+
+def test_the_end_of_the_requests_is_the_end() -> None:
+    assert served("Plain") == []
+
+
+def test_paths_reach_the_reader_as_they_are() -> None:
+    with Session("python_readers:Plain") as session:
+        answer = answer_of(session.load(Path("Ω/robot 関節.yaml"), Path("../robot.urdf")))
+        assert isinstance(answer, Accepted)
+        assert [issue.message for issue in answer.issues] == [
+            str(FAKES / "Ω/robot 関節.yaml"),
+            str(FAKES / "../robot.urdf"),
+        ]

@@ -1,0 +1,568 @@
+"""The suite as pytest runs it: what it asks, what it makes of the answers, and what it prints."""
+
+import json
+import os
+import re
+import shlex
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from eurdf_conformance.corpus.case import TOPICS, ValidCase
+from eurdf_conformance.corpus.clause import read_clauses
+from eurdf_conformance.corpus.protocol_rule import GOES_ON
+from eurdf_conformance.corpus.read import CorpusCase, read_cases
+from eurdf_conformance.level import Level, Version
+from eurdf_conformance.protocol.message import (
+    Accepted,
+    AnyAnswer,
+    Errored,
+    Evaluated,
+    Issue,
+    Quantity,
+    Reader,
+    Rejected,
+    Skipped,
+    Started,
+    Unsupported,
+)
+from eurdf_conformance.runner.outcome import (
+    Answered,
+    CannotStart,
+    Chatter,
+    Crashed,
+    Malformed,
+    Misplaced,
+    Outcome,
+    TimedOut,
+)
+from eurdf_conformance.runner.session import Session
+from eurdf_conformance.suite.asking import Asking
+from eurdf_conformance.suite.conversation import Conversation
+from eurdf_conformance.suite.failure_text import failure_text
+from eurdf_conformance.suite.item import case_items, planned_items
+from eurdf_conformance.suite.judge import Judgement, judge
+from eurdf_conformance.suite.options import OPTIONS, Options
+from eurdf_conformance.suite.plugin import Collector
+from eurdf_conformance.suite.property import all_properties
+from eurdf_conformance.suite.protocol_check import Asked, check
+from eurdf_conformance.suite.smoke import SMOKE
+from eurdf_conformance.suite.summary import summary_lines
+from eurdf_conformance.verdict.result import RESULT
+from eurdf_conformance.verdict.verdict import Verdict
+from support.suite_runs import result, run, started
+from support.warm import run_module
+
+ROOT = Path(__file__).parents[2]
+CASES = {case.id: case for case in read_cases()}
+VALID, INVALID, EITHER = CASES["tq4m8z"], CASES["k9b2yf"], CASES["m7k3ta"]
+
+
+class Scripted:
+    """A reader that answers as it is told, and keeps what it was asked."""
+
+    def __init__(self, load: Outcome, evaluate: Outcome | None = None) -> None:
+        self.answers = {"load": load, "evaluate": evaluate}
+        self.asked: list[str] = []
+
+    def load(self, description: Path, urdf: Path) -> Outcome:
+        self.asked.append("load")
+        outcome = self.answers["load"]
+        assert outcome is not None
+        return outcome
+
+    def evaluate(
+        self,
+        configurations: Sequence[Mapping[str, Sequence[float]]],
+        frames: Sequence[str],
+        quantities: Sequence[Quantity],
+    ) -> Outcome:
+        self.asked.append("evaluate")
+        outcome = self.answers["evaluate"]
+        assert outcome is not None
+        return outcome
+
+
+def accepts(case: CorpusCase | None = None, *issues: Issue) -> Outcome:
+    robot = None if case is None else case.expected.robot
+    return Answered(Accepted(id=1, robot=robot, issues=list(issues)), 0.0)
+
+
+def rejects(*issues: Issue) -> Outcome:
+    return Answered(Rejected(id=1, issues=list(issues)), 0.0)
+
+
+FAILURES: list[tuple[Outcome, Verdict]] = [
+    (Answered(Unsupported(id=1, feature="closures"), 0.0), Verdict.UNSUPPORTED),
+    (Answered(Skipped(id=1, reason="no"), 0.0), Verdict.SKIPPED),
+    (Answered(Errored(id=1, message="oh"), 0.0), Verdict.ERRORED),
+    (Crashed(3, None, "log"), Verdict.CRASHED),
+    (Crashed(None, "SIGSEGV", "log"), Verdict.CRASHED),
+    (TimedOut(10.0), Verdict.TIMED_OUT),
+    (Malformed("{", "no JSON"), Verdict.MALFORMED),
+    (Misplaced("{}", 2, 1), Verdict.MISPLACED),
+    (Chatter(("hello",)), Verdict.CHATTER),
+    (CannotStart("no such program"), Verdict.NOT_STARTED),
+]
+
+
+@pytest.mark.parametrize(("outcome", "verdict"), FAILURES, ids=lambda value: type(value).__name__)
+def test_what_is_no_answer_is_told_apart_and_never_a_rejection(outcome: Outcome, verdict: Verdict) -> None:
+    for case in (VALID, INVALID, EITHER):
+        for level in case.levels:
+            found = judge(case, level, Conversation(Scripted(outcome)))
+            assert found.verdict == verdict
+            assert found.reason
+    for level in (Level.KINEMATICS, Level.DYNAMICS):
+        assert judge(VALID, level, Conversation(Scripted(accepts(VALID), outcome))).verdict == verdict
+
+
+@pytest.mark.parametrize(
+    ("case", "outcome", "verdict"),
+    [
+        (VALID, accepts(VALID), Verdict.PASSED),
+        (VALID, accepts(), Verdict.PASSED),
+        (VALID, rejects(), Verdict.FAILED),
+        (INVALID, rejects(), Verdict.PASSED),
+        (INVALID, accepts(VALID), Verdict.FAILED),
+        (EITHER, accepts(VALID), Verdict.PASSED),
+        (EITHER, rejects(), Verdict.PASSED),
+    ],
+)
+def test_valid_in_invalid_out(case: CorpusCase, outcome: Outcome, verdict: Verdict) -> None:
+    assert judge(case, Level.ACCEPT, Conversation(Scripted(outcome))).verdict == verdict
+
+
+def test_who_claims_structure_says_what_was_read() -> None:
+    def structure(outcome: Outcome) -> Verdict:
+        return judge(VALID, Level.STRUCTURE, Conversation(Scripted(outcome))).verdict
+
+    assert structure(accepts(VALID)) == Verdict.PASSED
+    assert structure(accepts()) == structure(rejects()) == structure(accepts(CASES["d7rv3n"])) == Verdict.FAILED
+
+
+def test_one_value_a_configuration_is_asked_for() -> None:
+    values = VALID.expected.values
+    for level in (Level.KINEMATICS, Level.DYNAMICS):
+        for given, verdict in ((values, Verdict.PASSED), (values[:1], Verdict.FAILED), (values[::-1], Verdict.FAILED)):
+            reader = Scripted(accepts(), Answered(Evaluated(id=1, values=given), 0.0))
+            assert judge(VALID, level, Conversation(reader)).verdict == verdict
+
+
+@pytest.mark.parametrize(
+    ("case", "level", "answer", "told"),
+    [
+        (VALID, Level.ACCEPT, Rejected(id=1, issues=[]), ("accepted", "rejected", "it rejects what is right")),
+        (VALID, Level.STRUCTURE, Rejected(id=1, issues=[]), ("accepted", "rejected", "it rejects what is right")),
+        (VALID, Level.DIAGNOSE, Unsupported(id=1, feature="f"), ("accepted", "unsupported", "it lacks a feature")),
+        (VALID, Level.DYNAMICS, Unsupported(id=1, feature="f"), ("accepted", "unsupported", "it lacks a feature")),
+        (INVALID, Level.ACCEPT, Unsupported(id=1, feature="f"), ("rejected", "unsupported", "it lacks a feature")),
+        (INVALID, Level.DIAGNOSE, Skipped(id=1, reason=""), ("rejected", "skipped", "it would rather not")),
+        (
+            EITHER,
+            Level.ACCEPT,
+            Errored(id=1, message="oh"),
+            ("accepted or rejected", "errored", "it failed, by its own word"),
+        ),
+    ],
+)
+def test_another_answer_than_the_one_asked_for_is_told_with_both(
+    case: CorpusCase, level: Level, answer: AnyAnswer, told: tuple[str, str, str]
+) -> None:
+    (found,) = judge(case, level, Conversation(Scripted(Answered(answer, 0.0)))).differences
+    assert (found.pointer, found.expected, found.given, found.why) == ("/outcome", *told)
+
+
+def test_of_who_accepts_and_does_not_evaluate_it_is_told_that_values_were_asked_for() -> None:
+    reader = Scripted(accepts(VALID), Answered(Unsupported(id=1, feature="evaluate"), 0.0))
+    (found,) = judge(VALID, Level.KINEMATICS, Conversation(reader)).differences
+    assert (found.expected, found.given) == ("evaluated", "unsupported")
+    assert reader.asked == ["load", "evaluate"]
+
+
+def fault(case: CorpusCase, **changes: object) -> Issue:
+    said = case.case.model_dump()
+    return Issue.model_validate({"code": said["code"], "message": "?", **said["place"], **changes})
+
+
+def test_a_fault_that_may_be_accepted_is_told_of_all_the_same() -> None:
+    def diagnose(case: CorpusCase, outcome: Outcome) -> Verdict:
+        return judge(case, Level.DIAGNOSE, Conversation(Scripted(outcome))).verdict
+
+    assert diagnose(EITHER, accepts(None, fault(EITHER))) == diagnose(EITHER, rejects(fault(EITHER))) == Verdict.PASSED
+    assert diagnose(EITHER, accepts()) == diagnose(EITHER, rejects()) == Verdict.FAILED
+    assert diagnose(INVALID, rejects(fault(INVALID))) == Verdict.PASSED
+    assert diagnose(INVALID, rejects(fault(INVALID, line=1))) == Verdict.FAILED
+    assert diagnose(INVALID, accepts(None, fault(INVALID))) == Verdict.FAILED
+    assert diagnose(VALID, accepts()) == Verdict.PASSED
+    assert diagnose(VALID, accepts(None, fault(INVALID, severity="warning"))) == Verdict.FAILED
+
+
+def test_a_case_is_loaded_once_for_all_its_levels_and_again_where_it_may_be_gone() -> None:
+    reader = Scripted(accepts(VALID), Answered(Evaluated(id=1, values=VALID.expected.values), 0.0))
+    conversation = Conversation(reader)
+    for level in VALID.levels:
+        assert judge(VALID, level, conversation).verdict == Verdict.PASSED
+    assert reader.asked == ["load", "evaluate", "evaluate"]
+    reader.answers["evaluate"] = TimedOut(1.0)
+    judge(VALID, Level.KINEMATICS, conversation)
+    judge(VALID, Level.KINEMATICS, conversation)
+    assert reader.asked[3:] == ["evaluate", "load", "evaluate"]
+    judge(CASES["d7rv3n"], Level.ACCEPT, conversation)
+    conversation.forget()
+    judge(CASES["d7rv3n"], Level.ACCEPT, conversation)
+    assert reader.asked[6:] == ["load", "load"]
+
+
+def test_no_two_items_have_the_same_id_and_level() -> None:
+    items = list(planned_items(CASES.values()))
+    assert len({item.key for item in items}) == len(items)
+
+
+def test_the_first_cases_to_try_are_of_their_version_and_can_be_evaluated() -> None:
+    for version, three in SMOKE.items():
+        valid, invalid, evaluated = (CASES[case_id] for case_id in (three.valid, three.invalid, three.evaluated))
+        assert {case.case.version for case in (valid, invalid, evaluated)} == {version}
+        assert len({valid.id, invalid.id, evaluated.id}) == 3
+        assert (valid.case.valid, invalid.case.valid) == (True, False)
+        assert Level.KINEMATICS in evaluated.levels
+
+
+def test_of_a_failure_everything_is_printed_that_it_takes_to_mend_the_reader() -> None:
+    item = next(each.item for each in case_items([INVALID]) if each.item.level == Level.DIAGNOSE)
+    judgement = judge(INVALID, Level.DIAGNOSE, Conversation(Scripted(rejects(fault(INVALID, column=6)))))
+    line = Options(parser="cmd:./my parser").reproduce(item)
+    lines = failure_text(item, judgement, line, INVALID).splitlines()
+    assert lines == [
+        "frames/k9b2yf/diagnose: failed: it tells of another fault",
+        "  pytest conformance/ '--parser=cmd:./my parser' -k k9b2yf/diagnose",
+        "  A closure at a frame that no link, no joint and no frame has the name of.",
+        f"  EU-FRM-001: {read_clauses()['EU-FRM-001'].text}",
+        f"  EU-DIA-001: {read_clauses()['EU-DIA-001'].text}",
+        "  /issues/0/column: unknown-frame, column: expected 27, given 6",
+        "  the reader tells of:",
+        "    error unknown-frame robot.yaml:5:6: ?",
+        f"  {INVALID.description}:5:6",
+        "        5 |     frames: [coupler_tip, folower_end]",
+        "          |      ^ given",
+        "        5 |     frames: [coupler_tip, folower_end]",
+        "          |                           ^ expected",
+        f"  {INVALID.urdf}",
+        "  what would mend the file: Name the frame as it is called under `frames`, `follower_end`.",
+    ]
+
+
+#: What clears a screen, and what turns round the text behind it; and what of all scripts must be left as it is.
+STEERING, PLAIN = "\x1b[2J\x9b31m \u202e \u2066 \r", "관절 Ω é e\u0301 \u00a0 می\u200cخوریم 👩\u200d🔧"
+
+
+def test_a_reader_steers_no_terminal_and_its_own_script_is_left_to_it() -> None:
+    item = next(each.item for each in case_items([INVALID]) if each.item.level == Level.DIAGNOSE)
+    said = f"{STEERING}{PLAIN}"
+    answers = (
+        rejects(Issue(code=said, file=said, message=said)),
+        accepts(None, Issue(message=said)),
+        Answered(Errored(id=1, message=f"{said}\nin two lines"), 0.0),
+        Crashed(1, None, log=said),
+        Malformed(said, said, log=said),
+    )
+    for outcome in answers:
+        judgement = judge(INVALID, Level.DIAGNOSE, Conversation(Scripted(outcome)))
+        text = failure_text(item, judgement, "", INVALID)
+        assert not set(text) & {"\x1b", "\x9b", "\u202e", "\u2066", "\r"}
+        assert "\\x1b[2J" in text
+        assert PLAIN in text
+    assert "\nin two lines" in failure_text(
+        item, judge(INVALID, Level.ACCEPT, Conversation(Scripted(answers[2]))), "", None
+    )
+
+
+def test_who_a_reader_is_stands_on_one_line_at_the_end_of_a_run() -> None:
+    name = f"{STEERING}\nversion 2, accept: 9 of 9 passed: certified"
+    wrong = result(next(case_items([INVALID])).item, Verdict.ERRORED, STEERING)
+    for smoke in (False, True):
+        ended = run(started=started({"2": [Level.ACCEPT]}, name), results=(wrong,), smoke=smoke)
+        lines = list(summary_lines(ended, [], None))
+        assert not any(set(line) & set("\x1b\x9b\u202e\u2066\r\n") for line in lines)
+        assert lines[0].startswith("\\x1b[2J\\x9b31m \\u202e \\u2066 \\r\\nversion 2, accept")
+
+
+def test_of_values_it_is_said_where_the_robot_stood_and_what_they_are() -> None:
+    item = next(each.item for each in case_items([VALID]) if each.item.level == Level.KINEMATICS)
+    first, *_ = VALID.expected.values
+    wrong = [first, *(each.model_copy(update={"residuals": {}}) for each in VALID.expected.values[1:])]
+    judgement = judge(
+        VALID, Level.KINEMATICS, Conversation(Scripted(accepts(), Answered(Evaluated(id=1, values=wrong), 0)))
+    )
+    assert isinstance(VALID.case, ValidCase)
+    where, lines = json.dumps(VALID.case.configurations[1]), failure_text(item, judgement, "", VALID).splitlines()
+    assert f"  at configuration 1: {where}" in lines
+    # Whatever the case is about, what the quantity is comes first.
+    clauses = [line.split(":")[0].strip() for line in lines if line.startswith("  EU-")]
+    assert clauses == list(dict.fromkeys(["EU-CLO-008", "EU-CLO-009", *item.clauses]))
+
+
+def test_an_item_tests_what_can_be_seen_at_its_level_and_no_more() -> None:
+    clauses, seen = read_clauses(), {level: set[str]() for level in Level}
+    for item in planned_items(CASES.values()):
+        assert item.clauses, item.id
+        seen[item.level] |= {clauses[name].level for name in item.clauses}
+    assert seen == {
+        Level.ACCEPT: {"accept"},
+        Level.STRUCTURE: {"accept", "structure"},
+        Level.KINEMATICS: {"accept", "structure", "kinematics"},
+        Level.DYNAMICS: {"accept", "structure", "kinematics", "dynamics"},
+        Level.DIAGNOSE: {"accept", "diagnose"},
+    }
+    accept = {each.case.id: each.item for each in case_items([VALID, INVALID]) if each.item.level == Level.ACCEPT}
+    assert accept[VALID.id].clauses[-1] == "EU-CNF-002"
+    assert accept[INVALID.id].clauses[-1] == "EU-CNF-001"
+
+
+def test_every_clause_that_a_case_or_a_property_cites_is_tested_by_an_item() -> None:
+    cited = {clause for case in CASES.values() for clause in case.case.clauses}
+    cited |= {clause for found in all_properties() for clause in found.clauses}
+    assert cited <= {clause for item in planned_items(CASES.values()) for clause in item.clauses}
+
+
+class NoReader(Session):
+    """Started by its own word, and nothing else."""
+
+    @property
+    def started(self) -> Started:
+        claims: dict[Version, list[Level]] = {"2": list(Level)}
+        return Started(id=1, protocol="1.0", reader=Reader(name="r", version="1", language="Python"), claims=claims)
+
+
+def test_an_answer_that_breaks_the_suite_is_no_pass_and_is_kept() -> None:
+    asking, item = Asking(Options(), NoReader("cmd:nothing")), next(case_items([VALID])).item
+    asking.node = SimpleNamespace(user_properties=[])  # type: ignore[assignment]
+
+    def broken() -> Judgement:
+        raise KeyError("elbow")
+
+    with pytest.raises(pytest.fail.Exception, match="the suite itself broke on this answer, please tell us: KeyError"):
+        asking.settle(item, broken)
+    assert asking.node is not None
+    kept = dict(asking.node.user_properties)[RESULT]
+    assert isinstance(kept, dict)
+    assert kept["verdict"] == "failed"
+
+
+def test_of_the_protocol_the_files_are_named() -> None:
+    with Session("cmd:" + shlex.join([sys.executable, "-c", "print(1)"])) as session:
+        found = check(GOES_ON, Asked(session, lambda: session, VALID, INVALID))
+    assert found.verdict != Verdict.PASSED
+    assert {str(VALID.description), str(INVALID.urdf)} <= set(found.log.splitlines())
+
+
+@pytest.mark.parametrize("code", [pytest.ExitCode.INTERRUPTED, pytest.ExitCode.INTERNAL_ERROR])
+def test_a_run_that_is_broken_off_leaves_the_certificate_that_is_there(code: pytest.ExitCode, tmp_path: Path) -> None:
+    config = SimpleNamespace(stash={OPTIONS: Options(certificate=tmp_path)})
+    collector = Collector(config)  # type: ignore[arg-type]
+    collector._started = NoReader("cmd:nothing").started
+    session = SimpleNamespace(exitstatus=pytest.ExitCode.OK)
+    collector.pytest_sessionfinish(session, code)  # type: ignore[arg-type]
+    assert list(tmp_path.iterdir()) == []
+    collector.pytest_sessionfinish(session, pytest.ExitCode.OK)  # type: ignore[arg-type]
+    assert (tmp_path / "certificate.json").is_file()
+
+
+# As pytest runs it
+
+
+def suite(
+    *arguments: str, reader: str | None = None, command: Sequence[str] = ("conformance/",), cwd: Path = ROOT
+) -> tuple[int, str]:
+    """Run the suite, in one process: exit code, and what it writes."""
+    parser = [f"--parser=case_reader:{reader}"] if reader else []
+    argv = [*command, "-n0", "-p", "no:cacheprovider", *parser, *arguments]
+    environment = os.environ | {"PYTHONPATH": str(ROOT / "tests" / "support" / "fakes"), "COLUMNS": "200"}
+    done = run_module("pytest", argv, cwd=cwd, environment=environment)
+    assert "INTERNALERROR" not in done.stdout + done.stderr
+    return done.returncode, done.stdout + done.stderr
+
+
+#: The two cases at which wrong readers go wrong, and what asks of the protocol with them.
+FEW = "tq4m8z or k9b2yf"
+
+
+@pytest.mark.parametrize("topics", ["protocol or closures or names", pytest.param("", marks=pytest.mark.slow)])
+def test_a_reader_that_is_right_passes_every_case_and_is_written_a_certificate(topics: str, tmp_path: Path) -> None:
+    # Of the older version, which has fewer cases.
+    asked = ["--format-version=1", "-k", f"({topics or 'test'}) and not properties", f"--certificate={tmp_path}"]
+    code, out = suite("-n2", *asked, reader="Right")
+    assert code == 0, out
+    items = [
+        item
+        for item in planned_items(CASES.values())
+        if item.version == "1" and item.id.split("/")[0] in (topics.split(" or ") if topics else ["protocol", *TOPICS])
+    ]
+    assert f"{len(items)} passed" in out
+    assert "by_heart 1 (Python)" in out
+    assert json.loads((tmp_path / "certificate.json").read_text(encoding="utf-8"))["reader"]["name"] == "by_heart"
+
+
+def test_a_reader_that_is_wrong_is_told_where_and_the_line_that_is_printed_shows_it_again() -> None:
+    code, out = suite("-k", FEW, reader="Misread")
+    assert code == 1
+    assert "3 failed, 4 passed" in out
+    assert "/robot/joints/0/upper/0: joint 'motor', upper: expected 1.5, given 9.0" in out
+    assert "/values/0/poses/elbow/translation: origin of frame 'elbow' in the world, m, off by 7" in out
+    assert "/issues/0/column: unknown-frame, column: expected 27, given 28" in out
+    assert re.search(r"version 2, accept: 2 of \d+ passed \(\d+ not run\): not certified", out)
+    line = next(line.strip() for line in out.splitlines() if "-k tq4m8z/structure" in line)
+    program, *arguments = shlex.split(line)
+    assert program == "pytest"
+    code, out = suite(command=arguments)
+    assert code == 1
+    assert "1 failed" in out
+    assert "passed" not in out.splitlines()[-1]
+
+
+def test_a_reader_that_accepts_what_is_wrong_fails_at_accept_and_at_diagnose() -> None:
+    code, out = suite("-k", FEW, reader="Lenient")
+    assert code == 1
+    assert "2 failed, 5 passed" in out
+    assert "it accepts what is wrong: unknown-frame" in out
+    assert "this looks odd" in out
+
+
+def test_a_crash_is_survived_and_no_rejection() -> None:
+    code, out = suite("-k", FEW, reader="Crashing")
+    assert code == 1
+    assert "5 failed, 2 passed" in out
+    assert "closures/tq4m8z/accept: crashed: the process ended with exit code 3, without an answer" in out
+
+
+def test_a_level_that_is_not_claimed_is_skipped_and_what_is_claimed_and_unsupported_fails() -> None:
+    code, out = suite("-k", FEW, reader="Modest")
+    assert code == 0
+    assert "2 passed, 5 skipped" in out
+    assert "not claimed: accept of version 1" in out
+    code, out = suite("-k", FEW, "-rs", reader="Shy")
+    assert code == 1
+    assert "7 failed" in out
+    assert "closures/tq4m8z/accept: unsupported: closures: not written yet" in out
+    assert "frames/k9b2yf/accept: skipped: it is Sunday" in out
+
+
+def test_levels_and_a_version_can_be_chosen() -> None:
+    few = [item for item in planned_items(CASES.values()) if "properties" not in item.id]
+    chosen = [item for item in few if item.version == "1" and item.level in ("structure", "diagnose")]
+    arguments = ["--level=structure", "--level=diagnose", "--format-version=1", "-k", "not properties"]
+    code, out = suite(*arguments, reader="Right")
+    assert code == 0
+    assert f"{len(chosen)} passed" in out
+
+
+KNOWN = """
+- {id: frames/k9b2yf, level: accept, verdict: failed, reason: It looks only odd.}
+- {id: frames/k9b2yf, level: diagnose, verdict: failed, reason: It looks only odd.}
+"""
+
+
+def test_known_failures_are_expected_and_whoever_mends_them_is_told(tmp_path: Path) -> None:
+    path = tmp_path / "known.yaml"
+    path.write_text(KNOWN, encoding="utf-8")
+    code, out = suite("-k", FEW, f"--known-failures={path}", reader="Lenient")
+    assert code == 0
+    assert re.search("5 passed.* 2 xfailed", out)
+    assert re.search(r"accept: 1 of \d+ passed \(.*1 failed, of which 1 known\): not certified", out)
+    code, out = suite("-k", FEW, f"--known-failures={path}", reader="Right")
+    assert code == 1
+    assert "known as 'failed', but it passes now: take it out of the file" in out
+    path.write_text(KNOWN.replace("failed", "crashed"), encoding="utf-8")
+    code, out = suite("-k", FEW, f"--known-failures={path}", reader="Lenient")
+    assert code == 1
+    assert "2 failed, 5 passed" in out
+    assert "known as 'crashed', but it is 'failed'" in out
+    path.write_text(KNOWN.replace("k9b2yf", "nobody"), encoding="utf-8")
+    code, out = suite("-k", FEW, f"--known-failures={path}", reader="Right")
+    assert code == 1
+    assert "frames/nobody/accept: the suite has no such item" in out
+
+
+def test_what_the_user_asks_for_and_cannot_be_is_said(tmp_path: Path) -> None:
+    for arguments, why in (
+        ([f"--known-failures={tmp_path / 'nowhere.yaml'}"], "No such file"),
+        (["--parser-timeout=0"], "a time-out is more than 0 s"),
+        (["--parser-start-timeout=nan"], "a time-out is more than 0 s"),
+        (["--explore=-1"], "--explore takes a count"),
+        (["--smoke", "--explore=1"], "--smoke goes with neither --known-failures nor --explore"),
+        ([f"--certificate={__file__}"], "is a file; a certificate is written into a folder"),
+        (["--certificate="], "it names no folder"),
+        (["--level=everything"], "invalid choice"),
+        (["--parser="], "--parser names no parser"),
+        (["--parser=cmd:no-such-program-anywhere"], "'cmd:no-such-program-anywhere' could not be started: "),
+    ):
+        code, out = suite(*arguments, reader="Right")
+        assert code == pytest.ExitCode.USAGE_ERROR
+        assert why in out
+
+
+def test_smoke_tells_a_wrong_adapter_from_a_wrong_parser() -> None:
+    code, out = suite("--smoke", reader="Right")
+    assert code == 0
+    assert "your adapter is right so far" in out
+    assert "your parser is right so far" in out
+    assert "14 passed" in out
+    code, out = suite("--smoke", reader="Lenient")
+    assert code == 1
+    assert "your adapter is right so far" in out
+    assert "your parser is wrong:\n  protocol/goes-on-2/accept: failed: it accepts what is wrong" in out
+    code, out = suite("--smoke", "--parser=cmd:no-such-program-anywhere")
+    assert code == 1
+    assert "cmd:no-such-program-anywhere could not be started" in out
+    assert "your adapter is wrong:\n  protocol/start-1/accept: " in out
+    assert "your parser: nothing can be said of it before the adapter is right" in out
+
+
+@pytest.mark.parametrize(
+    ("reader", "asked"),
+    [
+        ("Right", ["bqswnu/kinematics", "k9b2yf/accept", "tq4m8z/accept"]),
+        ("Moving", ["bqswnu/dynamics"]),
+        ("Telling", ["k9b2yf/diagnose", "tq4m8z/structure"]),
+    ],
+)
+def test_smoke_asks_three_cases_each_at_the_first_level_that_the_reader_claims(reader: str, asked: list[str]) -> None:
+    code, out = suite("--smoke", "-vv", "--format-version=2", reader=reader)
+    assert code == 0
+    assert "nothing was asked" not in out
+    assert sorted(re.findall(r"test_case\[\w+/(\w+/\w+)\] PASSED", out)) == asked
+
+
+def test_where_nothing_is_claimed_of_what_is_asked_for_all_is_not_well() -> None:
+    code, out = suite("--smoke", reader="Silent")
+    assert code == 1
+    assert "nothing was asked: your parser claims nothing of what you asked for" in out
+    code, out = suite("--level=dynamics", reader="Modest")
+    assert code == 1
+    assert "not claimed: dynamics of version 1, dynamics of version 2" in out
+
+
+def test_without_a_parser_it_is_the_reference_that_is_tested() -> None:
+    code, out = suite("--smoke")
+    assert code == 0
+    assert "eurdf " in out
+
+
+def test_the_suite_runs_as_an_installed_package_too() -> None:
+    command = ["--pyargs", "eurdf_conformance.suite", "-p", "eurdf_conformance.suite.plugin"]
+    code, out = suite("--noconftest", "-k", FEW, reader="Right", command=command)
+    assert code == 0
+    assert "7 passed" in out
+    code, out = suite("-k", FEW, reader="Lenient", command=command)
+    assert f"pytest {' '.join(command)} --parser=case_reader:Lenient -k k9b2yf/accept" in out
+    code, out = suite("-k", FEW, reader="Right", command=command)
+    assert code == 0
+
+
+def test_from_another_folder_the_line_that_is_printed_names_the_package(tmp_path: Path) -> None:
+    code, out = suite("-k", "k9b2yf/accept", reader="Lenient", command=[str(ROOT / "conformance")], cwd=tmp_path)
+    assert code == 1
+    assert "  pytest --pyargs eurdf_conformance.suite -p eurdf_conformance.suite.plugin --parser=" in out

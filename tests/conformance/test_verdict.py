@@ -1,0 +1,206 @@
+"""What the answers of a reader come to: verdicts, standings, known failures."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+import yaml
+
+from eurdf_conformance.level import Level
+from eurdf_conformance.verdict import known_failures
+from eurdf_conformance.verdict.known_failures import (
+    KnownFailures,
+    WrongKnownFailures,
+    known_failures_schema,
+    read_known_failures,
+)
+from eurdf_conformance.verdict.result import Result
+from eurdf_conformance.verdict.run import Run
+from eurdf_conformance.verdict.standing import Standing, is_certified, standings
+from eurdf_conformance.verdict.verdict import Verdict
+from support.suite_runs import INVALID, PLANNED, VALID, item, result, run
+
+KNOWN = """\
+- id: closures/bbbbb2
+  level: accept
+  verdict: failed
+  reason: It does not look at names yet.
+"""
+
+
+def standing(of: Run, level: Level = Level.ACCEPT) -> Standing:
+    return next(each for each in standings(of) if (each.version, each.level) == ("2", level))
+
+
+def known(text: str, folder: Path) -> KnownFailures:
+    file = folder / "known.yaml"
+    file.write_text(text, encoding="utf-8")
+    return read_known_failures(file)
+
+
+# --- levels ----------------------------------------------------------------------------------------------------------
+
+
+def test_a_level_of_which_every_item_passed_is_certified() -> None:
+    assert standing(run()).certified
+    assert is_certified(run())
+
+
+@pytest.mark.parametrize("verdict", [verdict for verdict in Verdict if verdict != Verdict.PASSED])
+def test_one_item_that_did_not_pass_for_whatever_reason_costs_the_level_and_no_other(verdict: Verdict) -> None:
+    done = run({(INVALID, Level.ACCEPT): verdict})
+    assert not standing(done).certified
+    assert standing(done, Level.STRUCTURE).certified
+    assert not is_certified(done)
+
+
+def test_a_level_that_is_not_claimed_is_not_certified_and_does_not_stand_in_the_way() -> None:
+    done = run()
+    assert not standing(done, Level.DIAGNOSE).claimed
+    assert not standing(done, Level.DIAGNOSE).certified
+    assert is_certified(done)
+
+
+def test_a_level_without_an_item_is_not_certified() -> None:
+    done = run(claims={"2": [Level.ACCEPT, Level.DYNAMICS]})
+    assert standing(done, Level.DYNAMICS).items == 0
+    assert not standing(done, Level.DYNAMICS).certified
+    assert not is_certified(done)
+
+
+def test_an_item_that_was_never_asked_counts_as_not_run() -> None:
+    done = run(results=tuple(each for each in run().results if each.item.id != INVALID))
+    assert standing(done).counts == {Verdict.PASSED: 1, Verdict.NOT_RUN: 1}
+    assert not standing(done).certified
+
+
+def test_a_reader_that_claims_nothing_is_not_certified() -> None:
+    assert not is_certified(run(claims={}))
+    assert not is_certified(run(started=None, results=()))
+
+
+def test_the_same_level_of_the_other_version_is_certified_apart() -> None:
+    old = item("version1/ccccc3", Level.ACCEPT, "1")
+    claims = {"1": [Level.ACCEPT], "2": [Level.ACCEPT]}
+    done = run(claims=claims, planned=(*PLANNED, old), results=(*run().results, result(old, Verdict.CRASHED)))
+    assert [each.certified for each in standings(done) if each.claimed] == [False, True]
+
+
+def test_levels_asked_for_can_be_certified_alone_if_they_are_claimed() -> None:
+    done = run({(VALID, Level.STRUCTURE): Verdict.FAILED})
+    assert is_certified(Run(**(vars(done) | {"levels": (Level.ACCEPT,)})))
+    assert not is_certified(Run(**(vars(done) | {"levels": (Level.ACCEPT, Level.DYNAMICS)})))
+
+
+def test_three_cases_tried_out_certify_nothing() -> None:
+    assert not is_certified(run(smoke=True))
+    assert not any(each.certified for each in standings(run(smoke=True)))
+
+
+def test_a_reader_that_accepts_everything_and_one_that_rejects_everything_are_not_certified() -> None:
+    accepts = run({(INVALID, Level.ACCEPT): Verdict.FAILED}, claims={"2": [Level.ACCEPT]})
+    rejects = run({(VALID, Level.ACCEPT): Verdict.FAILED}, claims={"2": [Level.ACCEPT]})
+    for done in (accepts, rejects):
+        assert standing(done).counts == {Verdict.PASSED: 1, Verdict.FAILED: 1}
+        assert not is_certified(done)
+
+
+# --- results ---------------------------------------------------------------------------------------------------------
+
+
+def test_a_result_comes_through_json_as_it_was() -> None:
+    given = result(PLANNED[0], Verdict.TIMED_OUT, "no answer in 10 s")
+    assert Result.from_json(json.loads(json.dumps(given.to_json()))) == given
+
+
+def test_half_a_character_of_a_broken_reader_can_be_written_to_a_file() -> None:
+    given = result(PLANNED[0], Verdict.MALFORMED, "it wrote \ud83e")
+    assert given.differences == ("it wrote \\ud83e",)
+    assert json.dumps(given.to_json(), ensure_ascii=False).encode()
+
+
+# --- known failures --------------------------------------------------------------------------------------------------
+
+
+def test_a_known_failure_is_counted_and_the_level_is_not_certified(tmp_path: Path) -> None:
+    file = known(KNOWN, tmp_path)
+    done = run({(INVALID, Level.ACCEPT): Verdict.FAILED}, known_failures=file)
+    assert standing(done).known_failures == 1
+    assert not standing(done).certified
+    assert not is_certified(done)
+    assert file.unexpected(done.results, done.planned) == []
+
+
+def test_a_known_failure_that_passes_is_unexpected(tmp_path: Path) -> None:
+    (said,) = known(KNOWN, tmp_path).unexpected(run().results, PLANNED)
+    assert "passes now" in said
+
+
+def test_a_known_failure_that_fails_otherwise_is_unexpected(tmp_path: Path) -> None:
+    file = known(KNOWN, tmp_path)
+    done = run({(INVALID, Level.ACCEPT): Verdict.CRASHED}, known_failures=file)
+    (said,) = file.unexpected(done.results, PLANNED)
+    assert said.endswith("known as 'failed', but it is 'crashed'")
+    assert not any(map(file.expects, done.results))
+
+
+def test_a_known_failure_of_no_item_of_the_suite_is_unexpected(tmp_path: Path) -> None:
+    (said,) = known(KNOWN.replace("bbbbb2", "bbbbb3"), tmp_path).unexpected(run().results, PLANNED)
+    assert said == "closures/bbbbb3/accept: the suite has no such item"
+
+
+def test_a_known_failure_of_an_item_that_was_not_asked_is_left_alone(tmp_path: Path) -> None:
+    assert known(KNOWN, tmp_path).unexpected([], PLANNED) == []
+
+
+def test_an_empty_file_knows_of_no_failure(tmp_path: Path) -> None:
+    assert known("# none yet\n", tmp_path) == KnownFailures()
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (KNOWN.replace("  reason: It does not look at names yet.\n", ""), "[0].reason"),
+        (KNOWN.replace("It does not look at names yet.", "' '"), "[0].reason"),
+        (KNOWN.replace("level: accept", "level: accepts"), "[0].level"),
+        (KNOWN.replace("verdict: failed", "verdict: passed"), "'passed'"),
+        (KNOWN.replace("verdict: failed", "verdict: not run"), "'not run'"),
+        (KNOWN + "  since: 2025\n", "[0].since"),
+        (KNOWN + "  level: diagnose\n", "a key stands twice"),
+        (KNOWN + KNOWN, "closures/bbbbb2/accept stands in it 2 times"),
+        ("closures/bbbbb2: failed\n", "list"),
+        ("- [\n", "expected"),
+    ],
+)
+def test_a_file_that_is_not_what_it_should_be_is_refused_and_says_why(text: str, said: str, tmp_path: Path) -> None:
+    with pytest.raises(WrongKnownFailures) as refused:
+        known(text, tmp_path)
+    assert said in str(refused.value)
+    assert str(tmp_path / "known.yaml") in str(refused.value)
+
+
+def test_an_id_copied_with_its_level_is_told_how_it_is_written(tmp_path: Path) -> None:
+    failures = known(KNOWN.replace("closures/bbbbb2", "closures/bbbbb2/accept"), tmp_path)
+    (said,) = failures.unexpected([], PLANNED)
+    assert said.endswith("the suite has no such item; an id is without its level: 'closures/bbbbb2'")
+
+
+def test_a_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(WrongKnownFailures, match="No such file"):
+        read_known_failures(tmp_path / "nowhere.yaml")
+
+
+def test_the_schema_of_known_failures_is_current_and_takes_what_is_taken() -> None:
+    file = Path(known_failures.__file__).with_name("known_failures.schema.json")
+    schema: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+    assert schema == known_failures_schema()
+    validator = jsonschema.Draft202012Validator(schema)
+    validator.check_schema(schema)
+    validator.validate(yaml.safe_load(KNOWN))
+    for wrong in ("verdict: passed", "verdict: not run", "verdict: unknown"):
+        assert not validator.is_valid(yaml.safe_load(KNOWN.replace("verdict: failed", wrong)))
+    assert not validator.is_valid(yaml.safe_load(KNOWN.replace("It does not look at names yet.", "' '")))

@@ -1,0 +1,606 @@
+"""A description from the names in a URDF, and the YAML text that it is written as."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from hypothesis import assume, example, given, settings
+from hypothesis import strategies as st
+from lxml import etree
+
+from eurdf.commands.main import main
+from eurdf.description import describe
+from eurdf.diagnostics import Diagnostics
+from eurdf.format.generate import PUBLISHED_CLOSURE, BadPattern, conventions, find, hints
+from eurdf.format.urdf import Urdf, read_urdf
+from eurdf.format.yaml_text import flow, lines_of, lines_of_item, scalar
+from eurdf.generation import Generation, generate
+from eurdf.mechanism.same_model import differences
+from eurdf.reading.source import Source, read_source
+from eurdf.reading.xml_reader import read_xml
+from eurdf.reading.yaml_reader import read_yaml
+
+HERE = Path(__file__).parents[1]
+WILD = HERE.parents[1] / "shared" / "wild"
+WILD_ROBOTS = sorted(path.parent.name for path in WILD.glob("*/robot.yaml"))
+needs_wild = pytest.mark.skipif(
+    not WILD_ROBOTS, reason="no published robots: put their folder at ../shared/wild, beside the checkout"
+)
+
+FACTS = json.loads((WILD / "facts.json").read_text(encoding="utf-8")) if WILD_ROBOTS else {}
+
+#: Pairs that are named in the URDF, but that the published file leaves out.
+LEFT_OUT = {"kangaroo_like": {frozenset({"closedloop1_A", "closedloop1_B"})}}
+
+
+def urdf_text(*joints: str) -> str:
+    """A URDF from lines ``name type parent child axis``; a link is one of a rod, but where its name ends in 0."""
+    robot = etree.Element("robot", name="bench")
+    rows = [line.split() for line in joints]
+    links = dict.fromkeys(name for _, _, parent, child, *_ in rows for name in (parent, child))
+    return _written(
+        robot, list(links), [(name, kind, parent, child, rest) for name, kind, parent, child, *rest in rows]
+    )
+
+
+def _written(robot: Any, links: list[str], joints: list[tuple[str, str, str, str, list[str]]]) -> str:
+    for name in links:
+        link = etree.SubElement(robot, "link", name=name)
+        if not name.endswith("0"):
+            inertial = etree.SubElement(link, "inertial")
+            etree.SubElement(inertial, "mass", value="1")
+            etree.SubElement(inertial, "inertia", ixx="1", ixy="0", ixz="0", iyy="1", iyz="0", izz="1")
+    for name, kind, parent, child, rest in joints:
+        joint = etree.SubElement(robot, "joint", name=name, type=kind)
+        etree.SubElement(joint, "parent", link=parent)
+        etree.SubElement(joint, "child", link=child)
+        if kind != "fixed":
+            etree.SubElement(joint, "axis", xyz={"x": "1 0 0", "y": "0 1 0", "z": "0 0 1"}[rest[0] if rest else "z"])
+            etree.SubElement(joint, "limit", lower="-1", upper="1", effort="1", velocity="1")
+        if len(rest) > 1:
+            etree.SubElement(joint, "mimic", joint=rest[1])
+    return etree.tostring(robot, encoding="unicode")
+
+
+def read(text: str) -> Urdf:
+    diagnostics = Diagnostics()
+    urdf = read_urdf(read_xml(Source("robot.urdf", text, text.encode())), diagnostics)
+    assert urdf is not None, list(diagnostics)
+    return urdf
+
+
+def generated(*joints: str, **patterns: list[str]) -> Generation:
+    return generate(read(urdf_text(*joints)), conventions(**patterns))
+
+
+LEG = (
+    "motor_hip revolute base thigh x",
+    "free_knee revolute thigh shin y",
+    "free_rod revolute base rod y",
+    "closedloop1_A_frame fixed shin closedloop1_A",
+    "closedloop1_B_frame fixed rod closedloop1_B",
+)
+BALL = ("rev0 revolute base int10 x", "rev1 revolute int10 int20 y", "rev2 revolute int20 tip z")
+
+
+# -- published robots ---------------------------------------------------------------------------------------------
+
+
+@needs_wild
+@pytest.mark.parametrize("name", WILD_ROBOTS)
+def test_the_names_of_a_published_robot_say_what_its_file_says(name: str) -> None:
+    urdf = read_urdf(read_xml(read_source(WILD / name / "robot.urdf")), Diagnostics())
+    assert urdf is not None
+    found = generate(urdf, conventions()).found
+    published = yaml.safe_load((WILD / name / "robot.yaml").read_text(encoding="utf-8"))
+    said = {frozenset(pair): kind for pair, kind in zip(published["closed_loop"], published["type"], strict=True)}
+    closures = {frozenset(closure.frames): closure.type for closure in found.closures}
+    left_out = LEFT_OUT.get(name, set())
+    assert closures.keys() - said.keys() == left_out
+    if FACTS[name]["closes"]:  # else the types that the published file has cannot be right
+        assert {pair: kind for pair, kind in closures.items() if pair not in left_out} == said
+    assert set(found.motors) == set(published["name_mot"])
+    # Some joints that are named spherical are universal in the published file: a name cannot tell.
+    assert set(found.sphericals) == set(published.get("joint_name", ()))
+    assert found.warnings == ()
+
+
+@needs_wild
+@pytest.mark.parametrize("name", WILD_ROBOTS)
+def test_both_versions_generated_of_a_published_robot_are_the_same_model(name: str) -> None:
+    urdf = read_urdf(read_xml(read_source(WILD / name / "robot.urdf")), Diagnostics())
+    assert urdf is not None
+    one, two = (generate(urdf, conventions(), version) for version in ("1", "2"))
+    assert one.mechanism is not None
+    assert two.mechanism is not None
+    ordered = {frozenset((closure.a.body, closure.b.body)) for closure in one.mechanism.closures}
+    assert ordered == {frozenset((closure.a.body, closure.b.body)) for closure in two.mechanism.closures}
+    unnamed = [sentence for sentence in differences(one.mechanism, two.mechanism) if "closure" not in sentence]
+    assert unnamed == []
+
+
+# -- closures -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "closure"),
+    [
+        ("closedloop1_A", "closedloop1_B", ("closedloop1", None)),
+        ("closedloop3D_1A", "closedloop3D_1B", ("closedloop3D_1", "3d")),
+        ("closedloop0_A_3D", "closedloop0_B_3D", ("closedloop0", "3d")),
+        ("closedloop12_A_6D", "closedloop12_B_6D", ("closedloop12", "6d")),
+        ("knee_closedloop_a_3d", "knee_closedloop_b", ("knee_closedloop", "3d")),
+        ("closed_loop_6d_knee.a", "closed_loop_6d_knee.b", ("closed_loop_6d_knee", "6d")),
+        ("left/closed_loop-A", "left/closed_loop-B", ("left/closed_loop", None)),
+        ("fermeture2_A", "fermeture2_B", ("fermeture2", None)),
+        ("closing_knee_1", "closing_knee_2", ("closing_knee", None)),
+    ],
+)
+def test_two_links_named_alike_are_a_closure(a: str, b: str, closure: tuple[str, str | None]) -> None:
+    urdf = read(urdf_text("hip revolute base thigh", f"j1 fixed thigh {a}", f"j2 fixed base {b}"))
+    found = find(urdf, conventions())
+    assert [(one.name, one.type) for one in found.closures] == [closure]
+    assert found.closures[0].frames == (a, b)
+    assert found.warnings == ()
+
+
+def test_names_that_say_both_types_decide_nothing() -> None:
+    found = find(
+        read(urdf_text("hip revolute base a0", "j1 fixed a0 closedloop1_A_3D", "j2 fixed base closedloop1_B_6D")),
+        conventions(),
+    )
+    assert [closure.type for closure in found.closures] == [None]
+    assert found.warnings == ("the names of loop 'closedloop1' say both 3d and 6d: neither is taken from them",)
+
+
+#: As onshape-to-robot names the frames of a revolute mate, with the joints that fix them.
+HINGE = tuple(
+    f"closing_pin_{name}_frame fixed {link} closing_pin_{name}"
+    for link, names in (("shin", ("1", "1_z")), ("rod", ("2", "2_z")))
+    for name in names
+)
+
+
+def test_a_revolute_mate_of_onshape_is_two_closures_in_position() -> None:
+    generation = generated(*LEG[:3], *HINGE)
+    assert [(closure.name, closure.type, closure.frames) for closure in generation.found.closures] == [
+        ("closing_pin", "3d", ("closing_pin_1", "closing_pin_2")),
+        ("closing_pin_z", "3d", ("closing_pin_1_z", "closing_pin_2_z")),
+    ]
+    assert generation.found.warnings == ()
+    (note,) = generation.notes
+    assert note.startswith("'closing_pin' is a revolute mate")
+
+
+def test_half_of_an_axis_is_reported_and_decides_nothing() -> None:
+    found = generated(*LEG[:3], *HINGE[:3]).found
+    assert [(closure.name, closure.frames) for closure in found.closures] == [
+        ("closing_pin", ("closing_pin_1", "closing_pin_2"))
+    ]
+    assert found.warnings == ("'closing_pin_1_z' has no other side: a closure has two frames; left out",)
+
+
+@pytest.mark.parametrize(("given_", "count"), [("3d", 2), ("6d", 1)])
+def test_the_user_may_decide_the_type_of_every_closure(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], given_: str, count: int
+) -> None:
+    file = tmp_path / "leg.urdf"
+    file.write_text(urdf_text(*LEG[:3], *HINGE), encoding="utf-8")
+    assert main(["generate", str(file), "--type", given_]) == 0
+    out, err = capsys.readouterr()
+    assert [closure["type"] for closure in yaml.safe_load(out)["closures"]] == [given_] * count
+    assert "note:" not in err
+    file.write_text(urdf_text(*LEG).replace("closedloop1_", "closedloop6D_1_"), encoding="utf-8")
+    assert main(["generate", str(file), "--type", given_]) == 0
+    assert yaml.safe_load(capsys.readouterr().out)["closures"][0]["type"] == given_
+
+
+def test_joints_are_frames_as_well() -> None:
+    found = generated("hip revolute base a", "closedloop1_A revolute a b", "closedloop1_B revolute base c").found
+    assert found.closures[0].frames == ("closedloop1_A", "closedloop1_B")
+
+
+def test_of_a_link_and_the_joint_that_fixes_it_the_link_is_named() -> None:
+    assert generated(*LEG).found.closures[0].frames == ("closedloop1_A", "closedloop1_B")
+
+
+def test_loops_come_in_the_order_of_their_numbers() -> None:
+    rows = [f"j{n}{s} revolute base closedloop{n}_{s}" for n in (10, 2, 1) for s in "AB"]
+    assert [closure.name for closure in generated(*rows).found.closures] == [
+        "closedloop1",
+        "closedloop2",
+        "closedloop10",
+    ]
+
+
+def test_half_a_pair_is_told_and_left_out() -> None:
+    found = generated("hip revolute base thigh", "j1 fixed thigh closedloop1_A").found
+    assert found.closures == ()
+    assert found.warnings == ("'closedloop1_A' has no other side: a closure has two frames; left out",)
+
+
+def test_a_pair_of_one_rigid_body_is_told_and_left_out() -> None:
+    found = generated("hip revolute base thigh", "j1 fixed thigh loop_A", "j2 fixed thigh closedloop1_A",
+                      "j3 fixed loop_A closedloop1_B").found  # fmt: skip
+    assert found.closures == ()
+    (warning,) = found.warnings
+    assert "'closedloop1_A' and 'closedloop1_B' are fixed to each other" in warning
+
+
+def test_more_than_two_sides_are_told_and_left_out() -> None:
+    rows = [f"j{side} revolute base loop1_{side}" for side in "ABC"]
+    found = generated(*rows, closures=["(?P<loop>loop.)_(?P<side>.)"]).found
+    assert found.closures == ()
+    assert "3 sides" in found.warnings[0]
+
+
+def test_a_second_closure_of_the_same_frames_is_told_and_left_out() -> None:
+    found = generated(
+        *LEG, closures=[PUBLISHED_CLOSURE, r"(?P<loop>closed)loop1_(?P<side>.)_frame"]
+    ).found  # fmt: skip
+    assert [closure.name for closure in found.closures] == ["closed"]
+    assert "already" in found.warnings[0]
+
+
+def test_two_frames_for_one_side_are_told() -> None:
+    rows = ("hip revolute base thigh", "j1 fixed thigh closedloop1_A", "closedloop1_A_frame revolute base other",
+            "j2 fixed base closedloop1_B")  # fmt: skip
+    found = generated(*rows).found
+    assert found.closures[0].frames == ("closedloop1_A", "closedloop1_B")
+    assert found.warnings == ("side A of loop 'closedloop1' is taken to be 'closedloop1_A'; it might be "
+                              "'closedloop1_A_frame'",)  # fmt: skip
+
+
+def test_a_pattern_of_the_user_tells_sides_loops_and_types() -> None:
+    rows = ("hip revolute base thigh", "j1 fixed thigh rod7_top_3D", "j2 fixed base rod7_bottom_3D")
+    found = generated(
+        *rows, closures=[r"(?P<loop>rod\d+)_(?P<side>top|bottom)_(?P<type>.[dD])"], motors=["^hip$"]
+    ).found
+    assert [(closure.name, closure.type, closure.frames) for closure in found.closures] == [
+        ("rod7", "3d", ("rod7_bottom_3D", "rod7_top_3D"))
+    ]
+    assert found.motors == ("hip",)
+
+
+def test_without_a_group_loop_a_closure_is_named_by_what_its_frames_have_in_common() -> None:
+    rows = ("hip revolute base thigh", "j1 fixed thigh top_of_rod", "j2 fixed base bottom_of_rod")
+    assert generated(*rows, closures=["(?P<side>top|bottom)_of_.*"]).found.closures[0].name == "of_rod"
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "closedloop" * 20_000 + "xa",
+        "closing_" * 20_000 + "1",
+        "closedloop" + "9" * 100_000 + "_a",
+        "closedloop" + "_a_3" * 50_000,
+        "closing_" + "_1_z" * 50_000,
+    ],
+)
+def test_a_name_of_any_length_is_judged_at_once(name: str) -> None:
+    for pattern in conventions().closures:
+        pattern.fullmatch(name)
+    for joint in (name, "left_" * 50_000 + "x", "_mot" * 50_000 + "x"):
+        for pattern in conventions().motors:
+            pattern.search(joint)
+    find(read(urdf_text(f"j1 revolute base {name}", f"j2 revolute base {name}2")), conventions())
+
+
+# -- joints -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["mot", "motor", "mot1", "mot1_rod2", "motor_knee", "Motor-knee", "motor3", "left_motor", "left_motor_4barlink1",
+     "front_left_motor_hip", "FL_motor_hip", "l_mot1", "knee_motor", "left_knee_motor_2", "ankle_motor_joint"],
+)  # fmt: skip
+def test_a_joint_whose_name_begins_or_ends_with_the_word_is_a_motor(name: str) -> None:
+    assert generated(f"{name} revolute base thigh").found.motors == (name,)
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["moteur_rod", "motion", "free_motor_holder", "knee", "free_motor", "frame_motor_knee", "passive_motor", "remotor",
+     "hip_part_motor_part_rev0", "holder_hip_rotation_motor_4_rev0", "spherical_transmission_motor_hip1"],
+)  # fmt: skip
+def test_a_joint_that_only_contains_the_word_is_no_motor(name: str) -> None:
+    assert generated(f"{name} revolute base thigh", "motor revolute base other").found.motors == ("motor",)
+
+
+def test_a_robot_without_closures_or_motors_gets_hints_with_names_of_its_own() -> None:
+    urdf = read(urdf_text("knee revolute base thigh", "the.moteur revolute thigh shin", "j1 fixed shin rod_tip0"))
+    found = find(urdf, conventions())
+    closure, motor = hints(urdf, found, conventions())
+    assert closure.startswith("no two links or joints are named as the frames of a closure: name them closedloop1_A")
+    assert "'(?P<loop>rod\\d+)_(?P<side>top|bottom)'" in closure
+    assert closure.endswith("such frames perhaps: 'rod_tip0'")
+    assert "--motor '^the\\.moteur$'" in motor
+    assert motor.endswith("the joints that move: 'knee', 'the.moteur'")
+    # The hints can be followed.
+    assert find(urdf, conventions(motors=[r"^the\.moteur$"])).motors == ("the.moteur",)
+    assert hints(urdf, generated(*LEG).found, conventions()) == ()
+
+
+@pytest.mark.parametrize("joint", ["motor_weld fixed base thigh", None], ids=["a fixed joint", "no joint"])
+def test_a_robot_in_which_no_joint_moves_gets_a_hint_as_well(joint: str | None) -> None:
+    urdf = read(urdf_text(joint) if joint else '<robot name="r"><link name="base"/></robot>')
+    *_, motor = hints(urdf, find(urdf, conventions()), conventions())
+    assert motor == "no joint can be actuated: each is fixed or mimics another; change its type in the URDF"
+
+
+def test_a_hint_says_that_a_pattern_of_the_user_matches_nothing() -> None:
+    given_ = conventions(closures=["(?P<side>top|bottom)_rod"], motors=["drive"])
+    urdf = read(urdf_text("knee revolute base thigh"))
+    closure, motor = hints(urdf, find(urdf, given_), given_)
+    assert closure.startswith("no two names match a --closure pattern")
+    assert motor.startswith("no joint that can move matches a --motor pattern")
+
+
+def test_motors_that_cannot_drive_are_told_and_left_out() -> None:
+    found = generated("motor_a revolute base a", "motor_b revolute a b x motor_a", "motor_c fixed b c").found
+    assert found.motors == ("motor_a",)
+    assert found.warnings == (
+        "joint 'motor_b' is named as a motor, but mimics 'motor_a': left out",
+        "joint 'motor_c' is named as a motor, but is fixed: left out",
+    )
+
+
+def test_spherical_joints_are_told_by_their_names() -> None:
+    found = generated("spherical_hip revolute base a", "ball_spherical fixed a b", "x-spherical revolute b c").found
+    assert found.sphericals == ("spherical_hip",)
+    assert len(found.warnings) == 2
+    assert "only a revolute joint becomes spherical" in found.warnings[0]
+
+
+def test_three_revolutes_whose_axes_meet_are_merged() -> None:
+    generation = generated(*BALL)
+    assert generation.merges == {"rev2": ("rev0", "rev1", "rev2")}
+    assert "  rev2: {type: spherical, merges: [rev0, rev1, rev2]}\n" in generation.text
+    assert generation.mechanism is not None
+    assert [joint.type for joint in generation.mechanism.joints] == ["fixed", "fixed", "spherical"]
+
+
+def test_motors_are_not_merged() -> None:
+    generation = generated(*BALL, motors=["rev"])
+    assert generation.merges == {}
+    assert generation.mechanism is not None
+    assert generation.mechanism.actuators == ("rev0", "rev1", "rev2")
+
+
+@pytest.mark.parametrize(
+    ("patterns", "said"),
+    [
+        ({"closures": ["loop(1"]}, r"'loop\(1' is no regular expression: .* at position 4"),
+        ({"motors": ["*"]}, "'\\*' is no regular expression: nothing to repeat"),
+        ({"closures": ["loop_(A|B)"]}, r"'loop_\(A\|B\)' has no group 'side'"),
+    ],
+)
+def test_a_bad_pattern_is_told(patterns: dict[str, list[str]], said: str) -> None:
+    with pytest.raises(BadPattern, match=said):
+        conventions(**patterns)
+
+
+def test_the_patterns_that_are_given_stand_in_place_of_the_published_ones() -> None:
+    given_ = conventions(closures=["(?P<side>.)"])
+    assert [pattern.pattern for pattern in given_.closures] == ["(?P<side>.)"]
+    assert PUBLISHED_CLOSURE in [pattern.pattern for pattern in conventions().closures]
+    assert given_.motors == conventions().motors
+
+
+# -- text ---------------------------------------------------------------------------------------------------------
+
+LEG_TEXT = """\
+extended_urdf: "2.0"
+urdf: robot.urdf
+closures:
+  - name: closedloop1
+    type: 3d
+    frames: [closedloop1_A, closedloop1_B]
+actuators: [motor_hip]
+"""
+
+
+def test_the_text_is_as_a_person_would_write_it() -> None:
+    assert generated(*LEG).text == LEG_TEXT
+
+
+def test_long_lists_stand_a_line_each() -> None:
+    rows = [f"motor_with_quite_a_long_name_{n} revolute base rod{n}a" for n in range(5)]
+    assert "actuators:\n  - motor_with_quite_a_long_name_0\n  - motor" in generated(*rows).text
+
+
+def test_version_1_is_written_as_well() -> None:
+    generation = generate(read(urdf_text(*LEG)), conventions(), "1")
+    assert generation.text == ("closed_loop: [[closedloop1_A, closedloop1_B]]\ntype: [3d]\nname_mot: [motor_hip]\n")
+
+
+def test_a_urdf_without_names_of_any_meaning_gives_a_sound_description() -> None:
+    for version in ("1", "2"):
+        generation = generate(read(urdf_text("knee revolute base rod")), conventions(), version)
+        assert generation.mechanism is not None
+        assert generation.mechanism.version == {"1": "1", "2": "2.0"}[version]
+
+
+NOT_XML = (*range(9), 11, 12, *range(14, 32), 0xFFFE, 0xFFFF)
+
+#: What XML lets stand in a name.
+xml_text = st.text(
+    st.characters(exclude_categories=["Cs"], exclude_characters=[chr(code) for code in NOT_XML]), min_size=1
+)
+nasty = st.sampled_from(
+    ["no", "On", "y", "NULL", "~", "1e3", "1e-3", "0x1F", "0o7", "012", "1_000", "12:30", "2001-12-14", ".inf", ".NaN",
+     "+.INF", "-", "- a", "a: b", "a #b", "#a", "a:", ":a", "? a", "&a", "*a", "!a", "|", ">", "%a", "@a", "`a",
+     "'", '"', "'a'", '"a"', "[", "]", "{a}", "a,b", ", a", " a", "a ", "a  b", "\t", "a\nb", "a\r\nb", "a\\nb", "...",
+     "---", "--- a", "<<", "=", "true", "False", "\x7f", "\x85", "\u2028", "\ufeff", "\xa0", "é", "\U0001f916", "x-a",
+     "3d", "1.", ".5", "1.e5", "0b11", "0.", "+1", "a/b", "e5", "_", "n", "a" * 2000, "é: " * 500]
+)  # fmt: skip
+
+
+def read_back(text: str) -> Any:
+    return read_yaml(Source("", text, text.encode())).data
+
+
+@settings(max_examples=300, deadline=None, derandomize=True)
+@given(name=xml_text | nasty)
+def test_every_name_reads_back_wherever_it_stands(name: str) -> None:
+    text = "\n".join(
+        [
+            *lines_of(name + "k", name),
+            *lines_of("flow", [name, [name], {name: name, "k": [name]}]),
+            *lines_of("block", [name, {name: [name] * 60}]),
+            *lines_of("last", name),
+            "",
+        ]
+    )
+    expected = {
+        name + "k": name,
+        "flow": [name, [name], {name: name, "k": [name]}],
+        "block": [name, {name: [name] * 60}],
+        "last": name,
+    }
+    assume(len(expected) == 4)
+    assert read_back(text) == expected
+    # Readers of YAML 1.1 see the same.
+    assert yaml.safe_load(text) == expected
+
+
+@given(st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False))
+@settings(max_examples=100, deadline=None, derandomize=True)
+@example(1e-05)
+@example(-0.0)
+def test_every_number_reads_back(value: float | bool | None) -> None:
+    text = f"k: {scalar(value)}\n"
+    assert repr(read_back(text)["k"]) == repr(value)
+    assert repr(yaml.safe_load(text)["k"]) == repr(value)  # to readers of YAML 1.1 too
+
+
+def test_items_of_lists_are_indented_by_what_leads_them() -> None:
+    value = {"first": ["x" * 60, "y" * 60], "second": {}}
+    text = "list:\n" + "".join(f"  {line}\n" for line in lines_of_item(value))
+    assert read_back(text) == {"list": [value]}
+    assert text.startswith("list:\n  - first:\n      - x")
+    assert flow({"a": [], "b": {}}) == "{a: [], b: {}}"
+
+
+@settings(max_examples=60, deadline=None, derandomize=True)
+@given(st.lists(xml_text | nasty, unique=True, min_size=3, max_size=3), st.booleans())
+def test_a_robot_with_names_of_any_kind_is_described(names: list[str], both: bool) -> None:
+    loop, motor, ball = names
+    a, b = f"closedloop{loop}_A", f"closedloop{loop}_B"
+    base, rod, other = "base\x7f", "rod", "other"
+    motor, ball = f"motor_{motor}", f"spherical {ball}"
+    joints = [(motor, "revolute", base, rod, []), (ball, "revolute", base, other, []),
+              ("fix1", "fixed", rod, a, []), ("fix2", "fixed", other, b, [])]  # fmt: skip
+    text = _written(etree.Element("robot", name="r"), [base, rod, other, a, b], joints)
+    generation = generate(read(text), conventions(), "1" if both else "2")
+    assert generation.mechanism is not None, list(generation.diagnostics)
+    (closure,) = generation.mechanism.closures
+    assert (closure.a.frame, closure.b.frame) == (a, b)
+    assert generation.mechanism.actuators == (motor,)
+    assert generation.found.sphericals == (ball,)
+
+
+# -- the command --------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def leg(tmp_path: Path) -> Path:
+    file = tmp_path / "leg.urdf"
+    file.write_text(urdf_text(*LEG), encoding="utf-8")
+    return file
+
+
+def test_the_command_writes_to_the_standard_output(leg: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["generate", str(leg)]) == 0
+    out, err = capsys.readouterr()
+    assert out == LEG_TEXT.replace("robot.urdf", "leg.urdf")
+    assert "1 closure: closedloop1 (closedloop1_A, closedloop1_B, 3d)\n1 motor: motor_hip\n" in err
+
+
+def test_the_command_replaces_a_file_only_by_force(leg: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = leg.parent / "sub" / "leg.yaml"
+    out.parent.mkdir()
+    out.write_text("mine", encoding="utf-8")
+    assert main(["generate", str(leg), "-o", str(out)]) == 2
+    assert "--force" in capsys.readouterr().err
+    assert out.read_text(encoding="utf-8") == "mine"
+    assert main(["generate", str(leg), "-o", str(out), "--force"]) == 0
+    description = describe(out)
+    assert description.mechanism is not None
+    assert description.extension is not None
+    assert description.extension.urdf == "../leg.urdf"
+
+
+def test_the_root_may_float(leg: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["generate", str(leg), "--root", "floating"]) == 0
+    assert "\nroot: floating\n" in capsys.readouterr().out
+    assert main(["generate", str(leg), "--root", "floating", "--version", "1"]) == 2
+    assert "version 1 cannot say" in capsys.readouterr().err
+
+
+def test_version_1_tells_that_it_cannot_name_its_urdf(leg: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["generate", str(leg), "--version", "1"]) == 0
+    assert "'leg.urdf'" in capsys.readouterr().err
+
+
+def test_patterns_may_be_repeated(leg: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["generate", str(leg), "--motor", "hip", "--motor", "knee"]) == 0
+    assert "actuators: [motor_hip, free_knee]" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("option", ["--closure", "--motor", "--spherical"])
+def test_a_bad_pattern_cannot_run(leg: Path, capsys: pytest.CaptureFixture[str], option: str) -> None:
+    assert main(["generate", str(leg), option, "a)b"]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert "'a)b' is no regular expression" in err
+
+
+def test_names_that_say_what_cannot_be_write_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file, out = tmp_path / "ball.urdf", tmp_path / "ball.yaml"
+    file.write_text(urdf_text(*BALL), encoding="utf-8")
+    # Version 1 merges the three by itself, and then two of them cannot be actuated.
+    assert main(["generate", str(file), "--version", "1", "--motor", "rev", "-o", str(out)]) == 1
+    assert "actuator-merged" in capsys.readouterr().err
+    assert not out.exists()
+    assert main(["generate", str(file), "--motor", "rev", "-o", str(out)]) == 0
+
+
+def test_a_urdf_with_errors_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "bad.urdf"
+    file.write_text("<robot name='r'><link name='a'/><link name='b'/></robot>", encoding="utf-8")
+    assert main(["generate", str(file)]) == 1
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert "urdf-two-roots" in err
+    assert main(["generate", str(tmp_path / "none.urdf")]) == 2
+
+
+def test_json_has_the_text_and_what_was_found(leg: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    leg.write_text(urdf_text(*LEG, "j9 fixed rod closedloop9_A"), encoding="utf-8")
+    assert main(["generate", str(leg), "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["closures"] == [{"name": "closedloop1", "type": "3d", "frames": ["closedloop1_A", "closedloop1_B"]}]
+    assert answer["motors"] == ["motor_hip"]
+    assert "closedloop9_A" in answer["warnings"][0]
+    assert read_back(answer["text"])["actuators"] == ["motor_hip"]
+    assert answer["notes"][0].startswith("'closedloop1' is 3d: the loops close")
+    assert answer["hints"] == []
+
+
+def test_the_command_never_ends_without_closures_or_motors_and_no_hint(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "arm.urdf"
+    file.write_text(urdf_text("knee revolute base thigh"), encoding="utf-8")
+    assert main(["generate", str(file)]) == 0
+    told = capsys.readouterr().err
+    assert "0 closures\n0 motors\n" in told
+    assert "hint: no two links or joints are named" in told
+    assert "hint: no joint is named as a motor" in told
+    assert main(["generate", str(file), "--json"]) == 0
+    assert len(json.loads(capsys.readouterr().out)["hints"]) == 2

@@ -1,0 +1,552 @@
+"""From version 1 of the format to version 2: the same model, the comments and the user's own data kept."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+import pytest
+import yaml
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from eurdf.commands.main import main
+from eurdf.description import Description, describe
+from eurdf.diagnostics import Diagnostics, Fault
+from eurdf.format.comments import comments_of
+from eurdf.format.migrate import NotMigratable, own_keys, schema_named
+from eurdf.format.read_extension import read_extension
+from eurdf.format.urdf import Urdf, read_urdf
+from eurdf.kinematics.residual import residual
+from eurdf.mechanism.link import link
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.same_model import differences, with_universal_joints
+from eurdf.migration import Migration, migrate
+from eurdf.pinocchio.configuration import configuration_vector
+from eurdf.pinocchio.robot import Robot, build_robot
+from eurdf.reading.source import Source
+from eurdf.reading.xml_reader import read_xml
+from eurdf.reading.yaml_node import json_pointer
+from eurdf.reading.yaml_reader import read_yaml
+
+HERE = Path(__file__).parents[1]
+WORKBENCH = HERE / "data" / "workbench.urdf"
+ROBOTS = HERE.parent / "robots"
+WILD = HERE.parents[1] / "shared" / "wild"
+WILD_ROBOTS = sorted(path.parent.name for path in WILD.glob("*/robot.yaml"))
+needs_wild = pytest.mark.skipif(
+    not WILD_ROBOTS, reason="no published robots: put their folder at ../shared/wild, beside the checkout"
+)
+
+
+#: The workbench without its mimic joint, which version 1 ignores and version 2 does not.
+PLAIN_WORKBENCH = re.sub(r"<mimic [^>]*/>", "", WORKBENCH.read_text(encoding="utf-8"))
+
+
+def workbench(text: str = PLAIN_WORKBENCH) -> Urdf:
+    urdf = read_urdf(read_xml(Source("robot.urdf", text, text.encode())), Diagnostics())
+    assert urdf is not None
+    return urdf
+
+
+URDF = workbench()
+
+
+def described(text: str) -> Description:
+    """The workbench with a description."""
+    diagnostics = Diagnostics()
+    document = read_yaml(Source("robot.yaml", text, text.encode()))
+    extension = read_extension(document, diagnostics)
+    mechanism = None if extension is None else link(URDF, extension, document, diagnostics)
+    return Description("robot.yaml", diagnostics, mechanism, URDF, extension, document)
+
+
+def migrated(text: str) -> Migration:
+    return migrate(described(text))
+
+
+def linked(text: str) -> Mechanism:
+    mechanism = described(text).mechanism
+    assert mechanism is not None
+    return mechanism
+
+
+def but_for_the_version(mechanism: Mechanism) -> Mechanism:
+    """Own keys have another name in version 2, which is tested apart."""
+    return replace(mechanism, version="", own_data={})
+
+
+def randomly_posed(before: Robot, after: Robot, seed: int) -> tuple[Any, Any]:
+    """One configuration of both, in which universal joints of the one are two revolutes of the other."""
+    rng = np.random.default_rng(seed)
+    one: dict[str, list[float]] = {}
+    other: dict[str, list[float]] = {}
+    names = {joint.name for joint in before.mechanism.joints}
+    for joint in after.mechanism.joints:
+        values = [float(value) for value in rng.uniform(-1.5, 1.5, len(joint.coordinates.names))]
+        if joint.coordinates.quaternion is not None:
+            values = list(np.array(values) / np.linalg.norm(values))
+        if not values or joint.mimic is not None:
+            continue
+        other[joint.name] = values
+        if joint.name in names:
+            one[joint.name] = values
+        else:
+            one |= {name: [value] for name, value in zip(halves(before, joint.name), values, strict=True)}
+    return (
+        configuration_vector(before.mechanism, before.model, one),
+        configuration_vector(after.mechanism, after.model, other),
+    )
+
+
+def halves(robot: Robot, joint: str) -> list[str]:
+    """The two revolutes that a universal joint is in version 1, the first first."""
+    pair = [name for name in robot.model.names if name[:-2] == joint and name[-2] == "_" and name[-1] in "XYZ"]
+    assert len(pair) == 2
+    return pair
+
+
+def velocities(robot: Robot, names: list[str]) -> list[int]:
+    """Indices in v of the joints."""
+    model = robot.model
+    ids = [model.getJointId(name) for name in names]
+    return [row for index in ids for row in range(model.idx_vs[index], model.idx_vs[index] + model.nvs[index])]
+
+
+def assert_same_motion(before: Mechanism, after: Mechanism) -> None:
+    """The Pinocchio models move alike: bodies, residuals, inertia, limits, actuation."""
+    one, other = build_robot(before, geometry=False), build_robot(after, geometry=False)
+    assert one.model.nv == other.model.nv
+    assert pin.computeTotalMass(one.model) == pytest.approx(pin.computeTotalMass(other.model), rel=1e-12)
+    moving = [joint.name for joint in after.joints if joint.coordinates.nv and joint.mimic is None]
+    parts = [[name] if one.model.existJointName(name) else halves(one, name) for name in moving]
+    rows_one, rows_other = velocities(one, [name for part in parts for name in part]), velocities(other, moving)
+    for attribute in ("velocityLimit", "damping", "friction", "armature", "upperEffortLimit"):
+        values = getattr(one.model, attribute)[rows_one], getattr(other.model, attribute)[rows_other]
+        np.testing.assert_array_equal(*values)
+    np.testing.assert_array_equal(one.actuation.selection[rows_one, :], other.actuation.selection[rows_other, :])
+    for seed in range(3):
+        q_one, q_other = randomly_posed(one, other, seed)
+        np.testing.assert_allclose(residual(one, q_one), residual(other, q_other), atol=1e-12)
+        M_one, M_other = pin.crba(one.model, one.data, q_one), pin.crba(other.model, other.data, q_other)
+        np.testing.assert_allclose(
+            M_one[np.ix_(rows_one, rows_one)], M_other[np.ix_(rows_other, rows_other)], atol=1e-12
+        )
+        for robot, q in ((one, q_one), (other, q_other)):
+            pin.framesForwardKinematics(robot.model, robot.data, q)
+        for body in after.bodies:
+            placements = [
+                robot.data.oMf[robot.model.getFrameId(body.name, pin.FrameType.BODY)].homogeneous
+                for robot in (one, other)
+            ]
+            np.testing.assert_allclose(placements[0], placements[1], atol=1e-12)
+
+
+# -- published robots ---------------------------------------------------------------------------------------------
+
+
+@needs_wild
+@pytest.mark.parametrize("name", WILD_ROBOTS)
+def test_a_published_robot_is_the_same_model_in_version_2(name: str) -> None:
+    description = describe(WILD / name)
+    before = description.mechanism
+    assert before is not None
+    after = migrate(description).mechanism
+    assert after.version == "2.0"
+    assert differences(before, after) == []
+    if not any(body.virtual for body in before.bodies):
+        assert but_for_the_version(after) == but_for_the_version(before)
+        one, other = build_robot(before, geometry=False), build_robot(after, geometry=False)
+        assert list(one.model.names) == list(other.model.names)
+        assert one.model.idx_vs.tolist() == other.model.idx_vs.tolist()
+        assert one.model.idx_qs.tolist() == other.model.idx_qs.tolist()
+    assert_same_motion(before, after)
+
+
+@needs_wild
+def test_the_comments_of_a_published_file_stand_where_they_belong() -> None:
+    lines = migrate(describe(WILD / "digit_like_2legs")).text.splitlines()
+    assert lines[lines.index("  # SPHERICAL") + 1] == "  spherical_free_hip: spherical"
+    assert lines[lines.index("  # Ujoints") + 1] == "  spherical_free_knee: {type: universal, axes: xy}"
+
+
+@pytest.mark.parametrize("name", sorted(path.parent.name for path in ROBOTS.glob("*/robot.v1.yaml")))
+def test_a_robot_of_the_collection_migrates_to_its_own_version_2(name: str) -> None:
+    two = describe(ROBOTS / name).mechanism
+    assert two is not None
+    after = migrate(describe(ROBOTS / name / "robot.v1.yaml")).mechanism
+    names = {f"closure_{index + 1}": closure.name for index, closure in enumerate(two.closures)}
+    closures = tuple(replace(closure, name=names[closure.name]) for closure in after.closures)
+    # Version 1 names no closure, has no configuration, and its root is fixed.
+    same = replace(after, closures=closures, configurations=two.configurations, root=two.root)
+    assert differences(same, two) == []
+
+
+# -- any document -------------------------------------------------------------------------------------------------
+
+ROTARY = ["motor", "elbow", "pivot", "wrist_x", "wrist_y", "wrist_z"]
+FRAMES = [*URDF.links, *URDF.joints]
+TYPES = ["SPHERICAL", "FIXED", *(f"UJOINT_{a}{b}" for a in "XYZ" for b in "XYZ" if a != b)]
+
+#: JSON writes a character beyond the first plane in two escapes, which YAML does not read as one.
+texts = st.text(st.characters(max_codepoint=0xD7FF), max_size=8)
+own_values = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False) | texts,
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(texts, inner, max_size=3),
+    max_leaves=6,
+)
+own = st.dictionaries(st.sampled_from(["note", "x-note", "x-x-note", "urdf", "mass", "root", "on"]), own_values)
+
+
+@st.composite
+def documents(draw: st.DrawFn) -> dict[str, Any]:
+    """Documents of version 1, most of them sound."""
+    replaced = draw(st.dictionaries(st.sampled_from(ROTARY), st.sampled_from(TYPES), max_size=3))
+    halves = [f"{name}_{letter}" for name, kind in replaced.items() if "_" in kind for letter in kind[-2:]]
+    frames = st.sampled_from([*FRAMES, *halves, *halves])
+    pairs = draw(st.lists(st.lists(frames, min_size=2, max_size=2), max_size=3))
+    motors = ["stage", "grip", "wrist_z", *halves, *(name for name in ROTARY[:3] if name not in replaced)]
+    document: dict[str, Any] = {
+        "closed_loop": pairs,
+        "type": draw(st.lists(st.sampled_from(["3d", "3D", "6d", "6D"]), min_size=len(pairs), max_size=len(pairs))),
+        "name_mot": draw(st.lists(st.sampled_from(motors), unique=True, max_size=4)),
+        "joint_name": list(replaced),
+        "joint_type": list(replaced.values()),
+    }
+    if draw(st.booleans()):
+        del document["type"]
+    document |= draw(own)
+    return dict(draw(st.permutations(list(document.items()))))
+
+
+@st.composite
+def written(draw: st.DrawFn, document: dict[str, Any]) -> str:
+    """A document as text: in one of several styles, with numbered comments where there may be some."""
+    style = draw(st.sampled_from(["json", "flow", "block", "one line"]))
+    if style == "one line":
+        return json.dumps(document) + "\n"
+    if style == "json":
+        text = json.dumps(document, indent=draw(st.sampled_from([1, 4])))
+    else:
+        text = yaml.safe_dump(document, sort_keys=False, default_flow_style=None if style == "flow" else False)
+    places = draw(st.binary(min_size=20, max_size=20))
+    lines = []
+    for number, line in enumerate(text.split("\n")):
+        place = places[number % len(places)] % 4
+        if place == 0:
+            lines.append(f"# note {number}:")
+        lines.append(line + (f"  # note {number};" if place == 1 and line.strip() else ""))
+    # In a text of several lines a comment would be part of it, and PyYAML quotes by the rules of YAML 1.1.
+    return next(form for form in ("\n".join(lines), text, json.dumps(document)) if reads_as(form, document))
+
+
+def reads_as(text: str, document: dict[str, Any]) -> bool:
+    try:
+        return bool(read_yaml(Source("", text, text.encode())).data == document)
+    except Fault:
+        return False
+
+
+def says_half_of_a_universal_joint(document: dict[str, Any]) -> bool:
+    """Whether version 1 speaks of one axis of a universal joint, which version 2 cannot."""
+    ends = ("_X", "_Y", "_Z")
+    names = [*document["name_mot"], *(name for pair in document["closed_loop"] for name in pair)]
+    return any(name.endswith(ends) for name in names)
+
+
+@settings(max_examples=120, deadline=None, derandomize=True)
+@given(st.data())
+def test_any_document_is_the_same_model_in_version_2(data: st.DataObject) -> None:
+    document = data.draw(documents())
+    description = described(data.draw(written(document)))
+    before = description.mechanism
+    assume(before is not None)
+    assert before is not None
+    try:
+        migration = migrate(description)
+    except NotMigratable:
+        assert says_half_of_a_universal_joint(document)
+        return
+    after = linked(migration.text)
+    assert after == migration.mechanism
+    assert differences(before, after) == []
+    if not any(body.virtual for body in before.bodies):
+        assert but_for_the_version(after) == but_for_the_version(before)
+    keys = {json_pointer([key]): key for key in document}
+    own = {keys[pointer]: value for pointer, value in before.own_data.items()}
+    expected = {json_pointer([name]): own[key] for key, name in own_keys(own).items()}
+    assert repr(dict(after.own_data)) == repr(expected)
+
+
+@settings(max_examples=25, deadline=None, derandomize=True)
+@given(st.data())
+def test_any_document_moves_alike_in_version_2(data: st.DataObject) -> None:
+    document = data.draw(documents())
+    description = described(json.dumps(document))
+    before = description.mechanism
+    assume(before is not None and not says_half_of_a_universal_joint(document))
+    assert before is not None
+    assert_same_motion(before, migrate(description).mechanism)
+
+
+@settings(max_examples=100, deadline=None, derandomize=True)
+@given(st.data())
+def test_no_comment_is_lost_or_doubled(data: st.DataObject) -> None:
+    text = data.draw(written(data.draw(documents())))
+    description = described(text)
+    assume(description.mechanism is not None)
+    try:
+        migration = migrate(description)
+    except NotMigratable:
+        return
+    assert description.document is not None
+    before = sorted(comment.text for comment in comments_of(description.document.source))
+    source = Source("", migration.text, migration.text.encode())
+    after = [comment.text for comment in comments_of(source)]
+    assert sorted(piece for comment in after for piece in pieces(comment)) == before
+
+
+def pieces(comment: str) -> Iterator[str]:
+    """Comments beside one entry that was several share its line."""
+    for piece in comment.split(" # "):
+        yield piece if piece.startswith("#") else f"# {piece}"
+
+
+# -- what is said -------------------------------------------------------------------------------------------------
+
+COMMENTED = """\
+# yaml-language-server: $schema=../schema/extended-urdf-1.schema.json
+# The workbench of test hall 3.
+# SPDX-License-Identifier: CC0-1.0
+
+closed_loop: # the loops
+  # from the rod
+  - [rod_tip, slider] # pinned
+type: [3D] # a pin
+name_mot: [
+  motor, # of the crank
+  # the gripper
+  grip]
+note: 'kept' # by hand
+joint_name: [elbow, # cardan
+  pivot]
+joint_type:
+  # crosses
+  - UJOINT_ZX
+  - SPHERICAL
+masses:
+  # weighed
+  hand: 0x10   # hexadecimal
+  list: [1, 2,
+    3]
+# the end
+"""
+
+MIGRATED = """\
+# yaml-language-server: $schema=../schema/extended-urdf-2.0.schema.json
+# The workbench of test hall 3.
+# SPDX-License-Identifier: CC0-1.0
+extended_urdf: "2.0"
+urdf: robot.urdf
+closures:  # the loops # a pin
+  # from the rod
+  - name: closure_1  # pinned
+    type: 3d
+    frames: [rod_tip, slider]
+joints:
+  # crosses
+  elbow: {type: universal, axes: zx}  # cardan
+  pivot: spherical
+  wrist_z: {type: spherical, merges: [wrist_x, wrist_y, wrist_z]}
+actuators:
+  - motor  # of the crank
+  # the gripper
+  - grip
+x-note: 'kept' # by hand
+x-masses:
+  # weighed
+  hand: 0x10   # hexadecimal
+  list: [1, 2,
+    3]
+# the end
+"""
+
+
+def test_comments_go_with_what_they_speak_of_and_own_data_stay_as_written() -> None:
+    description = described(COMMENTED)
+    assert description.document is not None
+    assert migrate(description, schema=schema_named(description.document)).text == MIGRATED
+
+
+def test_windows_line_ends_change_nothing() -> None:
+    description = described(COMMENTED.replace("\n", "\r\n"))
+    assert description.document is not None
+    assert migrate(description, schema=schema_named(description.document)).text == MIGRATED
+
+
+def test_what_was_done_is_told() -> None:
+    notes = "\n".join(migrated(COMMENTED).notes)
+    for said in ("'closure_1'", "spherical joint 'wrist_z'", "universal joint 'elbow'", "'note'", "'x-note'"):
+        assert said in notes
+
+
+def test_own_data_with_an_alias_into_the_format_keep_their_values() -> None:
+    migration = migrated("name_mot: &motors [motor]\nbackup: *motors\nalso: &a {k: [1]}\ntoo: *a\n")
+    values = {"/x-backup": ["motor"], "/x-also": {"k": [1]}, "/x-too": {"k": [1]}}
+    assert migration.mechanism.own_data == values
+
+
+def test_own_keys_never_meet() -> None:
+    assert own_keys(["x-a", "a", "x-x-a", "type", "b"]) == {"x-a": "x-a", "a": "x-x-x-a", "x-x-a": "x-x-a", "b": "x-b"}
+
+
+def test_own_text_of_several_lines_stays_as_written() -> None:
+    text = migrated("name_mot: [motor]\nwhy: |\n  first # no comment\n\n  last\n").text
+    assert text.endswith("x-why: |\n  first # no comment\n\n  last\n")
+
+
+def test_both_axes_actuated_are_the_universal_joint_actuated() -> None:
+    text = "joint_name: [elbow]\njoint_type: [UJOINT_XY]\nname_mot: [motor, elbow_X, elbow_Y, grip]\n"
+    migration = migrated(text)
+    assert migration.mechanism.actuators == ("motor", "elbow", "grip")
+    assert_same_motion(linked(text), migration.mechanism)
+
+
+@pytest.mark.parametrize("motors", ["[elbow_X]", "[elbow_Y, elbow_X]", "[elbow_X, motor, elbow_Y]"])
+def test_one_axis_actuated_cannot_be_said_in_version_2(motors: str) -> None:
+    with pytest.raises(NotMigratable, match="one of the two axes of universal joint 'elbow'") as reason:
+        migrated(f"joint_name: [elbow]\njoint_type: [UJOINT_XY]\nname_mot: {motors}\n")
+    assert reason.value.pointer[0] == "name_mot"
+
+
+def test_the_far_side_of_a_universal_joint_is_still_a_frame() -> None:
+    text = "joint_name: [elbow]\njoint_type: [UJOINT_XY]\nclosed_loop: [[elbow_Y, slider]]\n"
+    migration = migrated(text)
+    assert migration.mechanism.closures[0].a.frame == "elbow"
+    assert_same_motion(linked(text), migration.mechanism)
+
+
+def test_a_frame_between_the_axes_of_a_universal_joint_cannot_be_said_in_version_2() -> None:
+    with pytest.raises(NotMigratable, match="'elbow_X' lies between the two axes"):
+        migrated("joint_name: [elbow]\njoint_type: [UJOINT_XY]\nclosed_loop: [[elbow_X, slider]]\n")
+
+
+# -- whether it is the same model ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("other", "said"),
+    [
+        ("closed_loop: [[rod_tip, finger]]\ntype: [6d]\n", "closure 'closure_1' is another"),
+        ("closed_loop: []\n", "closure 'closure_1' is gone"),
+        ("closed_loop: [[rod_tip, slider]]\nname_mot: [motor]\n", "the actuators are others, or in another order"),
+        ("closed_loop: [[rod_tip, slider]]\njoint_name: [pivot]\njoint_type: [FIXED]\n", "joint 'pivot' is another"),
+        (
+            "closed_loop: [[rod_tip, slider]]\njoint_name: [pivot]\njoint_type: [UJOINT_XY]\n",
+            "joint 'pivot' is another",
+        ),
+    ],
+)
+def test_another_model_is_told_from_the_same(other: str, said: str) -> None:
+    assert differences(linked("closed_loop: [[rod_tip, slider]]\n"), linked(other)) == [said]
+
+
+@pytest.mark.parametrize("axes", ["UJOINT_YX", "UJOINT_XZ"])
+def test_other_axes_are_another_model(axes: str) -> None:
+    text = "joint_name: [pivot]\njoint_type: [{}]\n"
+    found = differences(linked(text.format("UJOINT_XY")), linked(text.format(axes)))
+    assert found == ["joint 'pivot' is another"]
+
+
+def test_a_mechanism_without_split_joints_is_left_as_it_is() -> None:
+    mechanism = linked("name_mot: [motor]\n")
+    assert with_universal_joints(mechanism) is mechanism
+
+
+# -- the command --------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "robot.urdf").write_text(PLAIN_WORKBENCH, encoding="utf-8")
+    (tmp_path / "robot.yaml").write_text(COMMENTED, encoding="utf-8")
+    return tmp_path
+
+
+def test_the_command_writes_to_the_standard_output(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["migrate", str(folder)]) == 0
+    out, err = capsys.readouterr()
+    assert out == MIGRATED
+    assert "wrist_z" in err
+
+
+def test_the_command_replaces_a_file_only_by_force(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = folder / "robot.yaml"
+    assert main(["migrate", str(file), "-o", str(file)]) == 2
+    assert "--force" in capsys.readouterr().err
+    assert file.read_text(encoding="utf-8") == COMMENTED
+    assert main(["migrate", str(file), "-o", str(file), "--force"]) == 0
+    # The schema is not where the old first line looks for it.
+    assert file.read_text(encoding="utf-8") == MIGRATED.replace("../schema/", "./")
+    assert (folder / "extended-urdf-2.0.schema.json").is_file()
+
+
+def test_the_new_file_names_the_urdf_from_where_it_is(folder: Path) -> None:
+    (folder / "new").mkdir()
+    out = folder / "new" / "bench.yaml"
+    assert main(["migrate", str(folder), "-o", str(out)]) == 0
+    assert "urdf: ../robot.urdf\n" in out.read_text(encoding="utf-8")
+    assert describe(out).mechanism is not None
+
+
+def test_the_new_file_names_the_urdf_that_was_given(folder: Path) -> None:
+    (folder / "robot.urdf").rename(folder / "no: name.urdf")
+    out = folder / "two.yaml"
+    assert main(["migrate", str(folder), "--urdf", str(folder / "no: name.urdf"), "-o", str(out)]) == 0
+    assert describe(out).mechanism is not None
+
+
+def test_a_file_of_version_2_is_left_as_it_is(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "robot.yaml").write_text(MIGRATED, encoding="utf-8")
+    assert main(["migrate", str(folder)]) == 0
+    out, err = capsys.readouterr()
+    assert out == MIGRATED
+    assert "nothing to do" in err
+    assert main(["migrate", str(folder), "-o", str(folder / "other.yaml")]) == 0
+    assert not (folder / "other.yaml").exists()
+
+
+def test_a_robot_with_errors_is_refused(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "robot.yaml").write_text("name_mot: [mottor]\n", encoding="utf-8")
+    assert main(["migrate", str(folder), "-o", str(folder / "two.yaml")]) == 1
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert "did you mean 'motor'" in err
+    assert not (folder / "two.yaml").exists()
+
+
+def test_what_version_2_cannot_say_is_told_with_its_line(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = "joint_name: [elbow]\njoint_type: [UJOINT_XY]\nname_mot: [elbow_X]\n"
+    (folder / "robot.yaml").write_text(text, encoding="utf-8")
+    assert main(["migrate", str(folder), "-o", str(folder / "two.yaml")]) == 2
+    assert "robot.yaml:3: actuator 'elbow_X'" in capsys.readouterr().err
+    assert not (folder / "two.yaml").exists()
+
+
+def test_a_bare_urdf_has_nothing_to_migrate(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["migrate", str(WORKBENCH)]) == 2
+    assert "eurdf generate" in capsys.readouterr().err
+
+
+def test_json_has_the_text_and_what_was_done(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["migrate", str(folder), "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert (answer["from"], answer["to"], answer["output"]) == ("1", "2.0", None)
+    assert answer["text"] == MIGRATED
+    assert any("wrist_z" in note for note in answer["notes"])

@@ -1,0 +1,432 @@
+"""The JSON Schemas: current, well formed, explained throughout, and of one mind with the models."""
+
+from __future__ import annotations
+
+import copy
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, Literal
+
+import pytest
+import yaml
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from jsonschema import Draft202012Validator
+from pydantic import BaseModel, ValidationError
+
+from eurdf.diagnostics import Diagnostics
+from eurdf.format.read_extension import read_extension
+from eurdf.format.schema import FILES, Names, json_schema, main, schema_text
+from eurdf.format.version1 import Version1
+from eurdf.format.version2 import Version2
+from eurdf.reading.source import Source
+from eurdf.reading.yaml_reader import read_yaml
+
+ROOT = Path(__file__).parents[2]
+VERSIONS: tuple[Literal["1", "2"], ...] = ("1", "2")
+MODELS: dict[str, type[BaseModel]] = {"1": Version1, "2": Version2}
+VALIDATORS = {version: Draft202012Validator(json_schema(version)) for version in VERSIONS}
+
+NAMES = Names(links=["base", "rod", "foot"], joints=["hip", "knee", "weld"], movable_joints=["hip", "knee"])
+
+WHOLE: dict[str, dict[str, Any]] = {
+    "1": {
+        "closed_loop": [["rod", "foot"], ["a", "b"]],
+        "type": ["3D", "6d"],
+        "name_mot": ["hip"],
+        "joint_name": ["knee", "ankle"],
+        "joint_type": ["SPHERICAL", "UJOINT_ZX"],
+        "notes": {"any": 1},
+    },
+    "2": {
+        "extended_urdf": "2.0",
+        "urdf": "leg.urdf",
+        "root": "floating",
+        "closures": [
+            {"name": "rod", "type": "6d", "frames": ["rod", {"link": "foot", "xyz": [0, 0.5, 1]}]},
+            {"name": "gear", "type": "x-gear", "frames": [{"joint": "hip", "rpy": [0, 0, 1]}, "tip"], "x-ratio": 2},
+        ],
+        "joints": {
+            "hip": "spherical",
+            "cardan": {"type": "universal", "axes": "zx", "friction": 1, "armature": [1, 0]},
+            "oblique": {"type": "universal", "axes": [[1, 0, 0], [0, 1, 1]], "damping": 0, "limits": {"lower": -1}},
+            "toe": {"type": "spherical", "merges": ["a", "b", "c"], "damping": [1, 2, 3], "friction": 1},
+            "ankle": {"type": "spherical", "armature": 1, "limits": {"effort": [1, 2, 3]}},
+            "screw": {"type": "helical", "pitch": 0.01, "damping": 1, "friction": 0, "armature": 2},
+            "bolt": {"type": "helical", "pitch": -1, "limits": {"upper": [2], "velocity": 3}},
+            "post": {"type": "cylindrical", "damping": 1, "friction": 0, "armature": 1, "limits": {"lower": 0}},
+            "weld": {"type": "fixed", "damping": 1, "friction": 0, "armature": 1, "limits": {"upper": 0}},
+            "knee": {"limits": {"effort": 80}, "damping": 1, "friction": 0, "armature": 0.1},
+            "x-own": 3,
+        },
+        "actuators": ["hip", {"joint": "knee", "gear_ratio": -50, "rotor_inertia": 0}],
+        "frames": [{"name": "tip", "link": "foot", "rpy": [0, 0, 1]}, {"name": "heel", "joint": "knee"}],
+        "configurations": {"assembled": {"knee": 0.4, "hip": [0, 0, 0, 1], "x-own": None}, "x-old": 1},
+        "metadata": {"license": "MIT", "more": [None]},
+        "x-note": [],
+    },
+}
+
+#: What is put in place of a value.
+JUNK = [None, True, 0, -1, 1.5, "", "xy", "3d", "x-own", "spherical", [], {}, [1, 2, 3], [-1.5], ["a", "b"], [0] * 8]
+JUNK += [{"link": "a"}]
+
+#: What a key is renamed to, or what a key is added.
+KEYS = ["", "x-own", "type", "joint", "axes", "limits", "joint_type"]
+
+
+def accepted(version: str, document: Any) -> bool:
+    """Whether the model takes a document, after the schema is seen to be of one mind with it."""
+    try:
+        MODELS[version].model_validate(document)
+        refusal = ""
+    except ValidationError as error:
+        refusal = str(error)
+    assert VALIDATORS[version].is_valid(document) == (not refusal), f"{document}\nmodel: {refusal or 'accepts it'}"
+    return not refusal
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_the_schema_file_is_current(version: Literal["1", "2"]) -> None:
+    written = (ROOT / "schema" / FILES[version]).read_text(encoding="utf-8")
+    assert written == schema_text(json_schema(version)), "run: python -m eurdf.format.schema schema"
+
+
+def test_the_schema_files_are_written_into_the_folder_asked_for(tmp_path: Path) -> None:
+    main(str(tmp_path))
+    assert {path.name: json.loads(path.read_text()) for path in tmp_path.iterdir()} == {
+        FILES[version]: json_schema(version) for version in VERSIONS
+    }
+
+
+@pytest.mark.parametrize("names", [None, NAMES])
+@pytest.mark.parametrize("version", VERSIONS)
+def test_the_schema_is_one_of_draft_2020_12(version: Literal["1", "2"], names: Names | None) -> None:
+    schema = json_schema(version, names)
+    assert schema["$schema"] == Draft202012Validator.META_SCHEMA["$id"]
+    assert ("$id" in schema) == (names is None)
+    Draft202012Validator.check_schema(schema)
+
+
+def properties(schema: Any, path: str = "") -> Iterator[tuple[str, dict[str, Any]]]:
+    """Every property that a schema describes, by its path."""
+    if isinstance(schema, dict):
+        for key, value in schema.items():
+            if key == "properties":
+                yield from ((f"{path}/{name}", entry) for name, entry in value.items())
+            if key != "examples":
+                yield from properties(value, f"{path}/{key}")
+    elif isinstance(schema, list):
+        for index, value in enumerate(schema):
+            yield from properties(value, f"{path}/{index}")
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_every_property_has_a_title_a_description_and_examples_that_fit(version: Literal["1", "2"]) -> None:
+    schema = json_schema(version)
+    found = dict(properties(schema))
+    assert len(found) >= 5
+    for path, entry in found.items():
+        assert entry.get("title"), path
+        assert entry.get("description"), path
+        assert entry.get("examples"), path
+        validator = Draft202012Validator({"$defs": schema["$defs"], **entry})
+        for example in [*entry["examples"], *([entry["default"]] if "default" in entry else [])]:
+            assert validator.is_valid(example), f"{path}: {example}"
+
+
+def test_what_has_a_dimension_says_its_unit() -> None:
+    units = {
+        "xyz": "m.",
+        "rpy": "rad.",
+        "lower": "rad or m",
+        "upper": "rad or m",
+        "velocity": "rad/s or m/s",
+        "effort": "N·m or N",
+        "damping": "N·m·s/rad or N·s/m",
+        "friction": "N·m or N",
+        "armature": "kg·m² or kg",
+        "rotor_inertia": "kg·m²",
+        "pitch": "m per revolution",
+        "configurations": "rad",
+    }
+    described = {path.rpartition("/")[2]: entry["description"] for path, entry in properties(json_schema("2"))}
+    for name, unit in units.items():
+        assert unit in described[name], name
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_a_whole_document_is_accepted(version: str) -> None:
+    assert accepted(version, WHOLE[version])
+
+
+def places(value: Any, path: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
+    """Where every value of a document stands."""
+    yield path
+    steps = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for step, item in steps:
+        yield from places(item, (*path, step))
+
+
+def with_edit(document: Any, path: tuple[Any, ...], edit: Any) -> Any:
+    """A copy of a document with the collection that holds a value edited: ``edit(collection, step)``."""
+    edited = {"": copy.deepcopy(document)}
+    path = ("", *path)
+    holder: Any = edited
+    for step in path[:-1]:
+        holder = holder[step]
+    edit(holder, path[-1])
+    return edited[""]
+
+
+def edits(document: Any, under: str | None = None) -> Iterator[Any]:
+    """Every document that is one edit away: a value dropped, replaced, repeated, or a key renamed or added.
+
+    With ``under``, only those edits that are made at that key of the document or below it.
+    """
+    for path in list(places(document)):
+        if under is not None and path[:1] != (under,):
+            continue
+        if path:
+            yield with_edit(document, path, lambda holder, step: holder.pop(step))
+        for junk in JUNK:
+            yield with_edit(document, path, lambda holder, step, junk=junk: holder.__setitem__(step, junk))
+        if path and isinstance(path[-1], int):
+            yield with_edit(document, path, lambda holder, step: holder.append(copy.deepcopy(holder[step])))
+            yield with_edit(document, path, lambda holder, step: holder.__setitem__(step, copy.deepcopy(holder[0])))
+        for key in KEYS if path and isinstance(path[-1], str) else ():
+            yield with_edit(document, path, lambda holder, step, key=key: holder.update({key: holder.pop(step)}))
+            yield with_edit(document, path, lambda holder, step, key=key: holder.setdefault(key, holder[step]))
+
+
+def edited_pieces(version: str) -> Iterator[Any]:
+    """Every edit of sound documents that have one entry of the whole one each, so that they are soon judged."""
+    if version == "1":
+        yield from edits(WHOLE["1"])
+        return
+    head = {"extended_urdf": "2.0"}
+    yield from edits(head)
+    for key, value in WHOLE["2"].items():
+        if isinstance(value, dict) and value:
+            entries: list[Any] = [{name: entry} for name, entry in value.items()]
+        else:
+            entries = [[entry] for entry in value] if isinstance(value, list) and value else [value]
+        for entry in entries:
+            yield from edits({**head, key: entry}, under=key)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("version", VERSIONS)
+def test_model_and_schema_agree_on_every_document_that_is_one_edit_from_a_sound_one(version: str) -> None:
+    verdicts = [accepted(version, document) for document in edited_pieces(version)]
+    assert verdicts.count(True) > 100
+    assert verdicts.count(False) > 200
+
+
+names = st.sampled_from(["hip", "knee", "x-own", "foot ball", "é", "universal"]) | st.text(min_size=1, max_size=4)
+numbers = st.integers(-9, 9) | st.floats(allow_nan=False, allow_infinity=False)
+magnitudes = st.integers(0, 9) | st.floats(0, allow_infinity=False)
+vectors = st.lists(numbers, min_size=3, max_size=3)
+own = st.dictionaries(st.sampled_from(["x-a", "x-"]), st.sampled_from(JUNK), max_size=1)
+
+
+def mapping(required: dict[str, Any], **optional: Any) -> st.SearchStrategy[dict[str, Any]]:
+    """Mappings with some keys, and sometimes one of the user's own."""
+    return st.builds(lambda known, more: {**known, **more}, st.fixed_dictionaries(required, optional=optional), own)
+
+
+def one_or_several(number: st.SearchStrategy[Any], most: int) -> st.SearchStrategy[Any]:
+    return number | st.lists(number, min_size=1, max_size=most)
+
+
+magnitude = one_or_several(magnitudes, 6)
+position = one_or_several(numbers, 6)
+limits = st.one_of(
+    mapping({"lower": position}, upper=position), mapping({"effort": magnitude}, velocity=magnitude, upper=position)
+)
+overrides = {"limits": limits, "damping": magnitude, "friction": magnitude, "armature": magnitude}
+pose = {"xyz": vectors, "rpy": vectors}
+axes = st.sampled_from(["xy", "xz", "yx", "yz", "zx", "zy"]) | st.lists(vectors, min_size=2, max_size=2)
+frame_references = st.one_of(names, mapping({"link": names}, **pose), mapping({"joint": names}, **pose))
+joints = st.one_of(
+    st.sampled_from(["spherical", "cylindrical", "fixed"]),
+    mapping({"type": st.sampled_from(["spherical", "cylindrical", "fixed"])}, **overrides),
+    mapping({"type": st.just("spherical"), "merges": st.lists(names, min_size=3, max_size=3)}),
+    mapping({"type": st.just("universal"), "axes": axes}, **overrides),
+    mapping({"type": st.just("helical"), "pitch": numbers}, **overrides),
+    mapping({"limits": limits}, damping=magnitude, armature=magnitude),
+    mapping({"friction": magnitude}, armature=magnitude),
+)
+closures = mapping(
+    {
+        "name": names,
+        "type": st.sampled_from(["3d", "6d", "x-own"]),
+        "frames": st.lists(frame_references, min_size=2, max_size=2),
+    }
+)
+DOCUMENTS: dict[str, st.SearchStrategy[dict[str, Any]]] = {
+    "1": st.builds(
+        lambda known, paired, more: {**known, **paired, **more},
+        st.fixed_dictionaries(
+            {},
+            optional={
+                "closed_loop": st.lists(st.lists(names, min_size=2, max_size=2), max_size=3),
+                "type": st.lists(st.sampled_from(["3d", "6d", "3D", "6D"]), max_size=3),
+                "name_mot": st.lists(names, max_size=3),
+            },
+        ),
+        st.just({})
+        | st.fixed_dictionaries(
+            {
+                "joint_name": st.lists(names, max_size=3),
+                "joint_type": st.lists(st.sampled_from(["SPHERICAL", "FIXED", "UJOINT_XZ"]), max_size=3),
+            }
+        ),
+        st.dictionaries(st.sampled_from(["notes", "Type"]), st.sampled_from(JUNK), max_size=1),
+    ),
+    "2": mapping(
+        {"extended_urdf": st.just("2.0")},
+        urdf=names,
+        root=st.sampled_from(["fixed", "floating"]),
+        closures=st.lists(closures, max_size=3),
+        joints=st.dictionaries(names.filter(lambda name: not name.startswith("x-")), joints, max_size=3),
+        actuators=st.lists(
+            names
+            | mapping({"joint": names}, gear_ratio=numbers.filter(lambda ratio: ratio != 0), rotor_inertia=magnitudes),
+            max_size=3,
+        ),
+        frames=st.lists(
+            mapping({"name": names, "link": names}, **pose) | mapping({"name": names, "joint": names}, **pose),
+            max_size=2,
+        ),
+        configurations=st.dictionaries(
+            names.filter(lambda name: not name.startswith("x-")),
+            st.dictionaries(names, one_or_several(numbers, 7), max_size=3),
+            max_size=2,
+        ),
+        metadata=st.dictionaries(names, st.sampled_from(JUNK), max_size=2),
+    ),
+}
+
+
+@st.composite
+def mutants(draw: st.DrawFn, version: str) -> Any:
+    """Sound documents with one to three edits."""
+    document = draw(DOCUMENTS[version])
+    for _ in range(draw(st.integers(1, 3))):
+        path = draw(st.sampled_from(list(places(document))))
+        key, junk = draw(st.sampled_from(KEYS)), draw(st.sampled_from(JUNK))
+
+        def edit(holder: Any, step: Any, kind: str, key: str = key, junk: Any = junk) -> None:
+            match kind:
+                case "replace":
+                    holder[step] = copy.deepcopy(junk)
+                case "drop" if step != "":
+                    holder.pop(step)
+                case "lengthen" if isinstance(holder[step], list):
+                    holder[step].append(copy.deepcopy(holder[step][-1] if holder[step] else junk))
+                case "repeat" if isinstance(holder[step], list) and holder[step]:
+                    holder[step][-1] = copy.deepcopy(holder[step][0])
+                case "add" if isinstance(holder[step], dict):
+                    holder[step][key] = copy.deepcopy(junk)
+                case "rename" if isinstance(holder, dict) and step != "":
+                    holder[key] = holder.pop(step)
+
+        kind = draw(st.sampled_from(["replace", "drop", "lengthen", "repeat", "add", "rename"]))
+        document = with_edit(document, path, lambda holder, step, kind=kind, edit=edit: edit(holder, step, kind))
+    return document
+
+
+seldom = settings(max_examples=150, derandomize=True, deadline=None, database=None)
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@seldom
+@given(st.data())
+def test_every_sound_document_is_accepted_by_model_and_schema(version: str, data: st.DataObject) -> None:
+    assert accepted(version, data.draw(DOCUMENTS[version]))
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+@settings(max_examples=250, derandomize=True, deadline=None, database=None)
+@given(st.data())
+def test_model_and_schema_agree_on_documents_with_faults(version: str, data: st.DataObject) -> None:
+    accepted(version, data.draw(mutants(version)))
+
+
+def test_reading_refuses_what_the_schema_refuses_and_says_where() -> None:
+    seen = 0
+    for document in list(edited_pieces("2"))[::5]:
+        if not isinstance(document, dict) or "extended_urdf" not in document:
+            continue
+        text = json.dumps(document, indent=1)
+        diagnostics = Diagnostics()
+        extension = read_extension(read_yaml(Source("robot.yaml", text, text.encode())), diagnostics)
+        assert (extension is not None) == VALIDATORS["2"].is_valid(document) == (not list(diagnostics)), document
+        for found in diagnostics:
+            assert found.line is not None
+            assert found.phase == "schema"
+            seen += 1
+    assert seen > 200
+
+
+def robot_errors(version: Literal["1", "2"], text: str) -> list[str]:
+    """What an editor says of a document, which knows the names of one robot."""
+    validator = Draft202012Validator(json_schema(version, NAMES))
+    return ["/".join(map(str, fault.absolute_path)) for fault in validator.iter_errors(yaml.safe_load(text))]
+
+
+HEAD = 'extended_urdf: "2.0"\n'
+
+KNOWN_TO_THE_ROBOT: list[tuple[Literal["1", "2"], str]] = [
+    ("1", "closed_loop: [[rod, hip]]\nname_mot: [knee]\n"),
+    ("1", "joint_name: [hip]\njoint_type: [UJOINT_XY]\nname_mot: [hip_X]\nclosed_loop: [[hip_Y, foot]]\n"),
+    ("2", HEAD + "closures: [{name: a, type: 3d, frames: [rod, knee]}]\nactuators: [hip, {joint: knee}]\n"),
+    ("2", HEAD + "closures: [{name: a, type: 3d, frames: [tip, foot]}]\nframes: [{name: tip, link: rod}]\n"),
+    ("2", HEAD + "joints: {ball: {type: spherical, merges: [hip, knee, weld]}}\nactuators: [ball]\n"),
+    ("2", HEAD + "configurations: {assembled: {hip: 1, x-own: 2}, x-old: {any: 1}}\n"),
+    ("2", HEAD + "joints: {hip: fixed, x-own: 1}\nconfigurations: {ready: {made: 1}}\n"),
+    ("2", HEAD + "closures: [{name: a, type: 3d, frames: [{link: rod}, {joint: weld}]}]\n"),
+]
+
+
+@pytest.mark.parametrize(("version", "text"), KNOWN_TO_THE_ROBOT)
+def test_the_schema_of_a_robot_takes_its_names_and_those_the_file_makes(version: Literal["1", "2"], text: str) -> None:
+    assert robot_errors(version, text) == []
+
+
+UNKNOWN_TO_THE_ROBOT: list[tuple[Literal["1", "2"], str, str]] = [
+    ("1", "closed_loop: [[rod, hpi]]\n", "closed_loop/0/1"),
+    ("1", "name_mot: [weld]\n", "name_mot/0"),
+    ("1", "joint_name: [rod]\njoint_type: [FIXED]\n", "joint_name/0"),
+    ("2", HEAD + "closures: [{name: a, type: 3d, frames: [rdo, knee]}]\n", "closures/0/frames/0"),
+    ("2", HEAD + "closures: [{name: a, type: 3d, frames: [rod, {link: knee}]}]\n", "closures/0/frames/1"),
+    ("2", HEAD + "frames: [{name: tip, link: hip}]\n", "frames/0"),
+    ("2", HEAD + "actuators: [weld]\n", "actuators/0"),
+    ("2", HEAD + "actuators: [{joint: hpi}]\n", "actuators/0"),
+    ("2", HEAD + "joints: {hpi: fixed}\n", "joints/hpi"),
+    ("2", HEAD + "joints: {ball: {type: spherical, merges: [hip, knee, toe]}}\n", "joints/ball"),
+    ("2", HEAD + "configurations: {ready: {hpi: 1}}\n", "configurations/ready"),
+]
+
+
+@pytest.mark.parametrize(("version", "text", "where"), UNKNOWN_TO_THE_ROBOT)
+def test_the_schema_of_a_robot_refuses_a_name_that_nothing_has(
+    version: Literal["1", "2"], text: str, where: str
+) -> None:
+    assert set(robot_errors(version, text)) == {where}
+
+
+def test_the_schema_of_a_robot_offers_the_names_for_completion() -> None:
+    schema = json_schema("2", NAMES)
+    assert schema["$defs"]["FrameName"]["anyOf"][0] == {"enum": ["base", "rod", "foot", "hip", "knee", "weld"]}
+    assert schema["$defs"]["MovingJointName"]["anyOf"][0] == {"enum": ["hip", "knee"]}
+    assert list(schema["properties"]["joints"]["properties"]) == ["hip", "knee", "weld"]
+    assert list(schema["properties"]["configurations"]["additionalProperties"]["properties"]) == ["hip", "knee"]
+
+
+def test_the_schema_of_any_robot_is_not_changed_by_that_of_one() -> None:
+    before = json_schema("2")
+    json_schema("2", NAMES)
+    assert json_schema("2") == before

@@ -1,0 +1,119 @@
+"""The actuated joints: where they stand in the model, and what their motors add."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from support.described import at, body, codes, load
+from support.plain_urdf import joint_element, link_element, robot
+from support.star import CONTENT, STAR
+
+BALL = "joints: {d: spherical}\n"
+
+
+@pytest.mark.parametrize("root", ["fixed", "floating"])
+@pytest.mark.parametrize("names", [["a"], ["c", "a"], ["d", "b", "a"], ["f", "e", "d", "c", "b", "a"]])
+def test_actuated_joints_stand_in_file_order_with_all_their_coordinates(names: list[str], root: str) -> None:
+    loaded = load(STAR, f"{BALL}actuators: [{', '.join(names)}]\n", root=root)
+    model, actuation = loaded.model, loaded.actuation
+    assert actuation.joints == tuple(names)
+    idx_q = [index for name in names for index in range(at(model, name)[0], sum(at(model, name)[:2]))]
+    idx_v = [index for name in names for index in range(at(model, name)[2], sum(at(model, name)[2:]))]
+    assert actuation.idx_q.tolist() == idx_q
+    assert actuation.idx_v.tolist() == idx_v
+    expected = np.zeros((model.nv, len(idx_v)))
+    for column, row in enumerate(idx_v):
+        expected[row, column] = 1.0
+    np.testing.assert_array_equal(actuation.selection, expected)
+
+
+def test_a_spherical_joint_is_actuated_along_its_three_velocities() -> None:
+    loaded = load(STAR, f"{BALL}actuators: [d]\n")
+    assert (len(loaded.actuation.idx_q), len(loaded.actuation.idx_v)) == (4, 3)
+    assert loaded.actuation.selection.shape == (loaded.model.nv, 3)
+
+
+def test_a_selection_takes_the_torques_of_motors_to_the_mechanism() -> None:
+    loaded = load(STAR, "actuators: [c, a]\n")
+    torques = loaded.actuation.selection @ np.array([3.0, 5.0])
+    assert torques[at(loaded.model, "c")[2]] == 3
+    assert torques[at(loaded.model, "a")[2]] == 5
+    assert np.count_nonzero(torques) == 2
+
+
+@pytest.mark.parametrize(
+    ("joints", "actuator", "gear_ratio", "rotor_inertia", "armature"),
+    [
+        ("{}", "a", [1], [0], [0]),
+        ("{}", "{joint: a}", [1], [0], [0]),
+        ("{}", "{joint: a, gear_ratio: 50, rotor_inertia: 2.0e-4}", [50], [2e-4], [0.5]),
+        ("{}", "{joint: a, gear_ratio: -50, rotor_inertia: 2.0e-4}", [-50], [2e-4], [0.5]),
+        ("{}", "{joint: a, gear_ratio: 50}", [50], [0], [0]),
+        ("{}", "{joint: a, rotor_inertia: 2.0e-4}", [1], [2e-4], [2e-4]),
+        ("{a: {armature: 0.7}}", "{joint: a, gear_ratio: 50, rotor_inertia: 2.0e-4}", [50], [2e-4], [0.7]),
+        ("{a: {armature: 0}}", "{joint: a, gear_ratio: 50, rotor_inertia: 2.0e-4}", [50], [2e-4], [0]),
+        ("{a: {armature: 0.7}}", "a", [1], [0], [0.7]),
+        ("{a: spherical}", "{joint: a, gear_ratio: 10, rotor_inertia: 0.01}", [10] * 3, [0.01] * 3, [1] * 3),
+        (
+            "{a: {type: universal, axes: xy, armature: [1, 2]}}",
+            "{joint: a, gear_ratio: 10, rotor_inertia: 0.01}",
+            [10] * 2,
+            [0.01] * 2,
+            [1, 2],
+        ),
+    ],
+)
+@pytest.mark.parametrize("root", ["fixed", "floating"])
+def test_the_armature_is_what_is_stated_or_else_the_rotor_as_the_joint_feels_it(
+    joints: str, actuator: str, gear_ratio: list[float], rotor_inertia: list[float], armature: list[float], root: str
+) -> None:
+    model = load(STAR, f"joints: {joints}\nactuators: [{actuator}, c]\n", root=root).model
+    _, _, idx_v, nv = at(model, "a")
+    own = slice(idx_v, idx_v + nv)
+    assert model.rotorGearRatio[own].tolist() == pytest.approx(gear_ratio, rel=1e-12)
+    assert model.rotorInertia[own].tolist() == pytest.approx(rotor_inertia, rel=1e-12)
+    assert model.armature[own].tolist() == pytest.approx(armature, rel=1e-12)
+    others = np.delete(model.armature, range(idx_v, idx_v + nv))
+    assert not others.any()
+
+
+def test_a_ball_made_of_three_joints_has_its_motor_too() -> None:
+    urdf = robot(
+        link_element("base"),
+        link_element("one"),
+        link_element("two"),
+        body("hand"),
+        *(
+            joint_element(name, "revolute", parent, child, CONTENT.replace("0 0 1", axis))
+            for name, parent, child, axis in [
+                ("x", "base", "one", "1 0 0"),
+                ("y", "one", "two", "0 1 0"),
+                ("z", "two", "hand", "0 0 1"),
+            ]
+        ),
+    )
+    merged = "joints: {ball: {type: spherical, merges: [x, y, z]}}\n"
+    model = load(urdf, merged + "actuators: [{joint: ball, gear_ratio: 10, rotor_inertia: 0.01}]\n").model
+    assert model.armature.tolist() == [1, 1, 1]
+    assert codes(urdf, merged + "actuators: [z]\n") == ["actuator-merged"]
+
+
+@pytest.mark.parametrize(
+    ("yaml", "fault"),
+    [
+        ("actuators: [a, a]\n", "actuator-duplicate"),
+        ("actuators: [a, {joint: a}]\n", "actuator-duplicate"),
+        ("actuators: [g]\n", "actuator-immobile"),
+        ("joints: {a: fixed}\nactuators: [a]\n", "actuator-immobile"),
+        ("actuators: [la]\n", "unknown-actuator"),
+        ("actuators: [A]\n", "unknown-actuator"),
+    ],
+)
+def test_an_actuator_is_a_joint_that_moves_listed_once(yaml: str, fault: str) -> None:
+    assert codes(STAR, yaml) == [fault]
+
+
+def test_the_selection_is_made_once() -> None:
+    actuation = load(STAR, "actuators: [c, a]\n").actuation
+    assert actuation.selection is actuation.selection

@@ -1,0 +1,543 @@
+"""Finding a configuration in which every loop is closed."""
+
+from __future__ import annotations
+
+import gc
+import weakref
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import eurdf
+from eurdf.kinematics.assembly import assemble
+from eurdf.kinematics.evaluation import evaluations
+from eurdf.kinematics.loop import independent_groups
+from eurdf.kinematics.residual import closure_openings, residual, residual_and_jacobian
+from support.linkage import (
+    Linkage,
+    X,
+    Z,
+    bennett,
+    closure,
+    flat_sarrus,
+    loop,
+    n_bar,
+    sarrus,
+    slider_crank,
+    spherical_four_bar,
+    stewart,
+    translation,
+)
+from support.wild import FACTS, WILD, needs_wild
+
+OPEN = {
+    "four-bar in 6d": lambda: n_bar(4, away=0.7),
+    "four-bar in 3d": lambda: n_bar(4, "3d", away=0.7),
+    "five-bar in 6d": lambda: n_bar(5, away=-0.9),
+    "twenty bars": lambda: n_bar(20, away=0.2),
+    "slider-crank": lambda: slider_crank(away=0.5),
+    "spherical four-bar": lambda: spherical_four_bar(away=(0.3, 0.2, -0.3, 0.4)),
+    "Sarrus": lambda: sarrus(away=(0.3, -0.2, 0.4, 0.1, 0.2, 0.3)),
+    "Bennett": bennett,
+}
+
+
+def four_bar(crank: float, coupler: float, rocker: float, ground: float) -> Linkage:
+    """Planar four-bar with all bars along x at zero, pinned at its end by a 3d closure to the ground at ``ground``."""
+    linkage = loop([("R", (0, 0, 0), Z), ("R", (crank, 0, 0), Z), ("R", (crank + coupler, 0, 0), Z)], "3d")
+    (end,) = linkage.constraint_models
+    end.joint1_placement = translation(ground, 0.0, 0.0)
+    turn = linkage.model.jointPlacements[1] * linkage.model.jointPlacements[2] * linkage.model.jointPlacements[3]
+    end.joint2_placement = turn.inverse() * translation(crank + coupler + rocker, 0.0, 0.0)
+    return linkage
+
+
+@pytest.mark.parametrize("build", OPEN.values(), ids=OPEN.keys())
+@pytest.mark.parametrize("size", [1.0, 1000.0, 0.01])
+def test_an_open_linkage_closes_whatever_its_size(build: Callable[[], Linkage], size: float) -> None:
+    linkage = build()
+    for joint in range(1, linkage.model.njoints):
+        linkage.model.jointPlacements[joint].translation *= size
+    for constraint in linkage.constraint_models:
+        constraint.joint1_placement = pin.SE3(
+            constraint.joint1_placement.rotation, size * constraint.joint1_placement.translation
+        )
+        constraint.joint2_placement = pin.SE3(
+            constraint.joint2_placement.rotation, size * constraint.joint2_placement.translation
+        )
+    assert np.linalg.norm(residual(linkage, pin.neutral(linkage.model))) > 1e-3
+    assembly = assemble(linkage)
+    assert assembly.converged
+    assert assembly.closes
+    r = residual(linkage, assembly.q)
+    # Evaluated in another order than assembly does: up to 20 bars of this size, each rounded to 1e-16 of it.
+    rounding = 1e-13 * max(size, 1.0)
+    assert np.abs(r).max() <= 1e-10 + rounding
+    assert assembly.residual == pytest.approx(np.linalg.norm(r), abs=max(1e-12, rounding))
+    assert assembly.iterations < 60
+
+
+@given(seed=st.integers(0, 2**32 - 1))
+@settings(max_examples=25, deadline=None)
+def test_a_stewart_platform_closes_from_where_its_legs_are_disturbed(seed: int) -> None:
+    linkage = stewart()
+    random = np.random.default_rng(seed)
+    q0 = pin.integrate(linkage.model, pin.neutral(linkage.model), random.uniform(-0.5, 0.5, linkage.model.nv))
+    assembly = assemble(linkage, q0)
+    assert assembly.converged
+    assert pin.isNormalized(linkage.model, assembly.q, 1e-12)
+    assert [opening.name for opening in assembly.open] == [f"leg{leg}" for leg in range(1, 6)]
+    assert max(max(opening.position, opening.angle) for opening in assembly.open) < 1e-9
+
+
+@pytest.mark.parametrize("angle", [-2.0, -0.5, 0.3, 1.0, 2.5])
+def test_a_four_bar_with_its_crank_held_closes_where_two_circles_meet(angle: float) -> None:
+    crank, coupler, rocker, ground = 1.0, 3.0, 2.5, 2.8  # the crank turns all round: 1 + 3 < 2.5 + 2.8
+    linkage = four_bar(crank, coupler, rocker, ground)
+    assembly = assemble(linkage, np.array([angle, 0.5, 0.5]), hold=["j0"])
+    assert assembly.converged
+    assert assembly.q[0] == angle
+    pin_a = crank * np.array([np.cos(angle), np.sin(angle)])
+    across = np.array([ground, 0.0]) - pin_a
+    distance = np.linalg.norm(across)
+    along = (coupler**2 - rocker**2 + distance**2) / (2.0 * distance)
+    height = np.sqrt(coupler**2 - along**2)
+    heading = angle + assembly.q[1]
+    reached = pin_a + coupler * np.array([np.cos(heading), np.sin(heading)])
+    normal = np.array([-across[1], across[0]]) / distance
+    meetings = [pin_a + along * across / distance + sign * height * normal for sign in (1.0, -1.0)]
+    assert min(np.linalg.norm(reached - meeting) for meeting in meetings) < 1e-9
+
+
+def test_a_straight_start_where_the_gradient_vanishes_is_left() -> None:
+    linkage = four_bar(1.0, 3.0, 2.0, 3.5)  # all pins on one line: no joint moves the end along it
+    assembly = assemble(linkage)
+    assert assembly.converged
+    assert np.abs(assembly.q).max() > 0.1
+
+
+def test_loops_that_cannot_close_are_left_as_little_open_as_can_be() -> None:
+    linkage = four_bar(1.0, 3.0, 2.0, 9.0)  # 6 m of bars for 9 m of ground
+    assembly = assemble(linkage, np.array([0.4, -0.8, 0.5]))
+    assert not assembly.converged
+    assert not assembly.closes
+    assert assembly.residual == pytest.approx(3.0, abs=1e-6)
+    (opening,) = assembly.open
+    assert opening.name == "end"
+    assert opening.position == pytest.approx(3.0, abs=1e-6)
+    assert opening.angle == 0.0
+    assert assembly.iterations < 500
+
+
+def test_a_loop_that_cannot_close_keeps_no_other_from_closing() -> None:
+    model, constraints = pin.Model(), []
+    for name, ground in (("good", 2.8), ("bad", 9.0), ("fine", 3.0)):
+        parent = 0
+        for index, length in enumerate((0.0, 1.0, 3.0)):
+            parent = model.addJoint(parent, pin.JointModelRZ(), translation(length, 0.0, 0.0), f"{name}{index}")
+        constraints.append(
+            closure(model, 0, translation(ground, 0.0, 0.0), parent, translation(2.0, 0.0, 0.0), "3d", name)
+        )
+    assembly = assemble(Linkage(model, constraints))
+    openings = {opening.name: opening.position for opening in assembly.open}
+    assert not assembly.closes
+    assert openings["good"] <= 1e-10
+    assert openings["fine"] <= 1e-10
+    assert openings["bad"] == pytest.approx(3.0, abs=1e-6)
+
+
+def test_joints_held_stay_and_can_keep_a_loop_open() -> None:
+    linkage = four_bar(1.0, 3.0, 2.0, 5.5)
+    q0 = np.array([np.pi, 0.3, -0.2])  # the crank points away: 5 m of bars for 6.5 m
+    assembly = assemble(linkage, q0, hold=["j0"])
+    assert assembly.q[0] == np.pi
+    assert assembly.residual == pytest.approx(1.5, abs=1e-6)
+    assert assemble(linkage, q0).converged
+    nothing = assemble(linkage, q0, hold=["j0", "j1", "j2"])
+    np.testing.assert_array_equal(nothing.q, q0)
+    assert not nothing.closes
+
+
+def test_joints_that_are_in_no_loop_stay_where_they_are() -> None:
+    linkage = n_bar(4, away=0.7)
+    model = linkage.model
+    model.addJoint(0, pin.JointModelFreeFlyer(), translation(1.0, 2.0, 3.0), "beside")
+    model.addJoint(1, pin.JointModelRX(), pin.SE3.Identity(), "on the crank")
+    q0 = pin.integrate(model, pin.neutral(model), np.arange(model.nv) * 0.1)
+    assembly = assemble(linkage, q0)
+    assert assembly.converged
+    for name in ("beside", "on the crank"):
+        joint = model.joints[model.getJointId(name)]
+        part = slice(joint.idx_q, joint.idx_q + joint.nq)
+        np.testing.assert_allclose(assembly.q[part], q0[part], atol=1e-12)
+
+
+def test_an_unknown_joint_to_hold_is_refused_with_the_nearest_name() -> None:
+    model = pin.Model()
+    parent = model.addJoint(0, pin.JointModelRX(), pin.SE3.Identity(), "motor_knee")
+    linkage = Linkage(model, [closure(model, 0, pin.SE3.Identity(), parent, pin.SE3.Identity())])
+    with pytest.raises(ValueError, match=r"no joint 'motor_kne'; did you mean 'motor_knee'\?"):
+        assemble(linkage, hold=["motor_kne"])
+
+
+@pytest.mark.parametrize(
+    ("q0", "reason"),
+    [
+        (np.zeros(3), r"shape \(4,\), not \(3,\)"),
+        (np.array([1.0, 0.0, 0.0, np.nan]), "not finite"),
+        (np.zeros(4), "length zero"),
+    ],
+)
+def test_a_start_that_is_no_configuration_is_refused(q0: Any, reason: str) -> None:
+    model = pin.Model()
+    parent = model.addJoint(0, pin.JointModelSpherical(), pin.SE3.Identity(), "ball")
+    linkage = Linkage(model, [closure(model, 0, pin.SE3.Identity(), parent, pin.SE3.Identity())])
+    with pytest.raises(ValueError, match=reason):
+        assemble(linkage, q0)
+
+
+def test_a_start_is_normalised() -> None:
+    model = pin.Model()
+    parent = model.addJoint(0, pin.JointModelSpherical(), pin.SE3.Identity(), "ball")
+    linkage = Linkage(model, [closure(model, 0, pin.SE3.Identity(), parent, pin.SE3.Identity())])
+    assembly = assemble(linkage, np.array([0.0, 3.0, 0.0, 4.0]))
+    np.testing.assert_allclose(np.abs(assembly.q), [0.0, 0.0, 0.0, 1.0], atol=1e-10)
+
+
+def test_it_starts_at_the_assembled_configuration_where_there_is_one() -> None:
+    linkage = n_bar(4, away=0.7)
+    linkage.configurations["assembled"] = np.full(4, 0.7)
+    assembly = assemble(linkage)
+    np.testing.assert_array_equal(assembly.q, np.full(4, 0.7))
+    assert assembly.iterations == 1
+    assert not np.allclose(assemble(linkage, np.zeros(4)).q, 0.7)
+
+
+def test_the_same_question_has_the_same_answer() -> None:
+    first, second = (assemble(four_bar(1.0, 3.0, 2.0, 3.5)) for _ in range(2))
+    assert first.iterations > 5
+    np.testing.assert_allclose(first.q, second.q, atol=1e-9)
+
+
+def test_limits_are_kept_where_that_is_asked() -> None:
+    linkage = n_bar(5, away=0.4)
+    linkage.model.lowerPositionLimit = np.full(5, 0.1)
+    linkage.model.upperPositionLimit = np.array([0.6, 0.6, 0.3, np.inf, 0.6])
+    assert assemble(linkage).q[2] > 0.35
+    assembly = assemble(linkage, limits=True)
+    assert assembly.converged
+    assert (assembly.q >= linkage.model.lowerPositionLimit).all()
+    assert (assembly.q <= linkage.model.upperPositionLimit).all()
+
+
+def test_joints_go_on_moving_when_others_have_come_to_their_limits() -> None:
+    converged = 0
+    for seed in range(40):
+        random = np.random.default_rng(seed)
+        linkage = n_bar(6, away=random.uniform(-0.8, 0.8, 6))
+        closed = assemble(linkage).q
+        lower, upper = closed - random.uniform(0.0, 0.5, 6), closed + random.uniform(0.0, 0.5, 6)
+        linkage.model.lowerPositionLimit, linkage.model.upperPositionLimit = lower, upper
+        assembly = assemble(linkage, random.uniform(lower, upper), limits=True, restarts=0)
+        assert ((lower <= assembly.q) & (assembly.q <= upper)).all()
+        converged += assembly.converged
+    assert converged >= 38  # of 40 with a single descent; 30 if limits were only cut off at
+
+
+@pytest.mark.parametrize(("off", "closes"), [(0.5e-6, True), (0.7e-6, False)])
+def test_a_closure_that_stays_open_by_a_little_along_each_axis_is_open_by_the_length_of_it(
+    off: float, closes: bool
+) -> None:
+    linkage = loop([("R", (0.0, 0.0, 0.0), Z)], "3d", (0.0, 0.0, 0.3))  # closed on the axis, which moves nothing
+    constraint = linkage.constraint_models[0]
+    constraint.joint1_placement = constraint.joint1_placement * pin.SE3(np.eye(3), np.full(3, off))
+    assembly = assemble(linkage)
+    assert assembly.closes is closes
+    assert assembly.open[0].is_open is not closes
+
+
+def test_limits_that_leave_no_closed_configuration_are_kept_all_the_same() -> None:
+    linkage = four_bar(1.0, 3.0, 2.0, 3.5)
+    linkage.model.lowerPositionLimit = np.full(3, -0.2)
+    linkage.model.upperPositionLimit = np.full(3, 0.2)
+    assembly = assemble(linkage, limits=True)
+    assert not assembly.closes
+    assert np.abs(assembly.q).max() <= 0.2
+    # The end comes nearest to the ground pin with all joints bent to their limit, the same way.
+    angles = np.cumsum([0.2, 0.2, 0.2])
+    end = np.array([1.0, 3.0, 2.0]) @ np.column_stack([np.cos(angles), np.sin(angles)])
+    assert assembly.residual <= np.linalg.norm(end - [3.5, 0.0]) + 1e-6
+
+
+def test_limits_that_keep_a_loop_open_are_named() -> None:
+    linkage = n_bar(4, away=0.7)
+    linkage.model.lowerPositionLimit, linkage.model.upperPositionLimit = np.full(4, -0.1), np.full(4, 0.2)
+    assembly = assemble(linkage, limits=True)
+    assert (assembly.closes, assembly.reason) == (False, "joint limits")
+    for found in assembly.at_limits:
+        index = int(found.joint.removeprefix("j"))
+        assert found.limit == (0.2 if found.side == "upper" else -0.1)
+        assert assembly.q[index] == pytest.approx(found.limit, abs=1e-9)
+    assert f"at their limits: '{assembly.at_limits[0].joint}' (" in repr(assembly)
+    free = assemble(linkage)
+    assert (free.reason, free.at_limits) == (None, ())
+    assert repr(free).startswith("<Assembly: closed; residual")
+
+
+def test_a_loop_that_cannot_close_at_all_is_not_put_down_to_limits() -> None:
+    linkage = four_bar(1.0, 1.0, 1.0, 9.0)
+    linkage.model.lowerPositionLimit, linkage.model.upperPositionLimit = np.full(3, -3.0), np.full(3, 3.0)
+    assembly = assemble(linkage, limits=True)
+    assert (assembly.closes, assembly.reason, assembly.at_limits) == (False, "not closed", ())
+
+
+def test_a_range_of_zero_width_is_no_range_unless_strict() -> None:
+    linkage = n_bar(4, away=0.7)
+    linkage.model.lowerPositionLimit = linkage.model.upperPositionLimit = np.zeros(4)
+    assert assemble(linkage, limits=True).converged
+    strict = assemble(linkage, limits="strict")
+    assert (strict.closes, strict.reason) == (False, "joint limits")
+    np.testing.assert_array_equal(strict.q, np.zeros(4))
+    with pytest.raises(ValueError, match="limits is 'none'; it must be True, False or 'strict'"):
+        assemble(linkage, limits="none")  # type: ignore[arg-type]
+
+
+def test_redundant_rows_that_contradict_one_another_are_a_reason() -> None:
+    assembly = assemble(sarrus(away=(0.3, -0.2, 0.4, 0.1, 0.2, 0.3), decimals=7))
+    assert (assembly.converged, assembly.closes, assembly.reason) == (False, True, "rounding")
+
+
+def test_limits_do_not_hold_back_balls_and_turning_wheels() -> None:
+    model = pin.Model()
+    wheel = model.addJoint(0, pin.JointModelRUBZ(), pin.SE3.Identity(), "wheel")
+    ball = model.addJoint(wheel, pin.JointModelSpherical(), translation(1.0, 0.0, 0.0), "ball")
+    model.lowerPositionLimit = np.full(6, -1.01)
+    model.upperPositionLimit = np.full(6, 1.01)
+    linkage = Linkage(model, [closure(model, 0, translation(-1.0, 0.0, 0.0), ball, pin.SE3.Identity())])
+    assembly = assemble(linkage, pin.integrate(model, pin.neutral(model), np.array([0.5, 0.1, 0.2, 0.3])), limits=True)
+    assert assembly.converged
+    np.testing.assert_allclose(assembly.q[:2], [-1.0, 0.0], atol=1e-9)
+
+
+def scissors() -> Linkage:
+    """Two bars of which the second folds back twice as fast as the first turns, and a slide under their end."""
+    text = """<robot name="scissors"><link name="g"/><link name="a"/><link name="b"/><link name="c"/>
+      <joint name="lead" type="revolute"><parent link="g"/><child link="a"/><axis xyz="0 0 1"/>
+        <limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
+      <joint name="fold" type="revolute"><parent link="a"/><child link="b"/><origin xyz="1 0 0"/><axis xyz="0 0 1"/>
+        <limit lower="-3" upper="3" effort="1" velocity="1"/><mimic joint="lead" multiplier="-2"/></joint>
+      <joint name="slide" type="prismatic"><parent link="g"/><child link="c"/><axis xyz="1 0 0"/>
+        <limit lower="-3" upper="3" effort="1" velocity="1"/></joint></robot>"""
+    model = pin.buildModelFromXML(text, mimic=True)
+    fold, slide = model.getJointId("fold"), model.getJointId("slide")
+    return Linkage(model, [closure(model, slide, pin.SE3.Identity(), fold, translation(1.0, 0.0, 0.0), "3d")])
+
+
+def test_a_loop_closed_by_a_joint_that_mimics_another_closes() -> None:
+    assembly = assemble(scissors(), np.array([0.8, 0.3]), hold=["fold"])
+    assert assembly.converged
+    np.testing.assert_allclose(assembly.q, [0.8, 2.0 * np.cos(0.8)], atol=1e-9)
+
+
+@pytest.mark.parametrize("build", [n_bar, lambda *a, **k: sarrus(**k)])
+def test_a_file_of_six_decimals_closes_as_far_as_its_digits_go(build: Callable[..., Linkage]) -> None:
+    exact = assemble(build(4, away=0.6))
+    assert exact.converged
+    rounded = assemble(build(4, away=0.6, decimals=6))
+    assert rounded.closes
+    np.testing.assert_allclose(rounded.q, exact.q, atol=1e-4)
+
+
+def test_a_large_robot_is_closed_without_the_memory_that_data_takes(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(self: Any) -> Any:
+        raise AssertionError("pin.Data of a large model")
+
+    monkeypatch.setattr(pin.Model, "createData", refused)
+    linkage = n_bar(150, away=0.02)
+    assembly = assemble(linkage)
+    assert assembly.converged
+    assert assembly.iterations < 15
+
+
+@pytest.mark.parametrize("hold", [False, True])
+@pytest.mark.parametrize(
+    "build",
+    [
+        lambda: eurdf.load("digit_leg", root="floating", geometry=False),
+        lambda: eurdf.load("four_bar", geometry=False),
+        lambda: n_bar(5, "3d"),
+        stewart,
+        scissors,
+    ],
+)
+def test_the_two_ways_of_evaluation_agree_with_the_residual_and_its_jacobian(
+    build: Callable[[], Any], hold: bool
+) -> None:
+    robot = build()
+    model = robot.model
+    random = np.random.default_rng(3)
+    held = range(model.nvs[1] if hold else 0)
+    groups = independent_groups(robot, held)
+    r, K = residual_and_jacobian(robot, pin.neutral(model))
+    row_scale, velocity_scale = random.uniform(0.5, 2.0, len(r)), random.uniform(0.5, 2.0, model.nv)
+    ways = [None] if model.nv < model.nvExtended else [None, model.createData()]  # not where joints mimic
+    for data in ways * 3:
+        made = evaluations(robot, groups, row_scale, velocity_scale, data)
+        q = pin.integrate(model, pin.neutral(model), random.uniform(-2.0, 2.0, model.nv))
+        r, K = residual_and_jacobian(robot, q)
+        openings = closure_openings(robot, q)
+        for group, evaluation in zip(groups, made, strict=True):
+            assert not set(held) & set(group.velocities.tolist())
+            np.testing.assert_allclose(evaluation.residual(q), r[group.rows], atol=1e-12)
+            block = row_scale[group.rows, None] * K[np.ix_(group.rows, group.velocities)]
+            np.testing.assert_allclose(
+                evaluation.jacobian(), block * velocity_scale[group.velocities], atol=1e-12, rtol=1e-12
+            )
+            expected = [(openings[index].position, openings[index].angle) for index in group.closures]
+            np.testing.assert_allclose(evaluation.openings(), expected, atol=1e-12)
+
+
+def test_what_is_kept_with_a_robot_is_given_up_when_the_robot_changes() -> None:
+    linkage = four_bar(1.0, 3.0, 2.5, 2.8)
+    start = np.array([0.3, 0.5, 0.5])
+    assert assemble(linkage, start).converged
+    (end,) = linkage.constraint_models
+    end.joint1_placement = translation(3.1, 0.0, 0.0)
+    moved = assemble(linkage, start)
+    assert np.abs(residual(linkage, moved.q)).max() <= 1e-10
+    linkage.model.jointPlacements[2].translation *= 1.1
+    longer = assemble(linkage, start)
+    assert np.abs(residual(linkage, longer.q)).max() <= 1e-10
+    linkage.model.lowerPositionLimit, linkage.model.upperPositionLimit = np.full(3, -1.0), np.full(3, 1.5)
+    assert assemble(linkage, start, limits=True).q.max() <= 1.5
+    linkage.model.upperPositionLimit = np.full(3, 0.7)
+    assert assemble(linkage, start, limits=True).q.max() <= 0.7
+    end.name = "renamed"
+    assert [opening.name for opening in assemble(linkage).open] == ["renamed"]
+    linkage.constraint_models.clear()
+    assert assemble(linkage, start).open == ()
+
+
+def test_what_is_kept_with_a_robot_keeps_nothing_else_alive() -> None:
+    linkage = n_bar(5, away=0.3)
+    for hold in ([], ["j0"], ["j1"]):
+        assert assemble(linkage, hold=hold).converged
+    alive = weakref.ref(linkage)
+    del linkage
+    gc.collect()
+    assert alive() is None
+
+
+def test_joints_held_before_are_not_held_now() -> None:
+    linkage = n_bar(5, away=0.4)
+    free = assemble(linkage).q
+    held = assemble(linkage, hold=["j0", "j1"]).q
+    np.testing.assert_array_equal(held[:2], [0.0, 0.0])
+    np.testing.assert_allclose(assemble(linkage).q, free, atol=1e-9)
+    np.testing.assert_allclose(assemble(linkage, hold=["j0", "j1"]).q, held, atol=1e-9)
+    assert np.abs(free[:2]).min() > 1e-3
+
+
+def test_threads_get_the_answers_that_they_would_get_alone() -> None:
+    robot = eurdf.load("digit_leg", geometry=False)
+    random = np.random.default_rng(0)
+    starts = [
+        pin.integrate(robot.model, pin.neutral(robot.model), random.uniform(-0.5, 0.5, robot.model.nv))
+        for _ in range(40)
+    ]
+    alone = [assemble(robot, start).q for start in starts]
+    with ThreadPoolExecutor(4) as threads:
+        together = list(threads.map(lambda start: assemble(robot, start).q, starts))
+    for one, other in zip(alone, together, strict=True):
+        np.testing.assert_allclose(one, other, atol=1e-9)
+
+
+def test_a_chain_of_loops_takes_as_many_evaluations_as_its_slowest_link() -> None:
+    model, constraints = pin.Model(), []
+    foot = 0
+    for index in range(40):
+        parent, name = foot, f"{index}_"
+        for bar, length in enumerate((0.0, 1.0, 1.5)):
+            parent = model.addJoint(parent, pin.JointModelRZ(), translation(length, 0.0, 0.0), f"{name}{bar}")
+        constraints.append(
+            closure(model, foot, translation(1.6, 0, 0), parent, translation(1.2, 0, 0), "3d", f"loop{index}")
+        )
+        foot = parent
+    q0 = np.tile([0.9, -0.7, 1.9], 40) + np.random.default_rng(0).uniform(-0.1, 0.1, 120)
+    chain = Linkage(model, constraints)
+    assembly = assemble(chain, q0)
+    assert assembly.converged
+    assert assembly.iterations < 10
+    assert np.abs(residual(chain, assembly.q)).max() <= 1e-10
+
+
+@pytest.mark.parametrize("name", ["digit_leg", "four_bar"])
+def test_within_limits_a_robot_closes_from_wherever_it_is_disturbed_to(name: str) -> None:
+    robot = eurdf.load(name, geometry=False)
+    model, closed, random = robot.model, eurdf.assemble(robot).q, np.random.default_rng(5)
+    bounded = np.isfinite(model.lowerPositionLimit) & np.isfinite(model.upperPositionLimit)
+    for _ in range(20):
+        start = pin.integrate(model, closed, random.uniform(-0.5, 0.5, model.nv))
+        assembly = assemble(robot, start, limits=True)
+        assert assembly.converged
+        assert (assembly.q >= model.lowerPositionLimit)[bounded].all()
+        assert (assembly.q <= model.upperPositionLimit)[bounded].all()
+
+
+def test_a_robot_without_closures_is_closed() -> None:
+    assembly = assemble(Linkage(n_bar(4).model))
+    assert assembly.converged
+    assert (assembly.residual, assembly.iterations, assembly.open) == (0.0, 0, ())
+
+
+def test_absurd_lengths_end_in_an_answer() -> None:
+    for length in (1e160, 1e308):
+        linkage = loop([("R", (0, 0, 0), Z), ("R", (length, 0, 0), Z), ("P", (length, length, 0), X)], away=0.3)
+        assembly = assemble(linkage)
+        assert assembly.q.shape == (3,)
+        assert assembly.iterations <= 21 * 61
+
+
+@given(seed=st.integers(0, 2**32 - 1))
+@settings(max_examples=50, deadline=None)
+def test_the_answer_is_never_more_open_than_the_start(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    linkage = four_bar(*random.uniform(0.2, 2.0, 4))  # half of them cannot close
+    q0 = random.uniform(-3.0, 3.0, 3)
+    assembly = assemble(linkage, q0, restarts=0)
+    assert assembly.residual <= np.linalg.norm(residual(linkage, q0)) + 1e-12
+
+
+@pytest.mark.parametrize("build", [flat_sarrus, n_bar])
+def test_what_is_closed_already_stays(build: Callable[..., Linkage]) -> None:
+    linkage = build() if build is flat_sarrus else build(6)
+    assembly = assemble(linkage)
+    np.testing.assert_array_equal(assembly.q, np.zeros(6))
+    assert assembly.iterations == 1
+
+
+@needs_wild
+@pytest.mark.parametrize("name", [name for name, facts in FACTS.items() if facts["closes"]])
+def test_published_robots_close_from_their_neutral_configuration_in_few_steps(name: str) -> None:
+    robot = eurdf.load(WILD / name, geometry=False)
+    assembly = assemble(robot)
+    assert assembly.converged
+    assert np.abs(residual(robot, assembly.q)).max() <= 1e-10
+    assert assembly.iterations < 15
+
+
+@needs_wild
+def test_a_published_robot_that_does_not_close_is_known_in_bounded_steps() -> None:
+    robot = eurdf.load(WILD / "kangaroo_like", geometry=False)
+    assembly = assemble(robot)
+    assert assembly.iterations <= (20 + 2) * (60 + 1)  # the descents and steps that `assemble` states
+    assert not assembly.closes
+    assert assembly.residual == pytest.approx(FACTS["kangaroo_like"]["residual"], rel=0.05)
+    closed = [opening.name for opening in assembly.open if max(opening.position, opening.angle) < 1e-9]
+    assert 0 < len(closed) < len(assembly.open)

@@ -1,0 +1,727 @@
+"""Dynamics of closed mechanisms: forward, inverse, and in time."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import eurdf
+from eurdf.exceptions import (
+    InconsistentMotion,
+    NotClosable,
+    SimulationDiverged,
+    UnderactuatedMotion,
+    UndeterminedMotion,
+)
+from eurdf.kinematics import dynamics
+from eurdf.kinematics.assembly import assemble
+from eurdf.kinematics.dynamics import achievable_acceleration, forward_dynamics, inverse_dynamics
+from eurdf.kinematics.residual import residual, residual_and_jacobian
+from eurdf.kinematics.simulation import simulate
+from eurdf.pinocchio.configuration import joint_coordinates
+from support import by_hand
+from support.described import LIMITED, body, load, mass_matrix
+from support.linkage import (
+    Linkage,
+    X,
+    Y,
+    Z,
+    bennett,
+    closure,
+    loop,
+    n_bar,
+    sarrus,
+    slider_crank,
+    spherical_four_bar,
+    stewart,
+    swapped,
+    translation,
+)
+from support.plain_urdf import joint_element
+
+seeds = st.integers(0, 2**32 - 1)
+ROBOTS = ("four_bar", "digit_leg")
+TILT = pin.exp3(np.array([0.3, -0.5, 0.2]))
+
+
+def tilted(count: int, **options: Any) -> Linkage:
+    """A planar linkage of so many bars, all its pins joints, their axes to and fro, and in no plane of the world's."""
+    angles = 0.3 + 2.0 * np.pi * np.arange(count) / count
+    corners = [TILT @ np.array([(1.0 + 0.05 * i) * np.cos(a), np.sin(a), 0.0]) for i, a in enumerate(angles)]
+    return loop([("R", corner, (-1.0) ** i * TILT @ np.array(Z)) for i, corner in enumerate(corners)], **options)
+
+
+LINKAGES = {
+    "five-bar in 3d": lambda: n_bar(5, "3d", actuated=("j0", "j3")),
+    "five-bar in 6d": lambda: n_bar(5, "6d", actuated=("j0", "j4")),
+    "five-bar in 6d, with frames A and B exchanged": lambda: swapped(n_bar(5, "6d", actuated=("j0", "j4"))),
+    "slider-crank": slider_crank,
+    "sarrus": sarrus,
+    "bennett": bennett,
+    "spherical four-bar": spherical_four_bar,
+    "stewart platform": stewart,
+    "five-bar with rounded axes": lambda: tilted(5, decimals=6, actuated=("j0", "j4")),
+}
+
+
+def weighted(linkage: Linkage, seed: int = 0) -> Linkage:
+    """With some inertia at every joint, and armature at the motors."""
+    random, model = np.random.default_rng(seed), linkage.model
+    for joint in range(1, model.njoints):
+        centre, A = random.uniform(-0.3, 0.3, 3), random.uniform(-0.3, 0.3, (3, 3))
+        model.inertias[joint] = pin.Inertia(random.uniform(0.5, 2.0), centre, A @ A.T + 0.02 * np.eye(3))
+    model.armature = 0.1 * linkage.actuation.selection.sum(axis=1)
+    return linkage
+
+
+def assert_same(found: Any, expected: Any) -> None:
+    """Equal but for rounding, which a solve of some thousand operations multiplies by the condition of its matrix."""
+    np.testing.assert_allclose(found, expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max(initial=1.0))
+
+
+def closed_state(robot: Any, random: np.random.Generator, reach: float = 0.2) -> tuple[Any, Any]:
+    """A closed configuration near the assembled one, and a velocity there that keeps it closed."""
+    model = robot.model
+    first = assemble(robot)
+    assert first.closes
+    while True:
+        q = assemble(robot, pin.integrate(model, first.q, random.uniform(-reach, reach, model.nv)))
+        if q.closes:
+            return q.q, free_part(robot, q.q, random.uniform(-1.0, 1.0, model.nv))
+
+
+def free_part(robot: Any, q: Any, v: Any) -> Any:
+    """v less what K sees of it; what is below 1e-4 of K is the rounding of files."""
+    K = residual_and_jacobian(robot, q)[1]
+    return v - np.linalg.pinv(K, rcond=1e-4) @ (K @ v)
+
+
+def drift_by_differences(robot: Any, q: Any, v: Any, step: float = 1e-3) -> Any:
+    """K̇ v by central differences of the fourth order."""
+
+    def at(t: float) -> Any:
+        return residual_and_jacobian(robot, pin.integrate(robot.model, q, t * v))[1] @ v
+
+    return (8.0 * (at(step) - at(-step)) - at(2.0 * step) + at(-2.0 * step)) / (12.0 * step)
+
+
+def possible(robot: Any, q: Any, v: Any, random: np.random.Generator) -> Any:
+    """Some acceleration that keeps the closures closed, after finite differences."""
+    K, some = residual_and_jacobian(robot, q)[1], random.uniform(-3.0, 3.0, robot.model.nv)
+    return some - np.linalg.pinv(K, rcond=1e-4) @ (K @ some + drift_by_differences(robot, q, v))
+
+
+def energy(robot: Any, q: Any, v: Any) -> float:
+    model = robot.model
+    return float(pin.computePotentialEnergy(model, model.createData(), q) + v @ mass_matrix(model, q) @ v / 2.0)
+
+
+def stacked(forces: Any) -> Any:
+    return np.concatenate(forces) if forces else np.zeros(0)
+
+
+def robot_named(name: str) -> Any:
+    return eurdf.load(name, geometry=False) if name in ROBOTS else weighted(LINKAGES[name]())
+
+
+every_robot = pytest.mark.parametrize("name", [*ROBOTS, *LINKAGES])
+
+
+# --- against equations written by hand -----------------------------------------------------------------------------
+
+
+def matrices_by_hand(robot: Any, q: Any) -> tuple[Any, Any, float]:
+    """M, K and the potential energy at a closed configuration, in NumPy from the definitions of the joints."""
+    mechanism = robot.mechanism
+    coordinates = joint_coordinates(mechanism, robot.model, q)
+    J, places = by_hand.jacobians(mechanism, coordinates), by_hand.poses(mechanism, coordinates)
+    M = np.zeros((robot.model.nv, robot.model.nv))
+    potential = 0.0
+    for part in mechanism.bodies:
+        if part.inertia is not None:
+            M += J[part.name].T @ by_hand.spatial_inertia(part.inertia) @ J[part.name]
+            centre = places[part.name] @ np.array([*part.inertia.pose.xyz, 1.0])
+            potential += 9.81 * part.inertia.mass * centre[2]
+    rows = []
+    for found in mechanism.closures:
+        seen = []
+        for anchor in (found.a, found.b):
+            local = by_hand.pose_matrix(anchor.pose)
+            R = (places[anchor.body] @ local)[:3, :3]
+            own = by_hand.seen_from(local, J[anchor.body])
+            seen.append((R, np.vstack([R @ own[:3], R @ own[3:]])))
+        (R, of_a), (_, of_b) = seen  # A and B coincide, in the axes of the world
+        moved = of_b - of_a
+        rows.append(np.vstack([R.T @ moved[:3], R.T @ moved[3:]])[: 3 if found.type == "3d" else 6])
+    return M, np.vstack(rows), potential
+
+
+def bias_by_hand(robot: Any, q: Any, v: Any, step: float = 1e-4) -> Any:
+    """Ṁ v - ∂(½ vᵀ M v - V)/∂q, by central differences; for joints without quaternions where v is not zero."""
+    model = robot.model
+
+    def at(direction: Any) -> tuple[Any, float]:
+        there = [matrices_by_hand(robot, pin.integrate(model, q, sign * step * direction)) for sign in (1.0, -1.0)]
+        return (there[0][0] - there[1][0]) / (2.0 * step), (there[0][2] - there[1][2]) / (2.0 * step)
+
+    bias = at(v)[0] @ v
+    for index, unit in enumerate(np.eye(model.nv)):
+        dM, dV = at(unit)
+        bias[index] += dV - v @ dM @ v / 2.0
+    return bias
+
+
+@pytest.mark.parametrize(("name", "moving"), [("four_bar", True), ("four_bar", False), ("digit_leg", False)])
+def test_forward_dynamics_solves_the_equations_written_by_hand(name: str, moving: bool) -> None:
+    random = np.random.default_rng(3)
+    robot = eurdf.load(name, geometry=False)
+    q, v = closed_state(robot, random)
+    if not moving:
+        v = np.zeros(robot.model.nv)
+    robot.model.armature = armature = random.uniform(0.0, 0.1, robot.model.nv)
+    u = random.uniform(-5.0, 5.0, robot.actuation.selection.shape[1])
+    M, K, _ = matrices_by_hand(robot, q)
+    M += np.diag(armature)
+    step = 1e-4
+    around = [matrices_by_hand(robot, pin.integrate(robot.model, q, t * v))[1] for t in (step, -step)]
+    drift = (around[0] - around[1]) @ v / (2.0 * step)
+    zero = np.zeros((len(K), len(K)))
+    right = np.concatenate([robot.actuation.selection @ u - bias_by_hand(robot, q, v), -drift])
+    # The four-bar is planar: its force across the plane is the least, nought.
+    expected = np.linalg.lstsq(np.block([[M, -K.T], [K, zero]]), right, rcond=1e-12)[0]
+    found = forward_dynamics(robot, q, v, u)
+    nv = robot.model.nv
+    np.testing.assert_allclose(found.a, expected[:nv], atol=1e-5 * np.abs(expected[:nv]).max())
+    np.testing.assert_allclose(stacked(found.forces), expected[nv:], atol=1e-5 * np.abs(expected[nv:]).max())
+
+
+def test_the_force_of_a_closure_is_what_holds_the_body_of_b() -> None:
+    model = pin.Model()
+    slider = model.addJoint(0, pin.JointModelPZ(), pin.SE3.Identity(), "slider")
+    model.inertias[slider] = pin.Inertia(2.0, np.zeros(3), np.eye(3))
+    turned = pin.SE3(pin.exp3(np.array([np.pi / 2.0, 0.0, 0.0])), np.zeros(3))  # its y axis is up
+    for kind, force in (("3d", [0.0, 19.62, 0.0]), ("6d", [0.0, 19.62, 0.0, 0.0, 0.0, 0.0])):
+        hung = Linkage(model, [closure(model, 0, turned, slider, turned, kind)])
+        found = forward_dynamics(hung, np.zeros(1), np.zeros(1))
+        np.testing.assert_allclose(found.forces[0], force, atol=1e-12)
+        assert abs(found.a[0]) < 1e-12
+        other = forward_dynamics(swapped(hung), np.zeros(1), np.zeros(1))
+        np.testing.assert_allclose(other.forces[0], -np.array(force), atol=1e-12)
+
+
+# --- what holds of every robot -------------------------------------------------------------------------------------
+
+
+@every_robot
+@given(seed=seeds)
+@settings(max_examples=5, deadline=None)
+def test_the_acceleration_satisfies_both_equations(name: str, seed: int) -> None:
+    random = np.random.default_rng(seed)
+    robot = robot_named(name)
+    model, S = robot.model, robot.actuation.selection
+    q, v = closed_state(robot, random)
+    u, tau = random.uniform(-5.0, 5.0, S.shape[1]), random.uniform(-1.0, 1.0, model.nv)
+    a, forces = forward_dynamics(robot, q, v, u, tau=tau)
+    K = residual_and_jacobian(robot, q)[1]
+    force = pin.rnea(model, model.createData(), q, v, a) - S @ u - tau - K.T @ stacked(forces)
+    assert np.abs(force).max() < 1e-8 * (1.0 + np.abs(K.T @ stacked(forces)).max())
+    open_by = K @ a + drift_by_differences(robot, q, v)
+    rounding = 1e-3 if "rounded" in name else 1e-8  # what rounded rows contradict each other by
+    assert np.abs(open_by).max() < rounding * (1.0 + np.abs(a).max())
+
+
+@every_robot
+@given(seed=seeds)
+@settings(max_examples=5, deadline=None)
+def test_inverse_dynamics_finds_the_torques_of_forward_dynamics(name: str, seed: int) -> None:
+    random = np.random.default_rng(seed)
+    robot = robot_named(name)
+    S = robot.actuation.selection
+    q, v = closed_state(robot, random)
+    u = random.uniform(-5.0, 5.0, S.shape[1])
+    a, forces = forward_dynamics(robot, q, v, u)
+    found = inverse_dynamics(robot, q, v, a)
+    scale = 1.0 + np.abs(stacked(forces)).max()
+    np.testing.assert_allclose(found.u, u, atol=1e-7 * scale)
+    np.testing.assert_allclose(stacked(found.forces), stacked(forces), atol=1e-7 * scale)
+
+
+@every_robot
+@given(seed=seeds)
+@settings(max_examples=5, deadline=None)
+def test_forward_dynamics_makes_the_acceleration_of_inverse_dynamics(name: str, seed: int) -> None:
+    random = np.random.default_rng(seed)
+    robot = robot_named(name)
+    S = robot.actuation.selection
+    q, v = closed_state(robot, random)
+    wanted = possible(robot, q, v, random)
+    a = achievable_acceleration(robot, q, v, wanted)
+    np.testing.assert_allclose(S.T @ a, S.T @ wanted, atol=1e-8 * (1.0 + np.abs(a).max()))
+    found = forward_dynamics(robot, q, v, inverse_dynamics(robot, q, v, a).u)
+    np.testing.assert_allclose(found.a, a, atol=1e-6 * (1.0 + np.abs(a).max()))
+
+
+@every_robot
+@given(seed=seeds)
+@settings(max_examples=5, deadline=None)
+def test_closures_do_no_work(name: str, seed: int) -> None:
+    """The energy of the tree changes by the power of the motors alone."""
+    random = np.random.default_rng(seed)
+    robot = robot_named(name)
+    model, S = robot.model, robot.actuation.selection
+    q, v = closed_state(robot, random)
+    u = random.uniform(-5.0, 5.0, S.shape[1])
+    a = forward_dynamics(robot, q, v, u).a
+    step = 1e-5
+    around = [energy(robot, pin.integrate(model, q, t * v + t * t / 2.0 * a), v + t * a) for t in (step, -step)]
+    power = (around[0] - around[1]) / (2.0 * step)
+    assert power == pytest.approx(u @ (S.T @ v), abs=1e-5 * (1.0 + abs(energy(robot, q, v)) + abs(v @ a)))
+
+
+# --- two ways to one answer ------------------------------------------------------------------------------------------
+
+# With these, K has rounding in no row that would count.
+by_pinocchio = pytest.mark.parametrize("name", [*ROBOTS, *(name for name in LINKAGES if "rounded" not in name)])
+
+
+@by_pinocchio
+def test_the_solver_of_pinocchio_and_elimination_agree(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    robot = robot_named(name)
+    q, v = closed_state(robot, np.random.default_rng(7))
+    u = np.ones(robot.actuation.selection.shape[1])
+
+    def unused(*_: Any) -> None:
+        raise AssertionError("not this one")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(dynamics, "_eliminate", unused)
+        one = forward_dynamics(robot, q, v, u, gains=(100.0, 20.0))
+    monkeypatch.setattr(dynamics, "_proximal", lambda *_: None)
+    other = forward_dynamics(robot, q, v, u, gains=(100.0, 20.0))
+    np.testing.assert_allclose(one.a, other.a, atol=1e-7 * (1.0 + np.abs(other.a).max()))
+    largest = np.abs(stacked(other.forces)).max()
+    np.testing.assert_allclose(stacked(one.forces), stacked(other.forces), atol=1e-6 * (1.0 + largest))
+
+
+@by_pinocchio
+@pytest.mark.parametrize("factor", [1e-9, 1e9])
+def test_what_everything_weighs_does_not_matter(name: str, factor: float) -> None:
+    robot = robot_named(name)
+    q, v = closed_state(robot, np.random.default_rng(7))
+    model, u = robot.model, np.ones(robot.actuation.selection.shape[1])
+    expected = forward_dynamics(robot, q, v, u)
+    for joint in range(1, model.njoints):
+        inertia = model.inertias[joint]
+        model.inertias[joint] = pin.Inertia(factor * inertia.mass, inertia.lever, factor * inertia.inertia)
+    model.armature = factor * model.armature
+    found = forward_dynamics(robot, q, v, factor * u)
+    np.testing.assert_allclose(found.a, expected.a, atol=1e-6 * (1.0 + np.abs(expected.a).max()))
+    largest = np.abs(stacked(expected.forces)).max()
+    np.testing.assert_allclose(stacked(found.forces) / factor, stacked(expected.forces), atol=1e-5 * (1.0 + largest))
+
+
+# --- redundant rows, followers, missing inertia ---------------------------------------------------------------------
+
+
+@given(seed=seeds)
+@settings(max_examples=10, deadline=None)
+def test_a_planar_loop_in_6d_moves_as_in_3d(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    spatial, point = weighted(n_bar(5, "6d"), 1), weighted(n_bar(5, "3d"), 1)
+    q, v = closed_state(spatial, random)
+    a = forward_dynamics(spatial, q, v, np.ones(1)).a
+    np.testing.assert_allclose(a[:4], forward_dynamics(point, q[:4], v[:4], np.ones(1)).a, rtol=1e-8, atol=1e-8)
+
+
+def test_rows_that_differ_by_rounding_do_not_lock_the_loop() -> None:
+    exact = weighted(tilted(5, actuated=("j0",)), 2)
+    rounded = weighted(tilted(5, actuated=("j0",), decimals=6), 2)
+    singular = np.linalg.svd(residual_and_jacobian(rounded, assemble(rounded).q)[1], compute_uv=False)
+    assert 1e-8 < singular[3] < 1e-5  # of three that count
+    still, zero = np.ones(1), np.zeros(5)
+    for u in (still, 20.0 * still):
+        a = forward_dynamics(exact, zero, zero, u).a
+        np.testing.assert_allclose(forward_dynamics(rounded, zero, zero, u).a, a, atol=1e-2 * np.abs(a).max())
+
+
+PIN = """closures: [{name: pin, type: 3d, frames: [{link: base, xyz: [0.7, 0, 0.4]}, {link: %s, xyz: [0.6, 0, 0]}]}]
+actuators: [a]
+"""
+
+FOLLOWING = (
+    '<robot name="arm">'
+    + "".join(body(name) for name in ("base", "upper", "middle", "lower"))
+    + joint_element("a", "revolute", "base", "upper", LIMITED.format("0 1 0"), "")
+    + joint_element(
+        "b",
+        "revolute",
+        "upper",
+        "middle",
+        LIMITED.format("0 1 0") + '<mimic joint="a" multiplier="-1.5" offset="0.3"/>',
+        '<origin xyz="0.5 0 0"/>',
+    )
+    + joint_element("c", "revolute", "middle", "lower", LIMITED.format("0 1 0"), '<origin xyz="0.4 0 0"/>')
+    + "</robot>"
+)
+
+
+def test_a_joint_that_mimics_moves_as_the_free_joint_bound_to_its_leader() -> None:
+    yaml = PIN % "lower"
+    robot, free = load(FOLLOWING, yaml), load(FOLLOWING, yaml, mimic=False)
+    assert (robot.model.nv, free.model.nv) == (2, 3)
+    bound = np.array([[1.0, 0.0], [-1.5, 0.0], [0.0, 1.0]])
+    q = assemble(robot, np.array([0.4, 0.9])).q
+    full = bound @ q + np.array([0.0, 0.3, 0.0])
+    assert np.abs(residual(free, full)).max() < 1e-9
+    # Two coordinates and a planar pin: a structure, which stands. Without the pin it moves.
+    found = forward_dynamics(robot, q, np.zeros(2), np.array([3.0]))
+    np.testing.assert_allclose(found.a, 0.0, atol=1e-9)
+    held = inverse_dynamics(robot, q, np.zeros(2), np.zeros(2))
+    np.testing.assert_allclose(held.u, 0.0, atol=1e-9)  # the least
+    K = residual_and_jacobian(robot, q)[1]
+    weight = pin.rnea(robot.model, robot.data, q, np.zeros(2), np.zeros(2))
+    np.testing.assert_allclose(K.T @ held.forces[0], weight, rtol=1e-9)
+    robot.constraint_models, free.constraint_models = [], []
+    v = np.array([0.8, -1.1])
+    M = bound.T @ mass_matrix(free.model, full) @ bound
+    h = bound.T @ pin.rnea(free.model, free.data, full, bound @ v, np.zeros(3))
+    found = forward_dynamics(robot, q, v, np.array([3.0]))
+    np.testing.assert_allclose(found.a, np.linalg.solve(M, np.array([3.0, 0.0]) - h), rtol=1e-9)
+
+
+def test_a_leader_that_comes_after_its_mimic_joint_has_its_own_name_in_errors() -> None:
+    late = FOLLOWING.replace(
+        '<mimic joint="a" multiplier="-1.5" offset="0.3"/>', '<mimic joint="c" multiplier="-1.5"/>'
+    )
+    robot = load(late)
+    assert "c/coordinate" in list(robot.model.names)
+    with pytest.raises(eurdf.UnderactuatedMotion) as refused:
+        inverse_dynamics(robot, np.zeros(2), np.zeros(2), np.ones(2))
+    assert set(refused.value.missing) == {"a", "c"}
+
+
+def test_a_loop_with_a_joint_that_mimics_is_solved() -> None:
+    geared = FOLLOWING.replace("</robot>", "") + body("tip")
+    geared += joint_element("d", "revolute", "lower", "tip", LIMITED.format("0 1 0"), '<origin xyz="0.4 0 0"/>')
+    yaml = PIN % "tip"
+    robot = load(geared + "</robot>", yaml)
+    random = np.random.default_rng(0)
+    q, v = closed_state(robot, random)
+    M, K = mass_matrix(robot.model, q), residual_and_jacobian(robot, q)[1][[0, 2]]
+    h = pin.rnea(robot.model, robot.data, q, v, np.zeros(3))
+    right = np.concatenate([[2.0, 0.0, 0.0] - h, -drift_by_differences(robot, q, v)[[0, 2]]])
+    expected = np.linalg.solve(np.block([[M, -K.T], [K, np.zeros((2, 2))]]), right)
+    found = forward_dynamics(robot, q, v, np.array([2.0]))
+    np.testing.assert_allclose(found.a, expected[:3], rtol=1e-7)
+    np.testing.assert_allclose(found.forces[0], [expected[3], 0.0, expected[4]], rtol=1e-7, atol=1e-9)
+
+
+def test_inertia_is_asked_for_only_where_the_closures_leave_it_alone() -> None:
+    linkage = weighted(n_bar(4))
+    light = weighted(n_bar(4))
+    for joint in (3, 4):  # the last two bars: the coupler's pin and what is welded to the ground
+        linkage.model.inertias[joint] = pin.Inertia.Zero()
+        light.model.inertias[joint] = pin.Inertia(1e-9, np.zeros(3), 1e-9 * np.eye(3))
+    q, v = closed_state(light, np.random.default_rng(0))
+    found = forward_dynamics(linkage, q, v, np.ones(1))
+    np.testing.assert_allclose(found.a, forward_dynamics(light, q, v, np.ones(1)).a, rtol=1e-6)
+    assert inverse_dynamics(linkage, q, v, found.a).u == pytest.approx(1.0)
+
+
+def test_what_can_move_without_inertia_is_named() -> None:
+    model = weighted(n_bar(4)).model
+    spinner = model.addJoint(1, pin.JointModelRX(), translation(0.1, 0.0, 0.0), "spinner")
+    linkage = Linkage(model, n_bar(4).constraint_models, ["j0"])
+    assert model.names[spinner] == "spinner"
+    zero = np.zeros(5)
+    with pytest.raises(UndeterminedMotion) as caught:
+        forward_dynamics(linkage, zero, zero)
+    assert caught.value.joints == ("spinner",)
+    assert "'spinner'" in str(caught.value)
+    # That it stands still takes no force.
+    a = achievable_acceleration(linkage, zero, zero, zero)
+    assert inverse_dynamics(linkage, zero, zero, a).u.shape == (1,)
+    with pytest.raises(UnderactuatedMotion) as refused:
+        inverse_dynamics(linkage, zero, zero, zero, tau=np.array([0.0, 0.0, 0.0, 0.0, 1.0]))
+    assert refused.value.missing == {"spinner": (pytest.approx(-1.0),)}
+
+
+def test_a_tree_without_closures_moves_as_in_pinocchio() -> None:
+    model = pin.buildSampleModelManipulator()
+    random = np.random.default_rng(0)
+    q, v, tau = pin.randomConfiguration(model), random.normal(size=model.nv), random.normal(size=model.nv)
+    found = forward_dynamics(Linkage(model), q, v, tau=tau)
+    np.testing.assert_allclose(found.a, pin.aba(model, model.createData(), q, v, tau), rtol=1e-9)
+    assert found.forces == ()
+
+
+def test_a_mechanism_of_one_joint_falls() -> None:
+    model = pin.Model()
+    model.addJoint(0, pin.JointModelPZ(), pin.SE3.Identity(), "drop")
+    model.inertias[1] = pin.Inertia(2.0, np.zeros(3), np.eye(3))
+    np.testing.assert_allclose(forward_dynamics(Linkage(model), np.zeros(1), np.zeros(1)).a, [-9.81])
+
+
+# --- actuation ------------------------------------------------------------------------------------------------------
+
+
+def test_redundant_motors_share_the_least_torque() -> None:
+    robot = weighted(n_bar(4, actuated=("j0", "j1", "j2")))
+    random = np.random.default_rng(1)
+    q, v = closed_state(robot, random)
+    a = forward_dynamics(robot, q, v, np.array([2.0, -1.0, 4.0])).a
+    K, S = residual_and_jacobian(robot, q)[1], robot.actuation.selection
+    free = np.linalg.svd(K)[2][3:]
+    required = free @ pin.rnea(robot.model, robot.model.createData(), q, v, a)
+    found = inverse_dynamics(robot, q, v, a)
+    np.testing.assert_allclose(found.u, np.linalg.pinv(free @ S) @ required, rtol=1e-8)
+    weights = np.array([1.0, 100.0, 4.0])
+    dear = inverse_dynamics(robot, q, v, a, weights=weights).u
+    np.testing.assert_allclose(free @ S @ dear, required, rtol=1e-8)
+    # Least: what is weighted stands normal on what changes nothing.
+    unseen = np.linalg.svd(free @ S)[2][1:]
+    np.testing.assert_allclose(unseen @ (weights * dear), 0.0, atol=1e-8)
+    for u in (found.u, dear):
+        np.testing.assert_allclose(forward_dynamics(robot, q, v, u).a, a, rtol=1e-7, atol=1e-7)
+    with pytest.raises(ValueError, match="not positive"):
+        inverse_dynamics(robot, q, v, a, weights=np.array([1.0, 0.0, 1.0]))
+
+
+def test_a_motion_that_no_motor_makes_is_refused_and_the_joints_are_named() -> None:
+    robot = eurdf.load("digit_leg", geometry=False)
+    random = np.random.default_rng(0)
+    q, v = closed_state(robot, random)
+    a = forward_dynamics(robot, q, v, np.ones(6)).a
+    spin = free_part(robot, q, np.ones(27) - robot.actuation.selection @ np.ones(6))
+    K = np.vstack([residual_and_jacobian(robot, q)[1], robot.actuation.selection.T])
+    spin -= np.linalg.pinv(K) @ (K @ spin)  # the rods turn about themselves
+    with pytest.raises(UnderactuatedMotion) as caught:
+        inverse_dynamics(robot, q, v, a + spin)
+    balls = {f"ball_{rod}_{end}" for rod in ("achilles", "rod1", "rod2") for end in ("start", "end")}
+    assert set(caught.value.missing) == balls
+    assert all(name in str(caught.value) for name in balls)
+    np.testing.assert_allclose(caught.value.deviation, np.abs(spin).max(), rtol=1e-6)
+    # The forces said to be missing are missing: with them, it is done.
+    tau = np.zeros(27)
+    for name, force in caught.value.missing.items():
+        index = robot.model.joints[robot.model.getJointId(name)].idx_v
+        tau[index : index + 3] = force
+    u = inverse_dynamics(robot, q, v, a + spin, tau=tau).u
+    np.testing.assert_allclose(forward_dynamics(robot, q, v, u, tau=tau).a, a + spin, atol=1e-6)
+    np.testing.assert_allclose(achievable_acceleration(robot, q, v, a + spin), a, atol=1e-6)
+
+
+def test_a_robot_without_motors_does_only_what_it_does_by_itself() -> None:
+    robot = weighted(n_bar(4, actuated=()))
+    q, v = closed_state(robot, np.random.default_rng(0))
+    a = forward_dynamics(robot, q, v).a
+    assert inverse_dynamics(robot, q, v, a).u.shape == (0,)
+    with pytest.raises(UnderactuatedMotion):
+        inverse_dynamics(robot, q, v, a + free_part(robot, q, np.array([1.0, 0.0, 0.0, 0.0])))
+
+
+def test_a_motion_that_opens_closures_is_refused_and_they_are_named() -> None:
+    robot = eurdf.load("digit_leg", geometry=False)
+    q, v = closed_state(robot, np.random.default_rng(0))
+    a = forward_dynamics(robot, q, v).a
+    index = robot.model.joints[robot.model.getJointId("ball_achilles_end")].idx_v
+    bent = np.array(a)
+    bent[index + 1] += 0.1
+    with pytest.raises(InconsistentMotion) as caught:
+        inverse_dynamics(robot, q, v, bent)
+    assert caught.value.order == "acceleration"
+    assert set(caught.value.opening) == {"achilles"}
+    np.testing.assert_allclose(
+        caught.value.opening["achilles"], (residual_and_jacobian(robot, q)[1] @ (bent - a))[:6], atol=1e-8
+    )
+    assert "'achilles'" in str(caught.value)
+    with pytest.raises(InconsistentMotion) as caught:
+        achievable_acceleration(robot, q, v + (bent - a), a)
+    assert caught.value.order == "velocity"
+    assert inverse_dynamics(robot, q, v, a + 1e-9 * np.ones(27)).u.shape == (6,)
+
+
+# --- forces from elsewhere ------------------------------------------------------------------------------------------
+
+
+@given(seed=seeds)
+@settings(max_examples=10, deadline=None)
+def test_an_external_force_acts_at_its_frame_in_the_axes_of_the_world(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    robot = eurdf.load("digit_leg", geometry=False)
+    model, data = robot.model, robot.data
+    q, v = closed_state(robot, random)
+    names = [frame.name for frame in model.frames if frame.parentJoint > 0]
+    pushes = {name: random.uniform(-5.0, 5.0, 6) for name in random.choice(names, 3, replace=False).tolist()}
+    tau = np.zeros(model.nv)
+    for name, push in pushes.items():
+        J = pin.computeFrameJacobian(model, data, q, model.getFrameId(name), pin.LOCAL_WORLD_ALIGNED)
+        tau += J.T @ push
+    found = forward_dynamics(robot, q, v, external=pushes)
+    expected = forward_dynamics(robot, q, v, tau=tau)
+    np.testing.assert_allclose(found.a, expected.a, atol=1e-7 * np.abs(expected.a).max())
+    wrapped = {name: pin.Force(push) for name, push in pushes.items()}
+    back = inverse_dynamics(robot, q, v, found.a, external=wrapped)
+    np.testing.assert_allclose(back.u, 0.0, atol=1e-6)
+
+
+def test_damping_and_friction_act_only_when_asked() -> None:
+    robot = eurdf.load("digit_leg", geometry=False)
+    q, v = closed_state(robot, np.random.default_rng(0))
+    model = robot.model
+    assert model.damping.any()
+    assert model.upperDryFrictionLimit.any()
+    tau = -model.damping * v - model.upperDryFrictionLimit * np.sign(v)
+    braked = forward_dynamics(robot, q, v, dissipation=True)
+    assert_same(braked.a, forward_dynamics(robot, q, v, tau=tau).a)
+    free = forward_dynamics(robot, q, v).a
+    assert np.abs(braked.a - free).max() > 1.0
+    u = inverse_dynamics(robot, q, v, free, dissipation=True).u
+    np.testing.assert_allclose(u, -robot.actuation.selection.T @ tau, atol=1e-8)
+
+
+@pytest.mark.parametrize("name", ["four_bar", "digit_leg", "five-bar in 6d", "five-bar with rounded axes"])
+def test_gains_draw_an_open_mechanism_closed(name: str) -> None:
+    robot = robot_named(name)
+    random = np.random.default_rng(0)
+    q, v = closed_state(robot, random)
+    kp, kd, nv = 400.0, 40.0, robot.model.nv
+    q = pin.integrate(robot.model, q, 1e-6 * random.normal(size=nv))
+    v = v + 1e-4 * random.normal(size=nv)
+    a = forward_dynamics(robot, q, v, gains=(kp, kd)).a
+    r, K = residual_and_jacobian(robot, q)
+    values = np.linalg.svd(K, compute_uv=False)
+    counted = K @ np.linalg.pinv(K, rcond=1e-4 if "rounded" in name else 1e-9 * values[0])
+    left = counted @ (K @ a + drift_by_differences(robot, q, v) + kd * K @ v + kp * r)
+    assert np.abs(left).max() < 1e-6 * np.abs(a).max()
+    assert all(found.m_baumgarte_parameters.Kp == 0.0 for found in robot.constraint_models)
+    for found in robot.constraint_models:
+        found.m_baumgarte_parameters.Kp, found.m_baumgarte_parameters.Kd = kp, kd
+    assert_same(forward_dynamics(robot, q, v).a, a)
+
+
+def test_what_is_no_vector_of_the_robot_is_refused() -> None:
+    robot = eurdf.load("four_bar", geometry=False)
+    q, v = assemble(robot).q, np.zeros(3)
+    for arguments in (
+        {"v": np.zeros(4)},
+        {"q": np.zeros(2)},
+        {"u": np.zeros(3)},
+        {"tau": np.zeros(1)},
+        {"v": np.array([0.0, np.nan, 0.0])},
+        {"external": {"rocker": np.zeros(3)}},
+    ):
+        with pytest.raises(ValueError, match=r"shape|finite"):
+            forward_dynamics(robot, **{"q": q, "v": v, **arguments})
+    with pytest.raises(ValueError, match="did you mean 'motor_crank'"):
+        forward_dynamics(robot, q, v, external={"motor_crnak": np.zeros(6)})
+    with pytest.raises(ValueError, match="acceleration"):
+        inverse_dynamics(robot, q, v, np.zeros(2))
+
+
+def test_the_working_memory_given_changes_nothing() -> None:
+    robot = eurdf.load("digit_leg", geometry=False)
+    q, v = closed_state(robot, np.random.default_rng(0))
+    data = robot.model.createData()
+    pin.computeAllTerms(robot.model, data, pin.neutral(robot.model), np.ones(27))
+    alone = forward_dynamics(robot, q, v, np.ones(6))
+    for _ in range(2):
+        found = forward_dynamics(robot, q, v, np.ones(6), data=data)
+        assert_same(found.a, alone.a)
+        assert_same(stacked(found.forces), stacked(alone.forces))
+
+
+# --- in time --------------------------------------------------------------------------------------------------------
+
+
+def drift_of_energy(robot: Any, motion: Any) -> float:
+    """Largest change of the energy, in parts of the largest kinetic energy."""
+    energies = np.array([energy(robot, q, v) for q, v in zip(motion.q, motion.v, strict=True)])
+    kinetic = max(v @ mass_matrix(robot.model, q) @ v / 2.0 for q, v in zip(motion.q, motion.v, strict=True))
+    return float(np.abs(energies - energies[0]).max() / kinetic)
+
+
+@pytest.mark.parametrize(
+    ("name", "duration", "step", "bound"), [("four_bar", 1.0, 2.5e-3, 3e-6), ("digit_leg", 0.1, 1e-3, 1e-8)]
+)
+def test_a_passive_robot_keeps_its_energy_and_stays_closed(
+    name: str, duration: float, step: float, bound: float
+) -> None:
+    robot = eurdf.load(name, geometry=False)
+    q, v = closed_state(robot, np.random.default_rng(5))
+    motion = simulate(robot, q, 2.0 * v, duration=duration, step=step)
+    assert drift_of_energy(robot, motion) < bound
+    assert np.abs(pin.difference(robot.model, q, motion.q[-1])).max() > 0.3  # it went somewhere
+    for q, v in zip(motion.q, motion.v, strict=True):
+        r, K = residual_and_jacobian(robot, q)
+        assert np.abs(r).max() < 1e-10
+        assert np.abs(K @ v).max() < 1e-10
+
+
+def test_the_steps_are_of_the_fourth_order_on_the_manifold() -> None:
+    robot = eurdf.load("digit_leg", geometry=False)
+    q, v = closed_state(robot, np.random.default_rng(1))
+    v *= 5.0
+    ends = [simulate(robot, q, v, duration=0.04, step=0.04 / count).q[-1] for count in (5, 10, 20)]
+    coarse, fine = (np.abs(pin.difference(robot.model, a, b)).max() for a, b in itertools.pairwise(ends))
+    assert 11.0 < coarse / fine < 23.0
+
+
+def test_a_robot_is_held_by_the_torques_that_hold_it() -> None:
+    robot = eurdf.load("digit_leg", geometry=False)
+    q = assemble(robot).q
+    zero, idx_v = np.zeros(27), robot.actuation.idx_v
+    u = inverse_dynamics(robot, q, zero, achievable_acceleration(robot, q, zero, zero)).u
+    times = []
+
+    def hold(t: float, at: Any, v: Any) -> Any:
+        times.append(t)
+        return u - pin.difference(robot.model, q, at)[idx_v] - 0.01 * v[idx_v]
+
+    motion = simulate(robot, q, duration=0.05, control=hold)
+    assert np.abs(pin.difference(robot.model, q, motion.q[-1])[idx_v]).max() < 1e-8
+    assert motion.t[-1] == pytest.approx(0.05)
+    assert motion.q.shape == (51, 33)
+    assert max(times) == pytest.approx(0.05)
+    fallen = simulate(robot, q, duration=0.05).q[-1]
+    assert np.abs(pin.difference(robot.model, q, fallen)[idx_v]).max() > 1e-3
+
+
+def test_a_simulation_that_its_steps_cannot_follow_says_so() -> None:
+    robot = eurdf.load("digit_leg", geometry=False)
+    q, idx_v = assemble(robot).q, robot.actuation.idx_v
+
+    def stiff(t: float, at: Any, v: Any) -> Any:
+        return -1e6 * pin.difference(robot.model, q, at)[idx_v]
+
+    with pytest.raises(SimulationDiverged) as caught:
+        simulate(robot, q, duration=10.0, step=0.01, control=stiff)
+    assert 0.0 < caught.value.t < 10.0
+    assert caught.value.step == 0.01
+
+
+def test_a_simulation_of_nothing_is_the_start_put_on_the_closures() -> None:
+    robot = eurdf.load("four_bar", geometry=False)
+    q = assemble(robot).q
+    motion = simulate(robot, pin.integrate(robot.model, q, 0.01 * np.ones(3)), np.ones(3), duration=0.0)
+    assert motion.t.tolist() == [0.0]
+    r, K = residual_and_jacobian(robot, motion.q[0])
+    assert np.abs(r).max() < 1e-9
+    assert np.abs(K @ motion.v[0]).max() < 1e-12
+    for wrong in ({"duration": -1.0}, {"duration": 1.0, "step": 0.0}, {"duration": np.inf}):
+        with pytest.raises(ValueError, match="duration"):
+            simulate(robot, q, **wrong)
+
+
+def test_a_simulation_of_what_cannot_close_does_not_start() -> None:
+    model = pin.Model()
+    model.addJoint(0, pin.JointModelRZ(), pin.SE3.Identity(), "j0")
+    apart = Linkage(model, [closure(model, 0, translation(*X), 1, translation(*(2.0 * np.array(Y))), "3d", "gap")])
+    with pytest.raises(NotClosable, match="'gap'"):
+        simulate(apart, np.zeros(1), duration=0.1)

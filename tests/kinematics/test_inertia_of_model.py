@@ -1,0 +1,98 @@
+"""Masses, centres of mass and mass matrices of models, against NumPy."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pinocchio as pin
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.pinocchio.configuration import configuration_vector
+from eurdf.pinocchio.model import build_model
+from support import by_hand
+
+SEEDS = st.integers(0, 2**32 - 1)
+
+
+def at_random(seed: int) -> tuple[Mechanism, dict[str, tuple[float, ...]], np.random.Generator]:
+    random = np.random.default_rng(seed)
+    mechanism = by_hand.tree_of_all_types(random)
+    joints = tuple(replace(joint, offset=by_hand.some_pose(random)) for joint in mechanism.joints)
+    coordinates = {
+        joint.name: by_hand.some_coordinates(joint.type, random) for joint in joints if joint.coordinates.nv > 0
+    }
+    return replace(mechanism, joints=joints), coordinates, random
+
+
+def mass_matrix(mechanism: Mechanism, coordinates: dict[str, tuple[float, ...]]) -> np.ndarray:
+    J = by_hand.jacobians(mechanism, coordinates)
+    return sum(J[body.name].T @ by_hand.spatial_inertia(body.inertia) @ J[body.name] for body in mechanism.bodies[1:])
+
+
+@given(seed=SEEDS)
+@settings(deadline=None)
+def test_the_mass_and_its_centre_are_those_of_the_bodies(seed: int) -> None:
+    mechanism, coordinates, _ = at_random(seed)
+    # A body that nothing moves is in no joint's inertia: Pinocchio leaves it out of the robot's mass.
+    model = build_model(replace(mechanism, root="floating"))
+    q = configuration_vector(replace(mechanism, root="floating"), model, coordinates)
+    poses = by_hand.poses(mechanism, coordinates)
+    inertias = [(body.name, body.inertia) for body in mechanism.bodies[1:]]
+    total = sum(inertia.mass for _, inertia in inertias)
+    centre = sum(inertia.mass * (poses[name] @ [*inertia.pose.xyz, 1.0])[:3] for name, inertia in inertias) / total
+    np.testing.assert_allclose(pin.computeTotalMass(model), total, rtol=1e-12)
+    np.testing.assert_allclose(pin.centerOfMass(model, model.createData(), q), centre, atol=1e-12)
+
+
+@given(seed=SEEDS)
+@settings(deadline=None)
+def test_the_mass_matrix_is_that_of_the_bodies_kinetic_energy(seed: int) -> None:
+    mechanism, coordinates, _ = at_random(seed)
+    model = build_model(mechanism)
+    M = pin.crba(model, model.createData(), configuration_vector(mechanism, model, coordinates))
+    M = np.triu(M) + np.triu(M, 1).T
+    np.testing.assert_allclose(M, mass_matrix(mechanism, coordinates), atol=1e-10)
+    assert np.linalg.eigvalsh(M)[0] > 0.0
+
+
+@given(seed=SEEDS)
+@settings(deadline=None)
+def test_the_armature_adds_to_the_diagonal_of_the_mass_matrix(seed: int) -> None:
+    mechanism, coordinates, random = at_random(seed)
+    joints = tuple(
+        replace(joint, armature=tuple(random.uniform(0.0, 1.0, joint.coordinates.nv))) for joint in mechanism.joints
+    )
+    mechanism = replace(mechanism, joints=joints)
+    model = build_model(mechanism)
+    M = pin.crba(model, model.createData(), configuration_vector(mechanism, model, coordinates))
+    armature = [value for joint in joints for value in joint.armature]
+    np.testing.assert_allclose(np.diag(M), np.diag(mass_matrix(mechanism, coordinates)) + armature, atol=1e-10)
+
+
+@given(seed=SEEDS)
+@settings(deadline=None)
+def test_gravity_pulls_with_the_weight_of_the_bodies(seed: int) -> None:
+    mechanism, coordinates, _ = at_random(seed)
+    model = build_model(mechanism)
+    q = configuration_vector(mechanism, model, coordinates)
+    torque = np.zeros(model.nv)
+    J, poses = by_hand.jacobians(mechanism, coordinates), by_hand.poses(mechanism, coordinates)
+    for body in mechanism.bodies[1:]:
+        assert body.inertia is not None
+        lift = poses[body.name][:3, :3].T @ [0.0, 0.0, 9.81]  # a body at rest is accelerated upwards, seen from itself
+        torque += J[body.name].T @ by_hand.spatial_inertia(body.inertia) @ [*lift, 0.0, 0.0, 0.0]
+    np.testing.assert_allclose(pin.computeGeneralizedGravity(model, model.createData(), q), torque, atol=1e-10)
+
+
+@given(seed=SEEDS)
+@settings(deadline=None)
+def test_the_forward_dynamics_undo_the_inverse_dynamics(seed: int) -> None:
+    mechanism, coordinates, random = at_random(seed)
+    model = build_model(mechanism)
+    q = configuration_vector(mechanism, model, coordinates)
+    v, a = random.uniform(-1, 1, model.nv), random.uniform(-1, 1, model.nv)
+    data = model.createData()
+    np.testing.assert_allclose(pin.aba(model, data, q, v, pin.rnea(model, data, q, v, a)), a, atol=1e-8)

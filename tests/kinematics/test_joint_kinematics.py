@@ -1,0 +1,202 @@
+"""Each joint type moves as its definition says, at every configuration, and its Jacobian is the derivative."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mechanism import Body, Joint, Mechanism
+from eurdf.mechanism.pose import Pose
+from eurdf.pinocchio.configuration import configuration_vector, joint_coordinates
+from eurdf.pinocchio.model import build_model
+from support import by_hand
+
+SEEDS = st.integers(0, 2**32 - 1)
+X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+
+
+def one_joint(joint: Joint, root: str = "fixed") -> Mechanism:
+    return Mechanism("one", "", root, (Body(joint.parent), Body(joint.child)), (joint,))  # type: ignore[arg-type]
+
+
+def pose_of(model: pin.Model, q: np.ndarray, body: str) -> np.ndarray:
+    data = model.createData()
+    pin.framesForwardKinematics(model, data, q)
+    return data.oMf[model.getFrameId(body, pin.FrameType.BODY)].homogeneous
+
+
+def jacobian_of(model: pin.Model, q: np.ndarray, body: str) -> np.ndarray:
+    frame = model.getFrameId(body, pin.FrameType.BODY)
+    J = pin.computeFrameJacobian(model, model.createData(), q, frame, pin.ReferenceFrame.LOCAL)
+    return np.asarray(J).reshape(6, model.nv)  # with one velocity it comes as a vector
+
+
+@pytest.mark.parametrize("kind", by_hand.MOVING)
+@given(seed=SEEDS)
+@settings(deadline=None)
+def test_a_joint_moves_its_body_as_its_type_says(kind: JointType, seed: int) -> None:
+    random = np.random.default_rng(seed)
+    joint = replace(by_hand.some_joint(kind, random), offset=by_hand.some_pose(random))
+    mechanism = one_joint(joint)
+    model = build_model(mechanism)
+    coordinates = {joint.name: by_hand.some_coordinates(kind, random)}
+    q = configuration_vector(mechanism, model, coordinates)
+    np.testing.assert_allclose(pose_of(model, q, "tip"), by_hand.poses(mechanism, coordinates)["tip"], atol=1e-12)
+
+
+@pytest.mark.parametrize("kind", by_hand.MOVING)
+@given(seed=SEEDS)
+@settings(deadline=None)
+def test_the_velocities_of_a_joint_are_those_of_its_definition_seen_from_the_child(kind: JointType, seed: int) -> None:
+    random = np.random.default_rng(seed)
+    joint = replace(by_hand.some_joint(kind, random), offset=by_hand.some_pose(random))
+    mechanism = one_joint(joint)
+    model = build_model(mechanism)
+    coordinates = {joint.name: by_hand.some_coordinates(kind, random)}
+    J = jacobian_of(model, configuration_vector(mechanism, model, coordinates), "tip")
+    np.testing.assert_allclose(J, by_hand.jacobians(mechanism, coordinates)["tip"], atol=1e-12)
+
+
+@pytest.mark.parametrize("kind", by_hand.MOVING)
+@given(seed=SEEDS)
+@settings(deadline=None)
+def test_the_jacobian_of_a_joint_is_the_derivative_of_its_pose(kind: JointType, seed: int) -> None:
+    random = np.random.default_rng(seed)
+    joint = by_hand.some_joint(kind, random)
+    mechanism = one_joint(joint)
+    model = build_model(mechanism)
+    q = configuration_vector(mechanism, model, {joint.name: by_hand.some_coordinates(kind, random)})
+    M, J, h = pose_of(model, q, "tip"), jacobian_of(model, q, "tip"), 1e-6
+    for column, direction in zip(J.T, np.eye(model.nv), strict=True):
+        ahead = pose_of(model, pin.integrate(model, q, h * direction), "tip")
+        behind = pose_of(model, pin.integrate(model, q, -h * direction), "tip")
+        rate = np.linalg.inv(M) @ (ahead - behind) / (2 * h)  # ≈ the twist as a 4x4 matrix
+        twist = np.array([*rate[:3, 3], rate[2, 1], rate[0, 2], rate[1, 0]])
+        np.testing.assert_allclose(column, twist, atol=1e-8)
+
+
+@pytest.mark.parametrize("kind", by_hand.MOVING)
+@given(seed=SEEDS)
+@settings(deadline=None)
+def test_the_acceleration_of_a_joint_at_constant_velocity_is_the_derivative_of_its_twist(
+    kind: JointType, seed: int
+) -> None:
+    random = np.random.default_rng(seed)
+    joint = by_hand.some_joint(kind, random)
+    mechanism = one_joint(joint)
+    model = build_model(mechanism)
+    q = configuration_vector(mechanism, model, {joint.name: by_hand.some_coordinates(kind, random)})
+    v, h = random.uniform(-1, 1, model.nv), 1e-5
+    data = model.createData()
+    pin.forwardKinematics(model, data, q, v, np.zeros(model.nv))
+    acceleration = pin.getFrameAcceleration(model, data, model.getFrameId("tip", pin.FrameType.BODY))
+    ahead = jacobian_of(model, pin.integrate(model, q, h * v), "tip") @ v
+    behind = jacobian_of(model, pin.integrate(model, q, -h * v), "tip") @ v
+    np.testing.assert_allclose(acceleration.vector, (ahead - behind) / (2 * h), atol=1e-8)
+
+
+@given(seed=SEEDS)
+@settings(deadline=None)
+def test_bodies_of_a_tree_of_all_joint_types_stand_where_they_should(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    mechanism = by_hand.tree_of_all_types(random)
+    model = build_model(mechanism)
+    coordinates = {joint.name: by_hand.some_coordinates(joint.type, random) for joint in mechanism.joints}
+    del coordinates[next(joint.name for joint in mechanism.joints if joint.type is JointType.FIXED)]
+    q = configuration_vector(mechanism, model, coordinates)
+    expected = by_hand.poses(mechanism, coordinates)
+    J = by_hand.jacobians(mechanism, coordinates)
+    for body in mechanism.bodies:
+        np.testing.assert_allclose(pose_of(model, q, body.name), expected[body.name], atol=1e-12)
+        np.testing.assert_allclose(jacobian_of(model, q, body.name), J[body.name], atol=1e-12)
+
+
+def test_a_screw_advances_by_its_pitch_in_one_turn_and_is_right_handed() -> None:
+    for axis in (X, Y, Z, (0.0, 3.0, 4.0)):
+        mechanism = one_joint(Joint("screw", JointType.HELICAL, "base", "tip", axes=(axis,), pitch=0.005))
+        model = build_model(mechanism)
+        turned = pose_of(model, configuration_vector(mechanism, model, {"screw": (2 * math.pi,)}), "tip")
+        along = np.array(axis) / np.linalg.norm(axis)
+        np.testing.assert_allclose(turned, by_hand.transform(np.eye(3), 0.005 * along), atol=1e-12)
+
+
+def test_a_universal_joint_with_oblique_axes_turns_about_both_of_them() -> None:
+    axes = (X, (0.6, 0.8, 0.0))
+    mechanism = one_joint(Joint("cardan", JointType.UNIVERSAL, "base", "tip", axes=axes))
+    model = build_model(mechanism)
+    assert (model.nq, model.nv) == (2, 2)
+    assert model.joints[1].shortname() == "JointModelComposite"  # Pinocchio's own asks for perpendicular axes
+    pose = pose_of(model, configuration_vector(mechanism, model, {"cardan": (0.4, -0.7)}), "tip")
+    R = by_hand.rotation(axes[0], 0.4) @ by_hand.rotation(axes[1], -0.7)
+    np.testing.assert_allclose(pose[:3, :3], R, atol=1e-12)
+
+
+def test_a_universal_joint_with_perpendicular_axes_is_pinocchios_own() -> None:
+    model = build_model(one_joint(Joint("cardan", JointType.UNIVERSAL, "base", "tip", axes=(Y, Z))))
+    assert model.joints[1].shortname() == "JointModelUniversal"
+
+
+def test_both_frames_of_a_joint_whose_body_is_off_its_centre_stand_at_the_body() -> None:
+    joint = Joint("ball", JointType.SPHERICAL, "base", "tip", Pose((0.0, 0.0, 1.0)), Pose((0.1, 0.0, 0.0)))
+    mechanism = one_joint(joint)
+    model = build_model(mechanism)
+    half = math.sqrt(0.5)
+    q = configuration_vector(mechanism, model, {"ball": (0.0, 0.0, half, half)})
+    data = model.createData()
+    pin.framesForwardKinematics(model, data, q)
+    for name in ("ball", "tip"):
+        np.testing.assert_allclose(data.oMf[model.getFrameId(name)].translation, (0.0, 0.1, 1.0), atol=1e-12)
+    np.testing.assert_array_equal(data.oMi[1].translation, (0.0, 0.0, 1.0))
+
+
+@given(seed=SEEDS, root=st.sampled_from(["fixed", "floating"]))
+@settings(deadline=None)
+def test_coordinates_survive_the_way_to_pinocchio_and_back(seed: int, root: str) -> None:
+    random = np.random.default_rng(seed)
+    mechanism = replace(by_hand.tree_of_all_types(random), root=root)  # type: ignore[arg-type]
+    model = build_model(mechanism)
+    given_ = {
+        joint.name: by_hand.some_coordinates(joint.type, random)
+        for joint in mechanism.joints
+        if joint.type is not JointType.FIXED
+    }
+    if root == "floating":
+        given_ = {"root_joint": by_hand.some_coordinates(JointType.FLOATING, random)} | given_
+    back = joint_coordinates(mechanism, model, configuration_vector(mechanism, model, given_))
+    assert list(back) == list(given_)
+    for name, values in given_.items():
+        assert back[name] == pytest.approx(values, abs=1e-12)
+
+
+def test_a_joint_left_out_stands_at_its_neutral() -> None:
+    mechanism = by_hand.tree_of_all_types(np.random.default_rng(1))
+    model = build_model(mechanism)
+    q = configuration_vector(mechanism, model, {})
+    np.testing.assert_array_equal(q, pin.neutral(model))
+    for name, values in joint_coordinates(mechanism, model, q).items():
+        joint = next(joint for joint in mechanism.joints if joint.name == name)
+        assert values == joint.coordinates.neutral
+
+
+def test_a_configuration_of_an_unknown_joint_or_of_a_wrong_length_is_refused() -> None:
+    mechanism = one_joint(Joint("ball", JointType.SPHERICAL, "base", "tip"))
+    model = build_model(mechanism)
+    with pytest.raises(ValueError, match="'knee' is no joint with coordinates"):
+        configuration_vector(mechanism, model, {"knee": (0.0,)})
+    with pytest.raises(ValueError, match="joint 'ball' is given 3 coordinates; it has 4: x, y, z, w"):
+        configuration_vector(mechanism, model, {"ball": (0.0, 0.0, 0.0)})
+    with pytest.raises(ValueError, match="quaternion of joint 'ball' has length 0"):
+        configuration_vector(mechanism, model, {"ball": (0.0, 0.0, 0.0, 0.0)})
+
+
+def test_a_quaternion_is_brought_to_unit_length() -> None:
+    mechanism = one_joint(Joint("ball", JointType.SPHERICAL, "base", "tip"))
+    model = build_model(mechanism)
+    np.testing.assert_allclose(configuration_vector(mechanism, model, {"ball": (0, 3, 0, 4)}), (0, 0.6, 0, 0.8))

@@ -1,0 +1,90 @@
+"""The mass matrix of the spanning tree, against kinetic energy, MuJoCo, and Pinocchio's own where that is right."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+import pinocchio as pin
+import pytest
+
+import eurdf
+from support import mujoco_witness
+from support.described import LIMITED, body, load
+from support.plain_urdf import joint_element
+
+MIMIC = '<mimic joint="a" multiplier="-1.5" offset="0.3"/>'
+
+
+def hand(mimic: str = MIMIC) -> str:
+    """A joint ``b`` that carries two fingers, ``c`` and ``d``, and that mimics ``a``."""
+    turned = ("0 1 0", "1 0 0", "0 0 1")
+    return (
+        '<robot name="hand">'
+        + "".join(body(name) for name in ("base", "arm", "palm", "thumb", "finger"))
+        + joint_element("a", "revolute", "base", "arm", LIMITED.format(turned[0]), "")
+        + joint_element("b", "revolute", "arm", "palm", LIMITED.format(turned[1]) + mimic, '<origin xyz="0.5 0 0"/>')
+        + joint_element("c", "revolute", "palm", "thumb", LIMITED.format(turned[0]), '<origin xyz="0.1 0.2 0"/>')
+        + joint_element("d", "revolute", "palm", "finger", LIMITED.format(turned[2]), '<origin xyz="0.1 -0.2 0"/>')
+        + "</robot>"
+    )
+
+
+ARMATURE = "joints: {c: {armature: 0.05}}\n"
+
+
+def kinetic_energy(robot: Any, q: Any, v: Any, step: float = 1e-6) -> float:
+    """Of all bodies, whose twists come from poses a moment apart, and of the armatures, J."""
+    model = robot.model
+    poses = []
+    for time in (-step, step):
+        data = model.createData()
+        pin.forwardKinematics(model, data, pin.integrate(model, q, time * v))
+        poses.append([pin.SE3(placement) for placement in data.oMi])
+    energy = 0.5 * float(model.armature @ v**2)
+    for before, after, inertia in zip(*poses, model.inertias, strict=True):
+        twist = pin.log6(before.actInv(after)).vector / (2.0 * step)
+        energy += 0.5 * float(twist @ inertia.matrix() @ twist)
+    return energy
+
+
+@pytest.mark.parametrize("name", ["hand", "free hand", "digit_leg", "delta"])
+def test_half_v_m_v_is_the_kinetic_energy(name: str) -> None:
+    robot = load(hand(), ARMATURE, mimic=name == "hand") if "hand" in name else eurdf.load(name, geometry=False)
+    random = np.random.default_rng(0)
+    for _ in range(3):
+        q = pin.integrate(robot.model, pin.neutral(robot.model), random.uniform(-0.5, 0.5, robot.model.nv))
+        v = random.uniform(-1.0, 1.0, robot.model.nv)
+        M = eurdf.mass_matrix(robot, q)
+        np.testing.assert_array_equal(M, M.T)
+        assert 0.5 * v @ M @ v == pytest.approx(kinetic_energy(robot, q, v), rel=1e-6)
+
+
+def test_a_mimic_joint_with_branches_has_the_mass_matrix_of_the_free_joint_bound_to_its_leader(tmp_path: Path) -> None:
+    robot = load(hand(), ARMATURE)
+    bound = np.array([[1.0, 0.0, 0.0], [-1.5, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    q = np.array([0.4, 0.9, -0.6])
+    (tmp_path / "free.urdf").write_text(hand(mimic=""))
+    model = mujoco_witness.read_urdf(tmp_path / "free.urdf")
+    data = mujoco.MjData(model)
+    names = [mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_JOINT, index) for index in range(model.njnt)]
+    order = [names.index(name) for name in "abcd"]
+    data.qpos[order] = bound @ q + np.array([0.0, 0.3, 0.0, 0.0])
+    mujoco.mj_forward(model, data)
+    M = bound.T @ mujoco_witness.mass_matrix(model, data)[np.ix_(order, order)] @ bound
+    M[1, 1] += 0.05
+    np.testing.assert_allclose(eurdf.mass_matrix(robot, q), M, rtol=1e-6, atol=1e-6)
+
+
+def test_without_mimic_joints_it_is_pinocchios() -> None:
+    robot = eurdf.load("digit_leg", geometry=False)
+    q = eurdf.assemble(robot).q
+    M = np.triu(pin.crba(robot.model, robot.model.createData(), q))
+    np.testing.assert_allclose(eurdf.mass_matrix(robot, q, data=robot.data), M + np.triu(M, 1).T, rtol=1e-12)
+
+
+def test_what_is_no_configuration_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"has the shape \(3,\), not \(2,\)"):
+        eurdf.mass_matrix(load(hand()), np.zeros(2))

@@ -1,0 +1,262 @@
+"""The residual of the closures and its derivative."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+import eurdf
+from eurdf.kinematics.analysis import analyze
+from eurdf.kinematics.residual import closure_openings, residual, residual_and_jacobian
+from support.branching import JOINTS, MIMIC, branching, far_from_half_a_turn, somewhere
+from support.linkage import Linkage, Z, closure, n_bar, stewart, swapped, translation
+
+seeds = st.integers(0, 2**32 - 1)
+
+
+def differences(linkage: Linkage, q: Any, step: float = 1e-4) -> Any:
+    """Derivative of the residual along q ⊕ v by central differences of the fourth order."""
+
+    def at(v: Any) -> Any:
+        return residual(linkage, pin.integrate(linkage.model, q, v))
+
+    return np.column_stack(
+        [
+            (8.0 * (at(step * v) - at(-step * v)) - at(2.0 * step * v) + at(-2.0 * step * v)) / (12.0 * step)
+            for v in np.eye(linkage.model.nv)
+        ]
+    )
+
+
+@pytest.mark.parametrize("name", JOINTS)
+@given(seed=seeds)
+@settings(max_examples=10, deadline=None)
+def test_the_jacobian_is_the_derivative_of_the_residual_for_every_joint_type(name: str, seed: int) -> None:
+    random = np.random.default_rng(seed)
+    linkage = branching([JOINTS[name](), pin.JointModelRY(), JOINTS[name](), JOINTS[name]()], random)
+    q = somewhere(linkage.model, random)
+    assume(far_from_half_a_turn(linkage, q))
+    r, K = residual_and_jacobian(linkage, q)
+    assert K.shape == (21, linkage.model.nv)
+    np.testing.assert_allclose(r, residual(linkage, q), atol=1e-12)
+    np.testing.assert_allclose(K, differences(linkage, q), rtol=0.0, atol=1e-7 * np.abs(K).max())
+
+
+@given(seed=seeds, kinds=st.lists(st.sampled_from(sorted(JOINTS)), min_size=3, max_size=9))
+@settings(max_examples=50, deadline=None)
+def test_the_jacobian_is_the_derivative_of_the_residual_in_any_tree(seed: int, kinds: list[str]) -> None:
+    random = np.random.default_rng(seed)
+    linkage = branching([JOINTS[kind]() for kind in kinds], random)
+    q = somewhere(linkage.model, random)
+    assume(far_from_half_a_turn(linkage, q))
+    _, K = residual_and_jacobian(linkage, q, linkage.model.createData())
+    np.testing.assert_allclose(K, differences(linkage, q), rtol=0.0, atol=1e-7 * np.abs(K).max())
+
+
+@given(seed=seeds, kinds=st.lists(st.sampled_from(sorted(JOINTS)), min_size=3, max_size=9))
+@settings(max_examples=50, deadline=None)
+def test_the_answer_is_the_same_with_and_without_data(seed: int, kinds: list[str]) -> None:
+    random = np.random.default_rng(seed)
+    linkage = branching([JOINTS[kind]() for kind in kinds], random)
+    q, data = somewhere(linkage.model, random), linkage.model.createData()
+    assume(far_from_half_a_turn(linkage, q))
+    np.testing.assert_allclose(residual(linkage, q), residual(linkage, q, data), rtol=0.0, atol=1e-12)
+    for light, full in zip(residual_and_jacobian(linkage, q), residual_and_jacobian(linkage, q, data), strict=True):
+        np.testing.assert_allclose(light, full, rtol=0.0, atol=1e-11)
+
+
+def test_a_6d_residual_is_log6_of_b_seen_from_a() -> None:
+    # Turning by 90 degrees about z while moving by a quarter of a circle of radius 1 about (0, 1): a unit screw.
+    model = pin.Model()
+    joint = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "body")
+    aMb = pin.SE3(pin.exp3(np.array([0.0, 0.0, np.pi / 2])), np.array([1.0, 1.0, 0.0]))
+    oMa = pin.SE3(pin.exp3(np.array([0.4, -0.3, 0.9])), np.array([5.0, 6.0, 7.0]))
+    linkage = Linkage(model, [closure(model, 0, oMa, joint, pin.SE3.Identity())])
+    r = residual(linkage, pin.SE3ToXYZQUAT(oMa * aMb))
+    np.testing.assert_allclose(r, [np.pi / 2, 0.0, 0.0, 0.0, 0.0, np.pi / 2], atol=1e-12)
+
+
+def test_a_3d_residual_is_the_origin_of_b_in_a() -> None:
+    model = pin.Model()
+    joint = model.addJoint(0, pin.JointModelRZ(), translation(1.0, 0.0, 0.0), "hinge")
+    oMa = pin.SE3(pin.exp3(np.array([0.0, 0.0, np.pi / 2])), np.array([1.0, 2.0, 3.0]))
+    linkage = Linkage(model, [closure(model, 0, oMa, joint, translation(2.0, 0.0, 0.0), "3d")])
+    # B is at (3, 0, 0) before the hinge turns, and at (1, 2, 0) after 90 degrees.
+    np.testing.assert_allclose(residual(linkage, np.array([0.0])), [-2.0, -2.0, -3.0], atol=1e-12)
+    np.testing.assert_allclose(residual(linkage, np.array([np.pi / 2])), [0.0, 0.0, -3.0], atol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["digit_leg", "four_bar"])
+def test_where_the_loops_are_closed_residual_and_jacobian_are_minus_pinocchios_own(name: str) -> None:
+    """Pinocchio measures A from B, and in 3d along the axes of A as well: where they coincide only the sign differs."""
+    robot = eurdf.load(name, geometry=False)
+    model, data = robot.model, robot.data
+    rng = np.random.default_rng(1)
+    moved = 0.2 * eurdf.project_velocity(robot, robot.configurations["assembled"], rng.normal(size=model.nv))
+    q = eurdf.assemble(robot, pin.integrate(model, robot.configurations["assembled"], moved)).q
+    assert np.abs(q - robot.configurations["assembled"]).max() > 0.01
+    r, K = residual_and_jacobian(robot, q)
+    pin.computeJointJacobians(model, data, q)
+    row = 0
+    for constraint in robot.constraint_models:
+        theirs = constraint.createData()
+        constraint.calc(model, data, theirs)
+        jacobian = pin.getConstraintJacobian(model, data, constraint, theirs)
+        rows = slice(row, row + constraint.residualSize())
+        np.testing.assert_allclose(K[rows], -jacobian, rtol=0.0, atol=1e-9)
+        error = (theirs.c1Mc2.inverse() * pin.SE3.Identity()).translation
+        np.testing.assert_allclose(r[rows][:3], -error, rtol=0.0, atol=1e-9)
+        row = rows.stop
+    assert row == len(r)
+
+
+def test_closures_are_stacked_in_their_order() -> None:
+    random = np.random.default_rng(5)
+    linkage = branching([JOINTS[kind]() for kind in sorted(JOINTS)], random)
+    q = somewhere(linkage.model, random)
+    r, K = residual_and_jacobian(linkage, q)
+    row = 0
+    for constraint in linkage.constraint_models:
+        alone = Linkage(linkage.model, [constraint])
+        r_alone, K_alone = residual_and_jacobian(alone, q)
+        rows = slice(row, row + len(r_alone))
+        np.testing.assert_allclose(r[rows], r_alone, atol=1e-12)
+        np.testing.assert_allclose(K[rows], K_alone, atol=1e-12)
+        row = rows.stop
+    assert row == len(r) == 21
+
+
+@given(seed=seeds)
+@settings(max_examples=20, deadline=None)
+def test_exchanging_a_and_b_turns_the_sign_of_a_6d_closure(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    linkage = branching([JOINTS[kind]() for kind in ("spherical", "planar", "helical", "cylindrical")], random)
+    linkage.constraint_models = [found for found in linkage.constraint_models if found.residualSize() == 6]
+    q = somewhere(linkage.model, random)
+    assume(far_from_half_a_turn(linkage, q))
+    r, K = residual_and_jacobian(linkage, q)
+    r_swapped, K_swapped = residual_and_jacobian(swapped(linkage), q)
+    np.testing.assert_allclose(r_swapped, -r, atol=1e-11)
+    np.testing.assert_allclose(K_swapped, -K, atol=1e-10)
+
+
+def test_joints_outside_a_loop_do_not_move_it() -> None:
+    random = np.random.default_rng(1)
+    linkage = branching([JOINTS[kind]() for kind in ("floating", "universal", "spherical", "planar")], random)
+    linkage.constraint_models = linkage.constraint_models[:2]  # across the branches, with the floating trunk below
+    q = somewhere(linkage.model, random)
+    _, K = residual_and_jacobian(linkage, q)
+    assert not K[:, :6].any()
+    moved = pin.integrate(linkage.model, q, np.array([3.0, -2.0, 1.0, 0.4, 0.5, 0.6] + [0.0] * (linkage.model.nv - 6)))
+    np.testing.assert_allclose(residual(linkage, moved), residual(linkage, q), atol=1e-12)
+
+
+@pytest.mark.parametrize("with_data", [False, True])
+def test_a_joint_that_mimics_adds_to_the_column_of_the_one_it_follows(with_data: bool) -> None:
+    def robot(mimic: bool) -> Linkage:
+        model = pin.buildModelFromXML(MIMIC, mimic=mimic)
+        same, other = model.getJointId("same"), model.getJointId("other")
+        tip = translation(0.1, 0.2, 0.3)
+        return Linkage(
+            model, [closure(model, 0, tip, same, tip), closure(model, same, tip, other, tip, "3d", "across")]
+        )
+
+    follows, free = robot(True), robot(False)
+    assert (follows.model.nv, free.model.nv) == (2, 4)
+    law = {"lead": (0, 1.0, 0.0), "slide": (1, 1.0, 0.0), "same": (0, -2.0, 0.4), "other": (0, 0.5, 0.0)}
+    q = np.array([0.3, -0.2])
+    q_free, G = np.zeros(4), np.zeros((4, 2))
+    for name, (leader, multiplier, offset) in law.items():
+        row = free.model.idx_qs[free.model.getJointId(name)]
+        q_free[row] = multiplier * q[leader] + offset
+        G[row, leader] = multiplier
+    r, K = residual_and_jacobian(follows, q, follows.model.createData() if with_data else None)
+    r_free, K_free = residual_and_jacobian(free, q_free)
+    np.testing.assert_allclose(r, r_free, atol=1e-12)
+    np.testing.assert_allclose(K, K_free @ G, atol=1e-12)
+    np.testing.assert_allclose(K, differences(follows, q), atol=1e-8)
+
+
+def test_an_opening_is_a_distance_and_an_angle() -> None:
+    model = pin.Model()
+    joint = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "body")
+    linkage = Linkage(
+        model,
+        [
+            closure(model, 0, translation(0.0, 3.0, 0.0), joint, translation(4.0, 0.0, 0.0), "6d", "welded"),
+            closure(model, 0, translation(0.0, 3.0, 0.0), joint, translation(4.0, 0.0, 0.0), "3d", "pinned"),
+        ],
+    )
+    turned = pin.SE3ToXYZQUAT(
+        translation(4.0, 0.0, 0.0)
+        * pin.SE3(pin.exp3(np.array([0.0, 0.5, 0.0])), np.zeros(3))
+        * translation(-4.0, 0.0, 0.0)
+    )
+    for data in (None, model.createData()):
+        welded, pinned = closure_openings(linkage, turned, data)
+        assert (welded.name, pinned.name) == ("welded", "pinned")
+        assert welded.position == pytest.approx(5.0)
+        assert welded.angle == pytest.approx(0.5)
+        assert pinned.position == pytest.approx(5.0)
+        assert pinned.angle == 0.0
+
+
+def test_a_robot_without_closures_has_an_empty_residual() -> None:
+    linkage = Linkage(n_bar(4).model)
+    r, K = residual_and_jacobian(linkage, np.zeros(4))
+    assert r.shape == residual(linkage, np.zeros(4)).shape == (0,)
+    assert K.shape == (0, 4)
+    assert closure_openings(linkage, np.zeros(4)) == ()
+
+
+@pytest.mark.parametrize("joints", [0, 1])
+def test_the_smallest_robots_have_a_jacobian(joints: int) -> None:
+    model = pin.Model()
+    if joints:
+        model.addJoint(0, pin.JointModelRZ(), pin.SE3.Identity(), "hinge")
+    linkage = Linkage(model, [closure(model, 0, translation(1.0, 0.0, 0.0), joints, pin.SE3.Identity())])
+    for data in (None, model.createData()):
+        r, K = residual_and_jacobian(linkage, np.zeros(joints), data)
+        np.testing.assert_allclose(r, [-1.0, 0.0, 0.0, 0.0, 0.0, 0.0], atol=1e-12)
+        assert K.shape == (6, joints)
+        assert analyze(linkage).residual > 0.5
+
+
+def test_a_long_chain_needs_neither_data_nor_recursion(monkeypatch: pytest.MonkeyPatch) -> None:
+    model, parent, length = pin.Model(), 0, 2000
+    for index in range(length):
+        parent = model.addJoint(parent, pin.JointModelRZ(), translation(0.01, 0.0, 0.0), f"joint{index}")
+    linkage = Linkage(model, [closure(model, 0, translation(0.0, 0.0, 0.5), parent, pin.SE3.Identity(), "3d")])
+
+    def refused(self: Any) -> Any:
+        raise AssertionError("pin.Data of a large model")
+
+    monkeypatch.setattr(pin.Model, "createData", refused)
+    q = np.full(length, np.pi / length)  # half a circle
+    r, K = residual_and_jacobian(linkage, q)
+    np.testing.assert_allclose(r[[1, 2]], [2 * length * 0.01 / np.pi, -0.5], rtol=1e-3)
+    np.testing.assert_allclose(K[0, 0], -r[1], rtol=1e-9)
+
+
+def test_closures_that_are_exchanged_later_are_seen() -> None:
+    linkage = stewart()
+    q = pin.neutral(linkage.model)
+    assert len(residual(linkage, q)) == 30
+    kept = linkage.constraint_models.pop()
+    assert len(residual(linkage, q)) == 24
+    linkage.constraint_models.append(
+        closure(linkage.model, 0, pin.SE3.Identity(), kept.joint2_id, translation(*Z), "3d")
+    )
+    r, K = residual_and_jacobian(linkage, q)
+    assert r.shape == (27,)
+    assert K[24:].any()
+
+
+def test_the_neutral_configuration_of_a_drawn_linkage_is_closed() -> None:
+    linkage = n_bar(5)
+    np.testing.assert_allclose(residual(linkage, np.zeros(5)), 0.0, atol=1e-12)

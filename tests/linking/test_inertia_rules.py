@@ -1,0 +1,248 @@
+"""Which inertias are those of real bodies, and what a joint at the end of the tree must move."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from support.described import codes, load, mass_matrix, q_of
+from support.plain_urdf import inertial, joint_element, link_element, robot, vector
+
+LIMIT = '<limit lower="-2" upper="2" effort="1" velocity="1"/>'
+
+
+def _inertial(mass: float, moments: Any, xyz: Any = (0, 0, 0), rpy: Any = (0, 0, 0)) -> str:
+    m = np.asarray(moments, dtype=float)
+    m = np.diag(m) if m.ndim == 1 else m
+    origin = f'<origin xyz="{vector(xyz)}" rpy="{vector(rpy)}"/>'
+    return inertial(float(mass), origin, tuple(float(m[i, j]) for i, j in zip(*np.triu_indices(3), strict=True)))
+
+
+def _one(mass: float, moments: Any) -> list[str]:
+    return codes(robot(link_element("base", _inertial(mass, moments))))
+
+
+def _turned(moments: Any, seed: int) -> Any:
+    R, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
+    return R @ np.diag(moments) @ R.T
+
+
+@st.composite
+def _bodies(draw: st.DrawFn) -> tuple[float, Any]:
+    """Mass and moments of a cloud of point masses, of any size; flat, thin, or a point as well."""
+    count = draw(st.integers(1, 6))
+    size = 10.0 ** draw(st.integers(-4, 2))
+    random = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    stretch = draw(st.sampled_from([(1, 1, 1), (1, 1, 0), (1, 0, 0), (1, 1, 1e-4), (0, 0, 0)]))
+    points = size * random.normal(size=(count, 3)) * stretch
+    masses = random.uniform(0.1, 5.0, count)
+    points -= masses @ points / masses.sum()
+    own = _turned((1, 1, 1), draw(st.integers(0, 99)))
+    moments = sum(m * ((p @ p) * np.eye(3) - np.outer(p, p)) for m, p in zip(masses, points @ own.T, strict=True))
+    return float(masses.sum()), moments
+
+
+@settings(max_examples=150, deadline=None)
+@given(_bodies())
+def test_no_body_of_real_masses_is_accused(real: tuple[float, Any]) -> None:
+    assert _one(*real) == []
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.tuples(*[st.floats(0.0, 10.0)] * 2), st.floats(1e-5, 10.0), st.integers(0, 2**32 - 1), st.floats(1e-6, 1e6))
+def test_a_negative_principal_moment_is_always_seen(others: Any, negative: float, seed: int, size: float) -> None:
+    moments = np.array((*others, -negative))
+    assume(negative > 2e-6 * np.abs(moments).max())
+    assert _one(1.0, _turned(moments * size, seed)) == ["inertia-not-psd"]
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.tuples(*[st.floats(1e-3, 10.0)] * 2), st.floats(1e-5, 10.0), st.integers(0, 2**32 - 1), st.floats(1e-6, 1e6))
+def test_a_moment_above_the_sum_of_the_others_is_always_seen(others: Any, more: float, seed: int, size: float) -> None:
+    moments = np.array((*others, sum(others) + more))
+    assume(more > 2e-6 * moments.max())
+    assert _one(1.0, _turned(moments * size, seed)) == ["inertia-triangle"]
+
+
+@pytest.mark.parametrize(
+    ("mass", "moments", "found"),
+    [
+        (0.0, (0, 0, 0), []),
+        (0.0, (1, 1, 1), []),
+        (1.0, (0, 0, 0), []),
+        (-1e-300, (1, 1, 1), ["negative-mass"]),
+        (-1.0, (-1, 1, 1), ["negative-mass"]),
+        (1.0, (1, 1, 2), []),
+        (1.0, (1, 1, 2 * (1 + 0.9e-6)), []),
+        (1.0, (1, 1, 2 * (1 + 1.2e-6)), ["inertia-triangle"]),
+        (1.0, (1, 1, -0.9e-6), []),
+        (1.0, (1, 1, -1.1e-6), ["inertia-not-psd"]),
+        (1.0, (-1, -1, -1), ["inertia-not-psd"]),
+        (1.0, (1e-300, 1e-300, 1e-300), []),
+        (1.0, (1e200, 1e200, 1e200), []),
+        (1.0, (1e150, 1e150, -1e150), ["inertia-not-psd"]),
+        (1.0, (0, 0, 1e-9), ["inertia-triangle"]),
+        (1.0, (0, 1e-9, 1e-9), []),
+    ],
+)
+def test_the_bounds_are_those_of_the_clauses(mass: float, moments: Any, found: list[str]) -> None:
+    assert _one(mass, moments) == found
+
+
+def test_one_unphysical_link_is_told_once_though_it_is_a_leaf() -> None:
+    joint = joint_element("j", "revolute", "base", "tip", f'<axis xyz="0 0 1"/>{LIMIT}')
+    for mass, moments, found in (
+        (-1.0, (1, 1, 1), "negative-mass"),
+        (1.0, (1, 1, -1), "inertia-not-psd"),
+        (0.0, (1, 1, -1), "inertia-not-psd"),
+    ):
+        assert codes(robot(link_element("base"), link_element("tip", _inertial(mass, moments)), joint)) == [found]
+
+
+@pytest.mark.parametrize("axis", ["0 0 1e-170", "0 0 5e-324", "1e200 0 1.7e308"])
+@pytest.mark.parametrize("mass", [0.0, 1.0])
+def test_what_a_leaf_resists_does_not_depend_on_the_length_of_its_axis(axis: str, mass: float) -> None:
+    joint = joint_element("j", "revolute", "base", "tip", f'<axis xyz="{axis}"/>{LIMIT}')
+    found = codes(robot(link_element("base"), link_element("tip", _inertial(mass, (mass, mass, mass))), joint))
+    assert found == ([] if mass else ["leaf-without-inertia"])
+
+
+def test_errors_of_inertia_do_not_keep_a_robot_from_being_loaded() -> None:
+    joint = joint_element("j", "revolute", "base", "tip", f'<axis xyz="0 0 1"/>{LIMIT}')
+    loaded = load(robot(link_element("base", _inertial(1, (1, 1, -1))), link_element("tip"), joint))
+    assert [found.code for found in loaded.diagnostics] == ["inertia-not-psd", "leaf-without-inertia"]
+
+
+# -- what a joint at the end of the tree moves ------------------------------------------------------------------------
+
+POINT, NONE = (0, 0, 0), ""
+ROD_X = (0, 1, 1)  # a thin rod along x
+
+CYLINDER, SCREW = "cylindrical", "{type: helical, pitch: 1}"
+
+#: title: what the last joint is (a kind of the URDF, an entry), what it moves, whether that resists all its motions
+LEAVES: dict[str, tuple[str, str, str, bool]] = {
+    "a revolute that moves nothing": ("revolute", "", NONE, False),
+    "a revolute that moves a point on its axis": ("revolute", "", _inertial(1, POINT, (0, 0, 3)), False),
+    "a revolute that moves a point off its axis": ("revolute", "", _inertial(1, POINT, (1, 0, 0)), True),
+    "a revolute about a thin rod": ("revolute", "", _inertial(1, ROD_X, rpy=(0, np.pi / 2, 0)), False),
+    "a revolute across a thin rod": ("revolute", "", _inertial(1, ROD_X), True),
+    "a revolute that moves a flywheel without mass": ("revolute", "", _inertial(0, (0, 0, 1)), True),
+    "a continuous joint that moves a point on its axis": ("continuous", "", _inertial(1, POINT), False),
+    "a slider that moves a point": ("prismatic", "", _inertial(1, POINT), True),
+    "a slider that moves a flywheel without mass": ("prismatic", "", _inertial(0, (1, 1, 1)), False),
+    "a slider that moves nothing": ("prismatic", "", NONE, False),
+    "a ball that moves a point off its centre": ("revolute", "spherical", _inertial(1, POINT, (1, 2, 3)), False),
+    "a ball that moves a rod through its centre": ("revolute", "spherical", _inertial(1, ROD_X, (1, 0, 0)), False),
+    "a ball that moves a rod beside its centre": ("revolute", "spherical", _inertial(1, ROD_X, (0, 1, 0)), True),
+    "a ball that moves a body": ("revolute", "spherical", _inertial(1, (1, 1, 1)), True),
+    "a cardan that moves a point on its first axis": (
+        "revolute",
+        "{type: universal, axes: xy}",
+        _inertial(1, POINT, (1, 0, 0)),
+        True,
+    ),
+    "a cardan that moves a point on its second axis": (
+        "revolute",
+        "{type: universal, axes: xy}",
+        _inertial(1, POINT, (0, 1, 0)),
+        False,
+    ),
+    "a cylindrical joint that moves a point off its axis": ("revolute", CYLINDER, _inertial(1, POINT, (1, 0, 0)), True),
+    "a cylindrical joint that moves a point on its axis": ("revolute", CYLINDER, _inertial(1, POINT, (0, 0, 1)), False),
+    "a cylindrical joint that moves a flywheel without mass": ("revolute", CYLINDER, _inertial(0, (1, 1, 1)), False),
+    "a screw that moves a point on its axis": ("revolute", SCREW, _inertial(1, POINT), True),
+    "a screw that moves a flywheel without mass": ("revolute", SCREW, _inertial(0, (0, 0, 1)), True),
+    "a screw that moves a moment about another axis": ("revolute", SCREW, _inertial(0, (1, 0, 0)), False),
+    "a planar joint that moves a point": ("planar", "", _inertial(1, POINT, (1, 2, 3)), False),
+    "a planar joint that moves a rod in its plane": ("planar", "", _inertial(1, ROD_X, (1, 2, 3)), True),
+    "a planar joint that moves a flywheel without mass": ("planar", "", _inertial(0, (1, 1, 1)), False),
+    "a free joint that moves a rod": ("floating", "", _inertial(1, ROD_X, (1, 2, 3)), False),
+    "a free joint that moves a body": ("floating", "", _inertial(1, (1, 1, 1), (1, 2, 3)), True),
+    "a free joint that moves a point at its origin": ("floating", "", _inertial(1, POINT), False),
+    "a locked joint that moves nothing": ("revolute", "fixed", NONE, True),
+}
+
+
+def _leaf(kind: str, inside: str, more: str = "") -> str:
+    """base -j- tip, where j turns or slides about z."""
+    content = "" if kind == "floating" else f'<axis xyz="0 0 1"/>{LIMIT}'
+    origin = '<origin xyz="1 2 3" rpy="0.1 0.2 0.3"/>'
+    return robot(
+        link_element("base", _inertial(1, (1, 1, 1))),
+        link_element("tip", inside),
+        joint_element("j", kind, "base", "tip", content, origin),
+        more,
+    )
+
+
+@pytest.mark.parametrize("title", LEAVES)
+def test_what_is_said_of_a_leaf_is_what_the_mass_matrix_says(title: str) -> None:
+    kind, entry, inertial, resists = LEAVES[title]
+    urdf, yaml = _leaf(kind, inertial), f"joints: {{j: {entry}}}\n" if entry else ""
+    found = [code for code in codes(urdf, yaml) if code != "inertia-triangle"]
+    assert found == ([] if resists else ["leaf-without-inertia"])
+    loaded = load(urdf, yaml)
+    coordinates = {"j": (0.7, 0.3)} if "universal" in entry else {}
+    smallest = np.linalg.eigvalsh(mass_matrix(loaded.model, q_of(loaded, coordinates))).min(initial=1.0)
+    assert (smallest > 1e-10) == resists
+
+
+def test_inertia_on_links_fixed_to_a_leaf_counts_where_it_is() -> None:
+    def fixed_at(xyz: str) -> str:
+        return link_element("bob", _inertial(1, POINT)) + joint_element(
+            "f", "fixed", "tip", "bob", "", f'<origin xyz="{xyz}" rpy="1 2 3"/>'
+        )
+
+    assert codes(_leaf("revolute", NONE, fixed_at("1 0 0"))) == []
+    assert codes(_leaf("revolute", NONE, fixed_at("0 0 1"))) == ["leaf-without-inertia"]
+
+
+def test_a_massless_link_within_the_tree_is_a_way_to_write_two_axes() -> None:
+    hand = link_element("hand", _inertial(1, (1, 1, 1)))
+    joint = joint_element("k", "revolute", "tip", "hand", f'<axis xyz="1 0 0"/>{LIMIT}')
+    assert codes(_leaf("revolute", NONE, hand + joint)) == []
+
+
+@pytest.mark.parametrize(
+    ("yaml", "found"),
+    [
+        ("joints: {j: {armature: 0.1}}\n", []),
+        ("joints: {j: {armature: 0}}\n", ["leaf-without-inertia"]),
+        ("actuators: [{joint: j, gear_ratio: 10, rotor_inertia: 0.01}]\n", []),
+        ("actuators: [{joint: j, gear_ratio: 10}]\n", ["leaf-without-inertia"]),
+        ("joints: {j: {type: spherical, armature: 0.1}}\n", []),
+        ("joints: {j: {type: spherical, armature: [0.1, 0.1, 0]}}\n", ["leaf-without-inertia"]),
+    ],
+)
+def test_an_armature_stands_for_the_inertia_of_a_leaf(yaml: str, found: list[str]) -> None:
+    assert codes(_leaf("revolute", NONE), yaml) == found
+
+
+def test_a_leaf_that_mimics_weighs_on_the_joint_it_follows() -> None:
+    follow = link_element("side") + joint_element("k", "revolute", "base", "side", f'<mimic joint="j"/>{LIMIT}')
+    assert codes(_leaf("revolute", _inertial(1, (1, 1, 1)), follow)) == []
+
+
+def test_a_ball_about_a_point_away_from_its_link_is_judged_about_that_point() -> None:
+    wrist = '<axis xyz="{}"/>' + LIMIT
+
+    def ball(inertial: str) -> list[str]:
+        urdf = robot(
+            link_element("base"),
+            link_element("a"),
+            link_element("b"),
+            link_element("hand", inertial),
+            joint_element("x", "revolute", "base", "a", wrist.format("1 0 0")),
+            joint_element("y", "revolute", "a", "b", wrist.format("0 1 0")),
+            joint_element("z", "revolute", "b", "hand", wrist.format("0 0 1"), '<origin xyz="0 0 2"/>'),
+        )
+        return codes(urdf, "joints: {z: {type: spherical, merges: [x, y, z]}}\n")
+
+    assert ball(_inertial(1, (1, 1, 0))) == ["leaf-without-inertia"]  # a rod along z, through the centre
+    assert ball(_inertial(1, (0, 1, 1))) == []  # a rod along x, 2 m above the centre
+    assert ball(_inertial(1, (0, 1, 1), (0, 0, -2))) == ["leaf-without-inertia"]  # and one through it

@@ -1,0 +1,234 @@
+"""Mimic joints: ignored by version 1, respected by version 2 and by a bare URDF, free where a caller asks for it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+import eurdf
+from eurdf.commands.main import main
+from eurdf.diagnostics import did_you_mean
+from eurdf.mechanism.mechanism import Mimic
+from eurdf.mechanism.mimic import drivers
+from support.described import LIMITED, body, codes, load, revolute, written
+from support.plain_urdf import inertial, joint_element, link_element, pinocchios_own, robot
+
+HERE = Path(__file__).parents[1]
+URDFS = [HERE / "data" / "workbench.urdf", HERE.parent / "spec" / "examples" / "four_bar" / "robot.urdf"]
+
+MIMIC = '<mimic joint="{}" multiplier="{}" offset="{}"/>'
+
+
+def gripper(left: str = "drive", kind: str = "revolute", more: str = "") -> str:
+    """Two fingers: `left` mimics another joint, and `tip`, on the left finger, is fixed."""
+    law = MIMIC.format(left, -2, 0.1)
+    return robot(
+        link_element("base", inertial()),
+        *(body(name) for name in ("right_finger", "left_finger", "nail")),
+        revolute("drive", "base", "right_finger"),
+        joint_element("left", kind, "base", "left_finger", LIMITED.format("1 0 0") + law),
+        joint_element("tip", "fixed", "left_finger", "nail", more, '<origin xyz="0 0 0.1"/>'),
+    )
+
+
+MISTAKES = {
+    "urdf-mimic-unknown": gripper("nobody"),
+    "urdf-mimic-cycle": gripper("left"),
+    "urdf-mimic-kind": gripper("tip"),
+}
+
+
+# -- version 1 --------------------------------------------------------------------------------------------------------
+
+
+def test_version_1_ignores_mimics() -> None:
+    found = load(gripper(), "name_mot: [left, drive]\n")
+    assert found.model == pinocchios_own(gripper(), mimic=False)
+    assert (found.model.nv, found.actuation.joints) == (2, ("left", "drive"))
+    assert [joint.mimic for joint in found.mechanism.joints] == [None, None, None]
+
+
+@pytest.mark.parametrize("title", MISTAKES)
+def test_version_1_does_not_look_at_which_joint_a_mimic_names(title: str) -> None:
+    assert codes(MISTAKES[title], "name_mot: [left]\n") == []
+    assert load(MISTAKES[title], "name_mot: [left]\n").model.nv == 2
+
+
+def test_version_1_advises_on_a_mimic_joint_that_nothing_else_says_is_free() -> None:
+    assert codes(gripper(), "name_mot: [drive]\n") == ["x-mimic-ignored"]
+    assert codes(gripper(), "name_mot: [drive]\njoint_name: [left]\njoint_type: [SPHERICAL]\n") == []
+    assert codes(gripper(), "note: 1\n") == codes(gripper(), "actuators: [drive]\n") == codes(gripper()) == []
+
+
+def test_version_1_changes_joints_with_a_mimic_and_those_that_it_names() -> None:
+    found = load(gripper(), "joint_name: [left, drive]\njoint_type: [SPHERICAL, FIXED]\n")
+    assert [joint.shortname() for joint in found.model.joints][1:] == ["JointModelSpherical"]
+
+
+@pytest.mark.parametrize(
+    ("mimic", "code"),
+    [('<mimic joint="drive" offset="1 rad"/>', "urdf-bad-number"), ("<mimic/>", "urdf-missing-attribute")],
+)
+def test_version_1_still_refuses_a_mimic_that_is_no_mimic_of_urdf(mimic: str, code: str) -> None:
+    text = gripper().replace(MIMIC.format("drive", -2, 0.1), mimic)
+    assert codes(text, "name_mot: [drive]\n") == codes(text, "actuators: [drive]\n") == [code]
+
+
+def test_a_description_that_is_no_yaml_leaves_open_whether_a_mimic_counts(tmp_path: Path) -> None:
+    folder = written(tmp_path, MISTAKES["urdf-mimic-unknown"], "closures: [\n").parent
+    assert [found.code for found in eurdf.check(folder).diagnostics] == ["yaml-syntax"]
+
+
+@pytest.mark.parametrize("text", [gripper(), gripper("nobody")])
+def test_migrate_refuses_mimics_that_version_1_ignores(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str
+) -> None:
+    folder = written(tmp_path, text, "name_mot: [left]\n").parent
+    assert main(["migrate", str(folder)]) == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert "joint 'left' has a <mimic> in the URDF" in printed.err
+    assert "remove <mimic> from the URDF and migrate again" in printed.err
+    plain = text.replace(MIMIC.format("drive", -2, 0.1), "").replace(MIMIC.format("nobody", -2, 0.1), "")
+    (folder / "robot.urdf").write_text(plain, encoding="utf-8")
+    assert main(["migrate", str(folder)]) == 0
+
+
+def test_migrate_keeps_the_mimic_of_a_fixed_joint_which_no_version_respects(tmp_path: Path) -> None:
+    text = gripper(more='<mimic joint="drive"/>').replace(MIMIC.format("drive", -2, 0.1), "")
+    assert main(["migrate", str(written(tmp_path, text, "name_mot: [left]\n").parent)]) == 0
+
+
+# -- version 2, and a bare URDF ---------------------------------------------------------------------------------------
+
+
+def test_a_urdf_with_mimics_is_the_model_that_pinocchio_builds_with_and_without_them(tmp_path: Path) -> None:
+    path = written(tmp_path, gripper(), "")
+    followed, free = eurdf.load(path), eurdf.load(path, mimic=False)
+    assert followed.model == pin.buildModelFromUrdf(str(path), mimic=True)
+    assert free.model == pin.buildModelFromUrdf(str(path))
+    assert (followed.model.nv, free.model.nv) == (1, 2)
+
+
+@pytest.mark.parametrize("path", URDFS, ids=lambda path: path.parent.name)
+def test_a_joint_that_mimics_a_later_one_is_built_although_pinocchio_does_not(path: Path) -> None:
+    with pytest.raises(ValueError, match="The parent joint of the mimic joint is not in the kinematic tree"):
+        pin.buildModelFromUrdf(str(path), mimic=True)
+    followed, free = eurdf.load(path, geometry=False), eurdf.load(path, geometry=False, mimic=False)
+    assert free.model == pin.buildModelFromUrdf(str(path))
+    assert followed.model.nv == free.model.nv - 1
+
+
+@pytest.mark.parametrize("title", MISTAKES)
+def test_a_mistake_in_a_mimic_is_kept_where_mimics_are_ignored(title: str) -> None:
+    text = MISTAKES[title]
+    for yaml in ("", "actuators: [drive]\n"):
+        with pytest.raises(eurdf.InvalidRobot):
+            load(text, yaml)
+        free = load(text, yaml, mimic=False)
+        assert free.model == pinocchios_own(text, mimic=False)
+        assert [found.code for found in free.diagnostics] == [title]
+        with pytest.raises(eurdf.InvalidRobot):
+            load(text, yaml, mimic=False, strict=True)
+
+
+@pytest.mark.parametrize(
+    "yaml",
+    [
+        "actuators: [left, drive]\n",
+        "joints: {left: {armature: 0.1}, drive: spherical}\n",
+        "joints: {left: fixed}\n",
+        "configurations: {open: {left: 0.2}}\n",
+    ],
+)
+def test_a_free_joint_can_be_actuated_changed_and_configured(yaml: str) -> None:
+    with pytest.raises(eurdf.InvalidRobot):
+        load(gripper(), yaml)
+    found = load(gripper(), yaml, mimic=False)
+    assert found.diagnostics == ()
+    assert all(joint.mimic is None for joint in found.mechanism.joints)
+
+
+def test_free_joints_are_in_named_configurations_where_they_would_follow_to() -> None:
+    yaml = "configurations: {half: {drive: 0.3}, stated: {drive: 0.3, left: 1}, neutral: {}}\n"
+    found = load(gripper(), yaml, mimic=False)
+    at = {name: found.model.joints[found.model.getJointId(name)].idx_q for name in ("drive", "left")}
+    expected = {"half": (0.3, -0.5), "stated": (0.3, 1.0), "neutral": (0.0, 0.1)}
+    for name, (drive, left) in expected.items():
+        q = found.configurations[name]
+        np.testing.assert_allclose((q[at["drive"]], q[at["left"]]), (drive, left), atol=1e-15)
+
+
+def test_a_configuration_says_nothing_of_a_free_joint_whose_driving_joint_became_a_ball() -> None:
+    yaml = "joints: {drive: spherical}\nconfigurations: {ready: {drive: [0, 0, 0, 1]}}\n"
+    assert set(load(gripper(), yaml, mimic=False).mechanism.configurations["ready"]) == {"drive"}
+
+
+@pytest.mark.parametrize("joint", ["drive", "nobody", "tip"])
+def test_the_mimic_of_a_fixed_joint_has_no_effect_and_is_reported(joint: str) -> None:
+    text = gripper(more=f'<mimic joint="{joint}"/>')
+    for yaml in ("", "actuators: [drive]\n"):
+        assert codes(text, yaml) == ["urdf-mimic-fixed"]
+    assert load(text).model == load(gripper()).model
+    assert codes(text, "name_mot: [drive, left]\n") == []
+
+
+def test_a_joint_must_not_mimic_a_fixed_one_though_that_has_a_mimic() -> None:
+    assert set(codes(gripper("tip", more='<mimic joint="drive"/>'))) == {"urdf-mimic-kind", "urdf-mimic-fixed"}
+
+
+def test_a_joint_of_several_coordinates_must_not_mimic() -> None:
+    assert codes(gripper(kind="floating")) == ["urdf-mimic-kind"]
+
+
+# -- chains -----------------------------------------------------------------------------------------------------------
+
+
+def test_a_chain_of_mimics_is_one_law_and_what_ends_in_a_cycle_has_none() -> None:
+    mimics = {
+        "c": Mimic("b", 2.0, 1.0),
+        "b": Mimic("a", -3.0, 0.5),
+        "into": Mimic("x", 1.0, 0.0),
+        "x": Mimic("y", 1.0, 0.0),
+        "y": Mimic("x", 1.0, 0.0),
+        "later": Mimic("into", 1.0, 0.0),
+    }
+    assert drivers(mimics) == {"b": Mimic("a", -3.0, 0.5), "c": Mimic("a", -6.0, 2.0)}
+
+
+# -- hints ------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("side", ["Left", "Right"])
+def test_of_names_about_as_near_that_of_the_same_side_is_meant(side: str) -> None:
+    known = ["Left_index_q1", "Right_index_q1", "Left_thumb_q1", "Right_thumb_q1"]
+    assert did_you_mean("index_q1", known, f"{side}_index_q2") == f"did you mean '{side}_index_q1'?"
+
+
+def test_a_name_that_is_nearer_by_far_is_meant_whatever_is_beside() -> None:
+    assert did_you_mean("left_knee", ["left_kne", "right_hip_roll"], "right_hip_pitch") == "did you mean 'left_kne'?"
+
+
+def test_the_hint_for_an_unknown_mimic_names_the_same_side_and_not_the_joint_itself() -> None:
+    sides = ("left", "right_hand")
+    text = robot(
+        link_element("base", inertial()),
+        *(body(f"{side}_{n}") for side in sides for n in "ab"),
+        *(revolute(f"{side}_index_q1", "base", f"{side}_a") for side in sides),
+        *(
+            joint_element(
+                f"{side}_index_q2",
+                "revolute",
+                f"{side}_a",
+                f"{side}_b",
+                LIMITED.format("1 0 0") + MIMIC.format("hand_index_q1", 1, 0),
+            )
+            for side in sides
+        ),
+    )
+    hints = {found.message.split("'")[1]: found.hint for found in load(text, mimic=False).diagnostics}
+    assert hints["right_hand_index_q2"] == "did you mean 'right_hand_index_q1'?"
+    assert hints["left_index_q2"] != "did you mean 'left_index_q2'?"

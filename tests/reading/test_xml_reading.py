@@ -1,0 +1,445 @@
+"""Reading XML: where an element and an attribute stand, what is refused."""
+
+from __future__ import annotations
+
+import contextlib
+import random
+from dataclasses import dataclass, field
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from lxml import etree
+
+from eurdf.diagnostics import Diagnostic, Fault, Place
+from eurdf.reading import xml_reader
+from eurdf.reading.source import Source
+from eurdf.reading.xml_reader import TAG_LIMIT, XmlDocument, read_xml
+from eurdf.reading.xml_syntax import DEPTH_LIMIT
+from support.watchdog import watchdog
+
+SAMPLE = """\
+<?xml version="1.0" encoding="utf-8"?>
+<!-- <robot name="not this one"> & "that" -->
+<robot name="bras_à_3_liens" xmlns:xacro="http://ros.org/wiki/xacro">
+  <link name="base"/>
+  <link name="arm">
+    <inertial><mass value="1.5"/><origin xyz="0 0 0.1"
+              rpy="0 0 0"/></inertial>
+    <visual><geometry><mesh filename="a&amp;b > c.stl"/></geometry></visual>
+  </link>
+  <joint
+      name='shoulder'
+      type='revolute'
+  >
+    <parent link="base"/> <child link="arm"/>
+    <limit lower="-1" upper="1" effort="10"
+           velocity="2"/>
+  </joint>
+  <gazebo reference="arm"><xacro:macro xacro:size="2"/><![CDATA[<link name="no"/>]]></gazebo>
+</robot>
+"""
+
+
+def source_of(text: str) -> Source:
+    return Source("robot.urdf", text, text.encode())
+
+
+def read(text: str) -> XmlDocument:
+    return read_xml(source_of(text))
+
+
+def fault_of(text: str) -> Diagnostic:
+    source = source_of(text)
+    with watchdog(), pytest.raises(Fault) as caught:
+        read_xml(source)
+    return caught.value.diagnostic
+
+
+def meant(text: str, place: Place) -> str:
+    assert place.line is not None
+    assert place.column is not None
+    assert place.end_column is not None
+    return text.split("\n")[place.line - 1][place.column - 1 : place.end_column - 1]
+
+
+# Where things stand
+
+
+@pytest.mark.parametrize(
+    ("xpath", "attribute", "line", "text", "pointer"),
+    [
+        ("/robot", None, 3, "<robot", "/robot"),
+        ("/robot", "name", 3, "bras_à_3_liens", "/robot/@name"),
+        ("/robot/link[2]", None, 5, "<link", "/robot/link[2]"),
+        ("//mass", "value", 6, "1.5", "/robot/link[2]/inertial/mass/@value"),
+        ("//origin", "rpy", 7, "0 0 0", "/robot/link[2]/inertial/origin/@rpy"),
+        ("//mesh", "filename", 8, "a&amp;b > c.stl", "/robot/link[2]/visual/geometry/mesh/@filename"),
+        ("//joint", None, 10, "<joint", "/robot/joint"),
+        ("//joint", "type", 12, "revolute", "/robot/joint/@type"),
+        ("//child", None, 14, "<child", "/robot/joint/child"),
+        ("//limit", "velocity", 16, "2", "/robot/joint/limit/@velocity"),
+        ("//gazebo/*", None, 18, "<xacro:macro", "/robot/gazebo/xacro:macro"),
+        ("//gazebo/*", "{http://ros.org/wiki/xacro}size", 18, "2", "/robot/gazebo/xacro:macro/@xacro:size"),
+        ("//joint", "mimic", 10, "<joint", "/robot/joint/@mimic"),
+    ],
+)
+def test_places_in_a_urdf(xpath: str, attribute: str | None, line: int, text: str, pointer: str) -> None:
+    document = read(SAMPLE)
+    [element] = document.root.getroottree().xpath(xpath)
+    place = document.place(element, attribute)
+    assert (place.file, place.line, place.pointer) == ("robot.urdf", line, pointer)
+    assert meant(SAMPLE, place) == text
+
+
+@dataclass
+class Writer:
+    """Writes random elements and notes where each begins and where each attribute's value stands."""
+
+    chance: random.Random
+    line_break: str
+    text: str = ""
+    elements: list[int] = field(default_factory=list)
+    values: dict[tuple[int, str], tuple[int, int]] = field(default_factory=dict)
+
+    def element(self, depth: int) -> None:
+        number = len(self.elements)
+        self.elements.append(len(self.text))
+        name = self.chance.choice(["link", "joint", "é", "x:plugin", "a.b-c_1"])
+        self.text += f"<{name}"
+        for attribute in self.chance.sample(["name", "xyz", "ü", "x:y", "日"], self.chance.randrange(4)):
+            quote = self.chance.choice("'\"")
+            gap = self.chance.choice([" ", "  ", self.line_break, self.line_break + "\t"])
+            equals = self.chance.choice(["=", " = ", f"{self.line_break}=", "="])
+            self.text += gap + attribute + equals + quote
+            value = self.chance.choice(
+                ["", "a", "é > ü", "/>", "a='b'" if quote == '"' else 'a="b"', "&lt;", "--> ]]>", "🤖"]
+            )
+            self.values[number, attribute] = (len(self.text), len(self.text) + len(value))
+            self.text += value + quote
+        self.text += self.chance.choice(["", " ", self.line_break])
+        if self.chance.random() < 0.3:
+            self.text += "/>"
+            return
+        self.text += ">"
+        for _ in range(self.chance.randrange(4) if depth else 0):
+            self.filling()
+            self.element(depth - 1)
+        self.filling()
+        self.text += f"</{name}>"
+
+    def filling(self) -> None:
+        self.text += self.chance.choice(
+            [
+                *("", "", " ", self.line_break, "text é > ' \"", "&amp;", "&#233;"),
+                *(
+                    "<!-- <link name='no'> é -->",
+                    f"<!--{self.line_break}<a/>-->",
+                    "<![CDATA[<b> ]] é]]>",
+                    "<?pi <c> ?>",
+                ),
+            ]
+        )
+
+
+@settings(deadline=None)
+@given(
+    chance=st.randoms(use_true_random=False), line_break=st.sampled_from(["\n", "\r\n", "\r"]), declared=st.booleans()
+)
+def test_every_element_and_attribute_has_the_place_where_it_was_written(
+    chance: random.Random, line_break: str, declared: bool
+) -> None:
+    writer = Writer(chance, line_break)
+    writer.text = chance.choice(["", '<?xml version="1.0"?>' + line_break, "<!-- <a> -->", line_break])
+    if declared:
+        writer.text += "<robot xmlns:x='http://example.org'>"
+        writer.elements.append(len(writer.text) - len("<robot xmlns:x='http://example.org'>"))
+        writer.element(3)
+        writer.text += "</robot>"
+    else:
+        writer.element(3)
+    document = read(writer.text)
+    elements = list(document.root.iter())
+    assert len(elements) == len(writer.elements)
+    for number, (element, start) in enumerate(zip(elements, writer.elements, strict=True)):
+        place = document.place(element)
+        assert (place.line, place.column) == document.source.position(start)
+        assert place.end_column is not None
+        assert place.column is not None
+        end = start + place.end_column - place.column
+        assert (
+            document.source.text[start:end].removeprefix("<").rpartition(":")[2]
+            == element.tag.rpartition("}")[2].rpartition(":")[2]
+        )
+        for name in element.attrib:
+            written = name.replace("{http://example.org}", "x:")
+            first, last = writer.values[number, written]
+            found = document.place(element, name)
+            assert found == document.source.place(first, last, f"{place.pointer}/@{written}")
+
+
+@settings(deadline=None)
+@given(st.randoms(use_true_random=False))
+def test_the_pointer_is_an_xpath_that_leads_to_the_element(chance: random.Random) -> None:
+    writer = Writer(chance, "\n", "<robot xmlns:x='http://example.org'>")
+    writer.element(3)
+    document = read(writer.text + "</robot>")
+    for element in document.root.iter():
+        pointer = document.place(element).pointer
+        assert document.root.getroottree().xpath(pointer, namespaces={"x": "http://example.org"}) == [element]
+
+
+# Namespaces, of which URDF knows nothing
+
+
+def test_prefixes_that_are_not_declared_become_part_of_the_name() -> None:
+    text = '<robot name="r"><xacro:macro x:size="2"><link name="a"/></xacro:macro></robot>'
+    document = read(text)
+    [macro] = document.root
+    assert (macro.tag, dict(macro.attrib), macro[0].get("name")) == ("xacro:macro", {"x:size": "2"}, "a")
+    assert document.place(macro, "x:size") == Place("robot.urdf", 1, 38, 39, "/robot/xacro:macro/@x:size")
+
+
+def test_an_undeclared_prefix_hides_no_other_fault() -> None:
+    assert fault_of('<robot><xacro:macro/><link name="a"></robot>').code == "xml-syntax"
+    deep = "<a>" * DEPTH_LIMIT + "</a>" * DEPTH_LIMIT
+    assert fault_of(f"<robot><xacro:macro/>{deep}</robot>").code == "file-too-large"
+    assert fault_of(f"<robot><xacro:macro/><a b='{'x' * 11_000_000}'/></robot>").code == "file-too-large"
+
+
+def test_default_namespaces_are_taken_away_and_those_of_prefixes_are_kept() -> None:
+    text = '<robot xmlns="http://www.ros.org" xmlns:g="urn:g"><link name="a"/><g:x/><y xmlns="urn:y"/></robot>'
+    document = read(text)
+    assert [element.tag for element in document.root.iter()] == ["robot", "link", "{urn:g}x", "y"]
+    assert document.place(document.root[0], "name").pointer == "/robot/link/@name"
+
+
+def test_a_prefix_that_is_not_declared_may_stand_in_a_default_namespace() -> None:
+    document = read('<robot xmlns="urn:a"><xacro:b/><link xmlns="" name="a"/></robot>')
+    assert [str(element.tag).rpartition("}")[2] for element in document.root.iter()] == ["robot", "xacro:b", "link"]
+    assert document.place(document.root[0]).pointer == "/robot/xacro:b"
+
+
+def test_a_namespace_that_is_no_uri_does_no_harm() -> None:
+    assert read('<robot xmlns:x="not a uri"/>').root.tag == "robot"
+
+
+# What the tree holds
+
+
+def test_comments_instructions_and_cdata_leave_only_elements_and_text() -> None:
+    root = read("<robot><!-- a --><?b c?><link>x<!-- d -->y<![CDATA[<z>]]></link></robot>").root
+    assert [element.tag for element in root.iter()] == ["robot", "link"]
+    assert root[0].text == "xy<z>"
+
+
+@pytest.mark.parametrize("declaration", ["", "utf-8", "UTF-8", "utf8", "us-ascii"])
+def test_a_file_may_declare_that_it_is_utf_8(declaration: str) -> None:
+    encoding = f" encoding='{declaration}'" if declaration else ""
+    assert read(f"<?xml version='1.0'{encoding}?><robot name='r'/>").root.get("name") == "r"
+
+
+@pytest.mark.parametrize("encoding", ["latin-1", "ISO-8859-1", "utf-16", "us-ascii", "no-such"])
+def test_a_file_that_declares_another_encoding_is_refused(encoding: str) -> None:
+    text = f"<?xml version='1.0' encoding='{encoding}'?><robot name='é'/>"
+    diagnostic = fault_of(text)
+    assert diagnostic.code == "file-not-utf8"
+    assert meant(text, diagnostic.place) == encoding
+
+
+# Document types
+
+
+BOMB = (
+    '<!DOCTYPE robot [<!ENTITY a0 "xxxxxxxxxx">'
+    + "".join(f'<!ENTITY a{n} "{f"&a{n - 1};" * 10}">' for n in range(1, 12))
+    + "]><robot>&a11;</robot>"
+)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *(BOMB, "\n" + BOMB, '<?xml version="1.0"?>\n' + BOMB, "<!-- a --><?b?>\n<!-- c -->" + BOMB),
+        "<!DOCTYPE robot><robot/>",
+        '<!DOCTYPE robot SYSTEM "http://example.org/robot.dtd"><robot/>',
+        '<!DOCTYPE robot [<!ENTITY x SYSTEM "file:///etc/passwd">]><robot>&x;</robot>',
+        "<!DOCTYPE",
+    ],
+)
+def test_a_document_type_declaration_is_refused_before_it_is_parsed(text: str) -> None:
+    diagnostic = fault_of(text)
+    assert (diagnostic.code, meant(text, diagnostic.place)) == ("xml-doctype", "<!DOCTYPE")
+
+
+@pytest.mark.parametrize(
+    "before", ["\x01", "<?xml?", "<!--", "<!-- -- -->", "text", "<robot/>", "<?xml version='1.0'?x>"]
+)
+def test_an_entity_bomb_behind_another_fault_does_not_go_off(before: str) -> None:
+    assert fault_of(before + BOMB).code in ("xml-syntax", "xml-doctype")
+
+
+def test_what_only_looks_like_a_document_type_is_read() -> None:
+    read("<!-- <!DOCTYPE robot> --><robot><![CDATA[<!DOCTYPE robot>]]></robot>")
+
+
+# Hostile files
+
+
+def test_256_levels_are_read_and_257_are_refused_where_they_begin() -> None:
+    read("<a>" * DEPTH_LIMIT + "</a>" * DEPTH_LIMIT)
+    diagnostic = fault_of("<a>" * (DEPTH_LIMIT + 1) + "</a>" * (DEPTH_LIMIT + 1))
+    assert (diagnostic.code, diagnostic.column) == ("file-too-large", 3 * DEPTH_LIMIT + 1)
+
+
+def test_the_bound_is_the_same_where_libxml2_takes_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(xml_reader, "_parser", lambda: etree.XMLParser(huge_tree=True))
+    test_256_levels_are_read_and_257_are_refused_where_they_begin()
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "<a>" * 400_000,
+        "<a " + "b='' " * (TAG_LIMIT + 1) + "/>",
+        "<a>" + "<b/>" * (TAG_LIMIT + 1) + "</a>",
+        "<a>" + "x" * 11_000_000 + "</a>",
+        "<a b='" + "x" * 11_000_000 + "'/>",
+        "<" + "x" * 100_000 + "/>",
+    ],
+    ids=["nesting", "attributes", "elements", "text", "value", "name"],
+)
+def test_more_than_a_description_may_have_is_refused(text: str) -> None:
+    assert fault_of(text).code == "file-too-large"
+
+
+def test_a_hundred_thousand_siblings_are_read_and_each_has_its_place() -> None:
+    source = source_of("<robot>\n" + '<link name="a"/>\n' * 100_000 + "</robot>")
+    with watchdog():
+        document = read_xml(source)
+        for number, element in list(enumerate(document.root, 1))[::100]:
+            place = document.place(element)
+            assert (place.line, place.pointer) == (number + 1, f"/robot/link[{number}]")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *(
+            " " * 20_000_000,
+            "<!--" * 240_000,
+            "<?a" * 900_000,
+            "<?xml " + " encoding" * 2_000_000,
+            "<a>" + "&amp;" * 3_000_000,
+        ),
+        *("<a>" + "<b>" * 100 + "</b>" * 100 + "<c/>" * 200_000, "<a " + " ".join(f"b{n}=''" for n in range(200_000))),
+        "<a>" + "<x:b/>" * 200_000 + "</a>",
+        "<a " + " ".join(f"xmlns:b{n}='u{n}'" for n in range(100_000)) + "/>",
+    ],
+)
+def test_no_text_within_the_limits_takes_long(text: str) -> None:
+    source = source_of(text)
+    with watchdog(), contextlib.suppress(Fault):
+        document = read_xml(source)
+        document.place(document.root)
+
+
+def test_damaged_files_give_a_document_or_a_fault_and_nothing_else() -> None:
+    chance = random.Random(1)
+    junk = [
+        *"\0\x01\t\n\r <>/=&;'\"?!-[]é\u2028\ufffe:",
+        "<!--",
+        "-->",
+        "<![CDATA[",
+        "]]>",
+        "<?",
+        "?>",
+        "<!DOCTYPE",
+        "</link>",
+    ]
+    outcomes = set()
+    for _ in range(3000):
+        text = SAMPLE
+        for _ in range(chance.randint(1, 4)):
+            start = chance.randrange(len(text))
+            end = start + chance.choice([0, 1, 1, 8])
+            text = text[:start] + chance.choice(["", *junk]) + text[end:]
+        try:
+            document = read(text)
+        except Fault as fault:
+            diagnostic = fault.diagnostic
+            assert diagnostic.message
+            assert not diagnostic.message.endswith(".")
+            assert diagnostic.line is not None
+            assert diagnostic.line <= text.count("\n") + text.count("\r") + 1
+            outcomes.add(diagnostic.code)
+        else:
+            for element in document.root.iter():
+                document.place(element)
+                for name in element.attrib:
+                    assert document.place(element, name).pointer.rpartition("/")[2].startswith("@")
+            outcomes.add("read")
+    assert {"read", "xml-syntax"} <= outcomes
+
+
+@settings(deadline=None, max_examples=300)
+@given(
+    st.lists(
+        st.sampled_from(
+            ["<a", "</a", ">", "/>", " b", "=", "'", '"', "&", "x", ";", "<!--", "-->", "<?", "?>", ":", "é"]
+        )
+    )
+)
+def test_any_text_gives_a_document_or_a_fault(pieces: list[str]) -> None:
+    try:
+        document = read("".join(pieces))
+    except Fault as fault:
+        assert fault.diagnostic.code in ("xml-syntax", "xml-doctype")  # noqa: PT017 - either outcome is right
+    else:
+        document.place(document.root)
+
+
+# Messages
+
+
+@pytest.mark.parametrize(
+    ("text", "position", "message", "hint"),
+    [
+        ("", (1, 1), "empty", None),
+        (" \n", (2, 1), "empty", None),
+        ("robot:\n", (1, 1), "does not begin with an element", "<robot"),
+        ("<!-- only -->", (1, 14), "no element", None),
+        (
+            "<robot>\n <link>\n</robot>",
+            (3, 1),
+            "</robot> stands where </link> must, which closes the <link> of line 2",
+            None,
+        ),
+        ("<robot>\n é<link>\n", (2, 3), "<link> is never closed", "</link>"),
+        ("<robot/>\n<robot/>", (2, 1), "after the end of the root element", None),
+        ("<robot é='ü'\n a='1' a='2'/>", (2, 8), "the attribute 'a' stands twice", None),
+        ("<robot é='ü' a=1/>", (1, 16), "must stand in quotes", None),
+        ("<robot a='<'/>", (1, 11), "'<' stands inside a tag", "&lt;"),
+        ("<robot>\n <link\n <link/>\n</robot>", (3, 2), "'<' stands inside a tag", "close the tag before it"),
+        ("<robot>é &x; </robot>", (1, 10), "the entity '&x;' is unknown", "&amp;"),
+        ("<robot>a & b</robot>", (1, 10), "a '&' stands alone", "&amp;"),
+        ("<robot>\r\né\x07</robot>", (2, 2), "U+0007", None),
+        ("<robot>\0</robot>", (1, 8), "U+0000", None),
+        ("<robot><!-- a -- b --></robot>", (1, 15), "'--' cannot stand in a comment", None),
+        ("<robot>\n<!-- a", (2, 1), "'<!--' is never closed", None),
+        ("<robot>\n<![CDATA[ a", (2, 1), "'<![CDATA[' is never closed", None),
+        ("<robot name='r'", (1, 1), "never closed", None),
+        ("\n<?xml version='1.0'?><robot/>", (2, 1), "very beginning", None),
+        ("< robot/>", (1, 2), "white space cannot stand here", None),
+        ("<a:b:c/>", (1, None), "'a:b:c'", None),
+        ("<robot>\n<a:b/>\n<a:b:c/></robot>", (3, None), "'a:b:c'", None),
+    ],
+)
+def test_a_syntax_error_is_told_in_plain_words_at_its_place(
+    text: str, position: tuple[int, int | None], message: str, hint: str | None
+) -> None:
+    diagnostic = fault_of(text)
+    assert diagnostic.code == "xml-syntax"
+    assert (diagnostic.line, diagnostic.column) == position
+    assert message in diagnostic.message
+    assert hint is None or hint in str(diagnostic.hint)

@@ -1,0 +1,655 @@
+"""Reading YAML: what a scalar stands for, where a value stands, what is refused."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import random
+import re
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from eurdf.diagnostics import Diagnostic, Fault, Place
+from eurdf.reading.core_schema import resolve
+from eurdf.reading.source import FILE_LIMIT, Source
+from eurdf.reading.yaml_reader import DEPTH_LIMIT, DIRECTIVE_LIMIT, NODE_LIMIT, YamlDocument, read_yaml
+from support.watchdog import watchdog
+
+Pointer = tuple[str | int, ...]
+
+SAMPLE = """\
+# yaml-language-server: $schema=extended-urdf-2.0.schema.json
+extended_urdf: "2.0"
+urdf: robot.urdf
+root: floating
+closures:
+  - name: knee_rod
+    type: 6d
+    frames: [rod_tip, knee_crank]
+  - name: ankle_rod
+    type: 3d
+    frames:
+      - {link: rod, xyz: &tip [0, 0, 0.31]}
+      - {link: foot, xyz: *tip}
+joints:
+  hip_ball: spherical
+  'knee cardan': {type: universal, axes: xy}
+actuators: [motor_hip_x, {joint: motor_knee, gear_ratio: 50, rotor_inertia: 1.2e-4}]
+metadata:
+  author: Zoë
+  notes: |
+    Two lines,
+    the second indented
+"""
+
+
+def source_of(text: str) -> Source:
+    return Source("robot.yaml", text, text.encode())
+
+
+def read(text: str) -> YamlDocument:
+    return read_yaml(source_of(text))
+
+
+def fault_of(text: str) -> Diagnostic:
+    with watchdog(), pytest.raises(Fault) as caught:
+        read(text)
+    return caught.value.diagnostic
+
+
+def meant(text: str, place: Place) -> str:
+    """What a place points at; to the end of the line where it has no end."""
+    assert place.line is not None
+    assert place.column is not None
+    line = re.split(r"\r\n|\r|\n", text)[place.line - 1]
+    return line[place.column - 1 : None if place.end_column is None else place.end_column - 1]
+
+
+# What a scalar stands for
+
+
+@pytest.mark.parametrize(
+    ("scalar", "value"),
+    [
+        *((text, None) for text in ("", "~", "null", "Null", "NULL")),
+        *((text, True) for text in ("true", "True", "TRUE")),
+        *((text, False) for text in ("false", "False", "FALSE")),
+        *((text, text) for text in ("no", "No", "yes", "on", "off", "y", "n", "nUll", "tRUE", "none", "None")),
+        *(("0", 0), ("-0", 0), ("12", 12), ("+12", 12), ("-12", -12), ("012", 12), ("0000", 0)),
+        *(("0o17", 15), ("0x1F", 31), ("0xabcDEF", 0xABCDEF)),
+        *((text, text) for text in ("0o8", "0xg", "-0x1F", "+0o7", "0b11", "0O7", "0X1F", "1_000", "1,5", "12:30")),
+        *(("1.5", 1.5), ("-1.5", -1.5), ("+1.0", 1.0), (".5", 0.5), ("-.5", -0.5), ("5.", 5.0), ("012.5", 12.5)),
+        *(("1e3", 1000.0), ("1e-3", 0.001), ("1E+3", 1000.0), ("5.e1", 50.0), (".5e1", 5.0), ("1e-400", 0.0)),
+        *((text, text) for text in (".", "e3", ".e3", "1e", "1e+", "1.2.3", "1.0f", "1_0.5", "+", "-", "- ".strip())),
+        *((text, text) for text in (".iNF", "inf", "Infinity", "nan", "NaN", "+.nan", "-.nan")),
+        *((text, text) for text in ("2001-12-14", "<<", "=", "robot", "1 2", "0.1.0", "٣", "\uff11")),
+        *(("1" + "0" * 308, 10**308), ("-" + "0" * 5000 + "7", -7)),
+        *(('"12"', "12"), ("'true'", "true"), ("''", ""), ('"\\u0000"', "\0"), ("'it''s'", "it's")),
+    ],
+)
+def test_a_scalar_stands_for_what_the_core_schema_of_yaml_1_2_says(scalar: str, value: object) -> None:
+    found = read(f"key: {scalar}\n").data["key"] if scalar != "-" else resolve(scalar)
+    assert found == value
+    assert type(found) is type(value)
+
+
+@pytest.mark.parametrize(
+    ("node", "value"),
+    [
+        *(
+            ("!!str 12", "12"),
+            ("!!str", ""),
+            ("!!str null", "null"),
+            ("! 12", "12"),
+            ("! [1]", [1]),
+            ("! {a: 1}", {"a": 1}),
+        ),
+        *(("!!int 12", 12), ('!!int "0x10"', 16), ("!!float 1", 1.0), ("!!float '1e3'", 1000.0)),
+        *(("!!bool true", True), ("!!bool 'False'", False), ("!!null ''", None), ("!!null ~", None)),
+        *(("!!map {a: 1}", {"a": 1}), ("!!seq [1]", [1]), ("!<tag:yaml.org,2002:str> 1", "1"), ("&x ! 1", "1")),
+    ],
+)
+def test_a_tag_of_the_core_schema_is_honoured(node: str, value: object) -> None:
+    found = read(f"key: {node}\n").data["key"]
+    assert found == value
+    assert type(found) is type(value)
+
+
+@pytest.mark.parametrize(
+    "text", ["%TAG ! tag:yaml.org,2002:\n---\na: !str 1\n", "%TAG !c! tag:yaml.org,2002:\n---\na: !c!str 1\n"]
+)
+def test_a_tag_directive_may_give_the_core_tags_another_prefix(text: str) -> None:
+    assert read(text).data == {"a": "1"}
+
+
+@pytest.mark.parametrize(
+    "node",
+    [
+        *("!!int x", "!!int 1.0", "!!int ''", "!!float x", "!!float 0x1", "!!bool yes", "!!null 0", "!!int {}"),
+        *("!!seq {}", "!!map []", "!!str []", "!!map x", "!!seq x"),
+        *("!mine x", "!!set {a}", "!!timestamp 2001-12-14", "!!binary aGk=", "!!python/name:os.system x", "!e!x 1"),
+        *("!<tag:example.org,2026:x> 1", "!mine {a: 1}", "!mine [1]"),
+    ],
+)
+def test_a_tag_that_is_unknown_or_does_not_fit_is_refused(node: str) -> None:
+    text = f"key: {node}\n"
+    diagnostic = fault_of(text)
+    assert (diagnostic.code, diagnostic.line, diagnostic.column) == ("yaml-unknown-tag", 1, 6)
+
+
+@pytest.mark.parametrize(
+    "number",
+    [".inf", "-.INF", "+.Inf", ".nan", ".NaN", "1e999", "-1e400", "1" + "0" * 309, "-" + "9" * 5000, "0x1" + "0" * 300],
+)
+def test_a_number_that_no_double_holds_is_refused(number: str) -> None:
+    diagnostic = fault_of(f"a:\n  - {number}\n")
+    assert (diagnostic.code, diagnostic.pointer) == ("yaml-not-finite", "/a/0")
+    assert (diagnostic.line, diagnostic.column) == (2, 5)
+    assert len(diagnostic.message) < 120
+
+
+@pytest.mark.parametrize("mark", ["\x85", "\u2028", "\u2029"])
+def test_only_lf_and_cr_break_lines_as_in_yaml_1_2(mark: str) -> None:
+    document = read(f"a: one{mark}two # three\nb: '{mark}'\n{mark}c: {mark}\n")
+    assert document.data == {"a": f"one{mark}two", "b": mark, f"{mark}c": mark}
+    assert document.place((f"{mark}c",)).line == 3
+
+
+def test_the_characters_that_stand_in_for_unicode_line_breaks_are_none_of_the_file() -> None:
+    text = "a: \U00010000\x85\U00010001\u2028\U00010003\u2029\n"
+    assert read(text).data == {"a": "\U00010000\x85\U00010001\u2028\U00010003\u2029"}
+
+
+def test_a_merge_key_is_an_ordinary_key() -> None:
+    assert read("base: &b {x: 1}\nderived: {<<: *b, y: 2}\n").data["derived"] == {"<<": {"x": 1}, "y": 2}
+
+
+def test_a_bare_document_may_be_marked_and_directed_as_yaml_1_2() -> None:
+    assert read("%YAML 1.2\n---\na: 1\n...\n# the end\n").data == {"a": 1}
+
+
+# Where a value stands
+
+
+class Writer:
+    """Writes nested data in mixed styles and notes the first character of each value and the one after its last."""
+
+    def __init__(self, chance: random.Random, line_break: str) -> None:
+        self.chance = chance
+        self.line_break = line_break
+        self.text = ""
+        self.keys: dict[Pointer, tuple[int, int]] = {}
+        self.values: dict[Pointer, tuple[int, int | None]] = {}
+
+    def node(self, value: Any, pointer: Pointer, indent: int, flow: bool) -> None:
+        """Begins where the text ends: after a space, or after ``indent`` spaces for a block."""
+        start = len(self.text)
+        if isinstance(value, dict | list) and value and not flow:
+            self.block(value, pointer, indent)
+            self.values[pointer] = (start, None)
+            return
+        if isinstance(value, dict):
+            self.text += "{"
+            for index, key in enumerate(value):
+                self.text += self.chance.choice([", ", ",", " ,  "]) if index else ""
+                self.key(key, (*pointer, key))
+                self.text += " "
+                self.node(value[key], (*pointer, key), indent, True)
+            self.text += "}"
+        elif isinstance(value, list):
+            self.text += "["
+            for index, item in enumerate(value):
+                self.text += self.chance.choice([", ", f",{self.line_break}{' ' * (indent + 1)}"]) if index else ""
+                self.node(item, (*pointer, index), indent, True)
+            self.text += "]"
+        else:
+            self.text += self.scalar(value)
+        end = len(self.text)
+        self.values[pointer] = (start, None if self.line_break in self.text[start:end] else end)
+
+    def block(self, value: Any, pointer: Pointer, indent: int) -> None:
+        steps = list(value) if isinstance(value, dict) else list(range(len(value)))
+        for number, step in enumerate(steps):
+            if number:
+                self.new_line(indent)
+            inner = (*pointer, step)
+            flow = self.chance.random() < 0.3
+            if isinstance(value, dict):
+                self.key(step, inner)
+                if isinstance(value[step], dict | list) and value[step] and not flow:
+                    self.new_line(indent + 2)
+                else:
+                    self.text += self.chance.choice([" ", "   "])
+            else:
+                self.text += "- "
+            self.node(value[step], inner, indent + 2, flow)
+
+    def new_line(self, indent: int) -> None:
+        comment = self.chance.choice(["", "", "  # é: {", f"{self.line_break}# - [日", self.line_break])
+        self.text += comment + self.line_break + " " * indent
+
+    def key(self, key: str, pointer: Pointer) -> None:
+        start = len(self.text)
+        self.text += self.scalar(key)
+        self.keys[pointer] = (start, len(self.text))
+        self.text += ":"
+
+    def scalar(self, value: Any) -> str:
+        if isinstance(value, str):
+            if re.fullmatch("[a-zé日🤖]+", value) and resolve(value) == value and self.chance.random() < 0.6:
+                return value
+            if value.isprintable() and self.chance.random() < 0.5:
+                return "'" + value.replace("'", "''") + "'"
+        return json.dumps(value, ensure_ascii=False)
+
+
+STRINGS = st.text(alphabet="abé日🤖 /~'\"#:,[{-\x85\u2028\n\t", max_size=8)
+SCALARS = st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False) | STRINGS
+NESTED = st.recursive(
+    SCALARS, lambda inner: st.lists(inner, max_size=4) | st.dictionaries(STRINGS, inner, max_size=4), max_leaves=20
+)
+
+
+@settings(deadline=None)
+@given(
+    data=st.dictionaries(STRINGS, NESTED, min_size=1, max_size=4),
+    chance=st.randoms(use_true_random=False),
+    line_break=st.sampled_from(["\n", "\r\n", "\r"]),
+)
+def test_a_pointer_leads_to_the_value_and_to_its_place(
+    data: dict[str, Any], chance: random.Random, line_break: str
+) -> None:
+    writer = Writer(chance, line_break)
+    writer.node(data, (), 0, False)
+    document = read(writer.text + line_break)
+    assert document.data == data
+    for pointer, (start, end) in writer.values.items():
+        expected = document.source.place(start, end, "".join(f"/{escaped(step)}" for step in pointer))
+        assert document.place(pointer) == expected
+    for pointer, (start, end) in writer.keys.items():
+        place = document.place(pointer, key=True)
+        assert (place.line, place.column) == document.source.position(start)
+        assert place.end_column == document.source.position(end)[1]
+
+
+def escaped(step: str | int) -> str:
+    return str(step).replace("~", "~0").replace("/", "~1")
+
+
+@pytest.mark.parametrize(
+    ("pointer", "key", "text"),
+    [
+        (("extended_urdf",), False, '"2.0"'),
+        (("extended_urdf",), True, "extended_urdf"),
+        (("closures", 0, "frames", 1), False, "knee_crank"),
+        (("closures", 0, "frames"), False, "[rod_tip, knee_crank]"),
+        (("closures", 0), False, "name: knee_rod"),
+        (("closures", 0), True, "name: knee_rod"),
+        (("closures",), True, "closures"),
+        (("joints", "knee cardan"), True, "'knee cardan'"),
+        (("actuators", 1, "rotor_inertia"), False, "1.2e-4"),
+        (("metadata", "author"), False, "Zoë"),
+        (("metadata", "notes"), False, "|"),
+        (("closures", 1, "frames", 0, "xyz"), False, "&tip [0, 0, 0.31]"),
+        (("closures", 1, "frames", 1, "xyz"), False, "*tip"),
+        (("closures", 1, "frames", 1, "xyz", 2), False, "0.31"),
+        ((), False, 'extended_urdf: "2.0"'),
+    ],
+)
+def test_places_in_a_description(pointer: Pointer, key: bool, text: str) -> None:
+    assert meant(SAMPLE, read(SAMPLE).place(pointer, key)) == text
+
+
+@pytest.mark.parametrize(
+    ("pointer", "nearest"),
+    [
+        (("closures", 0, "tipe"), ("closures", 0)),
+        (("closures", 7, "type"), ("closures",)),
+        (("closures", -1), ("closures",)),
+        (("closures", "0"), ("closures",)),
+        (("root", "x", "y"), ("root",)),
+        (("nothing",), ()),
+    ],
+)
+def test_what_does_not_exist_has_the_place_of_what_is_around_it(pointer: Pointer, nearest: Pointer) -> None:
+    document = read(SAMPLE)
+    found, expected = document.place(pointer), document.place(nearest)
+    assert (found.line, found.column, found.end_column) == (expected.line, expected.column, expected.end_column)
+    assert found.pointer == "/" + "/".join(map(str, pointer))
+
+
+def test_a_pointer_is_escaped_as_rfc_6901_says() -> None:
+    assert read("a/b: {m~n: [1]}\n").place(("a/b", "m~n", 0)).pointer == "/a~1b/m~0n/0"
+
+
+def test_a_value_left_out_stands_after_its_colon() -> None:
+    place = read("a: 1\nroot:\nb: 2\n").place(("root",))
+    assert (place.line, place.column) == (2, 6)
+
+
+# Keys
+
+
+@pytest.mark.parametrize(
+    ("key", "what", "hint"),
+    [
+        ("1", "a number", 'quote it: "1"'),
+        ("1.5", "a number", 'quote it: "1.5"'),
+        ("null", "a key is null", 'quote it: "null"'),
+        ("true", "a boolean", 'quote it: "true"'),
+        (".nan", "a number", 'quote it: ".nan"'),
+        ("? [a]\n", "a list", None),
+        ("? {a: 1}\n", "a mapping", None),
+        ("!!int '7'", "a number", 'quote it: "7"'),
+    ],
+)
+def test_a_key_that_is_no_string_is_refused(key: str, what: str, hint: str | None) -> None:
+    diagnostic = fault_of(f"a:\n  b: 1\n  {key}{'  ' if key.startswith('?') else ''}: x\n")
+    assert (diagnostic.code, diagnostic.hint) == ("yaml-key-not-string", hint)
+    assert what in diagnostic.message
+    assert (diagnostic.line, diagnostic.pointer) == (3, "/a")
+
+
+def test_a_key_that_is_an_alias_of_a_string_is_that_string() -> None:
+    document = read("a: &name knee\n*name : 1\n")
+    assert document.data == {"a": "knee", "knee": 1}
+    assert document.place(("knee",), key=True).line == 2
+
+
+def test_a_key_that_is_an_alias_of_a_list_is_refused() -> None:
+    assert fault_of("a: &list [1]\n*list : 1\n").code == "yaml-key-not-string"
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["a: {b: 1, c: 2, b: 3}\n", "a:\n  b: 1\n  c: 2\n  b: 3\n", "a:\n  b: 1\n  'b': 3\n", 'a: {b: 1, "\\x62": 3}'],
+)
+def test_a_key_that_stands_twice_is_refused_at_its_second_place(text: str) -> None:
+    diagnostic = fault_of(text)
+    assert (diagnostic.code, diagnostic.pointer) == ("yaml-duplicate-key", "/a/b")
+    assert (diagnostic.line, diagnostic.column) != (None, None)
+    assert meant(text, diagnostic.place).strip("'") in ("b", '"\\x62"')
+    first = 1 if text.startswith("a: {") else 2
+    assert diagnostic.hint == f"it stands first on line {first}"
+    assert diagnostic.column is not None
+    assert diagnostic.line is not None
+    assert (diagnostic.line, diagnostic.column) > (first, 5)
+
+
+# Aliases
+
+
+def test_an_alias_stands_for_the_last_node_with_its_anchor() -> None:
+    assert read("a: &x 1\nb: *x\nc: &x [2]\nd: *x\n").data == {"a": 1, "b": 1, "c": [2], "d": [2]}
+
+
+@pytest.mark.parametrize(
+    ("text", "pointer"),
+    [
+        ("a: *x\n", "/a"),
+        ("a: &knee 1\nb: [0, *kne]\n", "/b/1"),
+        ("a: &x [1, *x]\n", "/a/1"),
+        ("a: &x {b: {c: *x}}\n", "/a/b/c"),
+    ],
+)
+def test_an_alias_of_nothing_or_of_what_it_stands_in_is_refused(text: str, pointer: str) -> None:
+    diagnostic = fault_of(text)
+    assert (diagnostic.code, diagnostic.pointer) == ("yaml-alias", pointer)
+    assert meant(text, diagnostic.place).startswith("*")
+
+
+def test_a_bomb_of_aliases_is_refused_before_it_goes_off() -> None:
+    lines = ["a0: &a0 [x]"] + [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 9)}]" for n in range(1, 30)]
+    assert fault_of("\n".join(lines)).code == "yaml-alias"
+
+
+def test_an_alias_is_a_node_of_the_file_whatever_it_stands_for() -> None:
+    assert fault_of("a: &a 1\nb: [" + "*a," * NODE_LIMIT + "]").code == "file-too-large"
+
+
+def test_aliases_that_expand_to_less_than_the_bound_are_read() -> None:
+    document = read("a: &a [" + "1," * 900 + "]\nb: [" + "*a," * 100 + "]\n")
+    assert document.data["b"] == [[1] * 900] * 100
+
+
+def test_aliases_do_not_nest_deeper_than_written_nodes_may() -> None:
+    half = DEPTH_LIMIT // 2
+    text = "a: &a " + "[" * half + "]" * half + "\nb: " + "[" * (half - 1) + "{}" + "]" * (half - 1)
+    read(text.replace("{}", "*a"))
+    assert fault_of(text.replace("{}", "[*a]")).code == "yaml-too-deep"
+
+
+# Hostile files
+
+
+def test_64_levels_are_read_and_65_are_refused() -> None:
+    inner = DEPTH_LIMIT - 1
+    read("a: " + "[" * inner + "]" * inner)
+    diagnostic = fault_of("a: " + "[" * (inner + 1) + "]" * (inner + 1))
+    assert (diagnostic.code, diagnostic.column) == ("yaml-too-deep", 4 + inner)
+
+
+@pytest.mark.parametrize("opening", ["[", "{a: ", "- ", "? ", "[\n", "[{a: "])
+def test_endless_nesting_is_refused(opening: str) -> None:
+    code = fault_of(opening * (4_000_000 // len(opening))).code
+    assert code == ("yaml-key-not-string" if opening == "? " else "yaml-too-deep")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "- 1\n" * 1_000_000,
+        "a: [" + "1," * 1_500_000 + "]",
+        "".join(f"%TAG !a{n}! b\n" for n in range(200_000)) + "---\na: 1\n",
+        "a: 1\n" + "#" * FILE_LIMIT,
+    ],
+    ids=["items", "flow items", "directives", "bytes"],
+)
+def test_more_than_a_description_may_have_is_refused(text: str) -> None:
+    assert fault_of(text).code == "file-too-large"
+
+
+def test_some_tag_directives_are_no_attack() -> None:
+    assert read("".join(f"%TAG !a{n}! b\n" for n in range(DIRECTIVE_LIMIT)) + "---\na: 1\n").data == {"a": 1}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        *(
+            "'" + "x" * 4_000_000,
+            '"' + "\\x41" * 1_000_000,
+            "x" * 4_000_000,
+            "a: " + "1" * 4_000_000,
+            "a: 0x" + "1" * 4_000_000,
+        ),
+        *(
+            "a: ." + "1" * 4_000_000 + "e1",
+            "a: !" + "x" * 4_000_000,
+            "a: &" + "x" * 4_000_000,
+            "\n" * 4_000_000,
+            "---\n" * 1_000_000,
+        ),
+        *("a: |\n" + "  x\n" * 1_000_000, "a:" + "\t" * 4_000_000, "a: '\x85" + "\u2028x" * 900_000 + "'"),
+        "".join(" " * n + "a:\n" for n in range(2800)),
+    ],
+)
+def test_no_text_within_the_limits_takes_long(text: str) -> None:
+    with watchdog(), contextlib.suppress(Fault):
+        read(text)
+
+
+@pytest.mark.parametrize("character", ["\0", "\x01", "\x1b", "\x7f", "\x80", "\ufffe"])
+def test_a_control_character_is_refused_where_it_stands(character: str) -> None:
+    diagnostic = fault_of(f"é: 1\r\nb: 'x{character}'\r\n")
+    assert (diagnostic.code, diagnostic.line, diagnostic.column) == ("yaml-syntax", 2, 6)
+    assert f"U+{ord(character):04X}" in diagnostic.message
+
+
+def test_damaged_files_give_a_document_or_a_fault_and_nothing_else() -> None:
+    chance = random.Random(1)
+    junk = [
+        *"\0\t\n\r -:,[]{}#&*!|>'\"%@`~?<=\\é\x85\u2028",
+        "\r\n",
+        "---",
+        "...",
+        "%YAML 1.1\n",
+        "1e999",
+        "*tip",
+        "!!int ",
+    ]
+    outcomes = set()
+    for _ in range(3000):
+        text = SAMPLE
+        for _ in range(chance.randint(1, 4)):
+            start = chance.randrange(len(text))
+            end = start + chance.choice([0, 1, 1, 8])
+            text = text[:start] + chance.choice(["", *junk]) + text[end:]
+        try:
+            document = read(text)
+        except Fault as fault:
+            diagnostic = fault.diagnostic
+            assert diagnostic.message
+            assert not diagnostic.message.endswith(".")
+            assert diagnostic.line is not None
+            assert diagnostic.line <= text.count("\n") + text.count("\r") + 1
+            outcomes.add(diagnostic.code)
+        else:
+            document.place(("closures", 1, "frames", 1, "xyz", 2))
+            outcomes.add("read")
+    assert {"read", "yaml-syntax", "yaml-alias", "yaml-several-documents"} <= outcomes
+
+
+@settings(deadline=None, max_examples=300)
+@given(
+    st.binary(max_size=60).map(lambda data: data.decode("utf-8", "ignore"))
+    | st.text(alphabet="a1 -:,[]{}#&*!|>'\"\n\t%?~\r")
+)
+def test_any_text_gives_a_document_or_a_fault(text: str) -> None:
+    try:
+        data = read(text).data
+    except Fault as fault:
+        assert fault.diagnostic.code.startswith("yaml-")  # noqa: PT017 - either outcome is right
+    else:
+        json.dumps(data, allow_nan=False)
+
+
+# What is no YAML mapping
+
+
+@pytest.mark.parametrize(
+    ("text", "what"),
+    [
+        ("", "empty"),
+        ("# only a comment\n", "nothing but comments"),
+        ("---\n...\n", "empty"),
+        ("null\n", "empty"),
+        ("[1, 2]\n", "a list"),
+        ("- 1\n", "a list"),
+        ("robot\n", "a string"),
+        ("12\n", "a number"),
+        ("true\n", "a boolean"),
+    ],
+)
+def test_a_file_that_holds_no_mapping_is_told_what_it_holds(text: str, what: str) -> None:
+    diagnostic = fault_of(text)
+    assert diagnostic.code == "yaml-empty"
+    assert what in diagnostic.message
+    assert "mapping" in diagnostic.message
+
+
+@pytest.mark.parametrize(
+    ("text", "line"), [("a: 1\n---\nb: 2\n", 2), ("---\na: 1\n---\n", 3), ("a: 1\n...\nb: 2\n", 3), ("[]\n--- {}\n", 2)]
+)
+def test_a_second_document_is_refused_where_it_begins(text: str, line: int) -> None:
+    diagnostic = fault_of(text)
+    assert (diagnostic.code, diagnostic.line, diagnostic.column) == ("yaml-several-documents", line, 1)
+
+
+@pytest.mark.parametrize("version", ["1.1", "1.0", "1.3", "2.0"])
+def test_another_version_of_yaml_is_refused(version: str) -> None:
+    diagnostic = fault_of(f"# first\n%YAML {version}\n---\na: 1\n")
+    assert (diagnostic.code, diagnostic.line, diagnostic.column) == ("yaml-version", 2, 1)
+
+
+@pytest.mark.parametrize(
+    ("text", "position", "message", "hint"),
+    [
+        ("a:\n\tb: 1\n", (2, 1), "a tab is used as indentation", "indent with spaces"),
+        ("a:\n  b: 1\n\tc: 2\n", (3, 1), "a tab is used as indentation", "indent with spaces"),
+        ("é: ü: x\n", (1, 5), "':' stands where no key can be", "quote"),
+        ("a: 1\nbc\nd: 2\n", (2, 1), "no ':' after it", "key: value"),
+        ("a:\n  b: 1\n c: 2\n", (3, 2), "the mapping that begins on line 1", "like 'b'"),
+        ("a:\n  - 1\n  b: 2\n", (3, 3), "the list that begins on line 2", "'- '"),
+        ("a: [1, 2\nb: 3\n", (2, 2), "']' is missing in the list that begins on line 1", None),
+        ("a:\n  [1,\n   2\n", (2, 3), "'[' is never closed", None),
+        ("a: {b: 1\n", (1, 4), "'{' is never closed", None),
+        ("a: {b: 1 c: 2}\n", (1, 11), "'}' is missing", None),
+        ("a: 'x\nb: 1\n", (1, 4), "never closed", None),
+        ("a: 'it's'\n", (1, 8), "after the end of a value", "quote"),
+        ("a: @b\n", (1, 4), "no value can begin with '@'", "quote"),
+        ("a: - b\n", (1, 4), "a list item cannot begin here", "line of its own"),
+        ('日本: "\\d"\n', (1, 6), "an escape", "single quotes"),
+        ("a: ]\n", (1, 4), "a value is missing", None),
+        ("{a: 1} b\n", (1, 8), "belongs to nothing", None),
+        ("a: &é 1\n", (1, 5), "no name for an anchor", "ASCII letters"),
+        ("a: & 1\n", (1, 5), "no name for an anchor", "ASCII letters"),
+        ("a: &an:chor 1\n", (1, 4), "no name for an anchor", "ASCII letters"),
+        ("a: {b: !!str &an:c 1}\n", (1, 14), "no name for an anchor", "ASCII letters"),
+        ("a: &b 1\nc: *b:\n", (2, 4), "no name for an anchor", "ASCII letters"),
+        ("a: {?b: 1}\n", (1, 6), "right before a key", "quote"),
+        ("a: [?b]\n", (1, 6), "right before a key", "quote"),
+        ("%MINE 1\n---\na: 1\n", (1, 6), "only the directives", "leave the line out"),
+    ],
+)
+def test_a_syntax_error_is_told_in_plain_words_at_its_place(
+    text: str, position: tuple[int, int], message: str, hint: str | None
+) -> None:
+    diagnostic = fault_of(text)
+    assert diagnostic.code == "yaml-syntax"
+    assert (diagnostic.line, diagnostic.column) == position
+    assert message in diagnostic.message
+    assert hint is None or hint in str(diagnostic.hint)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("%MINE 1\n---\na: b\n", {"a": "b"}),
+        ("a: &b:c d\n", {"a": "d"}),
+        ("a: &é b\n", {"a": "b"}),
+        ("a: b\n\t\nc: d\n", {"a": "b", "c": "d"}),
+        ("a:\n  -\tb\n", {"a": ["b"]}),
+        ("a:\tb\n", {"a": "b"}),
+        ("a: |\n \tb\n", {"a": "\tb\n"}),
+        ("a: {b: :c}\n", {"a": {"b": ":c"}}),
+        ("a: {b: ?c}\n", {"a": {"b": "?c"}}),
+        ("a: {?b: c}\n", {"a": {"?b": "c"}}),
+        ("a: [?b: c]\n", {"a": [{"?b": "c"}]}),
+        ("a: [::b]\n", {"a": ["::b"]}),
+        ("a: {b:, c: d}\n", {"a": {"b": None, "c": "d"}}),
+        ("a: {b\n  c: d}\n", {"a": {"b c": "d"}}),
+        ('a: {"b"\n  : c}\n', {"a": {"b": "c"}}),
+        ("a: |\n  b\n   ", {"a": "b\n \n"}),
+        ("a: |\n  b\n   \n", {"a": "b\n \n"}),
+        ("a: >-\n  b\n ", {"a": "b"}),
+        ("a: |\n  b\u2028   ", {"a": "b\u2028   "}),
+        ("a: 'b\n  '\n ", {"a": "b "}),
+        ("a: b\n  ", {"a": "b"}),
+    ],
+)
+def test_what_stands_at_the_edge_of_yaml_is_refused_or_means_what_yaml_1_2_says(text: str, value: object) -> None:
+    # EU-YML-012. The values are those of YAML 1.2.2, by hand.
+    try:
+        found: object = read_yaml(Source("robot.yaml", text, text.encode())).data
+    except Fault as fault:
+        found = fault.diagnostic.code
+    assert found in (value, "yaml-syntax")
+
+
+@pytest.mark.parametrize("text", ["?a: 1\n", "a: &b\n  c: d\n", "a: &b d\n*b : c\n", "a: [&b c,*b]\n", "{? a : b}\n"])
+def test_what_only_looks_like_the_edge_of_yaml_is_read(text: str) -> None:
+    assert isinstance(read_yaml(Source("robot.yaml", text, text.encode())).data, dict)

@@ -1,0 +1,276 @@
+"""The builder of the collection: what is drawn weighs what it weighs, and is written as it is meant."""
+
+import math
+import sys
+from pathlib import Path
+
+import numpy as np
+import pinocchio as pin
+import pytest
+import yaml
+from hypothesis import given
+from hypothesis import strategies as st
+from lxml import etree
+
+sys.path.insert(0, str(Path(__file__).parents[2]))
+
+import eurdf
+from eurdf.pinocchio.configuration import configuration_vector
+from robots.builder import Box, Cylinder, Drawing, Motor, Sphere, ball, prismatic, revolute, universal, write
+from robots.builder.mirror import mirrored_shape
+from robots.builder.number_text import length_text, mass_text, number_text
+from robots.builder.shape import rotation_of, rpy_of
+from robots.builder.solid import solid_of
+from robots.builder.urdf_text import urdf_text
+from robots.builder.yaml_text import version_1_text, yaml_text
+
+coordinate = st.floats(-1.0, 1.0)
+point = st.tuples(coordinate, coordinate, coordinate)
+size = st.floats(0.01, 1.0)
+boxes = st.builds(Box, point, st.tuples(size, size, size), size, point)
+cylinders = st.builds(Cylinder, point, point, size, size).filter(lambda cylinder: cylinder.length > 0.01)
+spheres = st.builds(Sphere, point, size, size)
+
+
+def points_of(shape):
+    """Equal point masses with the same second moments as the solid: its Gauss points."""
+    signs = (-1.0, 1.0)
+    if isinstance(shape, Box):
+        local = [np.array([x, y, z]) * shape.size / math.sqrt(12.0) for x in signs for y in signs for z in signs]
+    elif isinstance(shape, Cylinder):
+        r, h = shape.radius / math.sqrt(2.0), shape.length / math.sqrt(12.0)
+        local = [np.array([r * x, r * y, h * z]) for x, y in ((1, 0), (-1, 0), (0, 1), (0, -1)) for z in signs]
+    else:
+        local = [sign * axis * shape.radius * math.sqrt(0.6) for axis in np.eye(3) for sign in signs]
+    rotation = rotation_of(shape.rpy)
+    return [(shape.mass / len(local), np.array(shape.center) + rotation @ at) for at in local]
+
+
+@given(st.lists(boxes | cylinders | spheres, min_size=1, max_size=4))
+def test_a_body_weighs_what_the_points_of_its_shapes_weigh(shapes):
+    cloud = [masspoint for shape in shapes for masspoint in points_of(shape)]
+    mass = sum(m for m, _ in cloud)
+    center = sum(m * at for m, at in cloud) / mass
+    inertia = sum(m * (r @ r * np.eye(3) - np.outer(r, r)) for m, r in ((m, at - center) for m, at in cloud))
+    solid = solid_of(shapes)
+    assert solid.mass == pytest.approx(mass)
+    assert solid.center == pytest.approx(center, abs=1e-12)
+    assert solid.inertia == pytest.approx(inertia, abs=1e-12)
+
+
+@given(cylinders)
+def test_a_cylinder_is_turned_along_its_ends(cylinder):
+    half = rotation_of(cylinder.rpy) @ [0.0, 0.0, cylinder.length / 2.0]
+    assert cylinder.center + half == pytest.approx(cylinder.end, abs=1e-12)
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_a_number_reads_back_the_same(value):
+    assert float(number_text(value)) == value
+
+
+def test_numbers_are_written_short_and_without_noise():
+    assert number_text(-0.0) == "0"
+    assert number_text(2.0) == "2"
+    assert length_text((0.1 + 0.2, -1e-17, -1.5)) == "0.3 0 -1.5"
+    assert mass_text(0.1 + 0.2) == "0.3"
+
+
+def pendulum():
+    robot = Drawing("pendulum", materials={"steel": (0.5, 0.5, 0.5, 1.0)}, metadata={"note": "two words: 1, 'a' # b"})
+    base = Box((0.0, 0.0, 1.0), (0.2, 0.2, 0.1), mass=2.0)
+    robot.body("base", None, base, material="steel", contacts=(base,))
+    motor = Motor(effort=3.0, velocity=4.0, damping=0.1)
+    arm = revolute("swing", "base", (0.0, 0.1, 1.0), (0.0, 2.0, 0.0), degrees=(-60.0, 90.0), drawn=30.0, motor=motor)
+    robot.body("arm", arm, Sphere((0.0, 0.1, 0.5), 0.1, mass=1.0), material="steel")
+    return robot
+
+
+def test_a_joint_stands_where_it_is_drawn_seen_from_its_parent():
+    robot = pendulum()
+    robot.body("tip", ball("tip_ball", "arm", (0.3, 0.1, 0.4)), Sphere((0.3, 0.1, 0.4), 0.1, 1.0), material="steel")
+    joints = {joint.get("name"): joint for joint in etree.fromstring(urdf_text(robot).encode()).iterfind("joint")}
+    assert joints["swing"].find("origin").get("xyz") == "0 0.1 1"
+    assert joints["tip_ball"].find("origin").get("xyz") == "0.3 0 -0.6"
+    assert joints["tip_ball"].get("type") == "continuous"
+
+
+def test_an_axis_is_written_as_a_unit_vector_and_stops_as_seen_from_the_drawn_pose():
+    joint = etree.fromstring(urdf_text(pendulum()).encode()).find("joint")
+    assert joint.find("axis").get("xyz") == "0 1 0"
+    limit = {key: float(value) for key, value in joint.find("limit").attrib.items()}
+    assert limit == {"lower": -1.5708, "upper": 1.0472, "effort": 3.0, "velocity": 4.0}
+    assert dict(joint.find("dynamics").attrib) == {"damping": "0.1", "friction": "0"}
+
+
+def test_only_what_may_touch_has_a_collision_shape():
+    base, arm = etree.fromstring(urdf_text(pendulum()).encode()).iterfind("link")
+    assert base.find("collision/geometry/box").get("size") == "0.2 0.2 0.1"
+    assert arm.find("visual/geometry/sphere").get("radius") == "0.1"
+    assert arm.find("collision") is None
+
+
+def test_a_rod_is_two_halves_on_balls_that_meet_in_the_middle():
+    robot = pendulum()
+    robot.rod("link", ("base", (0.2, 0.0, 1.0)), ("arm", (0.2, 0.1, 0.4)), radius=0.01, mass=0.4, material="steel")
+    assert [joint.name for joint in robot.joints] == ["swing", "ball_link_start", "ball_link_end"]
+    assert sum(solid_of(robot.bodies[f"link_{side}"].shapes).mass for side in ("start", "end")) == pytest.approx(0.4)
+    description = yaml.safe_load(yaml_text(robot))
+    assert description["closures"] == [{"name": "link", "type": "6d", "frames": ["link_a", "link_b"]}]
+    assert description["joints"] == {"ball_link_start": "spherical", "ball_link_end": "spherical"}
+    assert yaml.safe_load(version_1_text(robot))["joint_type"] == ["SPHERICAL", "SPHERICAL"]
+    welds = {
+        joint.get("name"): np.array(joint.find("origin").get("xyz").split(), dtype=float)
+        for joint in etree.fromstring(urdf_text(robot).encode()).iterfind("joint[@type='fixed']")
+    }
+    assert welds["weld_link_a"] == pytest.approx([0.0, 0.05, -0.3])
+    assert welds["weld_link_b"] == pytest.approx([0.0, -0.05, 0.3])
+
+
+@pytest.mark.parametrize(
+    "text", ["yes", "No", "null", "1.0", "1e3", "012", "a: b", "- a", "", " a", "a ", "a #b", "é", "~", "3d"]
+)
+def test_a_text_reads_back_as_the_same_text(text):
+    robot = pendulum()
+    robot.metadata = {"note": text}
+    assert yaml.safe_load(yaml_text(robot))["metadata"] == {"note": text}
+
+
+def rod_between(robot, ends, name="link"):
+    robot.rod(
+        name, ("base", (0.2, 0.0, 1.0)), ("arm", (0.2, 0.1, 0.4)), radius=0.01, mass=0.4, material="steel", ends=ends
+    )
+
+
+def hang_unnamed(robot):
+    robot.body("left_arm", ball("left_ball", "base", (0.0, 0.0, 0.0)), material="steel")
+    robot.body("tip", ball("tip_ball", "left_arm", (0.0, 0.0, 0.0)), material="steel")
+    robot.mirror("left", "right")
+
+
+def hold_unnamed(robot):
+    robot.body("left_arm", ball("left_ball", "base", (0.0, 0.0, 0.0)), material="steel")
+    robot.close("loop", "3d", "base", "left_arm", (0.0, 0.0, 0.0))
+    robot.mirror("left", "right")
+
+
+@given(
+    point.map(lambda rpy: tuple(3.0 * angle for angle in rpy)) | st.tuples(coordinate, st.just(math.pi / 2), coordinate)
+)
+def test_a_rotation_has_the_roll_pitch_and_yaw_that_make_it(rpy):
+    rotation = rotation_of(rpy)
+    assert rotation_of(rpy_of(rotation)) == pytest.approx(rotation, abs=1e-12)
+
+
+def test_a_sliding_joint_is_written_with_its_travel_as_seen_from_the_drawn_pose():
+    robot = pendulum()
+    slider = prismatic("slide", "arm", (0.0, 0.1, 0.3), (0.0, 0.0, -3.0), metres=(0.1, 0.4), drawn=0.25)
+    robot.body("piston", slider, Sphere((0.0, 0.1, 0.2), 0.1, mass=1.0), material="steel")
+    joint = etree.fromstring(urdf_text(robot).encode()).find("joint[@name='slide']")
+    assert (joint.get("type"), joint.find("axis").get("xyz")) == ("prismatic", "0 0 -1")
+    assert (joint.find("limit").get("lower"), joint.find("limit").get("upper")) == ("-0.15", "0.15")
+
+
+def test_a_rod_that_ends_in_a_point_is_whole_and_held_there():
+    robot = pendulum()
+    rod_between(robot, ("ball", "point"))
+    assert [joint.name for joint in robot.joints] == ["swing", "ball_link"]
+    assert solid_of(robot.bodies["link"].shapes).mass == pytest.approx(0.4)
+    assert yaml.safe_load(yaml_text(robot))["closures"] == [
+        {"name": "link", "type": "3d", "frames": ["link_a", "link_b"]}
+    ]
+
+
+def test_a_rod_on_a_universal_joint_cannot_spin(tmp_path):
+    robot = pendulum()
+    rod_between(robot, ("ball", "universal"))
+    description = yaml.safe_load(yaml_text(robot))
+    assert description["joints"]["universal_link_end"] == {"type": "universal", "axes": "xy"}
+    assert yaml.safe_load(version_1_text(robot))["joint_type"] == ["SPHERICAL", "UJOINT_XY"]
+    write(robot, tmp_path)
+    loaded = eurdf.load(tmp_path)
+    assert not loaded.diagnostics
+    analysis = eurdf.analyze(loaded)
+    assert (analysis.nv, analysis.rank, analysis.uncontrolled) == (6, 6, 0)
+
+
+def limb():
+    """A floating trunk with a left arm of every kind of joint, all of them askew, and the right arm mirrored."""
+    robot = Drawing("limb", materials={"steel": (0.5, 0.5, 0.5, 1.0)}, metadata={}, root="floating")
+    robot.body("trunk", None, Box((0.0, 0.0, 0.0), (0.1, 0.2, 0.3), mass=5.0), material="steel")
+    shoulder = revolute("left_shoulder", "trunk", (0.0, 0.1, 0.1), (1.0, 2.0, 3.0), motor=Motor(1.0, 1.0))
+    upper = Box((0.0, 0.3, 0.1), (0.1, 0.3, 0.05), mass=1.0, rpy=(0.3, -0.2, 0.7))
+    robot.body("left_upper", shoulder, upper, material="steel", contacts=(upper,))
+    slide = prismatic("left_slide", "left_upper", (0.0, 0.5, 0.1), (0.1, 1.0, 0.2), metres=(-0.1, 0.1))
+    robot.body("left_lower", slide, Cylinder((0.0, 0.5, 0.1), (0.1, 0.7, 0.0), 0.03, mass=0.5), material="steel")
+    wrist = universal("left_wrist", "left_lower", (0.1, 0.8, 0.0), (1.0, 1.0, 0.0), (1.0, -1.0, 0.5))
+    robot.body("left_hand", wrist, Sphere((0.2, 0.85, 0.1), 0.05, mass=0.2), material="steel")
+    finger = ball("left_finger", "left_hand", (0.2, 0.9, 0.0))
+    robot.body("left_tip", finger, Box((0.2, 1.0, 0.0), (0.02, 0.2, 0.03), mass=0.1), material="steel")
+    rod = {"radius": 0.01, "mass": 0.1, "material": "steel", "ends": ("universal", "ball")}
+    robot.rod("left_rod", ("trunk", (0.1, 0.1, 0.1)), ("left_tip", (0.2, 1.0, 0.1)), **rod)
+    robot.mirror("left", "right")
+    return robot
+
+
+def test_the_other_side_stands_in_the_mirror_where_its_coordinates_are_the_same(tmp_path):
+    write(limb(), tmp_path)
+    robot = eurdf.load(tmp_path, root="fixed")
+    random = np.random.default_rng(5)
+    left = {
+        "left_shoulder": [random.uniform(-3.0, 3.0)],
+        "left_slide": [0.07],
+        "left_wrist": random.uniform(-1.0, 1.0, 2).tolist(),
+        **{name: unit_quaternion(random) for name in ("left_finger", "ball_left_rod_end")},
+        "universal_left_rod_start": random.uniform(-1.0, 1.0, 2).tolist(),
+    }
+    right = {
+        name.replace("left", "right"): [-value[0], value[1], -value[2], value[3]] if len(value) == 4 else value
+        for name, value in left.items()
+    }
+    q = configuration_vector(robot.mechanism, robot.model, left | right)
+    data = robot.model.createData()
+    pin.framesForwardKinematics(robot.model, data, q)
+
+    def position(body):
+        return data.oMf[robot.model.getFrameId(body)].translation
+
+    bodies = [body for body in limb().bodies if "left" in body]
+    assert len(bodies) == 6
+    for body in bodies:
+        assert position(body.replace("left", "right")) == pytest.approx(position(body) * [1.0, -1.0, 1.0], abs=1e-12)
+
+
+def unit_quaternion(random):
+    value = random.normal(size=4)
+    return (value / np.linalg.norm(value)).tolist()
+
+
+@given(boxes | cylinders | spheres)
+def test_a_mirrored_shape_weighs_what_its_points_weigh_in_the_mirror(shape):
+    flip = np.diag([1.0, -1.0, 1.0])
+    solid, mirrored = solid_of([shape]), solid_of([mirrored_shape(shape)])
+    assert mirrored.mass == solid.mass
+    assert mirrored.center == pytest.approx(flip @ solid.center)
+    assert mirrored.inertia == pytest.approx(flip @ solid.inertia @ flip, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("draw", "complaint"),
+    [
+        (lambda robot, ball: robot.body("arm", ball("b", "base"), material="steel"), "two bodies 'arm'"),
+        (lambda robot, ball: robot.body("tip", ball("swing", "base"), material="steel"), "two joints 'swing'"),
+        (lambda robot, ball: robot.body("tip", ball("b", "bse"), material="steel"), "'bse', which is not drawn"),
+        (lambda robot, ball: robot.body("tip", None, material="steel"), "second root"),
+        (lambda robot, ball: robot.body("tip", ball("b", "base"), material="gold"), "'gold', which is no material"),
+        (lambda robot, ball: robot.close("loop", "3d", "arm", "tip", (0.0, 0.0, 0.0)), "'tip', which is not drawn"),
+        (lambda robot, ball: rod_between(robot, ("point", "ball")), "starts in a point"),
+        (lambda robot, ball: universal("u", "arm", (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0)), "perpendicular"),
+        (lambda robot, ball: robot.mirror("arm", "leg"), "body 'arm' and joint 'swing', one is named 'arm' only"),
+        (lambda robot, ball: hang_unnamed(robot), "'tip' hangs from 'left_arm' but is not named 'left'"),
+        (lambda robot, ball: hold_unnamed(robot), "closure 'loop' holds 'base' and 'left_arm'"),
+    ],
+)
+def test_a_drawing_that_does_not_hold_together_is_refused(draw, complaint):
+    with pytest.raises(ValueError, match=complaint):
+        draw(pendulum(), lambda name, parent: ball(name, parent, (0.0, 0.0, 0.0)))

@@ -1,0 +1,94 @@
+"""Published robots that nobody here wrote, where they are present: what is built of them, what is wrong with them."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+import pytest
+
+import eurdf
+from support.wild import FACTS, WILD
+
+if not FACTS:
+    pytest.skip("no published robots: put their folder at ../shared/wild, beside the checkout", allow_module_level=True)
+
+
+#: Faults of the published files: everything that `check` finds, but for the meshes that were left out.
+FAULTS = {name: {"urdf-no-range"} for name in FACTS}
+FAULTS["kangaroo_like"] |= {"closure-cannot-close"}
+
+
+@pytest.fixture(scope="module")
+def robots() -> dict[str, eurdf.Robot]:
+    return {name: eurdf.load(WILD / name, geometry=False) for name in FACTS}
+
+
+@pytest.mark.parametrize("name", FACTS)
+def test_the_model_has_the_published_dimensions(robots: dict[str, eurdf.Robot], name: str) -> None:
+    robot, facts = robots[name], FACTS[name]
+    model = robot.model
+    assert (model.nq, model.nv, model.njoints - 1) == (facts["nq"], facts["nv"], facts["joints"])
+    kinds = Counter(joint.shortname().removeprefix("JointModel") for joint in list(model.joints)[1:])
+    assert kinds == facts["joint_types"]
+    assert (len(robot.constraint_models), robot.mechanism.nc) == (facts["closures"], facts["nc"])
+    assert len(robot.actuation.idx_v) == facts["actuated"]
+
+
+@pytest.mark.parametrize("name", FACTS)
+def test_the_mass_is_the_published_one(robots: dict[str, eurdf.Robot], name: str) -> None:
+    mass = sum(inertia.mass for inertia in list(robots[name].model.inertias)[1:])
+    assert mass == pytest.approx(FACTS[name]["mass"], rel=1e-8)
+
+
+@pytest.mark.parametrize("name", FACTS)
+def test_the_motion_has_the_published_dimensions(robots: dict[str, eurdf.Robot], name: str) -> None:
+    facts = FACTS[name]
+    analysis = eurdf.analyze(robots[name])
+    assert analysis.closes == facts["closes"]
+    assert (analysis.rank, analysis.mobility, analysis.uncontrolled) == (
+        facts["rank"],
+        facts["mobility"],
+        facts["uncontrolled"],
+    )
+    if facts["closes"]:
+        assert analysis.residual < 1e-8
+    else:
+        assert analysis.residual == pytest.approx(facts["residual"], rel=0.05)
+
+
+@pytest.mark.parametrize("name", FACTS)
+def test_the_known_faults_are_found_and_no_others(name: str) -> None:
+    report = eurdf.check(WILD / name)
+    assert {found.code for found in report.diagnostics} - {"urdf-mesh-missing"} == FAULTS[name]
+
+
+@pytest.mark.parametrize("name", FACTS)
+def test_geometry_that_needs_a_missing_mesh_is_refused_with_the_way_out(name: str) -> None:
+    robot = eurdf.load(WILD / name)
+    with pytest.raises(eurdf.InvalidRobot, match="geometry=False") as refusal:
+        _ = robot.visual_model
+    assert "urdf-mesh-missing" in {found.code for found in refusal.value.diagnostics}
+
+
+def test_a_loop_that_cannot_close_is_kept_in_the_diagnostics_and_refused_when_strict() -> None:
+    robot = eurdf.load(WILD / "kangaroo_like", geometry=False)
+    assert "closure-cannot-close" in {found.code for found in robot.diagnostics}
+    with pytest.raises(eurdf.InvalidRobot):
+        eurdf.load(WILD / "kangaroo_like", geometry=False, strict=True)
+
+
+@pytest.mark.parametrize("name", [name for name in FACTS if FACTS[name]["closes"]])
+def test_the_loops_close_from_the_neutral_configuration(robots: dict[str, eurdf.Robot], name: str) -> None:
+    assembly = eurdf.assemble(robots[name])
+    assert assembly.converged
+    assert np.max(np.abs(assembly.residual)) < 1e-10
+
+
+@pytest.mark.parametrize("name", [name for name in FACTS if FACTS[name]["closes"]])
+def test_every_actuator_moves_though_no_range_is_given(robots: dict[str, eurdf.Robot], name: str) -> None:
+    robot = robots[name]
+    for actuator in robot.actuation.joints:
+        found = eurdf.sweep(robot, actuator, steps=10)
+        assert found.upper.reached - found.lower.reached > 0.05
+        assert {found.lower.end, found.upper.end} <= {"half turn", "dead point", "passive stop"}

@@ -1,0 +1,256 @@
+"""The examples run and are right; the page about the published toolbox names what there is, and its facts are facts."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+import runpy
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+import eurdf
+
+sys.path.insert(0, str(Path(__file__).parents[2]))
+
+from examples import follow_foot_trajectory, simulate_digit_leg, squat_torques
+
+ROOT = Path(__file__).parents[2]
+EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
+PAGE = (ROOT / "docs" / "toolbox.md").read_text(encoding="utf-8")
+
+#: What `toolbox_parallel_robots` 1.2.0 exports.
+PUBLISHED = frozenset(
+    re.findall(
+        r"\w+",
+        """
+ActuationModel ActuationData qfree qmot vfree vmot mergeq mergev partialLoopClosure partialLoopClosureFrames
+constraintResidual constraintResidual3d constraintResidual6d constraintsResidual closedLoopForwardKinematics
+closedLoopForwardKinematicsCasadi closedLoopForwardKinematicsScipy freezeJoints closedLoopInverseDynamicsCasadi
+closedLoopInverseKinematics closedLoopInverseKinematicsCasadi closedLoopInverseKinematicsScipy
+closedLoopInverseKinematicsProximal separateConstraintJacobian computeClosedLoopFrameJacobian
+computeDerivative_dq_dqmot inverseConstraintKinematicsSpeed closedLoopMount closedLoopMountCasadi
+closedLoopMountProximal closedLoopMountScipy configurationProjection configurationProjectionProximal
+velocityProjection accelerationProjection
+""",
+    )
+)
+
+needs_matplotlib = pytest.mark.skipif(
+    importlib.util.find_spec("matplotlib") is None, reason="matplotlib is not installed: pip install -e '.[examples]'"
+)
+
+
+@pytest.fixture(autouse=True)
+def silent(request: pytest.FixtureRequest, capsys: pytest.CaptureFixture[str]) -> Iterator[None]:
+    """Nothing is printed, except by what is run as a script."""
+    yield
+    if "script" not in request.node.name:
+        printed = capsys.readouterr()
+        assert (printed.out, printed.err) == ("", "")
+
+
+@pytest.fixture(scope="module")
+def held() -> simulate_digit_leg.Held:
+    return simulate_digit_leg.main()
+
+
+@pytest.fixture(scope="module")
+def squat() -> squat_torques.Squat:
+    return squat_torques.squat()
+
+
+def bent_leg() -> tuple[Any, Any]:
+    """A leg and a closed configuration that is none of its named ones."""
+    robot = eurdf.load("digit_leg", geometry=False)
+    return robot, eurdf.forward_kinematics(robot, np.array([0.1, -0.1, 0.2, -0.3, 0.1, 0.05]))
+
+
+def test_the_simulated_leg_stays_closed_and_its_motors_hold_it(held: simulate_digit_leg.Held) -> None:
+    assert held.motion.t[-1] == pytest.approx(1.0)
+    assert held.opening < 1e-10
+    assert 0.0 < np.degrees(held.sag).max() < 1.0
+
+
+def test_the_simulated_leg_falls_until_the_motors_carry_it(held: simulate_digit_leg.Held) -> None:
+    assert held.energy[-1] < held.energy[0]
+    assert np.abs(held.motion.v[-1]).max() < 1e-2
+
+
+def test_the_simulated_energy_is_what_the_motors_put_in(held: simulate_digit_leg.Held) -> None:
+    assert held.energy_error < 1e-2 * abs(held.energy[-1] - held.energy[0])
+
+
+def test_the_foot_follows_its_ellipse_without_jumps_within_the_limits(tmp_path: Path) -> None:
+    followed = follow_foot_trajectory.main(tmp_path)
+    robot, model = followed.robot, followed.robot.model
+    for q, wanted in zip(followed.q, followed.wanted, strict=True):
+        pin.forwardKinematics(model, robot.data, q)
+        foot = pin.updateFramePlacement(model, robot.data, model.getFrameId("foot"))
+        np.testing.assert_allclose(foot.translation, wanted, rtol=0.0, atol=1e-6)
+        np.testing.assert_allclose(foot.rotation, np.eye(3), rtol=0.0, atol=1e-6)
+        assert np.abs(eurdf.residual(robot, q)).max() < 1e-9
+    assert (followed.q >= model.lowerPositionLimit - 1e-9).all()
+    assert (followed.q <= model.upperPositionLimit + 1e-9).all()
+    steps = [pin.difference(model, *pair) for pair in zip(followed.q, followed.q[1:], strict=False)]
+    assert np.abs(steps).max() < np.radians(3.0)
+    np.testing.assert_allclose(np.ptp(followed.wanted, axis=0), [0.3, 0.0, 0.16], atol=1e-3)
+
+    path = tmp_path / "foot_trajectory.csv"
+    assert path.read_text().splitlines()[0] == ",".join(["t", *robot.actuation.joints])
+    np.testing.assert_allclose(
+        np.loadtxt(path, delimiter=",", skiprows=1)[:, 1:], followed.q[:, robot.actuation.idx_q], rtol=0.0, atol=1e-8
+    )
+
+
+def test_on_average_over_a_squat_the_ground_carries_half_the_robot(squat: squat_torques.Squat) -> None:
+    torso, *leg = squat.robot.model.inertias
+    carried = torso.mass / 2.0 + sum(inertia.mass for inertia in leg)
+    assert squat.ground[:, 2].mean() == pytest.approx(carried * 9.81, rel=1e-6)
+
+
+def test_in_a_squat_the_weight_stays_above_the_sole(squat: squat_torques.Squat) -> None:
+    assert np.abs(squat.ground[:, 4] / squat.ground[:, 2]).max() < 0.235 / 2.0
+
+
+def test_a_squat_down_and_up_takes_no_work_where_nothing_rubs(squat: squat_torques.Squat) -> None:
+    power = np.einsum("ij,ij->i", squat.u, squat.v[:, squat.robot.actuation.idx_v])
+    assert np.abs(power).mean() > 10.0
+    assert abs(power.mean()) < 1e-6
+
+
+@pytest.mark.parametrize("k", [0, 37, 100])
+def test_the_ground_balances_the_leg_and_half_the_torso_about_the_ankle(squat: squat_torques.Squat, k: int) -> None:
+    """By the momentum of the leg about its centre of mass, and the weights."""
+    model = squat.robot.model
+    data = model.createData()
+    pin.computeCentroidalMomentumTimeVariation(model, data, squat.q[k], squat.v[k], squat.a[k])
+    foot = pin.updateFramePlacement(model, data, model.getFrameId("foot")).translation
+    torso, *leg = model.inertias
+    heavy = np.array([0.0, 0.0, 9.81 + squat.upwards[k]])
+    for_leg = data.dhg.linear + sum(inertia.mass for inertia in leg) * heavy
+    for_torso = torso.mass / 2.0 * heavy
+    moment = data.dhg.angular + np.cross(data.com[0] - foot, for_leg) + np.cross(torso.lever - foot, for_torso)
+    expected = [*(for_leg + for_torso)[[0, 2]], moment[1]]
+    np.testing.assert_allclose(squat.ground[k, [0, 2, 4]], expected, rtol=0.0, atol=1e-3)
+
+
+@pytest.mark.parametrize("k", [0, 37, 100])
+def test_the_torques_of_a_squat_do_the_virtual_work_of_the_rest(squat: squat_torques.Squat, k: int) -> None:
+    """No closure does any: for each motor, u = Dᵀ (M a + h) less what the ground does as the foot moves with it."""
+    robot, q = squat.robot, squat.q[k]
+    robot.model.gravity.linear = np.array([0.0, 0.0, -9.81 - squat.upwards[k]])
+    tau = pin.rnea(robot.model, robot.model.createData(), q, squat.v[k], squat.a[k])
+    J = eurdf.actuated_jacobian(robot, q, "foot", pin.LOCAL_WORLD_ALIGNED)
+    expected = eurdf.dq_dq_actuated(robot, q).T @ tau - J.T @ squat.ground[k]
+    np.testing.assert_allclose(squat.u[k], expected, rtol=0.0, atol=1e-6)
+
+
+def test_the_torques_of_a_squat_are_within_what_the_motors_can(squat: squat_torques.Squat) -> None:
+    most = squat.robot.model.upperEffortLimit[squat.robot.actuation.idx_v]
+    assert (np.abs(squat.u) < most).all()
+    assert np.abs(squat.u).max() > 10.0
+
+
+@needs_matplotlib
+def test_the_picture_of_the_squat_is_written(tmp_path: Path, squat: squat_torques.Squat) -> None:
+    figure = squat_torques.new_figure()
+    squat_torques.draw(squat, figure)
+    path = tmp_path / "squat_torques.png"
+    figure.savefig(path, dpi=100)
+    header = path.read_bytes()[:24]
+    assert header[:8] == b"\x89PNG\r\n\x1a\n"
+    assert (int.from_bytes(header[16:20], "big"), int.from_bytes(header[20:24], "big")) == (800, 900)
+    _, angles, torques = figure.axes[:3]
+    assert len(angles.lines) == len(torques.lines) == len(squat.robot.actuation.joints) + 1
+    assert "[°]" in angles.get_ylabel()
+    assert "[N·m]" in torques.get_ylabel()
+    assert "[s]" in torques.get_xlabel()
+
+
+def test_without_matplotlib_the_squat_says_what_is_missing_before_it_computes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
+    monkeypatch.setattr(squat_torques, "squat", lambda: pytest.fail("it computed first"))
+    with pytest.raises(ModuleNotFoundError, match=r"needs matplotlib: pip install -e '\.\[examples\]'"):
+        squat_torques.main(tmp_path)
+
+
+def test_an_example_run_as_a_script_says_what_it_found(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys, "argv", ["follow_foot_trajectory.py", str(tmp_path)])
+    runpy.run_path(str(ROOT / "examples" / "follow_foot_trajectory.py"), run_name="__main__")
+    assert "closures open by" in capsys.readouterr().out
+    assert (tmp_path / "foot_trajectory.csv").is_file()
+
+
+def test_the_readme_of_the_examples_lists_them_all() -> None:
+    listed = re.findall(r"^\| `(\w+\.py)`", (ROOT / "examples" / "README.md").read_text(encoding="utf-8"), re.M)
+    assert sorted(listed) == [path.name for path in EXAMPLES]
+
+
+def test_each_of_ours_that_the_page_names_exists() -> None:
+    functions = set(re.findall(r"\beurdf\.(\w+)", PAGE))
+    assert len(functions) > 20
+    assert functions <= set(eurdf.__all__) | {"load"}
+    robot = eurdf.load("four_bar", geometry=False)
+    for name in set(re.findall(r"`robot\.actuation\.(\w+)`", PAGE)):
+        assert hasattr(robot.actuation, name), name
+
+
+def test_the_page_names_every_public_function_of_the_published_toolbox() -> None:
+    theirs = {name for row in re.findall(r"^\|([^|]*)\|", PAGE, re.M) for name in re.findall(r"`(\w+)`", row)}
+    assert theirs >= PUBLISHED
+
+
+def test_the_code_that_the_page_shows_gives_the_twist() -> None:
+    robot, q = bent_leg()
+    twist = np.array([0.1, 0.2, -0.1, 0.3, -0.2, 0.1])
+    found = re.search(r"^```python\n(.*?)^```", PAGE, re.M | re.S)
+    assert found
+    names = {"eurdf": eurdf, "np": np, "robot": robot, "q": q, "twist": twist}
+    exec(found[1], names)
+    J = pin.computeFrameJacobian(robot.model, robot.data, q, robot.model.getFrameId("foot"), pin.LOCAL)
+    np.testing.assert_allclose(J @ names["v"], twist, rtol=0.0, atol=1e-9)
+    np.testing.assert_allclose(eurdf.residual_and_jacobian(robot, q)[1] @ names["v"], 0.0, atol=1e-9)
+
+
+def their_jacobian(robot: Any, q: Any) -> Any:
+    model, data = robot.model, robot.data
+    pin.computeJointJacobians(model, data, q)
+    rows = []
+    for constraint in robot.constraint_models:
+        constraint_data = constraint.createData()
+        constraint.calc(model, data, constraint_data)
+        rows.append(pin.getConstraintJacobian(model, data, constraint, constraint_data))
+    return np.vstack(rows)
+
+
+def test_the_page_is_right_about_the_signs_of_the_jacobian_and_of_the_forces() -> None:
+    robot, q = bent_leg()
+    model, S, J = robot.model, robot.actuation.selection, their_jacobian(robot, q)
+    np.testing.assert_allclose(eurdf.residual_and_jacobian(robot, q)[1], -J, rtol=0.0, atol=1e-9)
+    v = eurdf.project_velocity(robot, q, np.linspace(-1.0, 1.0, model.nv))
+    a = eurdf.achievable_acceleration(robot, q, v, eurdf.project_acceleration(robot, q, v, np.ones(model.nv)))
+    x = np.linalg.lstsq(np.hstack([S, J.T]), pin.rnea(model, robot.data, q, v, a), rcond=None)[0]
+    ours = eurdf.inverse_dynamics(robot, q, v, a)
+    np.testing.assert_allclose(ours.u, x[:6], rtol=0.0, atol=1e-6)
+    np.testing.assert_allclose(np.concatenate(ours.forces), -x[6:], rtol=0.0, atol=1e-6)
+
+
+def test_the_page_is_right_that_independent_motors_give_the_same_derivative() -> None:
+    robot, q = bent_leg()
+    motors = robot.actuation.idx_v
+    free = np.setdiff1d(np.arange(robot.model.nv), motors)
+    J = their_jacobian(robot, q)
+    theirs = np.zeros((robot.model.nv, len(motors)))
+    theirs[motors] = np.eye(len(motors))
+    theirs[free] = -np.linalg.pinv(J[:, free]) @ J[:, motors]
+    np.testing.assert_allclose(eurdf.dq_dq_actuated(robot, q), theirs, rtol=0.0, atol=1e-9)

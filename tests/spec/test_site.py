@@ -1,0 +1,214 @@
+"""The site of the specification: built as its readers get it, every page has what it must and needs nothing else."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from eurdf.diagnostics import REGISTRY
+from spec.site.clause import SPEC, read_chapters, read_clauses
+
+ROOT = Path(__file__).parents[2]
+
+pytestmark = [
+    pytest.mark.skipif(
+        any(importlib.util.find_spec(name) is None for name in ("sphinx", "myst_parser", "furo", "latex2mathml")),
+        reason="the packages of the site are not installed: pip install -e '.[docs]'",
+    ),
+]
+
+
+def _build(output: Path, source: Path = SPEC) -> subprocess.CompletedProcess[str]:
+    program = (
+        "import sys; from pathlib import Path; from spec.site.__main__ import build;"
+        "sys.exit(build(Path(sys.argv[1]), source=Path(sys.argv[2])))"
+    )
+    command = [sys.executable, "-c", program, str(output), str(source)]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("site") / "html"
+    done = _build(folder)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    return folder
+
+
+def _anchors(site: Path, page: str) -> list[str]:
+    from spec.site.links import read_page
+
+    return list(read_page((site / f"{page}.html").read_text(encoding="utf-8")).anchors.elements())
+
+
+def test_every_clause_has_its_anchor_in_its_chapter(site: Path) -> None:
+    for clause in read_clauses(read_chapters()):
+        assert _anchors(site, clause.chapter).count(clause.id) == 1, clause.id
+
+
+def test_every_diagnostic_has_its_anchor(site: Path) -> None:
+    anchors = _anchors(site, "diagnostics")
+    assert [code for code in REGISTRY if anchors.count(code) != 1] == []
+
+
+def test_a_diagnostic_shows_the_message_that_the_command_prints(site: Path) -> None:
+    page = (site / "diagnostics.html").read_text(encoding="utf-8")
+    assert "is no link, joint or frame of the robot" in page
+    assert "did you mean" in page
+
+
+@pytest.mark.parametrize(("page", "schema"), [("schema_1", "extended-urdf-1"), ("schema_2", "extended-urdf-2.0")])
+def test_every_property_of_a_schema_has_its_anchor_and_its_description(site: Path, page: str, schema: str) -> None:
+    content = json.loads((ROOT / "schema" / f"{schema}.schema.json").read_text(encoding="utf-8"))
+    anchors, text = _anchors(site, page), _text(site / f"{page}.html")
+    for name, definition in {"file": content, **content["$defs"]}.items():
+        assert name in anchors
+        for key, value in definition.get("properties", {}).items():
+            assert f"{name}.{key}" in anchors
+            assert " ".join(value["description"].split()) in text
+
+
+def test_every_clause_and_diagnostic_is_in_the_index_that_is_drawn_from_the_text(site: Path) -> None:
+    text = _text(site / "all_clauses.html")
+    for clause in read_clauses(read_chapters()):
+        assert clause.id in text
+    for rule in REGISTRY.values():
+        assert rule.title in text
+
+
+def test_the_search_finds_clauses_diagnostics_and_properties_by_name(site: Path) -> None:
+    index = (site / "searchindex.js").read_text(encoding="utf-8")
+    for name in ("EU-CLO-003", "unknown-frame", "quaternion"):
+        assert name in index
+    assert (site / "search.html").exists()
+
+
+def test_the_schemas_and_the_registry_are_published_beside_the_pages(site: Path) -> None:
+    for name in ("extended-urdf-1.schema.json", "extended-urdf-2.0.schema.json", "clauses.json", "clauses.schema.json"):
+        json.loads((site / name).read_text(encoding="utf-8"))
+
+
+def test_every_link_leads_somewhere_and_no_page_loads_anything_from_elsewhere(site: Path) -> None:
+    from spec.site.links import site_faults
+
+    assert len(list(site.glob("*.html"))) > 10
+    assert site_faults(site) == []
+
+
+def _text(page: Path) -> str:
+    from html.parser import HTMLParser
+
+    pieces: list[str] = []
+
+    class Reader(HTMLParser):
+        def handle_data(self, data: str) -> None:
+            pieces.append(data)
+
+    Reader().feed(page.read_text(encoding="utf-8"))
+    return " ".join("".join(pieces).split())
+
+
+def _small_site(folder: Path, text: str) -> Path:
+    """The source of a site with one page, as the specification is set up otherwise."""
+    source = folder / "spec"
+    source.mkdir()
+    for name in ("conf.py", "clauses.json", "clauses.schema.json"):
+        shutil.copy(SPEC / name, source)
+    shutil.copytree(SPEC / "site" / "static", source / "site" / "static")
+    shutil.copytree(ROOT / "schema", folder / "schema")
+    (source / "drawing.svg").write_text('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"/>', encoding="utf-8")
+    (source / "index.md").write_text(text, encoding="utf-8")
+    return source
+
+
+def test_what_leads_nowhere_or_cannot_be_shown_fails_the_build(tmp_path: Path) -> None:
+    source = _small_site(
+        tmp_path,
+        """\
+# A page
+
+[There](index.md#nowhere), {clause}`EU-TST-001`, {code}`no-such-code`, $\\nosuchcommand{x}$.
+
+![](drawing.svg)
+
+:::{diagnostic} unknown-frame
+:place: the name
+```diff
+-no such line
++another
+```
+:::
+""",
+    )
+    done = _build(tmp_path / "html", source)
+    assert done.returncode != 0
+    for message in (
+        "local id not found in doc 'index': 'nowhere'",
+        "clause reference target not found: EU-TST-001",
+        "code reference target not found: no-such-code",
+        "a command that is not known: \\nosuchcommand",
+        "give it an alt text",
+        "the lines to replace stand 0 times",
+    ):
+        assert message in done.stderr
+
+
+def test_a_picture_from_elsewhere_fails_the_build(tmp_path: Path) -> None:
+    source = _small_site(tmp_path, "# A page\n\n![A picture](https://example.org/picture.png)\n")
+    done = _build(tmp_path / "html", source)
+    assert (done.returncode, done.stderr) == (
+        1,
+        "index.html: 'https://example.org/picture.png' is loaded from elsewhere\n",
+    )
+
+
+def test_the_links_of_a_page_are_read_as_a_browser_reads_them(tmp_path: Path) -> None:
+    from spec.site.links import site_faults
+
+    (tmp_path / "a.html").write_text(
+        '<html><head><link rel="stylesheet" href="//cdn.example.org/a.css"><link rel="canonical" href="https://a.b/">'
+        '<style>@import "https://a.b/c.css";</style><script src="b.js"></script></head>'
+        '<body><p id="x"></p><p id="x"></p><a href="#x">1</a><a href="#y">2</a><a href="b.html">3</a>'
+        '<a href="https://example.org/">4</a><img src="data:image/png;base64,AA" srcset="http://a.b/1.png 2x">'
+        "</body></html>",
+        encoding="utf-8",
+    )
+    (tmp_path / "c.css").write_text("@font-face { src: url('https://fonts.example.org/f.woff2'); }", encoding="utf-8")
+    assert sorted(site_faults(tmp_path)) == [
+        "a.html: '#y' leads nowhere",
+        "a.html: '//cdn.example.org/a.css' is loaded from elsewhere",
+        "a.html: 'b.html' leads nowhere",
+        "a.html: 'b.js' is not there to be loaded",
+        "a.html: 'http://a.b/1.png' is loaded from elsewhere",
+        "a.html: 'https://a.b/c.css' is loaded from elsewhere",
+        "a.html: the id 'x' stands 2 times",
+        "c.css: 'https://fonts.example.org/f.woff2' is loaded from elsewhere",
+    ]
+
+
+def test_an_equation_becomes_mathml_with_its_source() -> None:
+    from spec.site.math import mathml
+
+    shown = mathml(r"q < \frac{\theta}{2}", display=True)
+    assert shown.startswith('<math alttext="q &lt; \\frac{\\theta}{2}" ')
+    assert "<mfrac>" in shown
+    assert 'display="block"' in shown
+    with pytest.raises(ValueError, match="nosuchcommand"):
+        mathml(r"\nosuchcommand", display=False)
+
+
+def test_a_drawing_takes_the_colours_of_the_page_and_says_what_it_shows() -> None:
+    from spec.site.figures import inline_svg
+
+    svg = '<?xml version="1.0"?>\n<svg viewBox="0 0 1 1"><path id="a"/><use href="#a"/><path fill="url(#a)"/></svg>'
+    assert inline_svg(svg, "bar", 'a "bar"') == (
+        '<svg role="img" class="eu-drawing" aria-label="a &quot;bar&quot;" viewBox="0 0 1 1">'
+        '<path id="bar-a"/><use href="#bar-a"/><path fill="url(#bar-a)"/></svg>'
+    )

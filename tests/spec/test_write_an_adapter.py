@@ -1,0 +1,72 @@
+"""What the page for those who write an adapter shows is what happens."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from eurdf.commands.main import main
+from eurdf_conformance.corpus import archive
+from eurdf_conformance.corpus.read import read_cases
+from eurdf_conformance.suite.item import planned_items
+from eurdf_conformance.verdict.known_failures import read_known_failures
+
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs" / "write_an_adapter.md"
+TEXT = PAGE.read_text(encoding="utf-8")
+
+
+def blocks(language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```$", TEXT, re.DOTALL | re.MULTILINE)
+
+
+@pytest.mark.parametrize(
+    "shown",
+    [
+        pytest.param(blocks("console")[0], id="smoke"),
+        pytest.param(blocks("console")[1], id="whole", marks=pytest.mark.slow),
+    ],
+)
+def test_the_first_runs_of_the_example_come_to_what_is_shown(shown: str) -> None:
+    command, *lines = shown.splitlines()
+    program, *arguments = shlex.split(command.removeprefix("$ "))
+    assert program == "pytest"
+    argv = [sys.executable, "-m", program, *arguments, "-n0", "-p", "no:cacheprovider", "--tb=no", "-q"]
+    done = subprocess.run(argv, cwd=ROOT, capture_output=True, text=True, timeout=120)
+    assert lines
+    for line in lines:
+        # Each case that is added changes the numbers, but not what they show.
+        pattern = re.sub(r"\d+\\ of\\ \d+", lambda _: r"\d+ of \d+", ".*".join(map(re.escape, line.split("…"))))
+        assert re.search(f"^{pattern}$", done.stdout, re.MULTILINE), f"{line}\n{done.stdout}"
+    assert done.returncode == int("--smoke" not in arguments)
+
+
+def test_the_known_failures_that_are_shown_can_be_used(tmp_path: Path) -> None:
+    (shown,) = blocks("yaml")
+    (tmp_path / "known.yaml").write_text(shown, encoding="utf-8")
+    known = read_known_failures(tmp_path / "known.yaml")
+    assert known.failures
+    assert known.unexpected([], planned_items(read_cases())) == []
+
+
+def test_what_the_page_leads_to_is_there() -> None:
+    links = re.findall(r"\]\(([^)]+\.\w+)\)", TEXT)
+    assert len(links) >= 2
+    assert [link for link in links if not (PAGE.parent / link).is_file()] == []
+    assert f"python -m {archive.__name__} OUT" in TEXT
+
+
+def test_every_option_that_the_page_names_is_one(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["certify", "--help"])
+    options = capsys.readouterr().out
+    named = set(
+        re.findall(r"`?(--[a-z]+(?:-[a-z]+)*)", "".join(blocks("sh")) + " ".join(re.findall("`--[^`]+`", TEXT)))
+    )
+    assert {"--verify", "--compare", "--certificate", "--explore", "--known-failures", "--smoke"} <= named
+    assert [option for option in sorted(named) if option not in options] == []

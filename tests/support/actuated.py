@@ -1,0 +1,56 @@
+"""Linkages as robots that have motors, and the robots that the toolbox is tried on."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+import eurdf
+from eurdf.kinematics.assembly import assemble
+from eurdf.kinematics.position_limit import position_limits
+from eurdf.pinocchio.actuation import Actuation
+from eurdf.pinocchio.robot import Robot
+from support.linkage import Linkage
+from support.wild import FACTS, WILD
+
+#: Names of the robots of the collection, and of the published ones that close and that nobody here wrote.
+ROBOTS = ["digit_leg", "four_bar", *(f"wild/{name}" for name, facts in FACTS.items() if facts["closes"])]
+
+_LOADED: dict[str, Robot] = {}
+
+
+def robot_called(name: str) -> Robot:
+    if name.startswith("wild/") and not FACTS:
+        pytest.skip("no published robots: put their folder at ../shared/wild, beside the checkout")
+    if name not in _LOADED:
+        place = WILD / name.removeprefix("wild/") if name.startswith("wild/") else name
+        _LOADED[name] = eurdf.load(place, geometry=False)
+    return _LOADED[name]
+
+
+def actuated(linkage: Linkage, joints: Sequence[str] | None = None) -> Robot:
+    """The linkage as a robot, the joints given actuated in that order."""
+    model, names = linkage.model, tuple(linkage.actuated if joints is None else joints)
+    found = [model.joints[model.getJointId(name)] for name in names]
+    idx_q = np.array([joint.idx_q + k for joint in found for k in range(joint.nq)], np.intp)
+    idx_v = np.array([joint.idx_v + k for joint in found for k in range(joint.nv)], np.intp)
+    actuation = Actuation(names, idx_q, idx_v, model.nv)
+    no_mechanism: Any = None
+    return Robot(no_mechanism, model, linkage.constraint_models, actuation, None, None, dict(linkage.configurations))
+
+
+def closed_near(robot: Any, random: np.random.Generator, spread: float = 0.3, limits: bool = False) -> Any:
+    """A random closed configuration, within the limits if that is asked."""
+    q0 = assemble(robot, limits=limits).q
+    for _ in range(100):
+        away = pin.integrate(robot.model, q0, random.uniform(-spread, spread, robot.model.nv))
+        if limits:  # also of joints that are in no loop
+            away = position_limits(robot.model).clip(away, np.arange(robot.model.nv))
+        assembly = assemble(robot, away, restarts=0, limits=limits)
+        if assembly.closes:
+            return assembly.q
+    raise AssertionError("the robot does not close anywhere near")

@@ -1,0 +1,108 @@
+"""Robots from the texts of their two files."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+
+import eurdf
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.pinocchio.configuration import configuration_vector
+from support.plain_urdf import inertial, joint_element, link_element
+
+LIMITED = '<axis xyz="{}"/><limit lower="-3" upper="3" effort="1" velocity="1"/>'
+
+
+def load(urdf: str, yaml: str = "", **options: Any) -> eurdf.Robot:
+    """The robot of a URDF and a description of version 2, less its first line; of a bare URDF where there is none."""
+    with tempfile.TemporaryDirectory() as folder:
+        options.setdefault("geometry", False)
+        robot = eurdf.load(written(Path(folder), urdf, yaml), **options)
+        assert robot.diagnostics is not None  # while the files are there
+        return robot
+
+
+def codes(urdf: str, yaml: str = "") -> list[str]:
+    """The codes of everything that is found, in order."""
+    with tempfile.TemporaryDirectory() as folder:
+        return [found.code for found in eurdf.check(written(Path(folder), urdf, yaml)).diagnostics]
+
+
+def written(folder: Path, urdf: str, yaml: str) -> Path:
+    """The files, in a folder. A text with a key of version 1 is of version 1."""
+    (folder / "robot.urdf").write_text(urdf, encoding="utf-8")
+    if not yaml:
+        return folder / "robot.urdf"
+    one = re.search(r"^(closed_loop|type|name_mot|joint_name|joint_type|note):", yaml, re.MULTILINE)
+    (folder / "robot.yaml").write_text(yaml if one else f'extended_urdf: "2.0"\n{yaml}', encoding="utf-8")
+    return folder / "robot.yaml"
+
+
+def body(name: str, content: str = "") -> str:
+    return link_element(name, inertial(0.7, '<origin xyz="0.1 -0.2 0.3" rpy="0.4 0.5 0.6"/>') + content)
+
+
+def revolute(name: str, parent: str, child: str, axis: Sequence[float] = (0, 0, 1), origin: str = "") -> str:
+    xyz = " ".join(repr(float(value)) for value in axis)
+    return joint_element(name, "revolute", parent, child, LIMITED.format(xyz), origin)
+
+
+def origin(oMj: Any) -> str:
+    """The origin element of a placement."""
+    rpy = pin.rpy.matrixToRpy(oMj.rotation)
+    xyz, angles = (" ".join(repr(float(value)) for value in values) for values in (oMj.translation, rpy))
+    return f'<origin xyz="{xyz}" rpy="{angles}"/>'
+
+
+def q_of(robot: eurdf.Robot, coordinates: Mapping[str, Sequence[float]]) -> Any:
+    return configuration_vector(robot.mechanism, robot.model, coordinates)
+
+
+def frame_poses(model: Any, q: Any) -> dict[tuple[str, str], Any]:
+    """Pose in the world of every frame, by name and whether it is a link's."""
+    data = model.createData()
+    pin.framesForwardKinematics(model, data, q)
+    return {
+        (frame.name, "link" if frame.type == pin.FrameType.BODY else "other"): data.oMf[index].homogeneous.copy()
+        for index, frame in enumerate(model.frames)
+    }
+
+
+def link_poses(model: Any, q: Any) -> dict[str, Any]:
+    """Pose in the world of every link."""
+    return {name: pose for (name, kind), pose in frame_poses(model, q).items() if kind == "link"}
+
+
+def mass_matrix(model: Any, q: Any) -> Any:
+    """Column i is the force that unit acceleration i takes, from the inverse dynamics.
+
+    Pinocchio's ``crba`` is wrong, up to 4.1 at least, where a joint follows one of another branch.
+    """
+    data, still = model.createData(), np.zeros(model.nv)
+    gravity = pin.rnea(model, data, q, still, still).copy()
+    columns = [pin.rnea(model, data, q, still, unit) - gravity for unit in np.eye(model.nv)]
+    return np.array(columns).reshape(model.nv, model.nv).T
+
+
+def free_names(mechanism: Mechanism) -> list[str]:
+    """Joints that move, neither mimic nor are mimicked."""
+    mimicked = {joint.mimic.joint for joint in mechanism.joints if joint.mimic}
+    return [
+        joint.name
+        for joint in mechanism.joints
+        if joint.type is not JointType.FIXED and joint.mimic is None and joint.name not in mimicked
+    ]
+
+
+def at(model: Any, joint: str) -> tuple[int, int, int, int]:
+    """Where a joint's coordinates and velocities stand: idx_q, nq, idx_v, nv."""
+    index = model.getJointId(joint)
+    assert index < model.njoints, f"no joint '{joint}'"
+    return model.idx_qs[index], model.nqs[index], model.idx_vs[index], model.nvs[index]

@@ -1,0 +1,266 @@
+"""Small mechanisms with known answers, built with Pinocchio alone, and what the kinematics needs of a robot."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+
+from eurdf.pinocchio.actuation import Actuation
+from support.plain_urdf import inertial, joint_element, link_element
+
+X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+
+
+@dataclass(eq=False)
+class Linkage:
+    """A robot as the kinematics sees it."""
+
+    model: Any
+    constraint_models: list[Any] = field(default_factory=list)
+    actuated: Sequence[str] = ()
+    configurations: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def actuation(self) -> Actuation:
+        rows = [row for name in self.actuated for row in velocities(self.model, name)]
+        coordinates = [row for name in self.actuated for row in coordinates_of(self.model, name)]
+        return Actuation(tuple(self.actuated), np.array(coordinates, np.intp), np.array(rows, np.intp), self.model.nv)
+
+
+def velocities(model: Any, joint: str) -> range:
+    index = model.getJointId(joint)
+    return range(model.idx_vs[index], model.idx_vs[index] + model.nvs[index])
+
+
+def coordinates_of(model: Any, joint: str) -> range:
+    index = model.getJointId(joint)
+    return range(model.idx_qs[index], model.idx_qs[index] + model.nqs[index])
+
+
+def translation(*xyz: float) -> Any:
+    return pin.SE3(np.eye(3), np.array(xyz, dtype=float))
+
+
+def closure(model: Any, a: int, aMc: Any, b: int, bMc: Any, kind: str = "6d", name: str = "closure") -> Any:
+    """Frame A at aMc in joint a, frame B at bMc in joint b."""
+    contact = {"3d": pin.ContactType.CONTACT_3D, "6d": pin.ContactType.CONTACT_6D}[kind]
+    constraint = pin.RigidConstraintModel(contact, model, a, aMc, b, bMc, pin.ReferenceFrame.LOCAL)
+    constraint.name = name
+    return constraint
+
+
+def swapped(linkage: Linkage) -> Linkage:
+    """The same with frames A and B of every closure exchanged."""
+    constraints = [
+        closure(
+            linkage.model,
+            found.joint2_id,
+            found.joint2_placement,
+            found.joint1_id,
+            found.joint1_placement,
+            {3: "3d", 6: "6d"}[found.residualSize()],
+            found.name,
+        )
+        for found in linkage.constraint_models
+    ]
+    return Linkage(linkage.model, constraints, linkage.actuated, linkage.configurations)
+
+
+Pair = tuple[str, Sequence[float], Sequence[float]]
+
+
+def loop(
+    pairs: Sequence[Pair],
+    kind: str = "6d",
+    end: Sequence[float] = (0.0, 0.0, 0.0),
+    away: float | Sequence[float] = 0.0,
+    actuated: Sequence[str] = ("j0",),
+    size: float = 1.0,
+    decimals: int | None = None,
+) -> Linkage:
+    """One loop through the ground, drawn where it is closed.
+
+    Args:
+        pairs: Its joints from ground to ground: R, P or S for the type, the point, the axis in the world.
+        kind: Type of the closure, whose frame A is on the ground.
+        end: Where it is closed.
+        away: Coordinates of R and P at the closed configuration drawn.
+        actuated: Names of the joints actuated; they are called j0, j1, …
+        size: Factor on all lengths.
+        decimals: Number of decimals that positions and roll, pitch and yaw are written with; None for all.
+    """
+    model = pin.Model()
+    joint, oMi = 0, pin.SE3.Identity()
+    for index, ((letter, point, axis), coordinate) in enumerate(
+        zip(pairs, np.broadcast_to(away, len(pairs)), strict=True)
+    ):
+        along = np.array(axis, dtype=float) / np.linalg.norm(axis)
+        # The frame of each joint has its z axis along the joint, and is turned about it in its own way.
+        turn = pin.Quaternion.FromTwoVectors(np.array(Z), along).matrix() @ pin.exp3(np.array(Z) * (0.3 + index))
+        oMj = pin.SE3(turn, size * np.array(point, dtype=float))
+        moved = {
+            "R": pin.SE3(pin.exp3(-coordinate * np.array(Z)), np.zeros(3)),
+            "P": translation(0.0, 0.0, -size * coordinate),
+            "S": pin.SE3.Identity(),
+        }[letter]
+        joint_model = {"R": pin.JointModelRZ, "P": pin.JointModelPZ, "S": pin.JointModelSpherical}[letter]()
+        joint = model.addJoint(joint, joint_model, written(oMi.actInv(oMj * moved), decimals), f"j{index}")
+        oMi = oMj
+    oMc = translation(*(size * np.array(end, dtype=float)))
+    constraint = closure(model, 0, written(oMc, decimals), joint, written(oMi.actInv(oMc), decimals), kind, "end")
+    return Linkage(model, [constraint], actuated)
+
+
+def written(placement: Any, decimals: int | None) -> Any:
+    """A placement as it comes back from a file."""
+    if decimals is None:
+        return placement
+    rpy = np.round(pin.rpy.matrixToRpy(placement.rotation), decimals)
+    return pin.SE3(pin.rpy.rpyToMatrix(rpy), np.round(placement.translation, decimals))
+
+
+def n_bar(n: int, kind: str = "6d", **options: Any) -> Linkage:
+    """Planar linkage of n bars, the ground one of them: mobility n - 3.
+
+    In 6d, all n pins are joints; in 3d, the last one is the closure.
+    """
+    angles = 0.3 + 2.0 * np.pi * np.arange(n) / n
+    corners = [((1.0 + 0.05 * i) * np.cos(a), np.sin(a), 0.0) for i, a in enumerate(angles)]
+    if kind == "6d":
+        return loop([("R", corner, Z) for corner in corners], **options)
+    return loop([("R", corner, Z) for corner in corners[:-1]], "3d", corners[-1], **options)
+
+
+def slider_crank(**options: Any) -> Linkage:
+    return loop([("R", (0, 0, 0), Z), ("R", (1, 0.5, 0), Z), ("R", (3, 0, 0), Z), ("P", (3, 0, 0), X)], **options)
+
+
+def spherical_four_bar(**options: Any) -> Linkage:
+    axes = ((1, 0, 0), (1, 0.7, 0), (0.2, 0.8, 0.6), (0.1, 0, 1))
+    return loop([("R", (0, 0, 0), axis) for axis in axes], **options)
+
+
+def sarrus(**options: Any) -> Linkage:
+    """Two planar legs at right angles: the top goes up and down, though 6 - 6 motions would be left."""
+    legs = [((1, 0, 0), Y), ((1.5, 0, 1), Y), ((1, 0, 2), Y), ((0, 1, 2), X), ((0, 1.5, 1), X), ((0, 1, 0), X)]
+    return loop([("R", point, axis) for point, axis in legs], **options)
+
+
+def flat_sarrus(**options: Any) -> Linkage:
+    """The same linkage pressed flat, where K loses rank."""
+    legs = [((1, 0, 0), Y), ((2, 0, 0), Y), ((1, 0, 0), Y), ((0, 1, 0), X), ((0, 2, 0), X), ((0, 1, 0), X)]
+    return loop([("R", point, axis) for point, axis in legs], **options)
+
+
+def bennett(twist: float = 0.6, length: float = 1.0, other: float = 1.7) -> Linkage:
+    """Four skew revolutes with the sines of the twists in proportion to the lengths: it moves, against all counting.
+
+    The neutral configuration is open.
+    """
+    model = pin.Model()
+    joint, placement = 0, pin.SE3.Identity()
+    opposite = np.arcsin(other * np.sin(twist) / length)
+    for index, (along, about) in enumerate([(length, twist), (other, opposite)] * 2):
+        joint = model.addJoint(joint, pin.JointModelRZ(), placement, f"j{index}")
+        placement = pin.SE3(pin.utils.rotate("x", about), np.array([along, 0.0, 0.0]))
+    return Linkage(model, [closure(model, 0, pin.SE3.Identity(), joint, placement, name="end")], ["j0"])
+
+
+def stewart() -> Linkage:
+    """A Stewart platform: six legs of universal, prismatic and spherical joint, the first carries the platform.
+
+    The neutral configuration is closed.
+    """
+    model, constraints = pin.Model(), []
+    oMt = pin.SE3(pin.exp3(np.array([0.1, 0.2, 0.3])), np.array([0.1, -0.2, 1.0]))
+    for leg in range(6):
+        foot, head = leg * np.pi / 3 + 0.2 * (-1) ** leg, leg * np.pi / 3 - 0.3 * (-1) ** leg
+        tMh = translation(0.6 * np.cos(head), 0.6 * np.sin(head), 0.0)
+        oMf = translation(np.cos(foot), np.sin(foot), 0.0)
+        along = (oMt * tMh).translation - oMf.translation
+        oMf.rotation = pin.Quaternion.FromTwoVectors(np.array(Z), along).matrix()
+        universal = model.addJoint(0, pin.JointModelUniversal(np.array(X), np.array(Y)), oMf, f"universal{leg}")
+        slider = model.addJoint(universal, pin.JointModelPZ(), translation(0, 0, 0.4), f"slider{leg}")
+        ball = model.addJoint(
+            slider, pin.JointModelSpherical(), translation(0, 0, -0.4) * oMf.actInv(oMt * tMh), f"ball{leg}"
+        )
+        if leg == 0:
+            carrier, hMt = ball, tMh.inverse()
+        else:
+            constraints.append(closure(model, carrier, hMt * tMh, ball, pin.SE3.Identity(), name=f"leg{leg}"))
+    return Linkage(model, constraints, [f"slider{leg}" for leg in range(6)])
+
+
+def three_rrr() -> Linkage:
+    """A planar platform on three legs of three pins each, a motor at each foot; the first leg carries the platform.
+
+    The neutral configuration is closed, and every closure says three things that the plane says already.
+    """
+    model, constraints = pin.Model(), []
+    heads = [np.array([np.cos(a), np.sin(a), 0.0]) for a in (0.3, 2.4, 4.5)]
+    for leg, head in enumerate(heads):
+        foot, knee = 3.0 * head, 2.0 * head + 0.7 * np.array([-head[1], head[0], 0.0])
+        shank = model.addJoint(0, pin.JointModelRZ(), translation(*foot), f"motor{leg}")
+        shin = model.addJoint(shank, pin.JointModelRZ(), translation(*(knee - foot)), f"knee{leg}")
+        ankle = model.addJoint(shin, pin.JointModelRZ(), translation(*(head - knee)), f"ankle{leg}")
+        if leg == 0:
+            platform = ankle
+        else:
+            constraints.append(
+                closure(model, platform, translation(*(head - heads[0])), ankle, pin.SE3.Identity(), name=f"leg{leg}")
+            )
+    return Linkage(model, constraints, ["motor0", "motor1", "motor2"])
+
+
+def ball_ended(kind: str) -> Linkage:
+    """A crank, a slide and a swing that meet the ground in a ball: closed in 3d there, or in 6d behind a ball joint."""
+    pairs: list[Pair] = [("R", (0, 0, 0), Z), ("R", (1, 0, 0.2), Y), ("P", (1, 0.5, 0), X), ("R", (1.5, 0.5, 0), X)]
+    end = (2.0, 1.0, 0.6)
+    if kind == "6d":
+        return loop([*pairs, ("S", end, Z)], "6d", end)
+    return loop(pairs, "3d", end)
+
+
+def described(linkage: Linkage) -> tuple[str, str]:
+    """The two files of a linkage: its URDF, and its description without the line of the version."""
+    model = linkage.model
+    types = {"JointModelRZ": "revolute", "JointModelPZ": "prismatic"}
+    body = inertial(1.0, '<origin xyz="0.1 0.2 0.3"/>')
+    parts, joints = [link_element("b0", body)], []
+    for joint in range(1, model.njoints):
+        kind, name = model.joints[joint].shortname(), model.names[joint]
+        content = '<axis xyz="0 0 1"/><limit lower="-7" upper="7" effort="1" velocity="1"/>'
+        xyz, rpy = _numbers(model.jointPlacements[joint])
+        at = f'<origin xyz="{xyz}" rpy="{rpy}"/>'
+        parts.append(link_element(f"b{joint}", body))
+        parent = f"b{model.parents[joint]}"
+        parts.append(joint_element(name, types.get(kind, "revolute"), parent, f"b{joint}", content, at))
+        if kind == "JointModelSpherical":
+            joints.append(f"  {name}: spherical\n")
+        elif kind == "JointModelUniversal":
+            joints.append(f"  {name}: {{type: universal, axes: xy}}\n")
+        else:
+            assert kind in types
+    yaml = "closures:\n"
+    for found in linkage.constraint_models:
+        ends = (found.joint1_id, found.joint1_placement), (found.joint2_id, found.joint2_placement)
+        frames = []
+        for joint, placement in ends:
+            xyz, rpy = (numbers.replace(" ", ", ") for numbers in _numbers(placement))
+            frames.append(f"{{link: b{joint}, xyz: [{xyz}], rpy: [{rpy}]}}")
+        kind = {3: "3d", 6: "6d"}[found.residualSize()]
+        yaml += f"  - {{name: {found.name}, type: {kind}, frames: [{', '.join(frames)}]}}\n"
+    if joints:
+        yaml += "joints:\n" + "".join(joints)
+    return f'<robot name="linkage">{"".join(parts)}</robot>', yaml + f"actuators: [{', '.join(linkage.actuated)}]\n"
+
+
+def _numbers(placement: Any) -> tuple[str, str]:
+    """Position, and roll, pitch and yaw, as files have them."""
+    rpy = pin.rpy.matrixToRpy(placement.rotation)
+    xyz, angles = (" ".join(repr(float(value)) for value in values) for values in (placement.translation, rpy))
+    return xyz, angles
