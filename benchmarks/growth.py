@@ -17,8 +17,10 @@ import pinocchio as pin
 
 import eurdf
 from benchmarks.loops import four_bars
-from eurdf.description import describe
-from eurdf.mechanism.mechanism import Closure, Joint, Mechanism
+from eurdf.linking.description import describe
+from eurdf.mechanism.constraint import Closure
+from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.constraint import build_constraint_models
 from eurdf.pinocchio.model import build_model
 

@@ -11,8 +11,12 @@ import pinocchio as pin
 
 import eurdf
 from benchmarks.assembly import timed
+from eurdf.mechanism.body import Body
+from eurdf.mechanism.constraint import Closure
+from eurdf.mechanism.frame import Anchor
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Anchor, Body, Closure, Joint, Mechanism
+from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import build_robot
 

@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import eurdf
-from eurdf.description import describe
+from eurdf.linking.description import describe
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.same_model import differences, with_universal_joints
 from eurdf_conformance.comparison.text import same_text

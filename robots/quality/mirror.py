@@ -15,7 +15,8 @@ import pinocchio as pin
 
 import eurdf
 from eurdf.kinematics.array import Vector
-from eurdf.mechanism.mechanism import Joint, Mechanism
+from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.coordinates import Slot, slots
 from eurdf.pinocchio.frames import body_frame_ids
 from robots.quality.candidate import Candidate

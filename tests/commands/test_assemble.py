@@ -309,13 +309,13 @@ def test_a_file_that_another_program_changed_is_left_alone(
     import eurdf.assembled
 
     file = bench(folder)
-    compute = eurdf.assembled.with_assembled
+    compute = eurdf.writing.assembled.with_assembled
 
     def meanwhile(*arguments: Any) -> Any:
         file.write_text("changed\n")
         return compute(*arguments)
 
-    monkeypatch.setattr(eurdf.assembled, "with_assembled", meanwhile)
+    monkeypatch.setattr(eurdf.writing.assembled, "with_assembled", meanwhile)
     code, _, err = run("robot.yaml", "--write")
     assert (code, file.read_text()) == (2, "changed\n")
     assert err == "eurdf: 'robot.yaml' was changed by another program in the meantime; nothing was written\n"

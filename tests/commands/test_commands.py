@@ -503,7 +503,7 @@ def interrupted(moment: str, handler: Any) -> subprocess.CompletedProcess[str]:
     )
 
 
-@pytest.mark.parametrize("moment", ["eurdf.commands.main", "eurdf.checking", "lxml", "the end"])
+@pytest.mark.parametrize("moment", ["eurdf.commands.main", "eurdf.checking.check", "lxml", "the end"])
 def test_an_interrupt_ends_the_command_quietly(folder: Path, moment: str) -> None:
     robot(folder)
     ended = interrupted(moment, signal.SIG_DFL)

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from eurdf import extras
+from eurdf.diagnostics import extras
 
 ROOT = Path(__file__).parents[2]
 WITHOUT = "import sys; sys.modules.update(dict.fromkeys({names})); import pytest; sys.exit(pytest.main(sys.argv[1:]))"

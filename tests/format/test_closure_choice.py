@@ -7,18 +7,18 @@ from typing import Literal
 
 import pytest
 
-from eurdf.closure_choice import choose_types
 from eurdf.collection import collection_names
-from eurdf.description import describe
 from eurdf.diagnostics import Diagnostics
-from eurdf.format.generate import conventions
 from eurdf.format.urdf import read_urdf
-from eurdf.generation import generate
 from eurdf.kinematics.analysis import analyze
+from eurdf.linking.description import describe
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.robot import build_robot
 from eurdf.reading.source import Source
 from eurdf.reading.xml_reader import read_xml
+from eurdf.writing.closure_choice import choose_types
+from eurdf.writing.generation import generate
+from eurdf.writing.naming_conventions import conventions
 
 TUTORIAL = Path(__file__).parents[2] / "spec" / "examples" / "tutorial" / "robot.urdf"
 

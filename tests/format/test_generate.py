@@ -13,16 +13,16 @@ from hypothesis import strategies as st
 from lxml import etree
 
 from eurdf.commands.main import main
-from eurdf.description import describe
 from eurdf.diagnostics import Diagnostics
-from eurdf.format.generate import PUBLISHED_CLOSURE, BadPattern, conventions, find, hints
 from eurdf.format.urdf import Urdf, read_urdf
 from eurdf.format.yaml_text import flow, lines_of, lines_of_item, scalar
-from eurdf.generation import Generation, generate
+from eurdf.linking.description import describe
 from eurdf.mechanism.same_model import differences
 from eurdf.reading.source import Source, read_source
 from eurdf.reading.xml_reader import read_xml
 from eurdf.reading.yaml_reader import read_yaml
+from eurdf.writing.generation import Generation, generate
+from eurdf.writing.naming_conventions import PUBLISHED_CLOSURE, BadPattern, conventions, find, hints
 
 HERE = Path(__file__).parents[1]
 WILD = HERE.parents[1] / "shared" / "wild"

@@ -12,7 +12,7 @@ import yaml
 
 from eurdf import check
 from eurdf.commands.main import main
-from eurdf.description import describe
+from eurdf.linking.description import describe
 
 #: Names that YAML would read as something else, or that stand between quotes, in other scripts, or on two lines.
 NAMES = [

@@ -17,23 +17,23 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from eurdf.commands.main import main
-from eurdf.description import Description, describe
 from eurdf.diagnostics import Diagnostics, Fault
-from eurdf.format.comments import comments_of
-from eurdf.format.migrate import NotMigratable, own_keys, schema_named
 from eurdf.format.read_extension import read_extension
 from eurdf.format.urdf import Urdf, read_urdf
 from eurdf.kinematics.residual import residual
-from eurdf.mechanism.link import link
+from eurdf.linking.description import Description, describe
+from eurdf.linking.link import link
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.same_model import differences, with_universal_joints
-from eurdf.migration import Migration, migrate
 from eurdf.pinocchio.configuration import configuration_vector
 from eurdf.pinocchio.robot import Robot, build_robot
 from eurdf.reading.source import Source
 from eurdf.reading.xml_reader import read_xml
 from eurdf.reading.yaml_node import json_pointer
 from eurdf.reading.yaml_reader import read_yaml
+from eurdf.writing.comments import comments_of
+from eurdf.writing.migrated_text import NotMigratable, own_keys, schema_named
+from eurdf.writing.migration import Migration, migrate
 
 HERE = Path(__file__).parents[1]
 WORKBENCH = HERE / "data" / "workbench.urdf"

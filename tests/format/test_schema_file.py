@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from eurdf.commands.main import main
-from eurdf.description import describe
 from eurdf.format.schema import FILES, json_schema, schema_text
+from eurdf.linking.description import describe
 
 ROBOT = Path(__file__).parents[2] / "robots" / "four_bar"
 

@@ -11,8 +11,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from eurdf.mechanism.body import Body
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Body, Joint, Mechanism
+from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.configuration import configuration_vector, joint_coordinates
 from eurdf.pinocchio.model import build_model

@@ -11,9 +11,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_transform import joint_transform
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Joint
 from eurdf.mechanism.pose import IDENTITY, Pose
 from eurdf.pinocchio.joint_model import joint_model
 from eurdf.pinocchio.placement import placement_of

@@ -15,7 +15,7 @@ import eurdf
 from eurdf.commands.robot_info import robot_info
 from eurdf.kinematics.ancestry import Ancestry
 from eurdf.kinematics.loop import find_loops, independent_groups, joints_of_loops
-from eurdf.mechanism.link import JOINT_LIMIT, ROW_LIMIT, VELOCITY_LIMIT
+from eurdf.linking.link import JOINT_LIMIT, ROW_LIMIT, VELOCITY_LIMIT
 from support.hostile import VERSION2, chain, four_bars, joint, numbered, robot, shared, star
 
 

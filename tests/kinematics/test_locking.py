@@ -17,11 +17,16 @@ from hypothesis import strategies as st
 
 import eurdf
 from eurdf.exceptions import CannotLock, LockedOpen
+from eurdf.kinematics.locked_mechanism import lock_joints
 from eurdf.kinematics.locking import LockedRobot, lock
 from eurdf.kinematics.residual import residual, residual_and_jacobian
+from eurdf.mechanism.body import Shape
+from eurdf.mechanism.constraint import Closure
+from eurdf.mechanism.frame import Anchor, Frame
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.locking import lock_joints
-from eurdf.mechanism.mechanism import Anchor, Closure, Frame, Joint, Mechanism, Mimic, Shape
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose
 from eurdf.mechanism.spanning_tree import rigid_roots
 from eurdf.pinocchio.robot import Robot, build_robot

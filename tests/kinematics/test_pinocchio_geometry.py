@@ -11,8 +11,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from eurdf.mechanism.body import Body, Shape
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Body, Joint, Mechanism, Shape
+from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.configuration import configuration_vector
 from eurdf.pinocchio.geometry import UnreadableMesh, build_geometry

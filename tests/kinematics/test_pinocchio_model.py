@@ -14,8 +14,13 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from eurdf.diagnostics import Diagnostic, Place
+from eurdf.mechanism.body import Body
+from eurdf.mechanism.constraint import Closure
+from eurdf.mechanism.frame import Anchor, Frame
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Anchor, Body, Closure, Frame, Joint, Mechanism, Mimic
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.actuation import build_actuation
 from eurdf.pinocchio.configuration import configuration_vector, joint_coordinates

@@ -235,7 +235,7 @@ def test_loops_that_close_only_beyond_limits_are_reported(advice, edit, lower, u
 
 
 def test_a_search_without_limits_that_ends_within_them_leaves_nothing_to_report(advice, monkeypatch) -> None:
-    from eurdf.advice import limits as module
+    from eurdf.checking.advice import limits as module
 
     robot = eurdf.load("four_bar", geometry=False)
     closed = eurdf.forward_kinematics(robot, {"motor_crank": 2.0})

@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-from eurdf.assembled import CLOSED_IN_FULL, beyond_limits, with_assembled
-from eurdf.description import describe
+from eurdf.linking.description import describe
 from eurdf.pinocchio.robot import build_robot
+from eurdf.writing.assembled import CLOSED_IN_FULL, beyond_limits, with_assembled
 from support.described import written
 from support.star import STAR
 

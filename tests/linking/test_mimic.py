@@ -11,8 +11,7 @@ import pytest
 import eurdf
 from eurdf.commands.main import main
 from eurdf.diagnostics import did_you_mean
-from eurdf.mechanism.mechanism import Mimic
-from eurdf.mechanism.mimic import drivers
+from eurdf.mechanism.mimic import Mimic, drivers
 from support.described import LIMITED, body, codes, load, revolute, written
 from support.plain_urdf import inertial, joint_element, link_element, pinocchios_own, robot
 

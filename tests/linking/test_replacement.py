@@ -13,8 +13,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Joint
 from support.by_hand import quaternion_rotation, rotation, transform
 from support.described import at, body, codes, frame_poses, free_names, link_poses, load, mass_matrix, q_of
 from support.plain_urdf import Root, inertial, joint_element, link_element, mechanism_of, pinocchios_own, robot, trees

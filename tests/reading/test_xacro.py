@@ -9,8 +9,8 @@ import pytest
 
 import eurdf
 from eurdf.commands.main import main
-from eurdf.description import describe
 from eurdf.diagnostics.text import report_lines
+from eurdf.linking.description import describe
 from eurdf.reading import xacro
 
 pytest.importorskip("xacro", reason='xacro is not installed: pip install -e ".[xacro]"')

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from eurdf.commands.main import main
-from eurdf.format.generate import conventions
+from eurdf.writing.naming_conventions import conventions
 from support.page_reader import PageReader
 
 SPEC = Path(__file__).parents[2] / "spec"

@@ -8,8 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from eurdf.mechanism.body import Body, Inertia
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import COORDINATES, JointType
-from eurdf.mechanism.mechanism import Body, Inertia, Joint, Mechanism
+from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 
 Matrix = Any

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from eurdf.diagnostics import Diagnostics
 from eurdf.format.urdf import read_urdf
-from eurdf.mechanism.link import link
+from eurdf.linking.link import link
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.reading.source import Source
 from eurdf.reading.xml_reader import read_xml

@@ -7,11 +7,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import eurdf
-from eurdf.checking import closure_diagnostics
-from eurdf.description import Description, describe, find_meshes
+from eurdf.checking.loops import closure_diagnostics
 from eurdf.diagnostics import Diagnostic
 from eurdf.diagnostics.report import encodable
 from eurdf.exceptions import RobotNotFound
+from eurdf.linking.description import Description, describe, find_meshes
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.robot import Robot, build_robot
 from eurdf_conformance.adapters.reference_canonical import canonical_robot

@@ -6,8 +6,9 @@ import math
 from collections.abc import Iterable
 from typing import Any
 
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Joint, Mechanism
+from eurdf.mechanism.mechanism import Mechanism
 from eurdf_conformance.protocol.message import (
     CanonicalActuator,
     CanonicalClosure,

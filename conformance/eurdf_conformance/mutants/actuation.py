@@ -6,9 +6,10 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from eurdf.description import Description
-from eurdf.mechanism import link
-from eurdf.mechanism.mechanism import Joint, Mechanism
+from eurdf.linking import link
+from eurdf.linking.description import Description
+from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.mechanism import Mechanism
 from eurdf_conformance.mutants.deviation import Deviation, around
 from eurdf_conformance.mutants.mutant import mutant
 from eurdf_conformance.mutants.of_the_reference import canonical, mechanism, refused

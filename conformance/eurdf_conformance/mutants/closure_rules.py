@@ -9,11 +9,11 @@ from typing import Any
 
 import pinocchio as pin
 
-from eurdf.description import Description
 from eurdf.format.extension import ClosureEntry
 from eurdf.kinematics import assembly, evaluation, residual
-from eurdf.mechanism import closures, link
-from eurdf.mechanism.mechanism import Anchor
+from eurdf.linking import closures, link
+from eurdf.linking.description import Description
+from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.placement import placement_of
 from eurdf_conformance.mutants.deviation import Deviation, around, instead, result, together

@@ -10,8 +10,10 @@ import numpy as np
 import pinocchio as pin
 
 from eurdf.kinematics import residual
+from eurdf.mechanism.constraint import Closure
+from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Anchor, Closure, Mechanism
+from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.placement import placement_of
 from eurdf.pinocchio.robot import Robot

@@ -7,11 +7,12 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from eurdf.description import Description
 from eurdf.format.read_extension import VERSION_KEY
-from eurdf.mechanism import configurations
+from eurdf.linking import configurations
+from eurdf.linking.description import Description
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import COORDINATES, JointType
-from eurdf.mechanism.mechanism import ROOT_JOINT, Joint, Mechanism
+from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf_conformance.adapters import reference, reference_values
 from eurdf_conformance.adapters.reference import Reference
 from eurdf_conformance.level import Level

@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from eurdf import description
 from eurdf.format import read_extension
 from eurdf.format.version2 import Version2
-from eurdf.mechanism import link
+from eurdf.linking import description, link
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf_conformance.adapters.reference_values import Quantities
 from eurdf_conformance.level import Level

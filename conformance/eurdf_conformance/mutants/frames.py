@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from eurdf.description import Description
-from eurdf.mechanism.frame_names import FrameNames
+from eurdf.linking.description import Description
+from eurdf.linking.frame_names import FrameNames
+from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Anchor, Mechanism
+from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose, Vector3
 from eurdf.pinocchio.placement import placement_of
 from eurdf_conformance.adapters import reference_values

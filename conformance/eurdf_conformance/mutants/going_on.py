@@ -11,8 +11,8 @@ from typing import Any
 
 from eurdf.format.extension import FrameReference
 from eurdf.format.urdf import UrdfJoint, UrdfLink, _Reader
-from eurdf.mechanism import configurations, link
-from eurdf.mechanism.frame_names import FrameNames
+from eurdf.linking import configurations, link
+from eurdf.linking.frame_names import FrameNames
 from eurdf_conformance.mutants.deviation import Deviation, around
 from eurdf_conformance.mutants.mutant import mutant
 

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
+from eurdf.mechanism.body import Body, Inertia
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Body, Inertia, Mechanism
+from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio import model
 from eurdf.pinocchio.coordinates import slots

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from eurdf import description
-from eurdf.mechanism import inertia
+from eurdf.linking import description, inertia
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Joint, Mechanism
+from eurdf.mechanism.mechanism import Mechanism
 from eurdf_conformance.mutants.deviation import Deviation, around, instead
 from eurdf_conformance.mutants.mutant import mutant
 

@@ -7,9 +7,9 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+from eurdf.linking.replacement import _Replacement
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Joint
-from eurdf.mechanism.replacement import _Replacement
 from eurdf_conformance.adapters import reference_canonical
 from eurdf_conformance.level import Level
 from eurdf_conformance.mutants.deviation import Deviation, around, instead, result, together

@@ -6,9 +6,9 @@ import math
 from dataclasses import replace
 from typing import Any
 
-from eurdf.mechanism import merging, replacement
+from eurdf.linking import merging, replacement
+from eurdf.linking.merging import Chain
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.merging import Chain
 from eurdf_conformance.mutants.deviation import Deviation, around, instead, together
 from eurdf_conformance.mutants.mutant import mutant
 

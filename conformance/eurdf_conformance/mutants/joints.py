@@ -6,12 +6,13 @@ import math
 from dataclasses import replace
 from typing import Any
 
-from eurdf.description import Description
 from eurdf.format.urdf import _Reader
-from eurdf.mechanism import replacement
+from eurdf.linking import replacement
+from eurdf.linking.description import Description
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_transform import joint_transform
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import ROOT_JOINT, Joint
+from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio import configuration, joint_model
 from eurdf_conformance.adapters import reference_values

@@ -6,9 +6,9 @@ import math
 from dataclasses import replace
 from typing import Any
 
-from eurdf.mechanism import merging, replacement
-from eurdf.mechanism.mechanism import Joint
-from eurdf.mechanism.merging import Chain
+from eurdf.linking import merging, replacement
+from eurdf.linking.merging import Chain
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.pose import Pose
 from eurdf_conformance.mutants.deviation import Deviation, around, instead
 from eurdf_conformance.mutants.mutant import mutant

@@ -6,10 +6,9 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from eurdf import description
-from eurdf.description import Description
 from eurdf.format.urdf import Urdf, UrdfJoint
-from eurdf.mechanism import replacement
+from eurdf.linking import description, replacement
+from eurdf.linking.description import Description
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf_conformance.mutants.deviation import Deviation, around, together
 from eurdf_conformance.mutants.mutant import mutant

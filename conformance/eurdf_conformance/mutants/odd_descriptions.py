@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from eurdf.description import Description
 from eurdf.format import version2
-from eurdf.mechanism.frame_names import FrameNames
+from eurdf.linking.description import Description
+from eurdf.linking.frame_names import FrameNames
 from eurdf.mechanism.pose import Pose
 from eurdf_conformance.adapters.reference import Reference
 from eurdf_conformance.mutants.deviation import Deviation, around, instead, result

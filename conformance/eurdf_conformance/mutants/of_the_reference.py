@@ -6,15 +6,16 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from eurdf.description import Description
 from eurdf.diagnostics.registry import REGISTRY
 from eurdf.format import read_extension
 from eurdf.format.extension import Extension
 from eurdf.format.urdf import Urdf
 from eurdf.format.version1 import Version1
 from eurdf.format.version2 import Version2
+from eurdf.linking.description import Description
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import COORDINATES, JointType
-from eurdf.mechanism.mechanism import Joint, Mechanism
+from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio import configuration
 from eurdf_conformance.adapters import reference
 from eurdf_conformance.adapters.reference import Reference

@@ -6,11 +6,12 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
-from eurdf.description import Description
 from eurdf.format.urdf import UrdfJoint, _Reader
+from eurdf.linking.description import Description
+from eurdf.linking.urdf_tree import joint_of
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_transform import joint_transform
-from eurdf.mechanism.mechanism import Joint, Mechanism
-from eurdf.mechanism.spanning_tree import joint_of
+from eurdf.mechanism.mechanism import Mechanism
 from eurdf_conformance.mutants.deviation import Deviation, around
 from eurdf_conformance.mutants.mutant import mutant
 from eurdf_conformance.mutants.of_the_reference import described

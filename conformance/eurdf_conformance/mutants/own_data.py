@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 from urllib.parse import quote
 
-from eurdf.mechanism import link
+from eurdf.linking import link
 from eurdf_conformance.mutants.deviation import Deviation, instead
 from eurdf_conformance.mutants.mutant import Mutant, mutant
 from eurdf_conformance.mutants.of_the_reference import canonical

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
-from eurdf.description import Description
-from eurdf.mechanism import link
+from eurdf.linking import link
+from eurdf.linking.description import Description
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf_conformance.mutants.deviation import Deviation, around

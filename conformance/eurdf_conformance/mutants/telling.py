@@ -6,16 +6,15 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from eurdf import description
-from eurdf.description import Description
 from eurdf.diagnostics import Diagnostic
 from eurdf.diagnostics.registry import REGISTRY, Phase
 from eurdf.format import read_extension
 from eurdf.format.urdf import Urdf
-from eurdf.mechanism import link
-from eurdf.mechanism.frame_names import FrameNames
-from eurdf.mechanism.replacement import _Replacement
-from eurdf.mechanism.spanning_tree import joint_of
+from eurdf.linking import description, link
+from eurdf.linking.description import Description
+from eurdf.linking.frame_names import FrameNames
+from eurdf.linking.replacement import _Replacement
+from eurdf.linking.urdf_tree import joint_of
 from eurdf_conformance.adapters.reference import Reference
 from eurdf_conformance.level import Level
 from eurdf_conformance.mutants.deviation import Deviation, around, instead, result

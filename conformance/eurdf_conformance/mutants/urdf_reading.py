@@ -12,7 +12,8 @@ from eurdf.diagnostics import Fault
 from eurdf.format import urdf
 from eurdf.format.urdf import _Reader
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Mechanism, Mimic
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.mimic import Mimic
 from eurdf.pinocchio import mimic, robot
 from eurdf.reading import xml_reader
 from eurdf_conformance.adapters import reference_values

@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from eurdf.format.urdf import Urdf
-from eurdf.mechanism import merging, replacement
+from eurdf.linking import merging, replacement
+from eurdf.linking.merging import Chain
+from eurdf.linking.replacement import _Replacement
+from eurdf.linking.urdf_tree import joint_of
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Joint
-from eurdf.mechanism.merging import Chain
-from eurdf.mechanism.replacement import _Replacement
-from eurdf.mechanism.spanning_tree import joint_of
 from eurdf_conformance.adapters.reference import Reference
 from eurdf_conformance.mutants.deviation import Deviation, around, instead
 from eurdf_conformance.mutants.mutant import mutant

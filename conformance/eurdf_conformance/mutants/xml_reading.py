@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable
 from typing import Any
 
-from eurdf import description
+from eurdf.linking import description
 from eurdf.reading.source import Source
 from eurdf_conformance.level import Level
 from eurdf_conformance.mutants.deviation import Deviation, around

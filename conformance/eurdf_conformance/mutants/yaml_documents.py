@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from eurdf.description import Description
 from eurdf.diagnostics import Fault
+from eurdf.linking.description import Description
 from eurdf.reading import source, yaml_reader
 from eurdf_conformance.level import Level
 from eurdf_conformance.mutants.accepting import accepting

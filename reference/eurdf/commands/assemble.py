@@ -17,12 +17,12 @@ from eurdf.commands.selection import select_one
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from eurdf.assembled import BeyondLimit
     from eurdf.commands.assembly_info import AssemblyInfo, JointPosition
-    from eurdf.description import Description
     from eurdf.kinematics.array import Vector
     from eurdf.kinematics.assembly import Assembly
+    from eurdf.linking.description import Description
     from eurdf.pinocchio.robot import Robot
+    from eurdf.writing.assembled import BeyondLimit
 
 _DESCRIPTION = """\
 Find a configuration in which every loop is closed, and show it: for each joint its coordinates as files have them.
@@ -74,7 +74,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(args: argparse.Namespace) -> int:
     """Assemble, show, write, and return the exit code."""
-    from eurdf.description import describe
+    from eurdf.linking.description import describe
 
     path = select_one(args.path)
     if args.force and not args.write:
@@ -89,9 +89,9 @@ def run(args: argparse.Namespace) -> int:
         )
     file = _file_to_write(args.path, description) if args.write else None
 
-    from eurdf.assembled import beyond_limits
     from eurdf.commands.assembly_info import assembly_info
     from eurdf.pinocchio.robot import build_robot
+    from eurdf.writing.assembled import beyond_limits
 
     robot = build_robot(description.mechanism, geometry=False)
     start, q0 = _start(robot, args.start)
@@ -133,8 +133,8 @@ def _start(robot: Robot, name: str | None) -> tuple[str, Vector]:
     """The configuration to start from, and its name."""
     import pinocchio as pin
 
-    from eurdf.assembled import NAME
     from eurdf.diagnostics import did_you_mean
+    from eurdf.writing.assembled import NAME
 
     if name is None:
         name = NAME if NAME in robot.configurations else _NEUTRAL
@@ -149,8 +149,8 @@ def _start(robot: Robot, name: str | None) -> tuple[str, Vector]:
 
 def _assemble(robot: Robot, q0: Vector, hold: list[str], limits: bool) -> Assembly:
     """A closed configuration, within the limits of the joints where there is one."""
-    from eurdf.assembled import beyond_limits
     from eurdf.kinematics.assembly import assemble
+    from eurdf.writing.assembled import beyond_limits
 
     try:
         assembly = assemble(robot, q0, hold, tolerance=_TOLERANCE, limits=limits)
@@ -165,9 +165,9 @@ def _assemble(robot: Robot, q0: Vector, hold: list[str], limits: bool) -> Assemb
 
 def _write(file: str, description: Description, robot: Robot, q: Vector, force: bool) -> bool:
     """Write the configuration to the description; return whether that changed the file."""
-    from eurdf.assembled import NAME, is_stated, with_assembled
-    from eurdf.format.edit_configuration import NotEditable
     from eurdf.reading.source import BOM
+    from eurdf.writing.assembled import NAME, is_stated, with_assembled
+    from eurdf.writing.edit_configuration import NotEditable
 
     if is_stated(robot, q):
         return False

@@ -108,7 +108,7 @@ def run(args: argparse.Namespace) -> int:
             raise CannotRun("--parser says which parser to certify, such as --parser='cmd:./my_parser'")
         return _certify(args)
     except MissingPackages as reason:
-        from eurdf.extras import install_command
+        from eurdf.diagnostics.extras import install_command
 
         raise CannotRun(f"{reason}; install them with: {install_command('conformance')}") from None
     except CannotRunSuite as reason:

@@ -16,7 +16,7 @@ from eurdf.commands.robot_options import add_urdf_options, add_urdf_path, ending
 from eurdf.reading.given import shown
 
 if TYPE_CHECKING:
-    from eurdf.generation import Generation
+    from eurdf.writing.generation import Generation
 
 _DESCRIPTION = """\
 Write a description from the names in a URDF.
@@ -72,10 +72,10 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(args: argparse.Namespace) -> int:
     """Generate, write, tell what was found, and return the exit code."""
-    from eurdf.description import read_urdf_alone
     from eurdf.diagnostics import Diagnostics
-    from eurdf.format.generate import BadPattern, conventions, hints
-    from eurdf.generation import generate
+    from eurdf.linking.description import read_urdf_alone
+    from eurdf.writing.generation import generate
+    from eurdf.writing.naming_conventions import BadPattern, conventions, hints
 
     if args.version == "1" and args.root != "fixed":
         raise CannotRun("version 1 cannot say that the root floats")

@@ -52,9 +52,9 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(args: argparse.Namespace) -> int:
     """Migrate, write, tell what was done, and return the exit code."""
-    from eurdf.description import describe
-    from eurdf.format.migrate import NotMigratable, schema_named
-    from eurdf.migration import migrate
+    from eurdf.linking.description import describe
+    from eurdf.writing.migrated_text import NotMigratable, schema_named
+    from eurdf.writing.migration import migrate
 
     path = select_one(args.path)
     description = describe(path, **robot_options(args))

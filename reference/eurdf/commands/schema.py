@@ -48,9 +48,9 @@ def run(args: argparse.Namespace) -> int:
     if args.urdf is None and (args.package_dirs or args.xacro_args):
         raise CannotRun("--package-dir and --xacro-arg go with --for")
     if args.urdf is not None:
-        from eurdf.description import read_urdf_alone
         from eurdf.diagnostics import Diagnostics
         from eurdf.diagnostics.report import Report
+        from eurdf.linking.description import read_urdf_alone
 
         require_urdf(args.urdf)
         diagnostics = Diagnostics()

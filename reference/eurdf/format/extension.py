@@ -10,7 +10,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from eurdf.mechanism.mechanism import ClosureType, Root
+from eurdf.mechanism.constraint import ClosureType
+from eurdf.mechanism.mechanism import Root
 from eurdf.mechanism.pose import Vector3
 
 Pointer = tuple[str | int, ...]

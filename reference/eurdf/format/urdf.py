@@ -18,9 +18,9 @@ from lxml import etree
 
 from eurdf.diagnostics import Diagnostics, Hint, did_you_mean, quoted
 from eurdf.format.near import near
+from eurdf.mechanism.body import Inertia, Shape
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Inertia, Mimic, Shape
-from eurdf.mechanism.mimic import MIMIC_TYPES
+from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 from eurdf.reading.xml_reader import XmlDocument
 

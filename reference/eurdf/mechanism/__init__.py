@@ -1,1 +1,1 @@
-"""The mechanism as plain data, and every rule that needs both files to be judged."""
+"""The mechanism as plain data; it imports nothing of the project beside itself."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Joint
 from eurdf.mechanism.pose import IDENTITY, Pose, Quaternion, Vector3, direction
 
 _HERE = (0.0, 0.0, 0.0)

@@ -3,12 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Mimic
 
 #: The types of the joints that can mimic and be mimicked (EU-URD-023): those of URDF with one coordinate.
 MIMIC_TYPES = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC})
+
+
+@dataclass(frozen=True, slots=True)
+class Mimic:
+    """q = multiplier · q_joint + offset, in rad or m."""
+
+    joint: str
+    multiplier: float = 1.0
+    offset: float = 0.0
 
 
 def drivers(mimics: Mapping[str, Mimic]) -> dict[str, Mimic]:

@@ -6,8 +6,12 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import TypeVar
 
+from eurdf.mechanism.body import Body
+from eurdf.mechanism.constraint import Closure
+from eurdf.mechanism.frame import Anchor, Frame
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Anchor, Body, Closure, Frame, Joint, Mechanism
+from eurdf.mechanism.mechanism import Mechanism
 
 _Named = TypeVar("_Named", Body, Joint, Frame, Closure)
 

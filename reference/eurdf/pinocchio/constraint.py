@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pinocchio as pin
 
-from eurdf.mechanism.mechanism import Anchor, Mechanism
+from eurdf.mechanism.frame import Anchor
+from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.frames import body_frame_ids
 from eurdf.pinocchio.placement import placement_of
 

@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 import pinocchio as pin
 
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Joint, Mechanism
+from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.mimic import following
 
 

@@ -10,7 +10,8 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from eurdf.exceptions import EurdfError
-from eurdf.mechanism.mechanism import Mechanism, Shape
+from eurdf.mechanism.body import Shape
+from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.frames import body_frame_ids
 from eurdf.pinocchio.placement import placement_of
 

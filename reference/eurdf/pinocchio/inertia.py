@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 
-from eurdf.mechanism.mechanism import Inertia
+from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.pose import Quaternion
 
 _UPRIGHT = (0.0, 0.0, 0.0, 1.0)

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 import pinocchio as pin
 
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Joint
 
 # Pinocchio bounds a cosine, a sine and each component of a unit quaternion by this: never reached, and finite.
 _UNIT = 1.01

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Joint, Mechanism, Mimic
-from eurdf.mechanism.mimic import MIMIC_TYPES, drivers
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic, drivers
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,8 +11,10 @@ from collections.abc import Mapping
 
 import pinocchio as pin
 
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import ROOT_JOINT, Joint, Mechanism, Mimic
+from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
+from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY
 from eurdf.pinocchio.inertia import inertia_of, is_zero
 from eurdf.pinocchio.joint_model import joint_model

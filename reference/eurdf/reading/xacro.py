@@ -57,7 +57,7 @@ def expand(
     file = os.fspath(path)
     found = find_spec("xacro")
     if found is None or found.origin is None:  # a folder named xacro is no module
-        from eurdf.extras import install_command
+        from eurdf.diagnostics.extras import install_command
 
         message = f"'{file}' is a xacro file, and the package that expands it is not installed; install it with: "
         raise MissingExtra(message + install_command("xacro"), "xacro")

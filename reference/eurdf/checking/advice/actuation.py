@@ -1,0 +1,174 @@
+"""Advice on actuation: no actuator, actuators that depend on one another, motions that no actuator decides."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import zip_longest
+from typing import TYPE_CHECKING
+
+from eurdf.checking.advice.passive import PassiveMotions
+from eurdf.diagnostics import quoted
+from eurdf.kinematics.analysis import Analysis, LoopAnalysis, analyze
+from eurdf.pinocchio.robot import build_robot
+
+if TYPE_CHECKING:
+    from eurdf.diagnostics import Diagnostics, Place
+    from eurdf.kinematics.array import Vector
+    from eurdf.linking.description import Description
+    from eurdf.mechanism.mechanism import Mechanism
+    from eurdf.pinocchio.robot import Robot
+
+# Warnings of what changes which joints are actuated or constrained.
+_REASONS = frozenset({"near-miss-key", "closure-type-unknown", "urdf-closure-ignored"})
+
+# Of a group of loops, so many closures at most are tried one by one.
+_MOST_TRIED = 12
+
+# Names that a message lists, and motions.
+_NAMES_LISTED = 6
+_MOTIONS_LISTED = 3
+
+
+def advise_on_actuation(description: Description, robot: Robot, q: Vector, diagnostics: Diagnostics) -> None:
+    """Report loops without an actuator; else actuators that depend on one another, and motions left uncontrolled.
+
+    Nothing is reported where an earlier warning may be the reason: a misspelt key, or a closure that is left out.
+
+    Args:
+        description: The robot as read; it has closures.
+        robot: The robot built from it.
+        q: A closed configuration (nq,).
+        diagnostics: Gets what is found.
+    """
+    mechanism = robot.mechanism
+    if any(found.code in _REASONS for found in description.diagnostics):
+        return
+    if not mechanism.actuators:
+        count = len(mechanism.closures)
+        diagnostics.report(
+            "x-no-actuator",
+            f"the robot has {count} {'closure' if count == 1 else 'closures'} and no actuator",
+            _place_of_key(description, _closures_key(mechanism)),
+            f"list the joints that its motors drive under '{_actuators_key(mechanism)}'",
+        )
+        return
+    analysis = analyze(robot, q)
+    if analysis.left_out:
+        place = _place_of_key(description, _closures_key(mechanism))
+        diagnostics.report("x-loops-not-checked", analysis.left_out, place, "analyze parts of the robot by themselves")
+        return
+    dependent = [loop for loop in analysis.loops if loop.fighting]
+    if dependent:
+        for loop, locking in zip(dependent, _locking(robot, analysis.q, dependent), strict=True):
+            _report_dependent(description, robot, loop, locking, diagnostics)
+    _report_uncontrolled(description, robot, analysis, diagnostics)
+
+
+def _report_dependent(
+    description: Description, robot: Robot, loop: LoopAnalysis, locking: Sequence[str], diagnostics: Diagnostics
+) -> None:
+    """Report the dependent actuators of a group of loops, and the 6d closures that lock them where some were found."""
+    dependent = [name for together in loop.fighting for name in together]
+    # Each is alone in its set, and has one velocity: of several, others may be free.
+    one_each = len(frozenset(loop.joints).intersection(robot.actuation.joints)) == loop.actuated
+    locked = one_each and len(dependent) == len(loop.fighting)
+    message = (
+        f"{_counted('actuator', dependent)} cannot move{'' if locked else ' independently'}: "
+        f"{'locked' if locked else 'coupled'} by {_counted('closure', loop.closures)}"
+    )
+    if locking:
+        place = description.place_of_closure(next(each for each in robot.mechanism.closures if each.name == locking[0]))
+        hint = (
+            f"type 3d for {_counted('closure', locking)} frees the actuators; use it for a ball joint, or for a pin "
+            "of a planar loop"
+        )
+    else:
+        place = _place_of_last_actuator(description, dependent)
+        hint = f"list only actuators that can move{'' if locked else ' independently'}, or correct the closures"
+    diagnostics.report("x-dependent-actuators", message, place, hint)
+
+
+def _locking(robot: Robot, q: Vector, loops: Sequence[LoopAnalysis]) -> list[tuple[str, ...]]:
+    """For each group, the 6d closures that as 3d ones free its dependent actuators and leave no motion uncontrolled.
+
+    Found by trial: each alone, then all of the group; of all groups at once, since none changes another.
+    """
+    mechanism, passive = robot.mechanism, PassiveMotions(robot)
+    members = {name for loop in loops for name in loop.closures}
+    group = [closure for closure in mechanism.closures if closure.name in members]
+    spatial = {closure.name for closure in group if closure.type == "6d"}
+    uncontrolled = [len(passive.without_spins(loop)) for loop in loops]
+    trials = [_trials([name for name in loop.closures if name in spatial]) for loop in loops]
+    found: list[tuple[str, ...]] = [()] * len(loops)
+    for tried in zip_longest(*trials, fillvalue=()):
+        pending = [index for index, names in enumerate(tried) if names and not found[index]]
+        if not pending:
+            continue
+        changed = {name for index in pending for name in tried[index]}
+        closures = tuple(replace(closure, type="3d") if closure.name in changed else closure for closure in group)
+        trial = build_robot(replace(mechanism, closures=closures), geometry=False)
+        after = {loop.closures: loop for loop in analyze(trial, q).loops}
+        passive = PassiveMotions(trial)
+        for index in pending:
+            loop, freed = loops[index], after.get(loops[index].closures)
+            if freed is None:  # not even so do the loops close
+                continue
+            still = {name for together in freed.fighting for name in together}
+            if still.isdisjoint(name for together in loop.fighting for name in together) and (
+                len(passive.without_spins(freed)) <= uncontrolled[index]
+            ):
+                found[index] = tried[index]
+    return found
+
+
+def _trials(names: Sequence[str]) -> list[tuple[str, ...]]:
+    """Each name alone, where they are not many, then all together."""
+    alone: list[tuple[str, ...]] = [(name,) for name in names] if len(names) <= _MOST_TRIED else []
+    return [*alone, tuple(names)] if len(names) > 1 else alone
+
+
+def _report_uncontrolled(description: Description, robot: Robot, analysis: Analysis, diagnostics: Diagnostics) -> None:
+    """Report the motions that are possible with every actuator held, except those that need no actuator."""
+    if not analysis.motions:
+        return
+    passive = PassiveMotions(robot)
+    in_loops = sum(len(loop.motions) for loop in analysis.loops)
+    motions = [motion for loop in analysis.loops for motion in passive.without_spins(loop)]
+    motions += [motion for motion in analysis.motions[in_loops:] if not passive.is_root_or_wheel(motion)]
+    if motions:
+        count = len(motions)
+        moved = list(dict.fromkeys(quoted(motion.joints, _NAMES_LISTED) for motion in motions))
+        shown = "; ".join(moved[:_MOTIONS_LISTED]) + ("; ..." if len(moved) > _MOTIONS_LISTED else "")
+        diagnostics.report(
+            "x-uncontrolled-motion",
+            f"{count} {'motion is' if count == 1 else 'motions are'} possible with every actuator held, of {shown}",
+            _place_of_key(description, _actuators_key(robot.mechanism)),
+            "actuate a joint of each, add the closure that is missing, or use type 6d where orientation is held too",
+        )
+
+
+def _closures_key(mechanism: Mechanism) -> str:
+    return "closed_loop" if mechanism.version == "1" else "closures"
+
+
+def _actuators_key(mechanism: Mechanism) -> str:
+    return "name_mot" if mechanism.version == "1" else "actuators"
+
+
+def _place_of_key(description: Description, key: str) -> Place:
+    assert description.document is not None
+    return description.document.place((key,), True)
+
+
+def _place_of_last_actuator(description: Description, joints: Sequence[str]) -> Place:
+    """Of several actuators the one that is listed last, as what was added most likely."""
+    assert description.extension is not None
+    assert description.document is not None
+    entry = next(entry for entry in reversed(description.extension.actuators) if entry.joint in joints)
+    return description.document.place(entry.pointer)
+
+
+def _counted(noun: str, names: Sequence[str]) -> str:
+    """A noun, in the plural where there are several, and the names in quotes."""
+    return f"{noun if len(names) == 1 else noun + 's'} {quoted(names, _NAMES_LISTED)}"

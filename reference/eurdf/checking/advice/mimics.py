@@ -1,0 +1,42 @@
+"""Advice on mimic joints that version 1 lets move by themselves."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING
+
+from eurdf.diagnostics import quoted
+from eurdf.mechanism.mimic import MIMIC_TYPES
+
+if TYPE_CHECKING:
+    from eurdf.diagnostics import Diagnostics
+    from eurdf.linking.description import Description
+
+
+def advise_on_mimics(description: Description, diagnostics: Diagnostics) -> None:
+    """Report mimic joints that a description of version 1 leaves free (EU-ONE-009) and that no motor moves.
+
+    One that is actuated, locked or replaced is meant to be a joint of its own. A description without actuators leaves
+    open which joints move by themselves.
+
+    Args:
+        description: The robot as read, with a mechanism.
+        diagnostics: Gets what is found.
+    """
+    urdf, mechanism = description.urdf, description.mechanism
+    assert urdf is not None
+    assert mechanism is not None
+    if mechanism.version != "1" or not mechanism.actuators:
+        return
+    free = {joint.name for joint in mechanism.joints if joint.type in MIMIC_TYPES} - set(mechanism.actuators)
+    found = [joint for joint in urdf.joints.values() if joint.mimic is not None and joint.name in free]
+    if not found:
+        return
+    names = quoted([joint.name for joint in found])
+    count = "1 joint has" if len(found) == 1 else f"{len(found)} joints have"
+    diagnostics.report(
+        "x-mimic-ignored",
+        f"{count} a <mimic>, which version 1 ignores, and no motor: {names}",
+        partial(urdf.document.place, next(found[0].element.iterchildren("mimic"))),
+        "actuate what moves by itself, remove <mimic>, or write the description in version 2, which respects it",
+    )

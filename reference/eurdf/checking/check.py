@@ -1,0 +1,88 @@
+"""`eurdf.check`: everything that can be found wrong with a robot."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from eurdf.checking.advice.angles import advise_on_angles
+from eurdf.checking.advice.lengths import advise_on_lengths
+from eurdf.checking.advice.mimics import advise_on_mimics
+from eurdf.checking.advice.quaternions import advise_on_quaternions
+from eurdf.checking.loops import closure_diagnostics
+from eurdf.diagnostics.report import Report
+from eurdf.linking.description import Description, describe, find_meshes
+from eurdf.reading.given import Given
+
+if TYPE_CHECKING:
+    from eurdf.mechanism.mechanism import Mechanism
+
+
+def check(
+    path: Given,
+    urdf: Given | None = None,
+    *,
+    package_dirs: Sequence[str | os.PathLike[str]] = (),
+    xacro_args: Mapping[str, str] | None = None,
+) -> Report:
+    """Check a robot: EU-DIA-001, EU-DIA-003, each fault is told that no error hides.
+
+    Beside what breaks a clause it gives advice (EU-DIA-006): warnings without a clause, whose codes begin with ``x-``.
+
+    Args:
+        path: A folder, a YAML file, a bare URDF or xacro, the name of a robot of the collection, ``-`` for standard
+            input, a pipe, or a text: one that begins with ``<`` is a URDF, any other a description.
+        urdf: A URDF in place of the one that the description names: a file, ``-``, a pipe or a text.
+        package_dirs: Folders to look for the packages of meshes in, before ``ROS_PACKAGE_PATH`` and
+            ``AMENT_PREFIX_PATH``.
+        xacro_args: Values of the arguments of a xacro.
+
+    Returns:
+        The findings of all phases, in the order of the phases.
+
+    Raises:
+        RobotNotFound: Where there are no such files.
+        CannotExpand: A xacro has an error, or `xacro_args` are given for what is no xacro.
+        MissingExtra: A xacro is given, and the extra ``xacro`` is not installed.
+    """
+    description = describe(path, urdf, package_dirs=package_dirs, xacro_args=xacro_args)
+    diagnostics = description.diagnostics
+    meshes: dict[str, str] = {}
+    if description.urdf is not None:
+        meshes, missing = find_meshes(description, package_dirs)
+        for found in missing:
+            diagnostics.add(found)
+    mechanism = description.mechanism
+    if mechanism is not None and not diagnostics.refused:
+        if mechanism.closures:
+            _check_loops(description, mechanism)
+        else:
+            advise_on_quaternions(description, None, diagnostics)
+        advise_on_mimics(description, diagnostics)
+        advise_on_angles(description, diagnostics)
+        advise_on_lengths(description, meshes, diagnostics)
+    return Report(description.path, tuple(diagnostics))
+
+
+def _check_loops(description: Description, mechanism: Mechanism) -> None:
+    """Report what needs a simulator: whether the loops close and, where there is no error, advice on how they move."""
+    # Only now: a description without closures is checked without a simulator.
+    from eurdf.checking.advice.actuation import advise_on_actuation
+    from eurdf.checking.advice.limits import advise_on_limits
+    from eurdf.checking.advice.massless import advise_on_massless_links
+    from eurdf.kinematics.assembly import assemble
+    from eurdf.pinocchio.robot import build_robot
+
+    diagnostics = description.diagnostics
+    robot = build_robot(mechanism, geometry=False)
+    assembly = None if "assembled" in robot.configurations else assemble(robot)
+    for found in closure_diagnostics(description, robot, assembly):
+        diagnostics.add(found)
+    given_up = assembly is not None and assembly.reason == "given up"
+    if not given_up and not diagnostics.error_count:
+        q = robot.configurations["assembled"] if assembly is None else assembly.q
+        advise_on_quaternions(description, robot, diagnostics)
+        advise_on_massless_links(description, robot, q, diagnostics)
+        advise_on_actuation(description, robot, q, diagnostics)
+        advise_on_limits(description, robot, q, diagnostics)

@@ -1,0 +1,99 @@
+"""`eurdf.load`: a robot ready for Pinocchio, or the reasons why it cannot be built without guessing."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from functools import partial
+
+from eurdf.checking.loops import assembled_diagnostics, closure_diagnostics
+from eurdf.exceptions import InvalidRobot
+from eurdf.linking.description import describe, find_meshes, place_of_file
+from eurdf.mechanism.mechanism import Root
+from eurdf.pinocchio.geometry import UnreadableMesh
+from eurdf.pinocchio.robot import Robot, build_robot
+from eurdf.reading.given import Given
+
+
+def load(
+    path: Given,
+    urdf: Given | None = None,
+    root: Root | None = None,
+    geometry: bool = True,
+    *,
+    mimic: bool = True,
+    strict: bool = False,
+    package_dirs: Sequence[str | os.PathLike[str]] = (),
+    xacro_args: Mapping[str, str] | None = None,
+) -> Robot:
+    """Load a robot.
+
+    Errors that leave something to guess are refused (EU-CNF-001). Unphysical inertias and loops that cannot close are
+    not: real files have them, and their kinematics are still of use; they are in ``robot.diagnostics`` (EU-CNF-003).
+
+    Args:
+        path: A folder, a YAML file, a bare URDF or xacro, the name of a robot of the collection, ``-`` for standard
+            input, a pipe, or a text: one that begins with ``<`` is a URDF, any other a description.
+        urdf: A URDF in place of the one that the description names (``robot.urdf`` beside it by default): a file,
+            ``-``, a pipe or a text.
+        root: ``fixed`` or ``floating``, in place of what the description says (fixed by default).
+        geometry: Whether to load the visual and collision geometry, meshes too. Without it, bodies have no shapes, and
+            nothing wrong with shapes is looked for. Where a mesh is missing, the robot is loaded and
+            ``robot.diagnostics`` says so (EU-URD-028); asking it for its geometry raises `InvalidRobot`.
+        mimic: Whether the mimic joints of the URDF follow the joints that drive them, as in
+            ``pin.buildModelFromUrdf(path, mimic=True)``. If not, each is free, as in
+            ``pin.buildModelFromUrdf(path)``, and an error in which joint it mimics is kept in ``robot.diagnostics``.
+            With a description of version 1 they are free in any case (EU-ONE-009).
+        strict: Whether to refuse every error, those of the inertia and closure phases too.
+        package_dirs: Folders to look for the packages of meshes in, before ``ROS_PACKAGE_PATH`` and
+            ``AMENT_PREFIX_PATH``.
+        xacro_args: Values of the arguments of a xacro.
+
+    Returns:
+        The robot: its Pinocchio model, its constraint models in file order, its actuation, its geometry.
+
+    Raises:
+        RobotNotFound: There are no such files.
+        InvalidRobot: The robot cannot be built without guessing, or `geometry` is asked for and a mesh is
+            unreadable.
+        CannotExpand: A xacro has an error, or `xacro_args` are given for what is no xacro.
+        MissingExtra: A xacro is given, and the extra ``xacro`` is not installed.
+    """
+    if root not in (None, "fixed", "floating"):
+        raise ValueError(f"root is {root!r}; it must be 'fixed' or 'floating'")
+    description = describe(
+        path, urdf, root, geometry=geometry, mimic=mimic, package_dirs=package_dirs, xacro_args=xacro_args
+    )
+    diagnostics = description.diagnostics
+    if description.mechanism is None:
+        raise InvalidRobot(description.path, tuple(diagnostics))
+    files: dict[str, str] = {}
+    lacks_mesh = False
+    no_geometry = f"the geometry of {description.path} cannot be built; load it with geometry=False to do without"
+    if geometry:
+        files, missing = find_meshes(description, package_dirs)
+        for found in missing:
+            diagnostics.add(found)
+        lacks_mesh = any(found.code == "urdf-mesh-missing" for found in missing)
+    try:
+        robot = build_robot(description.mechanism, geometry=geometry and not lacks_mesh, resolve=files.get)
+    except UnreadableMesh as mesh:
+        place = partial(place_of_file, description, "mesh", mesh.uri)
+        diagnostics.report("urdf-mesh-unreadable", f"mesh '{mesh.uri}' cannot be read: {mesh.reason}", place)
+        raise InvalidRobot(description.path, tuple(diagnostics), no_geometry) from None
+    if lacks_mesh:
+        # The kinematics need no mesh, so that what `check` passes is loaded; but shapes are not left out in silence.
+        robot.no_geometry = partial(InvalidRobot, description.path, tuple(missing), no_geometry)
+    if "assembled" in description.mechanism.configurations:
+        for found in assembled_diagnostics(description, robot):
+            diagnostics.add(found)
+        robot.diagnostics = tuple(diagnostics)
+    else:
+        # Whether loops can close at all takes a solver: it runs when somebody asks.
+        found_so_far = tuple(diagnostics)
+        robot.defer_diagnostics(lambda: (*found_so_far, *closure_diagnostics(description, robot)))
+    if strict:
+        errors = [found for found in robot.diagnostics if found.severity == "error"]
+        if errors:
+            raise InvalidRobot(description.path, robot.diagnostics)
+    return robot

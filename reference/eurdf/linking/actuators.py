@@ -1,0 +1,100 @@
+"""The actuated joints: each exists, can move by itself, and is listed once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+from eurdf.diagnostics import Diagnostics, Hint, Place, did_you_mean
+from eurdf.format.extension import ActuatorEntry
+from eurdf.format.urdf import Urdf
+from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint_type import JointType
+from eurdf.reading.yaml_reader import YamlDocument
+
+
+def link_actuators(
+    entries: Iterable[ActuatorEntry],
+    urdf: Urdf,
+    joints: Mapping[str, Joint],
+    merged: Mapping[str, str],
+    split: Mapping[str, tuple[str, str]],
+    document: YamlDocument,
+    diagnostics: Diagnostics,
+) -> tuple[str, ...]:
+    """Check every actuator against the joints as the description makes them; returns the names, in file order.
+
+    Args:
+        entries: As written.
+        urdf: The URDF.
+        joints: Joints of the mechanism.
+        merged: For each joint that was merged away, the joint it became part of.
+        split: For each joint that was split, the two that it became.
+        document: To point into.
+        diagnostics: Gets what is found.
+    """
+    listed: dict[str, None] = {}
+    for entry in entries:
+        name = entry.joint
+        place = partial(_place_of_name, entry, document)
+        joint = joints.get(name)
+        if name in merged:
+            diagnostics.report(
+                "actuator-merged",
+                f"joint '{name}' cannot be actuated: it was merged into the spherical joint '{merged[name]}'",
+                place,
+                f"actuate '{merged[name]}', or keep the three joints apart",
+            )
+        elif name in split:
+            first, second = split[name]
+            diagnostics.report(
+                "unknown-actuator",
+                f"joint '{name}' was split in two",
+                place,
+                f"actuate '{first}' or '{second}'",
+            )
+        elif joint is None:
+            movable = (other.name for other in joints.values() if other.type is not JointType.FIXED)
+            hint: Hint = partial(did_you_mean, name, movable)
+            if name in urdf.links:
+                hint = f"'{name}' is a link; name the joint that moves it"
+            diagnostics.report("unknown-actuator", f"actuator '{name}' is no joint of the robot", place, hint)
+        elif name in listed:
+            diagnostics.report("actuator-duplicate", f"joint '{name}' is actuated twice", place, "remove one")
+        elif joint.type is JointType.FIXED:
+            hint = "actuate a joint that moves, or take it out"
+            diagnostics.report("actuator-immobile", f"joint '{name}' is fixed and cannot be actuated", place, hint)
+        elif joint.mimic is not None:
+            diagnostics.report(
+                "actuator-mimic",
+                f"joint '{name}' mimics '{joint.mimic.joint}' and cannot be actuated by itself",
+                place,
+                f"actuate '{joint.mimic.joint}'",
+            )
+        else:
+            listed[name] = None
+    return tuple(listed)
+
+
+def with_motor(joint: Joint, entry: ActuatorEntry, *, armature_given: bool) -> Joint:
+    """The joint with the motor's gear ratio and rotor inertia.
+
+    EU-ACT-006: the armature of an actuated joint, where it is not given, is gear_ratio² · rotor_inertia, the rotor's
+    inertia as the joint feels it.
+    """
+    if entry.gear_ratio is None and entry.rotor_inertia is None:
+        return joint
+    nv = joint.coordinates.nv
+    ratio = 1.0 if entry.gear_ratio is None else entry.gear_ratio
+    rotor = 0.0 if entry.rotor_inertia is None else entry.rotor_inertia
+    armature = joint.armature if armature_given else (ratio * ratio * rotor,) * nv
+    return replace(joint, gear_ratio=(ratio,) * nv, rotor_inertia=(rotor,) * nv, armature=armature)
+
+
+def _place_of_name(entry: ActuatorEntry, document: YamlDocument) -> Place:
+    value: Any = document.data
+    for key in entry.pointer:
+        value = value[key]
+    return document.place((*entry.pointer, "joint") if isinstance(value, dict) else entry.pointer)

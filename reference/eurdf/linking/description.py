@@ -1,0 +1,323 @@
+"""From the files of a robot to its mechanism, with everything found on the way; no simulator is loaded for it."""
+
+from __future__ import annotations
+
+import difflib
+import os
+import shlex
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Literal
+
+from eurdf.collection import find_robot
+from eurdf.diagnostics import Diagnostics, Fault, Place, quoted
+from eurdf.exceptions import CannotExpand
+from eurdf.format.extension import Extension
+from eurdf.format.read_extension import read_extension, version_of
+from eurdf.format.urdf import Urdf, read_urdf
+from eurdf.format.yaml_text import scalar
+from eurdf.linking.inertia import check_inertias, check_leaves
+from eurdf.linking.link import link
+from eurdf.mechanism.constraint import Closure
+from eurdf.mechanism.mechanism import Mechanism, Root
+from eurdf.reading.given import Given, shown, source_of
+from eurdf.reading.resource import HINT, resolve
+from eurdf.reading.source import Source, read_source
+from eurdf.reading.xacro import expand, is_xacro
+from eurdf.reading.xml_reader import read_xml
+from eurdf.reading.yaml_reader import YamlDocument, read_yaml
+
+_NO_XACRO = "only a .xacro file takes arguments; give one as the robot or as its URDF"
+
+#: What to do about errors in which joint mimics which: report and refuse the URDF, only report, or not even that.
+_MimicErrors = Literal["refused", "kept", "ignored"]
+
+
+@dataclass(frozen=True, slots=True)
+class Description:
+    """A robot as read.
+
+    Attributes:
+        path: As the caller gave it.
+        diagnostics: Found by all phases but the last, that of closures.
+        mechanism: None where an error leaves none.
+        urdf: None where it could not be read.
+        extension: None for a bare URDF, or where it could not be read.
+        document: Where the extension was read from.
+    """
+
+    path: str
+    diagnostics: Diagnostics
+    mechanism: Mechanism | None = None
+    urdf: Urdf | None = None
+    extension: Extension | None = None
+    document: YamlDocument | None = None
+
+    @property
+    def folder(self) -> Path:
+        """Folder of the URDF, which its mesh paths are relative to."""
+        assert self.urdf is not None
+        return self.urdf.document.source.folder
+
+    def place_of_closure(self, closure: Closure) -> Place:
+        """Where a closure is stated."""
+        assert self.extension is not None
+        assert self.document is not None
+        entry = next(entry for entry in self.extension.closures if entry.name == closure.name)
+        return self.document.place(entry.pointer)
+
+    def place_of_configuration(self, name: str) -> Place:
+        """Where a configuration is stated."""
+        assert self.document is not None
+        return self.document.place(("configurations", name), True)
+
+
+def describe(
+    path: Given,
+    urdf: Given | None = None,
+    root: Root | None = None,
+    *,
+    geometry: bool = True,
+    mimic: bool = True,
+    package_dirs: Sequence[str | os.PathLike[str]] = (),
+    xacro_args: Mapping[str, str] | None = None,
+) -> Description:
+    """Read and link the files of a robot, and check its inertias.
+
+    EU-DIA-002: what needs a file that has an error is not looked at, so that nothing is told that only follows from it.
+
+    Args:
+        path: What `find_robot` takes.
+        urdf: A URDF in place of the one that the description names.
+        root: In place of the root that the description states.
+        geometry: Whether to read the geometry; else bodies have none, and it is not checked.
+        mimic: Whether mimic joints follow; if not, each is free, and an error in which joint it mimics is reported but
+            leaves a mechanism. With a description of version 1 they are free in any case, and not checked.
+        package_dirs: Folders to look for packages in, which a xacro finds files in.
+        xacro_args: Values of the arguments of a xacro.
+
+    Raises:
+        RobotNotFound: Where there are no such files.
+        CannotExpand: A xacro has an error, or arguments are given for what is no xacro.
+        MissingExtra: A xacro is given, and the extra ``xacro`` is not installed.
+    """
+    diagnostics = Diagnostics()
+    name = shown(path)
+    try:
+        files = find_robot(path, urdf)
+        given = files.urdf and _expanded(files.urdf, name, diagnostics, package_dirs, xacro_args)
+    except Fault as fault:
+        diagnostics.add(fault.diagnostic)
+        return Description(name, diagnostics)
+    if given is None and xacro_args:
+        raise CannotExpand(name, _NO_XACRO)
+    if files.description is None:
+        assert given is not None
+        tree = _read_urdf(given, diagnostics, geometry, "refused" if mimic else "kept")
+        mechanism = None if tree is None else link(tree, None, None, diagnostics, root, mimic=mimic)
+        return _finish(Description(name, diagnostics, mechanism, tree))
+    document = _read_yaml(files.description, diagnostics)
+    extension = None if document is None else read_extension(document, diagnostics)
+    urdf_path = given or _named_urdf(files.description, extension, document)
+    if not isinstance(urdf_path, Source) and given is None and not os.path.lexists(urdf_path):
+        # Where the description could not be read, which URDF it means is a guess that deserves no second error.
+        if extension is not None and document is not None:
+            _urdf_not_found(urdf_path, extension, document, diagnostics)
+        return Description(name, diagnostics, None, None, extension, document)
+    # Without a version, whether a mimic has an effect is not known.
+    version = None if document is None else version_of(document)
+    mimic_errors: _MimicErrors = "ignored" if version in (None, "1") else "refused" if mimic else "kept"
+    tree = _read_urdf(urdf_path, diagnostics, geometry, mimic_errors)
+    mechanism = None
+    if tree is not None and extension is not None:
+        mechanism = link(tree, extension, document, diagnostics, root, mimic=mimic)
+    return _finish(Description(name, diagnostics, mechanism, tree, extension, document))
+
+
+def _finish(description: Description) -> Description:
+    if description.urdf is not None:
+        faulty = check_inertias(description.urdf, description.diagnostics)
+        if description.mechanism is not None:
+            check_leaves(description.mechanism, description.urdf, description.diagnostics, faulty)
+    return description
+
+
+def read_urdf_alone(
+    path: Given,
+    diagnostics: Diagnostics,
+    package_dirs: Sequence[str | os.PathLike[str]] = (),
+    xacro_args: Mapping[str, str] | None = None,
+) -> Urdf | None:
+    """Read what is given as a URDF, without looking for a description.
+
+    Args:
+        path: A file, a xacro, ``-`` for standard input, a pipe, or a text.
+        diagnostics: Where findings are added.
+        package_dirs: Folders to look for packages in, which a xacro finds files in.
+        xacro_args: Values of the arguments of a xacro.
+
+    Returns:
+        The URDF, or None where an error was added to `diagnostics`.
+
+    Raises:
+        CannotExpand: A xacro has an error, or arguments are given for what is no xacro.
+        MissingExtra: A xacro is given, and the extra ``xacro`` is not installed.
+    """
+    try:
+        text = source_of(path)
+        file = Path(shown(path)) if text is None else text
+        urdf = _expanded(file, shown(path), diagnostics, package_dirs, xacro_args)
+    except Fault as fault:
+        diagnostics.add(fault.diagnostic)
+        return None
+    return _read_urdf(urdf, diagnostics, geometry=True, mimic_errors="refused")
+
+
+def _expanded(
+    urdf: Path | Source,
+    name: str,
+    diagnostics: Diagnostics,
+    package_dirs: Sequence[str | os.PathLike[str]],
+    xacro_args: Mapping[str, str] | None,
+) -> Path | Source:
+    """A URDF that the caller gave, or that a xacro is expanded to."""
+    if isinstance(urdf, Path) and is_xacro(urdf) and os.path.lexists(urdf):
+        source, warnings = expand(urdf, xacro_args, package_dirs)
+        if warnings:
+            diagnostics.report("x-xacro-warning", f"xacro warns: {' '.join(warnings.split())}", Place(os.fspath(urdf)))
+        return source
+    if xacro_args:
+        raise CannotExpand(name, _NO_XACRO)
+    return urdf
+
+
+def _read_yaml(path: Path | Source, diagnostics: Diagnostics) -> YamlDocument | None:
+    try:
+        return read_yaml(_source(path))
+    except Fault as fault:
+        diagnostics.add(fault.diagnostic)
+        return None
+
+
+def _source(path: Path | Source) -> Source:
+    return path if isinstance(path, Source) else read_source(path)
+
+
+def _read_urdf(
+    path: Path | Source, diagnostics: Diagnostics, geometry: bool, mimic_errors: _MimicErrors
+) -> Urdf | None:
+    try:
+        document = read_xml(_source(path))
+    except Fault as fault:
+        diagnostics.add(fault.diagnostic)
+        return None
+    mimic_diagnostics = diagnostics if mimic_errors == "refused" else Diagnostics()
+    urdf = read_urdf(document, diagnostics, geometry=geometry, mimic_diagnostics=mimic_diagnostics)
+    if mimic_errors == "kept":
+        for found in mimic_diagnostics:
+            diagnostics.add(found)
+    return urdf
+
+
+def _named_urdf(description: Path | Source, extension: Extension | None, document: YamlDocument | None) -> Path:
+    name = "robot.urdf"
+    if extension is not None:
+        name = extension.urdf
+    elif document is not None and isinstance(document.data, dict) and isinstance(document.data.get("urdf"), str):
+        name = document.data["urdf"]
+    folder = description.folder if isinstance(description, Source) else description.parent
+    try:
+        return folder / name
+    except ValueError:
+        return folder / "robot.urdf"
+
+
+def _urdf_not_found(path: Path, extension: Extension, document: YamlDocument, diagnostics: Diagnostics) -> None:
+    """EU-FIL-004: the URDF that the description names exists."""
+    home = document.source.folder
+    message = f"the URDF '{extension.urdf}' does not exist"
+    if extension.version != "1" and "urdf" not in document.data:
+        message += ", the one meant where the key 'urdf' is left out"
+    diagnostics.report("urdf-not-found", message, document.place(("urdf",)), _urdf_hint(path, home, extension))
+
+
+def _urdf_hint(path: Path, home: Path, extension: Extension) -> str:
+    """How to name the URDF that is meant: one of those nearby, by their paths from the description."""
+    near = _files_near(path, home, ".urdf")
+    xacro = None if near else next(iter(_files_near(path, home, ".xacro")), None)
+    if xacro is not None:
+        return f"there is '{xacro}': use the option --urdf {shlex.quote(os.path.normpath(home / xacro))}"
+    likely = near[0] if len(near) == 1 else None
+    if len(near) > 1:
+        alike = difflib.get_close_matches(path.stem, [Path(other).stem for other in near], n=1)
+        likely = next((other for other in near if alike and Path(other).stem == alike[0]), None)
+    meant = likely or (near[0] if near else None)
+    option = f"the option --urdf {'FILE' if meant is None else shlex.quote(os.path.normpath(home / meant))}"
+    if extension.version == "1":
+        fix = f"version 1 names none, so call it robot.urdf beside this file, or use {option}"
+    elif meant is None:
+        fix = f"write its path from this file under the key 'urdf', or use {option}"
+    else:
+        fix = f"write urdf: {scalar(meant)}"
+    if likely:
+        return f"there is '{likely}': {fix}"
+    if not near:
+        return f"there is no URDF nearby: {fix}"
+    shown = ", ".join(f"'{other}'" for other in near[:4]) + (f" and {len(near) - 4} more" if len(near) > 4 else "")
+    return f"there are {shown}: {fix}, or another of them"
+
+
+def _files_near(path: Path, home: Path, suffix: str) -> list[str]:
+    """Paths, from the folder of the description, of the files of a kind in the first folder around that has some."""
+    for folder in dict.fromkeys((path.parent, home, home / "urdf", home / ".." / "urdf")):
+        try:
+            files = sorted(other for other in folder.iterdir() if other.suffix.lower() == suffix and other.is_file())
+        except (OSError, ValueError):
+            continue
+        if files:
+            return [Path(os.path.relpath(other, home)).as_posix() for other in files]
+    return []
+
+
+def find_meshes(
+    description: Description, package_dirs: Sequence[str | os.PathLike[str]] = ()
+) -> tuple[dict[str, str], Diagnostics]:
+    """EU-URD-028, EU-URD-033: look every mesh and every texture up.
+
+    Returns:
+        The path of each file found, by URI; and one diagnostic for all meshes, one for all textures that were not.
+    """
+    assert description.urdf is not None
+    shapes = [shape for link_ in description.urdf.links.values() for shape in (*link_.visuals, *link_.collisions)]
+    found: dict[str, str] = {}
+    diagnostics = Diagnostics()
+    for tag, uris in (
+        ("mesh", dict.fromkeys(shape.filename for shape in shapes if shape.filename)),
+        ("texture", dict.fromkeys(shape.texture for shape in shapes if shape.texture)),
+    ):
+        missing = []
+        for uri in uris:
+            path = resolve(uri, description.folder, package_dirs)
+            if path is None:
+                missing.append(uri)
+            else:
+                found[uri] = path
+        if missing:
+            count = f"1 {tag} file is" if len(missing) == 1 else f"{len(missing)} {tag} files are"
+            diagnostics.report(
+                f"urdf-{tag}-missing",
+                f"{count} not found: {quoted(missing)}",
+                partial(place_of_file, description, tag, missing[0]),
+                HINT,
+            )
+    return found, diagnostics
+
+
+def place_of_file(description: Description, tag: str, uri: str) -> Place:
+    """Where the URDF first names a mesh or a texture."""
+    assert description.urdf is not None
+    document = description.urdf.document
+    element = next(element for element in document.root.iter(tag) if element.get("filename") == uri)
+    return document.place(element, "filename")

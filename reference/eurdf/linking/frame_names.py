@@ -1,0 +1,130 @@
+"""What a frame's name stands for."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from functools import partial
+from itertools import chain
+
+from eurdf.diagnostics import Diagnostics, did_you_mean
+from eurdf.format.extension import FrameEntry, FrameReference
+from eurdf.format.urdf import Urdf
+from eurdf.mechanism.frame import Anchor, Frame
+from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.pose import Pose
+from eurdf.reading.yaml_reader import YamlDocument
+
+
+class FrameNames:
+    """Looks frames up: links, joints (EU-FRM-005: on the child's side), and the frames that the description adds."""
+
+    def __init__(
+        self,
+        urdf: Urdf,
+        joints: Mapping[str, Joint],
+        faulty: Collection[str],
+        document: YamlDocument,
+        diagnostics: Diagnostics,
+    ) -> None:
+        self._urdf = urdf
+        self._joints = joints
+        # Joints that an entry at fault speaks of: where there are none of that name, it has been said why.
+        self._faulty = faulty
+        # None for a frame that is at fault itself: what uses it is not told so again.
+        self._frames: dict[str, Anchor | None] = {}
+        self._document = document
+        self._diagnostics = diagnostics
+
+    def add(self, entries: Iterable[FrameEntry]) -> tuple[Frame, ...]:
+        """EU-FRM-003: take in the frames that the description adds; a name is given once."""
+        frames = []
+        for entry in entries:
+            if entry.name in self._frames or self._known(entry.name):
+                what = "frame" if entry.name in self._frames else "link" if entry.name in self._urdf.links else "joint"
+                self._diagnostics.report(
+                    "duplicate-frame",
+                    f"there is already a {what} '{entry.name}'",
+                    self._document.place((*entry.pointer, "name")),
+                    "give the frame another name",
+                )
+                continue
+            anchor = self.find(entry.reference)
+            if anchor is None:
+                self._frames[entry.name] = None
+            else:
+                self._frames[entry.name] = Anchor(anchor.body, anchor.pose, entry.name)
+                frames.append(Frame(entry.name, anchor.body, anchor.pose))
+        return tuple(frames)
+
+    def find(self, reference: FrameReference) -> Anchor | None:
+        """The body and pose that a reference means; None, and a diagnostic, where it means none or two."""
+        if reference.name is not None:
+            return self._by_name(reference)
+        body = self._body(reference)
+        if body is None:
+            return None
+        return Anchor(body, Pose.from_xyz_rpy(reference.xyz, reference.rpy))
+
+    def _known(self, name: str) -> bool:
+        return name in self._urdf.links or name in self._urdf.joints or name in self._joints
+
+    def _joint_child(self, name: str) -> str | None:
+        if name in self._joints:
+            return self._joints[name].child
+        if name in self._urdf.joints:
+            return self._urdf.joints[name].child
+        return None
+
+    def _by_name(self, reference: FrameReference) -> Anchor | None:
+        """EU-FRM-001, EU-FRM-002: a name is that of exactly one frame.
+
+        A link and the joint that carries it may share their name, for they share the frame.
+        """
+        name = reference.name
+        assert name is not None
+        if name in self._frames:
+            return self._frames[name]
+        child = self._joint_child(name)
+        if name in self._urdf.links:
+            if child is not None and child != name:
+                self._diagnostics.report(
+                    "ambiguous-frame",
+                    f"'{name}' is both a link and a joint, and the joint carries another link, '{child}'",
+                    self._document.place(reference.pointer),
+                    f"write {{link: {name}}} or {{joint: {name}}}",
+                )
+                return None
+            return Anchor(name, frame=name)
+        if child is not None:
+            return Anchor(child, frame=name)
+        if name in self._faulty:
+            return None
+        candidates = chain(self._frames, self._urdf.links, self._urdf.joints, self._joints)
+        self._diagnostics.report(
+            "unknown-frame",
+            f"'{name}' is no link, joint or frame of the robot",
+            self._document.place(reference.pointer),
+            partial(did_you_mean, name, candidates),
+        )
+        return None
+
+    def _body(self, reference: FrameReference) -> str | None:
+        if reference.link is not None:
+            if reference.link in self._urdf.links:
+                return reference.link
+            kind, name, candidates = "link", reference.link, chain(self._urdf.links)
+        else:
+            assert reference.joint is not None
+            child = self._joint_child(reference.joint)
+            if child is not None:
+                return child
+            if reference.joint in self._faulty:
+                return None
+            kind, name, candidates = "joint", reference.joint, chain(self._urdf.joints, self._joints)
+        self._diagnostics.report(
+            "unknown-frame",
+            f"'{name}' is no {kind} of the robot",
+            self._document.place((*reference.pointer, kind)),
+            partial(did_you_mean, name, candidates),
+        )
+        return None

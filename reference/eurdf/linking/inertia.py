@@ -1,0 +1,265 @@
+"""Whether the inertias are those of real bodies, and whether all that moves has some."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable, Sequence
+from functools import partial
+
+import numpy as np
+
+from eurdf.diagnostics import Diagnostics
+from eurdf.format.urdf import Urdf, UrdfLink
+from eurdf.mechanism.body import Inertia
+from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, squarable
+from eurdf.mechanism.spanning_tree import rigid_roots
+
+#: A moment may be negative, and a sum of two below the third, by this part of the largest (rounding in files).
+MOMENT_TOLERANCE = 1e-6
+
+#: A leaf whose smallest inertia about its joint is below this part of its largest has none about that axis.
+SINGULAR = 1e-12
+
+Moments = tuple[float, float, float, float, float, float]
+
+#: The pose of a link in the frame that its joint moves, and its inertia.
+Member = tuple[Pose, Inertia]
+
+_SLIDES = frozenset({JointType.PRISMATIC, JointType.CYLINDRICAL, JointType.PLANAR, JointType.FLOATING})
+_TURNS = frozenset(
+    {
+        JointType.REVOLUTE,
+        JointType.CONTINUOUS,
+        JointType.HELICAL,
+        JointType.UNIVERSAL,
+        JointType.CYLINDRICAL,
+        JointType.PLANAR,
+    }
+)
+
+
+def check_inertias(urdf: Urdf, diagnostics: Diagnostics) -> set[str]:
+    """EU-INR-001 to -003, link by link: mass not negative, inertia positive semidefinite, triangle inequality.
+
+    Returns:
+        Names of the links with an error, of which nothing more can be said.
+    """
+    faulty: set[str] = set()
+    links = [link for link in urdf.links.values() if link.inertia is not None]
+    suspects: list[UrdfLink] = []
+    for link in links:
+        inertia = link.inertia
+        assert inertia is not None
+        if inertia.mass < 0.0:
+            message = f"link '{link.name}' has a mass of {inertia.mass:g} kg"
+            _report(urdf, diagnostics, link, "negative-mass", message, "mass")
+            faulty.add(link.name)
+            continue
+        if not _plainly_sound(inertia.moments):
+            suspects.append(link)
+    for link in suspects:
+        assert link.inertia is not None
+        moments: list[float] = np.linalg.eigvalsh(_matrix(link.inertia.moments)).tolist()  # which overflow in silence
+        largest = max(map(abs, moments))
+        if moments[0] < -MOMENT_TOLERANCE * largest:
+            faulty.add(link.name)
+            _report(
+                urdf,
+                diagnostics,
+                link,
+                "inertia-not-psd",
+                f"the inertia of link '{link.name}' has a negative principal moment, {moments[0]:.3g} kg·m²",
+                "inertia",
+            )
+        elif moments[0] + moments[1] < moments[2] - MOMENT_TOLERANCE * largest:
+            _report(
+                urdf,
+                diagnostics,
+                link,
+                "inertia-triangle",
+                f"no body has the inertia of link '{link.name}': of its principal moments {moments[0]:.3g}, "
+                f"{moments[1]:.3g}, {moments[2]:.3g} kg·m² the last is more than the sum of the others",
+                "inertia",
+            )
+    return faulty
+
+
+def check_leaves(
+    mechanism: Mechanism, urdf: Urdf, diagnostics: Diagnostics, faulty: Collection[str] = frozenset()
+) -> None:
+    """EU-INR-004: what a joint moves at the end of the tree has inertia along every motion of that joint.
+
+    Elsewhere a massless body is a way to write joints of several axes; at a leaf it makes the mass matrix singular.
+
+    Args:
+        mechanism: The mechanism.
+        urdf: To point into.
+        diagnostics: Gets what is found.
+        faulty: Links whose inertia is at fault by itself: leaves that they are part of are passed over.
+    """
+    root = mechanism.bodies[0].name
+    rigid = rigid_roots(root, mechanism.joints)
+    inner = {rigid[joint.parent] for joint in mechanism.joints if joint.type is not JointType.FIXED}
+    inertia_of = {body.name: body.inertia for body in mechanism.bodies}
+    poses: dict[str, Pose] = {root: IDENTITY}
+    members: dict[str, list[Member]] = {}
+    moving: list[Joint] = []
+    passed_over: set[str] = set()
+    for joint in mechanism.joints:
+        if joint.type is JointType.FIXED:
+            parent = poses.get(joint.parent)
+            if parent is None or rigid[joint.child] in inner:
+                continue
+            pose = parent * joint.placement
+        elif rigid[joint.child] in inner:
+            continue
+        else:
+            moving.append(joint)
+            pose = joint.offset
+        poses[joint.child] = pose
+        inertia = inertia_of[joint.child]
+        if inertia is not None:
+            members.setdefault(rigid[joint.child], []).append((pose, inertia))
+            if joint.child in faulty:
+                passed_over.add(rigid[joint.child])
+    for joint in moving:
+        if joint.child in passed_over or joint.mimic is not None or min(joint.armature, default=0.0) > 0.0:
+            continue
+        why = _immaterial(joint, members.get(joint.child, ()))
+        if why and joint.child in urdf.links:
+            message = f"link '{joint.child}', which joint '{joint.name}' moves, {why}"
+            _report(urdf, diagnostics, urdf.links[joint.child], "leaf-without-inertia", message)
+
+
+def _immaterial(joint: Joint, members: Sequence[Member]) -> str | None:
+    """Why a leaf does not resist a motion of its joint, in any configuration; None where it resists them all."""
+    kind = joint.type
+    mass = sum(inertia.mass for _, inertia in members)
+    if mass == 0.0 and not any(any(inertia.moments) for _, inertia in members):
+        return "has no mass and carries nothing that has"
+    if mass == 0.0 and kind in _SLIDES:
+        return "has no mass"
+    scale = sum(_trace_about_origin(pose, inertia) for pose, inertia in members)
+    if kind in (JointType.PLANAR, JointType.FLOATING):
+        # They slide as well: what then resists turning is the inertia about the centre of mass.
+        members = _centred(members, mass)
+    if kind is JointType.SPHERICAL and not _positive(members, SINGULAR * scale):
+        return "has no inertia about one of the axes through the joint"
+    if kind is JointType.FLOATING and not _positive(members, SINGULAR * scale):
+        return "has no inertia about one of the axes through its centre of mass"
+    if kind in _TURNS:
+        # Of a universal joint the first axis moves in the child: only mass on the second resists nothing for ever.
+        axis: Vector3 = (0.0, 0.0, 1.0) if kind is JointType.PLANAR else squarable(joint.axes[-1])
+        squared = sum(value * value for value in axis)
+        resists = sum(_about_axis(axis, pose, inertia) for pose, inertia in members) / squared
+        if kind is JointType.HELICAL:
+            advance = joint.pitch / (2.0 * math.pi)
+            resists, scale = resists + advance * advance * mass, scale + advance * advance * mass
+        if resists <= SINGULAR * scale:
+            return f"has no inertia about the joint's {'second ' if kind is JointType.UNIVERSAL else ''}axis"
+    return None
+
+
+def _centred(members: Sequence[Member], mass: float) -> list[Member]:
+    """The members, seen from a frame at their centre of mass."""
+    weighed = [(inertia.mass / mass, pose.act(inertia.pose.xyz)) for pose, inertia in members]
+    x, y, z = (-sum(weight * point[axis] for weight, point in weighed) for axis in range(3))
+    return [(Pose((x, y, z)) * pose, inertia) for pose, inertia in members]
+
+
+def _about_axis(axis: Vector3, pose: Pose, inertia: Inertia) -> float:
+    """Inertia about an axis through the joint's origin, times the axis's length squared: aᵀ I a + m |a × c|²."""
+    at = pose * inertia.pose
+    x, y, z = at.inverse().rotate(axis)
+    xx, xy, xz, yy, yz, zz = inertia.moments
+    own = xx * x * x + yy * y * y + zz * z * z + 2.0 * (xy * x * y + xz * x * z + yz * y * z)
+    (cx, cy, cz), (ax, ay, az) = at.xyz, axis
+    u, v, w = ay * cz - az * cy, az * cx - ax * cz, ax * cy - ay * cx
+    return own + inertia.mass * (u * u + v * v + w * w)
+
+
+def _trace_about_origin(pose: Pose, inertia: Inertia) -> float:
+    """Sum of the three moments about any axes through the joint's origin: tr I + 2 m |c|²."""
+    x, y, z = pose.act(inertia.pose.xyz)
+    return inertia.moments[0] + inertia.moments[3] + inertia.moments[5] + 2.0 * inertia.mass * (x * x + y * y + z * z)
+
+
+def _positive(members: Iterable[Member], bound: float) -> bool:
+    """Whether the rotational inertia about the origin, Σ R I Rᵀ + m (cᵀc 1 - c cᵀ), exceeds the bound about all axes.
+
+    Sylvester's criterion on the matrix less the bound.
+    """
+    xx = xy = xz = yy = yz = zz = 0.0
+    for pose, inertia in members:
+        at = pose * inertia.pose
+        ixx, ixy, ixz, iyy, iyz, izz = _turned(inertia.moments, at)
+        (x, y, z), mass = at.xyz, inertia.mass
+        xx += ixx + mass * (y * y + z * z)
+        yy += iyy + mass * (x * x + z * z)
+        zz += izz + mass * (x * x + y * y)
+        xy += ixy - mass * x * y
+        xz += ixz - mass * x * z
+        yz += iyz - mass * y * z
+    xx, yy, zz = xx - bound, yy - bound, zz - bound
+    second = xx * yy - xy * xy
+    third = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz)
+    return xx > 0.0 and second > 0.0 and third > 0.0
+
+
+def _turned(moments: Moments, pose: Pose) -> Moments:
+    """R I Rᵀ."""
+    if pose.quaternion == IDENTITY.quaternion:
+        return moments
+    a, d, g = pose.rotate((1.0, 0.0, 0.0))
+    b, e, h = pose.rotate((0.0, 1.0, 0.0))
+    c, f, i = pose.rotate((0.0, 0.0, 1.0))
+    xx, xy, xz, yy, yz, zz = moments
+
+    def product(p: float, q: float, r: float, s: float, t: float, u: float) -> float:
+        return p * (xx * s + xy * t + xz * u) + q * (xy * s + yy * t + yz * u) + r * (xz * s + yz * t + zz * u)
+
+    return (
+        product(a, b, c, a, b, c),
+        product(a, b, c, d, e, f),
+        product(a, b, c, g, h, i),
+        product(d, e, f, d, e, f),
+        product(d, e, f, g, h, i),
+        product(g, h, i, g, h, i),
+    )
+
+
+def _matrix(moments: Moments) -> np.ndarray:
+    xx, xy, xz, yy, yz, zz = moments
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+
+def _plainly_sound(moments: Moments) -> bool:
+    """Whether the triangle inequality surely holds, and with it positive semidefiniteness.
+
+    They hold where J = tr(I)/2 · 1 - I is positive semidefinite. That is seen by Sylvester's criterion on J with the
+    tolerance added to its diagonal; what fails it is looked at again, by its principal moments.
+    """
+    xx, xy, xz, yy, yz, zz = moments
+    half = (xx + yy + zz) * (0.5 + 0.25 * MOMENT_TOLERANCE)
+    a, b, c = half - xx, half - yy, half - zz
+    second = a * b - xy * xy
+    return (
+        a > 0.0 and second > 0.0 and a * (b * c - yz * yz) - xy * (xy * c + yz * xz) - xz * (xy * yz + b * xz) > 0.0
+    ) or not any(moments)
+
+
+def _report(
+    urdf: Urdf, diagnostics: Diagnostics, link: UrdfLink, code: str, message: str, child: str | None = None
+) -> None:
+    element = link.element
+    if child is not None and link.inertial is not None:
+        found = link.inertial.find(child)
+        element = link.inertial if found is None else found
+    attribute = "value" if child == "mass" else None
+    diagnostics.report(code, message, partial(urdf.document.place, element, attribute))
+
+
+__all__ = ["check_inertias", "check_leaves"]

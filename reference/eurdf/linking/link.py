@@ -1,0 +1,233 @@
+"""From the two files to one mechanism: every name looked up, every rule that needs both files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from types import MappingProxyType
+
+from eurdf.diagnostics import Diagnostics
+from eurdf.format.extension import Extension, FrameReference
+from eurdf.format.urdf import Urdf
+from eurdf.linking.actuators import link_actuators, with_motor
+from eurdf.linking.closures import link_closures
+from eurdf.linking.configurations import link_configurations
+from eurdf.linking.frame_names import FrameNames
+from eurdf.linking.ranges import check_ranges
+from eurdf.linking.replacement import Joints, replace_joints
+from eurdf.linking.urdf_tree import bodies_of, joint_of
+from eurdf.mechanism.frame import Frame
+from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, Root
+from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic, drivers
+from eurdf.mechanism.spanning_tree import depth_first, rigid_roots
+from eurdf.reading.yaml_node import json_pointer
+from eurdf.reading.yaml_reader import YamlDocument
+
+#: Joints that a robot may have, fixed ones too.
+JOINT_LIMIT = 10_000
+
+#: Velocities that the joints of a robot may have. The memory of a model grows with the square of their number.
+VELOCITY_LIMIT = 4_000
+
+#: Constraint rows that the closures of a robot may have. A model of a closure takes memory for each velocity.
+ROW_LIMIT = 20_000
+
+
+def link(
+    urdf: Urdf,
+    extension: Extension | None,
+    document: YamlDocument | None,
+    diagnostics: Diagnostics,
+    root: Root | None = None,
+    *,
+    mimic: bool = True,
+) -> Mechanism | None:
+    """Link a URDF and its description.
+
+    EU-ONE-009: with a description of version 1, no joint mimics another.
+
+    Args:
+        urdf: The URDF, sound by itself.
+        extension: The description; None for a bare URDF.
+        document: Where the description was read from; None with it.
+        diagnostics: Gets what is found.
+        root: In place of the root that the description states.
+        mimic: Whether a mimic joint depends on its leader; if not, it is free, as if the URDF had no ``<mimic>``. In a
+            named configuration that does not state it, it has the value that its leader would give it.
+
+    Returns:
+        The mechanism, or None where an error was found.
+    """
+    before = diagnostics.error_count
+    mimics = {} if mimic else {joint.name: joint.mimic for joint in urdf.joints.values() if joint.mimic}
+    if not mimic or (extension is not None and extension.version == "1"):
+        urdf = urdf.without_mimics()
+    if extension is None or document is None:
+        mechanism = _bare(urdf, diagnostics, root or "fixed")
+    else:
+        mechanism = _described(urdf, extension, document, diagnostics, root or extension.root)
+        mechanism = replace(mechanism, configurations=_led(mechanism, drivers(mimics)))
+        _reserve_names(extension, document, diagnostics, mechanism.root)
+    if mechanism.root == "floating":
+        _reserve_root_joint(urdf, diagnostics)
+    _refuse_too_large(mechanism, urdf, document, diagnostics)
+    return None if diagnostics.error_count > before else mechanism
+
+
+def _refuse_too_large(
+    mechanism: Mechanism, urdf: Urdf, document: YamlDocument | None, diagnostics: Diagnostics
+) -> None:
+    """EU-FIL-002: a robot is not so large that its model takes more memory than a machine has."""
+    joints = len(mechanism.joints)
+    velocities = sum(joint.coordinates.nv for joint in mechanism.joints)
+    if joints > JOINT_LIMIT:
+        message = f"the robot has {joints:,} joints; it may have {JOINT_LIMIT:,}"
+        diagnostics.report("file-too-large", message, urdf.document.place(urdf.document.root))
+    elif velocities > VELOCITY_LIMIT:
+        message = f"the joints of the robot have {velocities:,} velocities; they may have {VELOCITY_LIMIT:,}"
+        diagnostics.report("file-too-large", message, urdf.document.place(urdf.document.root))
+    elif mechanism.nc > ROW_LIMIT and document is not None:
+        message = f"the closures of the robot have {mechanism.nc:,} constraint rows; they may have {ROW_LIMIT:,}"
+        key = "closed_loop" if mechanism.version == "1" else "closures"
+        diagnostics.report("file-too-large", message, document.place((key,)))
+
+
+def _bare(urdf: Urdf, diagnostics: Diagnostics, root: Root) -> Mechanism:
+    bodies = bodies_of(urdf)
+    ordered = tuple(joint_of(joint) for joint in urdf.walk())
+    check_ranges(urdf, {joint.name: joint for joint in ordered}, diagnostics)
+    return Mechanism(urdf.name, "", root, (bodies[urdf.root], *(bodies[joint.child] for joint in ordered)), ordered)
+
+
+def _described(
+    urdf: Urdf, extension: Extension, document: YamlDocument, diagnostics: Diagnostics, root: Root
+) -> Mechanism:
+    joints = Joints({joint.name: joint_of(joint) for joint in urdf.joints.values()})
+    faulty = replace_joints(
+        joints,
+        extension.joints,
+        urdf,
+        _closure_links(extension, urdf),
+        document,
+        diagnostics,
+        merges_revolutes=extension.merges_revolutes,
+    )
+    check_ranges(urdf, joints.by_name, diagnostics)
+    _own_keys(extension, urdf, document, diagnostics)
+    names = FrameNames(urdf, joints.by_name, faulty, document, diagnostics)
+    frames = names.add(extension.frames)
+    order = depth_first(urdf.root, joints.by_name.values())
+    rigid = rigid_roots(urdf.root, order)
+    closures = link_closures(extension.closures, names, rigid, document, diagnostics)
+    # What is said of a joint whose own entry is at fault would only repeat that fault.
+    entries = [entry for entry in extension.actuators if entry.joint not in faulty]
+    actuators = link_actuators(entries, urdf, joints.by_name, joints.merged, joints.split, document, diagnostics)
+    named = joints.by_name
+    if extension.root == "floating":
+        named = {**named, ROOT_JOINT: Joint(ROOT_JOINT, JointType.FLOATING, "", urdf.root)}
+    configurations = link_configurations(extension.configurations, named, joints.merged, faulty, document, diagnostics)
+    if root == "fixed":  # whatever the description says: then there is nothing that the root could stand on
+        for coordinates in configurations.values():
+            coordinates.pop(ROOT_JOINT, None)
+    for entry in entries:
+        if entry.joint in actuators:
+            joints.by_name[entry.joint] = with_motor(
+                joints.by_name[entry.joint], entry, armature_given=entry.joint in joints.armature_given
+            )
+    ordered = [joints.by_name[joint.name] for joint in order]
+    bodies = bodies_of(urdf) | {body.name: body for body in joints.bodies}
+    return Mechanism(
+        urdf.name,
+        extension.version,
+        root,
+        (bodies[urdf.root], *(bodies[joint.child] for joint in ordered)),
+        tuple(ordered),
+        (*frames, *_vanished(urdf, joints.by_name)),
+        closures,
+        actuators,
+        MappingProxyType({name: MappingProxyType(of) for name, of in configurations.items()}),
+        MappingProxyType(dict(extension.metadata)),
+        MappingProxyType({json_pointer(pointer): value for pointer, value in extension.own_data.items()}),
+    )
+
+
+def _led(mechanism: Mechanism, laws: Mapping[str, Mimic]) -> Mapping[str, Mapping[str, tuple[float, ...]]]:
+    """The named configurations, in which each free mimic joint has the value that its leader would give it."""
+    joints = {joint.name: joint for joint in mechanism.joints}
+    led = {
+        name: law
+        for name, law in laws.items()
+        if all(other in joints and joints[other].type in MIMIC_TYPES for other in (name, law.joint))
+    }
+    if not led:
+        return mechanism.configurations
+    configurations = {}
+    for key, stated in mechanism.configurations.items():
+        followed = {
+            name: (law.multiplier * stated.get(law.joint, (0.0,))[0] + law.offset,) for name, law in led.items()
+        }
+        configurations[key] = MappingProxyType({**followed, **stated})
+    return MappingProxyType(configurations)
+
+
+def _own_keys(extension: Extension, urdf: Urdf, document: YamlDocument, diagnostics: Diagnostics) -> None:
+    """EU-EXT-003: where joints are named, a key that begins with ``x-`` does not name one."""
+    for pointer in extension.own_data:
+        among_joints = (pointer[0], len(pointer)) in (("joints", 2), ("configurations", 3))
+        if among_joints and pointer[-1] in urdf.joints:
+            diagnostics.report(
+                "own-key-is-joint",
+                f"'{pointer[-1]}' is a joint, but as a key that begins with 'x-' it is the user's own, without effect",
+                document.place(pointer, True),
+                "rename the joint in the URDF",
+            )
+
+
+def _vanished(urdf: Urdf, joints: dict[str, Joint]) -> tuple[Frame, ...]:
+    """EU-FRM-004: a joint of the URDF that the description split or renamed is still found by name, as a frame."""
+    return tuple(Frame(joint.name, joint.child, kind="joint") for joint in urdf.walk() if joint.name not in joints)
+
+
+def _closure_links(extension: Extension, urdf: Urdf) -> set[str]:
+    """Names of the links that the closures' frames are fixed to; names that mean nothing are left to `FrameNames`."""
+    references = {entry.name: entry.reference for entry in extension.frames}
+
+    def link_of(reference: FrameReference) -> str | None:
+        if reference.name in references and reference.name not in urdf.links:
+            reference = references[reference.name]
+        name = reference.link or reference.joint or reference.name or ""
+        if name in urdf.links and not reference.joint:
+            return name
+        return urdf.joints[name].child if name in urdf.joints else None
+
+    sides = (link_of(side) for closure in extension.closures for side in (closure.a, closure.b))
+    return {side for side in sides if side is not None}
+
+
+def _reserve_names(extension: Extension, document: YamlDocument, diagnostics: Diagnostics, root: Root) -> None:
+    """EU-URD-011: what the description names anew takes no name that the model needs for itself."""
+    reserved = ("universe", ROOT_JOINT) if root == "floating" else ("universe",)
+    named = [("joint", entry.name, entry.pointer, True) for entry in extension.joints if entry.merges]
+    named += [("frame", entry.name, (*entry.pointer, "name"), False) for entry in extension.frames]
+    for kind, name, pointer, key in named:
+        if name in reserved:
+            diagnostics.report(
+                "urdf-reserved-name",
+                f"'{name}' is a name that the model needs for itself, and cannot be that of a {kind}",
+                document.place(pointer, key),
+                f"give the {kind} another name",
+            )
+
+
+def _reserve_root_joint(urdf: Urdf, diagnostics: Diagnostics) -> None:
+    """EU-URD-011: the joint that a floating root hangs from has a name that no other joint or link has."""
+    for kind, item in (("joint", urdf.joints.get(ROOT_JOINT)), ("link", urdf.links.get(ROOT_JOINT))):
+        if item is not None:
+            diagnostics.report(
+                "urdf-reserved-name",
+                f"'{ROOT_JOINT}' is the joint that a floating root hangs from, and cannot be the name of a {kind}",
+                urdf.document.place(item.element, "name"),
+                "rename it, or make the root fixed",
+            )

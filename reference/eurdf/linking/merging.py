@@ -1,0 +1,250 @@
+"""Three revolute joints whose axes meet in one point are one spherical joint."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, replace
+
+from eurdf.format.urdf import Urdf
+from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint_type import COORDINATES, JointType
+from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, squarable
+
+#: A link lighter than this, in kg, counts as being without inertia (EU-JNT-012).
+MASSLESS = 1e-5
+
+#: Axes that pass a point within this distance, in m, meet in it (EU-JNT-014).
+MEETING = 1e-4
+
+#: Directions whose sine is below this are parallel (EU-JNT-007).
+PARALLEL = 1e-6
+
+#: In the order of EU-JNT-028.
+_ORDERS = tuple(itertools.permutations(range(3)))
+
+#: Sums of cosines that differ by no more are as large (EU-JNT-028).
+_AS_LARGE = 1e-9
+
+_ROTARY = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS})
+
+
+class NotMergeable(Exception):  # noqa: N818 - a finding, which one of the two callers takes for an answer
+    """Why three joints do not make a spherical one, as the code and message of a diagnostic."""
+
+    def __init__(self, code: str, message: str) -> None:
+        super().__init__(message)
+        self.code = code
+        self.message = message
+
+
+@dataclass(frozen=True, slots=True)
+class Chain:
+    """Three joints that can be merged, from the root outwards.
+
+    Attributes:
+        joints: The joints.
+        zero: Pose of the last joint at zero, in the frame of the body before.
+        directions: Unit vectors of the axes at zero, in that frame.
+        point: Where they meet, in that frame.
+    """
+
+    joints: tuple[Joint, Joint, Joint]
+    zero: Pose
+    directions: tuple[Vector3, ...]
+    point: Vector3
+
+
+def check_chain(
+    chain: tuple[Joint, Joint, Joint],
+    urdf: Urdf,
+    closure_links: Collection[str],
+    *,
+    rotary: Collection[JointType] = _ROTARY,
+) -> Chain:
+    """EU-JNT-011 to -014: the joints follow one another, nothing else hangs or weighs between them, their axes meet.
+
+    Raises:
+        NotMergeable: Where one of these does not hold.
+    """
+    for joint in chain:
+        if joint.type not in rotary:
+            raise NotMergeable("merge-not-chain", f"joint '{joint.name}' is {joint.type}; only revolute joints merge")
+    between = []
+    for upper, lower in itertools.pairwise(chain):
+        if lower.parent != upper.child:
+            raise NotMergeable(
+                "merge-not-chain", f"joint '{lower.name}' does not hang from the link that '{upper.name}' carries"
+            )
+        siblings = urdf.children.get(upper.child, ())
+        if len(siblings) != 1:
+            other = next(joint.name for joint in siblings if joint.name != lower.name)
+            raise NotMergeable("merge-not-chain", f"link '{upper.child}' between them also carries joint '{other}'")
+        between.append(urdf.links[upper.child])
+    for link in between:
+        if link.inertia is not None and link.inertia.mass >= MASSLESS:
+            raise NotMergeable(
+                "merge-inertia",
+                f"link '{link.name}' between them weighs {link.inertia.mass:g} kg; it must be below {MASSLESS:g} kg",
+            )
+        if link.name in closure_links:
+            raise NotMergeable("merge-closure-frame", f"link '{link.name}' between them carries a frame of a closure")
+    zero, lines = _lines(chain)
+    return Chain(chain, zero, tuple(direction for _, direction in lines), _meeting_point(lines))
+
+
+def merge(chain: Chain, name: str) -> tuple[Joint, Joint, Joint]:
+    """EU-JNT-022 to -024, and -028: the first two joints, fixed at their zero, and the ball that the three become.
+
+    The links in between stay where they are at zero, fixed to the body before. The spherical joint turns about the
+    point where the axes meet; its frame has the orientation of the last joint's at zero. Where the last joint's origin
+    is that point (within `MEETING`), it is the joint's origin. Of velocity, effort, damping and friction, each axis of
+    the frame takes those of the merged joint whose axis, at zero, is nearest to it.
+    """
+    first, second, third = chain.joints
+    zero = chain.zero
+    offset = IDENTITY
+    if math.dist(chain.point, zero.xyz) > MEETING:
+        centre = Pose(chain.point, zero.quaternion)
+        offset = Pose(centre.inverse().act(zero.xyz))
+        zero = centre
+    nearest = _nearest_axes(chain)
+
+    def by_axis(read: Callable[[Joint], float]) -> tuple[float, ...]:
+        return tuple(read(joint) for joint in nearest)
+
+    coordinates = COORDINATES[JointType.SPHERICAL]
+    ball = Joint(
+        name,
+        JointType.SPHERICAL,
+        first.parent,
+        third.child,
+        zero,
+        offset,
+        lower=(-math.inf,) * len(coordinates.names),
+        upper=(math.inf,) * len(coordinates.names),
+        velocity=by_axis(lambda joint: joint.velocity[0]),
+        effort=by_axis(lambda joint: joint.effort[0]),
+        damping=by_axis(lambda joint: joint.damping[0]),
+        friction=by_axis(lambda joint: joint.friction[0]),
+        armature=by_axis(lambda joint: joint.armature[0]),
+        gear_ratio=(1.0,) * coordinates.nv,
+        rotor_inertia=(0.0,) * coordinates.nv,
+    )
+    return fixed(first), fixed(second), ball
+
+
+def fixed(joint: Joint) -> Joint:
+    """EU-JNT-019: the joint locked at its zero."""
+    return Joint(joint.name, JointType.FIXED, joint.parent, joint.child, joint.placement, joint.offset)
+
+
+def find_chains(
+    urdf: Urdf, joints: Mapping[str, Joint], excluded: Collection[str], closure_links: Collection[str]
+) -> list[Chain]:
+    """EU-ONE-007: the chains that version 1 merges by itself, greedily from the root outwards.
+
+    Args:
+        urdf: The URDF.
+        joints: Its joints by name.
+        excluded: Joints that the description replaces.
+        closure_links: Links that carry a frame of a closure.
+    """
+    revolute = (JointType.REVOLUTE,)
+    taken: set[str] = set()
+    chains = []
+    for start in urdf.walk():
+        names = [start.name]
+        for _ in range(2):
+            below = urdf.children.get(urdf.joints[names[-1]].child, ())
+            if len(below) != 1:
+                break
+            names.append(below[0].name)
+        if len(names) < 3 or any(name in taken or name in excluded for name in names):
+            continue
+        try:
+            chain = check_chain(
+                (joints[names[0]], joints[names[1]], joints[names[2]]), urdf, closure_links, rotary=revolute
+            )
+        except NotMergeable:
+            continue
+        taken.update(names)
+        chains.append(chain)
+    return chains
+
+
+def _lines(chain: tuple[Joint, Joint, Joint]) -> tuple[Pose, list[tuple[Vector3, Vector3]]]:
+    """The axes at zero as (point, unit direction) in the frame of the body before; and the pose of the last joint."""
+    pose = IDENTITY
+    lines = []
+    for joint in chain:
+        pose = pose * joint.placement
+        x, y, z = pose.rotate(squarable(joint.axes[0]))
+        norm = math.sqrt(x * x + y * y + z * z)
+        lines.append((pose.xyz, (x / norm, y / norm, z / norm)))
+    return pose, lines
+
+
+def _meeting_point(lines: list[tuple[Vector3, Vector3]]) -> Vector3:
+    """The point nearest to the three axes, in the frame of the body before.
+
+    It solves Σ (I - u uᵀ) p = Σ (I - u uᵀ) o for the lines o + s u.
+
+    Raises:
+        NotMergeable: Where two axes are parallel, or one passes the point by more than `MEETING`.
+    """
+    for (_, u), (_, v) in itertools.combinations(lines, 2):
+        if _norm(_cross(u, v)) < PARALLEL:
+            raise NotMergeable("joint-axes-parallel", "two of their axes are parallel")
+    if lines[0][0] == lines[1][0] == lines[2][0]:
+        return lines[0][0]  # the usual way to write a ball: three joints at one origin
+    matrix = [[0.0] * 3 for _ in range(3)]
+    vector = [0.0] * 3
+    for origin, direction in lines:
+        for i in range(3):
+            for j in range(3):
+                entry = (1.0 if i == j else 0.0) - direction[i] * direction[j]
+                matrix[i][j] += entry
+                vector[i] += entry * origin[j]
+    columns = [tuple(row[j] for row in matrix) for j in range(3)]
+    right: Vector3 = (vector[0], vector[1], vector[2])
+    determinant = _dot(columns[0], _cross(columns[1], columns[2]))
+    point: Vector3 = (
+        _dot(right, _cross(columns[1], columns[2])) / determinant,
+        _dot(columns[0], _cross(right, columns[2])) / determinant,
+        _dot(columns[0], _cross(columns[1], right)) / determinant,
+    )
+    for origin, direction in lines:
+        apart = (point[0] - origin[0], point[1] - origin[1], point[2] - origin[2])
+        distance = _norm(_cross(apart, direction))
+        if distance > MEETING:
+            raise NotMergeable(
+                "merge-axes",
+                f"their axes do not meet in one point: one passes it at {distance * 1e3:.3g} mm, "
+                f"and may at {MEETING * 1e3:g} mm",
+            )
+    return point
+
+
+def _nearest_axes(chain: Chain) -> tuple[Joint, ...]:
+    """For x, y, z of the last joint's frame at zero, the joint whose axis is nearest; each joint once."""
+    back = replace(chain.zero, xyz=(0.0, 0.0, 0.0)).inverse()
+    first, second, third = (tuple(map(abs, back.rotate(direction))) for direction in chain.directions)
+    near = (first, second, third)
+    sums = [near[x][0] + near[y][1] + near[z][2] for x, y, z in _ORDERS]
+    least = max(sums) - _AS_LARGE
+    x, y, z = next(order for order, found in zip(_ORDERS, sums, strict=True) if found >= least)
+    return chain.joints[x], chain.joints[y], chain.joints[z]
+
+
+def _cross(a: tuple[float, ...], b: tuple[float, ...]) -> Vector3:
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def _dot(a: tuple[float, ...], b: tuple[float, ...]) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _norm(a: tuple[float, ...]) -> float:
+    return math.sqrt(_dot(a, a))

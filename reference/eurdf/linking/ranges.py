@@ -1,0 +1,47 @@
+"""Joints that are to move, and whose URDF gives them no range."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+
+from eurdf.diagnostics import Diagnostics, quoted
+from eurdf.format.urdf import Urdf, UrdfJoint
+from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint_type import JointType
+
+_RANGED = frozenset({JointType.REVOLUTE, JointType.PRISMATIC})
+
+
+def check_ranges(urdf: Urdf, joints: Mapping[str, Joint], diagnostics: Diagnostics) -> None:
+    """EU-URD-025: a joint that is to move has a range; URDF reads limits that are left out as 0.
+
+    Args:
+        urdf: The URDF.
+        joints: The joints of the mechanism: those that the description merges, makes another type or gives limits need
+            no range in the URDF.
+        diagnostics: Gets what is found.
+    """
+    found = [joint for joint in urdf.joints.values() if _has_no_range(joint, joints.get(joint.name))]
+    if not found:
+        return
+    names = quoted([joint.name for joint in found])
+    count = "1 joint has" if len(found) == 1 else f"{len(found)} joints have"
+    diagnostics.report(
+        "urdf-no-range",
+        f"{count} the range 0 to 0: {names}",
+        partial(urdf.document.place, next(found[0].element.iterchildren("limit"))),
+        "write 'lower' and 'upper', or make it 'continuous'",
+    )
+
+
+def _has_no_range(joint: UrdfJoint, made: Joint | None) -> bool:
+    limit = joint.limit
+    return (
+        joint.type in _RANGED
+        and limit is not None
+        and limit.lower == limit.upper == 0.0
+        and made is not None
+        and made.type in _RANGED
+        and made.lower == made.upper == (0.0,)
+    )

@@ -1,0 +1,430 @@
+"""The joints that the description makes of the URDF's: new types, splits, merges, locks and overrides."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
+from functools import partial
+
+from eurdf.diagnostics import Diagnostics, Hint, did_you_mean
+from eurdf.format.extension import JointEntry, Pointer
+from eurdf.format.urdf import Urdf
+from eurdf.linking.merging import PARALLEL, NotMergeable, check_chain, find_chains, fixed, merge
+from eurdf.mechanism.body import Body
+from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint_type import COORDINATES, JointType
+from eurdf.mechanism.pose import Vector3, direction
+from eurdf.reading.yaml_reader import YamlDocument
+
+_ROTARY = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS})
+_SLIDING = frozenset({JointType.PRISMATIC})
+
+#: What each new type may replace (EU-JNT-005). A universal joint has axes of its own; the others need the URDF's one.
+_REPLACES: dict[str, frozenset[JointType]] = {
+    "spherical": _ROTARY,
+    "universal": _ROTARY,
+    "cylindrical": _ROTARY | _SLIDING,
+    "helical": _ROTARY | _SLIDING,
+    "fixed": frozenset(JointType) - {JointType.FIXED},
+}
+
+#: Types whose coordinates are angles and lengths that a limit can bound (EU-JNT-009).
+_LIMITED = frozenset(
+    {JointType.REVOLUTE, JointType.PRISMATIC, JointType.UNIVERSAL, JointType.CYLINDRICAL, JointType.HELICAL}
+)
+
+_LETTERS: dict[str, Vector3] = {"X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, 1.0)}
+
+
+@dataclass(slots=True)
+class Joints:
+    """The joints of the mechanism in the making.
+
+    Attributes:
+        by_name: The joints as they stand.
+        bodies: Virtual bodies that splits made.
+        merged: For each joint that was merged away, the joint it became part of.
+        split: For each joint that was split, the two that it became.
+        armature_given: Joints whose armature the description states.
+    """
+
+    by_name: dict[str, Joint]
+    bodies: list[Body] = field(default_factory=list)
+    merged: dict[str, str] = field(default_factory=dict)
+    split: dict[str, tuple[str, str]] = field(default_factory=dict)
+    armature_given: set[str] = field(default_factory=set)
+
+
+def replace_joints(
+    joints: Joints,
+    entries: tuple[JointEntry, ...],
+    urdf: Urdf,
+    closure_links: Collection[str],
+    document: YamlDocument,
+    diagnostics: Diagnostics,
+    *,
+    merges_revolutes: bool,
+) -> set[str]:
+    """Apply every entry of the description, then the three-revolute rule of version 1.
+
+    Args:
+        joints: The URDF's joints; changed in place.
+        entries: As written.
+        urdf: The URDF.
+        closure_links: Links that carry a frame of a closure.
+        document: To point into.
+        diagnostics: Gets what is found.
+        merges_revolutes: Whether version 1's rule holds.
+
+    Returns:
+        Names of the joints that an entry at fault speaks of, or would have made.
+    """
+    faulty: set[str] = set()
+    mimicking = {joint.name: joint.mimic.joint for joint in urdf.joints.values() if joint.mimic}
+    mimicked = {target: name for name, target in mimicking.items()}
+    merged = {name: entry.name for entry in entries for name in entry.merges if name != entry.name}
+    seen: set[str] = set()
+    for entry in entries:
+        if entry.name in merged and entry.name in urdf.joints:
+            diagnostics.report(
+                "duplicate-replacement",
+                f"joint '{entry.name}' is changed, and merged into '{merged[entry.name]}' too",
+                document.place(entry.pointer),
+                f"say it of '{merged[entry.name]}', or leave '{entry.name}' out of its 'merges'",
+            )
+            continue
+        if entry.name in seen:
+            diagnostics.report(
+                "duplicate-replacement",
+                f"joint '{entry.name}' is listed twice",
+                document.place(entry.pointer),
+                "keep one of the two",
+            )
+            continue
+        seen.add(entry.name)
+        before = len(diagnostics)
+        _Replacement(entry, joints, urdf, mimicking, mimicked, closure_links, document, diagnostics).apply()
+        if len(diagnostics) > before:
+            faulty.update({entry.name, *entry.merges, *(f"{entry.name}_{letter}" for letter in entry.split)})
+    if merges_revolutes:
+        for chain in find_chains(urdf, joints.by_name, seen, closure_links):
+            first, second, ball = merge(chain, chain.joints[2].name)
+            for joint in (first, second, ball):
+                joints.by_name[joint.name] = joint
+            joints.merged.update({first.name: ball.name, second.name: ball.name})
+    return faulty
+
+
+@dataclass(slots=True)
+class _Replacement:
+    """One entry at work."""
+
+    entry: JointEntry
+    joints: Joints
+    urdf: Urdf
+    mimicking: Mapping[str, str]
+    mimicked: Mapping[str, str]
+    closure_links: Collection[str]
+    document: YamlDocument
+    diagnostics: Diagnostics
+
+    def report(self, code: str, message: str, *keys: str | int, hint: str | None = None) -> None:
+        self.diagnostics.report(code, message, self.document.place((*self.entry.pointer, *keys)), hint)
+
+    def apply(self) -> None:
+        entry = self.entry
+        if entry.merges:
+            joint = self.merge()
+        else:
+            joint = self.target(entry.name, entry.pointer)
+            if joint is None or self.mimics(joint, entry.pointer):
+                return
+            if entry.type is not None:
+                joint = self.retype(joint)
+        if joint is None:
+            return
+        joint = self.override(joint)
+        if joint is not None:
+            self.joints.by_name[joint.name] = joint
+
+    def target(self, name: str, pointer: Pointer) -> Joint | None:
+        """EU-JNT-001: a joint that the description speaks of is one of the URDF's."""
+        joint = self.joints.by_name.get(name) if name in self.urdf.joints else None
+        if joint is None:
+            key = bool(pointer) and pointer[-1] == name
+            hint: Hint = partial(did_you_mean, name, self.urdf.joints)
+            if name in self.urdf.links:
+                hint = f"'{name}' is a link; name the joint that moves it"
+            self.diagnostics.report(
+                "unknown-joint", f"'{name}' is no joint of the robot", self.document.place(pointer, key), hint
+            )
+        return joint
+
+    def mimics(self, joint: Joint, pointer: Pointer) -> bool:
+        """EU-JNT-004: joints that mimic or are mimicked stay as the URDF has them."""
+        if joint.name in self.mimicking:
+            why = f"it mimics '{self.mimicking[joint.name]}'"
+        elif joint.name in self.mimicked and self.entry.type is not None:
+            why = f"'{self.mimicked[joint.name]}' mimics it"
+        else:
+            return False
+        self.diagnostics.report(
+            "joint-mimics",
+            f"joint '{joint.name}' cannot be changed: {why}",
+            self.document.place(pointer),
+            "take the <mimic> out of the URDF, or leave the joint as it is",
+        )
+        return True
+
+    # -- merging --------------------------------------------------------------------------------------------------
+
+    def merge(self) -> Joint | None:
+        entry = self.entry
+        chain = []
+        for index, name in enumerate(entry.merges):
+            pointer = (*entry.pointer, "merges", index)
+            if name in entry.merges[:index]:
+                self.diagnostics.report(
+                    "duplicate-replacement",
+                    f"joint '{name}' stands twice among those that are merged",
+                    self.document.place(pointer),
+                    "name three different joints",
+                )
+                return None
+            if name in self.joints.merged:
+                self.diagnostics.report(
+                    "duplicate-replacement",
+                    f"joint '{name}' is already merged into '{self.joints.merged[name]}'",
+                    self.document.place(pointer),
+                )
+                return None
+            joint = self.target(name, pointer)
+            if joint is None or self.mimics(joint, pointer):
+                return None
+            chain.append(joint)
+        taken = entry.name in self.urdf.joints and entry.name != entry.merges[2]
+        if taken or (entry.name in self.joints.by_name and entry.name not in self.urdf.joints):
+            self.diagnostics.report(
+                "duplicate-joint-name",
+                f"there is already a joint '{entry.name}'",
+                self.document.place(entry.pointer, True),
+                f"give the merged joint a new name, or that of the last one, '{entry.merges[2]}'",
+            )
+            return None
+        try:
+            first, second, ball = merge(
+                check_chain((chain[0], chain[1], chain[2]), self.urdf, self.closure_links), entry.name
+            )
+        except NotMergeable as why:
+            names = ", ".join(f"'{name}'" for name in entry.merges)
+            self.report(why.code, f"{names} cannot be merged: {why.message}", "merges")
+            return None
+        self.joints.by_name[first.name] = first
+        self.joints.by_name[second.name] = second
+        del self.joints.by_name[chain[2].name]
+        self.joints.merged.update({joint.name: entry.name for joint in chain if joint.name != entry.name})
+        return ball
+
+    # -- new types ------------------------------------------------------------------------------------------------
+
+    def retype(self, joint: Joint) -> Joint | None:
+        """EU-JNT-005: each new type replaces a joint that moves like a part of it."""
+        entry = self.entry
+        assert entry.type is not None
+        allowed = _REPLACES[entry.type]
+        if joint.type not in allowed:
+            wanted = sorted(str(kind) for kind in allowed) if entry.type != "fixed" else ["moving"]
+            self.diagnostics.report(
+                "joint-kind",
+                f"joint '{joint.name}' is {joint.type} in the URDF and cannot become {entry.type}",
+                self.document.place((*entry.pointer, "type")),
+                f"only a {' or '.join(wanted)} joint can",
+            )
+            return None
+        if entry.type == "fixed":
+            return fixed(joint)
+        if entry.type == "spherical":
+            return self._spread(joint, JointType.SPHERICAL)
+        if entry.type == "universal":
+            return self.universal(joint)
+        if entry.type == "cylindrical":
+            return self.cylindrical(joint)
+        return self.helical(joint)
+
+    def _spread(self, joint: Joint, kind: JointType) -> Joint:
+        """EU-JNT-020, -021: the joint with another type; its rates and dynamics are those of each of its velocities."""
+        coordinates = COORDINATES[kind]
+        n = coordinates.nv
+        return Joint(
+            joint.name,
+            kind,
+            joint.parent,
+            joint.child,
+            joint.placement,
+            axes=() if kind is JointType.SPHERICAL else joint.axes,
+            lower=(-math.inf,) * len(coordinates.names),
+            upper=(math.inf,) * len(coordinates.names),
+            velocity=joint.velocity * n,
+            effort=joint.effort * n,
+            damping=joint.damping * n,
+            friction=joint.friction * n,
+            armature=joint.armature * n,
+            gear_ratio=joint.gear_ratio * n,
+            rotor_inertia=joint.rotor_inertia * n,
+        )
+
+    def universal(self, joint: Joint) -> Joint | None:
+        """EU-JNT-006, EU-JNT-007: the two axes have directions, and different ones."""
+        if self.entry.split:
+            return self.split(joint)
+        axes = self.entry.axes
+        for index, axis in enumerate(axes):
+            if not any(axis):
+                message = f"an axis of universal joint '{joint.name}' has no direction"
+                self.report("joint-axis-zero", message, "axes", index)
+                return None
+        first, second = map(direction, axes)
+        cross = (
+            first[1] * second[2] - first[2] * second[1],
+            first[2] * second[0] - first[0] * second[2],
+            first[0] * second[1] - first[1] * second[0],
+        )
+        if math.hypot(*cross) < PARALLEL:
+            self.report("joint-axes-parallel", f"the two axes of universal joint '{joint.name}' are parallel", "axes")
+            return None
+        spread = self._spread(joint, JointType.UNIVERSAL)
+        return replace(spread, axes=axes, lower=joint.lower * 2, upper=joint.upper * 2)
+
+    def split(self, joint: Joint) -> Joint | None:
+        """EU-ONE-006: version 1's universal joint is two revolutes, ``j_A`` and then ``j_B``, each with j's limits."""
+        names = tuple(f"{joint.name}_{letter}" for letter in self.entry.split)
+        for name in names:
+            if name in self.urdf.joints:
+                self.diagnostics.report(
+                    "duplicate-joint-name",
+                    f"universal joint '{joint.name}' makes a joint '{name}', and there already is one",
+                    self.document.place(self.entry.pointer),
+                    "rename the other joint in the URDF",
+                )
+                return None
+        first, second = names
+        between = Body(first, virtual=True)
+        while between.name in self.urdf.links:
+            between = Body(between.name + "'", virtual=True)
+        self.joints.bodies.append(between)
+        letters = self.entry.split
+        del self.joints.by_name[joint.name]
+        self.joints.by_name[first] = replace(joint, name=first, child=between.name, axes=(_LETTERS[letters[0]],))
+        self.joints.split[joint.name] = (first, second)
+        return Joint(
+            second,
+            joint.type,
+            between.name,
+            joint.child,
+            axes=(_LETTERS[letters[1]],),
+            lower=joint.lower,
+            upper=joint.upper,
+            velocity=joint.velocity,
+            effort=joint.effort,
+            damping=joint.damping,
+            friction=joint.friction,
+            armature=joint.armature,
+            gear_ratio=joint.gear_ratio,
+            rotor_inertia=joint.rotor_inertia,
+        )
+
+    def cylindrical(self, joint: Joint) -> Joint:
+        """EU-JNT-027: limits of the URDF's joint stay with the coordinate of its kind; the other has none."""
+        spread = self._spread(joint, JointType.CYLINDRICAL)
+        if joint.type is JointType.PRISMATIC:
+            return replace(spread, lower=(joint.lower[0], -math.inf), upper=(joint.upper[0], math.inf))
+        return replace(spread, lower=(-math.inf, joint.lower[0]), upper=(math.inf, joint.upper[0]))
+
+    def helical(self, joint: Joint) -> Joint | None:
+        """EU-JNT-008, EU-JNT-029: a helix has a pitch; what the URDF says of a slide holds of the screw's angle."""
+        pitch = self.entry.pitch
+        assert pitch is not None
+        if pitch == 0.0:
+            self.report("joint-pitch-zero", f"helical joint '{joint.name}' has no pitch", "pitch")
+            return None
+        lower, upper, velocity, effort = joint.lower[0], joint.upper[0], joint.velocity[0], joint.effort[0]
+        damping, friction = joint.damping[0], joint.friction[0]
+        if joint.type is JointType.PRISMATIC:
+            lead = pitch / (2.0 * math.pi)
+            lower, upper = sorted((lower / lead, upper / lead))
+            velocity, effort = velocity / abs(lead), effort * abs(lead)
+            damping, friction = damping * lead * lead, friction * abs(lead)
+        return replace(
+            joint,
+            type=JointType.HELICAL,
+            pitch=pitch,
+            lower=(lower,),
+            upper=(upper,),
+            velocity=(velocity,),
+            effort=(effort,),
+            damping=(damping,),
+            friction=(friction,),
+        )
+
+    # -- overrides ------------------------------------------------------------------------------------------------
+
+    def override(self, joint: Joint) -> Joint | None:
+        """EU-JNT-009, EU-JNT-010: what the description states of a joint stands in place of the URDF's."""
+        entry = self.entry
+        if joint.type is JointType.FIXED:
+            stated = [key for key in _PROPERTIES if getattr(entry, key) is not None]
+            if stated:
+                keys = _PROPERTIES[stated[0]]
+                self.report("joint-property", f"fixed joint '{joint.name}' has no {keys[-1]}", *keys)
+                return None
+            return joint
+        changes: dict[str, tuple[float, ...]] = {}
+        for attribute, keys in _PROPERTIES.items():
+            stated = getattr(entry, attribute)
+            if stated is None:
+                continue
+            bounds_position = attribute in ("lower", "upper")
+            if bounds_position and joint.type not in _LIMITED:
+                self.report("joint-property", f"a {joint.type} joint has no position limits", *keys)
+                return None
+            n = joint.coordinates.nv
+            values = stated if isinstance(stated, tuple) else (stated,) * n
+            if len(values) != n:
+                wanted = "be one number" if n == 1 else f"have {n}, or one for all"
+                self.report(
+                    "joint-property",
+                    f"'{keys[-1]}' of {joint.type} joint '{joint.name}' has {len(values)} numbers; it must {wanted}",
+                    *keys,
+                )
+                return None
+            changes[attribute] = values
+        if not changes:
+            return joint
+        joint = replace(joint, **changes)  # type: ignore[arg-type]
+        if "armature" in changes:
+            self.joints.armature_given.add(joint.name)
+        for lower, upper in zip(joint.lower, joint.upper, strict=True):
+            if lower > upper:
+                key = "lower" if "lower" in changes else "upper"
+                left_out = {"lower", "upper"} - set(changes)
+                self.report(
+                    "joint-limits-reversed",
+                    f"joint '{joint.name}' has its lower limit {lower:g} above its upper limit {upper:g}",
+                    "limits",
+                    key,
+                    hint=f"the {left_out.pop()} limit is the URDF's; state it too" if left_out else "swap them",
+                )
+                return None
+        return joint
+
+
+_PROPERTIES: dict[str, tuple[str, ...]] = {
+    "lower": ("limits", "lower"),
+    "upper": ("limits", "upper"),
+    "velocity": ("limits", "velocity"),
+    "effort": ("limits", "effort"),
+    "damping": ("damping",),
+    "friction": ("friction",),
+    "armature": ("armature",),
+}

@@ -1,0 +1,34 @@
+"""The mechanism that a text would describe, told before the text becomes a file."""
+
+from __future__ import annotations
+
+from eurdf.diagnostics import Diagnostics, Fault
+from eurdf.format.read_extension import read_extension
+from eurdf.format.urdf import Urdf
+from eurdf.linking.link import link
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.reading.source import Source
+from eurdf.reading.yaml_reader import read_yaml
+
+
+def reread(text: str, urdf: Urdf, file: str) -> tuple[Mechanism | None, Diagnostics]:
+    """Read and link the text of a description.
+
+    Args:
+        text: The description.
+        urdf: The URDF it extends, whichever it names.
+        file: What the findings call it.
+
+    Returns:
+        The mechanism, or None where an error was found; and what was found.
+    """
+    diagnostics = Diagnostics()
+    try:
+        document = read_yaml(Source(file, text, text.encode()))
+    except Fault as fault:
+        diagnostics.add(fault.diagnostic)
+        return None, diagnostics
+    extension = read_extension(document, diagnostics)
+    if extension is None:
+        return None, diagnostics
+    return link(urdf, extension, document, diagnostics), diagnostics

@@ -1,0 +1,64 @@
+"""Bodies: the links of the robot, with inertia and shapes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from eurdf.mechanism.pose import IDENTITY, Pose
+
+
+@dataclass(frozen=True, slots=True)
+class Inertia:
+    """Inertia of a body, as URDF gives it.
+
+    Attributes:
+        mass: kg.
+        pose: Pose of the inertial frame in the body's frame; its origin is the centre of mass.
+        moments: ixx, ixy, ixz, iyy, iyz, izz about the centre of mass, in the inertial frame, kg·m².
+    """
+
+    mass: float
+    pose: Pose
+    moments: tuple[float, float, float, float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """A geometry of a body.
+
+    Attributes:
+        kind: What it is.
+        size: Box: x, y, z; cylinder and capsule: radius, length; sphere: radius; mesh: scale x, y, z. In m.
+        filename: URI of the mesh as the URDF writes it; empty otherwise.
+        pose: Pose in the body's frame.
+        color: red, green, blue, alpha from 0 to 1; None where the URDF gives none.
+        texture: File name of the material's texture; empty where there is none.
+    """
+
+    kind: Literal["box", "cylinder", "sphere", "capsule", "mesh"]
+    size: tuple[float, ...]
+    pose: Pose = IDENTITY
+    filename: str = ""
+    color: tuple[float, float, float, float] | None = None
+    texture: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """A link.
+
+    Attributes:
+        name: Name of the link.
+        inertia: None where the URDF gives none.
+        visuals: What is seen, in file order.
+        collisions: What collides, in file order.
+        virtual: Whether the body is no link of the URDF, but stands between the two revolutes that a universal joint
+            of version 1 was split into. It has neither inertia nor shape nor a frame of its own.
+    """
+
+    name: str
+    inertia: Inertia | None = None
+    visuals: tuple[Shape, ...] = ()
+    collisions: tuple[Shape, ...] = ()
+    virtual: bool = False

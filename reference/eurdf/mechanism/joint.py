@@ -1,0 +1,62 @@
+"""The joints of the spanning tree."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from eurdf.mechanism.joint_type import COORDINATES, Coordinates, JointType
+from eurdf.mechanism.mimic import Mimic
+from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """A joint of the spanning tree.
+
+    Attributes:
+        name: Unique among the joints.
+        type: One of the ten joint types.
+        parent: Body it hangs from.
+        child: Body it carries.
+        placement: Pose of the joint in the frame of the parent body.
+        offset: Pose of the child body's frame in the moving frame of the joint. The identity but for merged joints
+            whose axes meet away from the last one's origin. The frame that bears the joint's name is the child's.
+        axes: Directions in the joint's frame, as written, of any length but zero: one for revolute, continuous,
+            prismatic, helical, cylindrical; two, first and second, for universal; none otherwise. Planar moves in
+            the joint's xy plane.
+        pitch: Advance of a helical joint along its axis, m per revolution, right-handed; 0 otherwise.
+        lower: Lower position limits, one a coordinate as in `Coordinates`; -inf where there is none.
+        upper: Upper position limits; inf where there is none.
+        velocity: Velocity limits, one a velocity, rad/s or m/s; inf where there is none.
+        effort: Effort limits, one a velocity, N·m or N; inf where there is none.
+        damping: Viscous damping, one a velocity, N·m·s/rad or N·s/m.
+        friction: Dry friction, one a velocity, N·m or N.
+        armature: Reflected inertia, one a velocity, kg·m² or kg.
+        gear_ratio: Motor revolutions per joint revolution, one a velocity.
+        rotor_inertia: Inertia of the motor's rotor about its own axis, one a velocity, kg·m².
+        mimic: The joint this one follows, or None.
+    """
+
+    name: str
+    type: JointType
+    parent: str
+    child: str
+    placement: Pose = IDENTITY
+    offset: Pose = IDENTITY
+    axes: tuple[Vector3, ...] = ()
+    pitch: float = 0.0
+    lower: tuple[float, ...] = ()
+    upper: tuple[float, ...] = ()
+    velocity: tuple[float, ...] = ()
+    effort: tuple[float, ...] = ()
+    damping: tuple[float, ...] = ()
+    friction: tuple[float, ...] = ()
+    armature: tuple[float, ...] = ()
+    gear_ratio: tuple[float, ...] = ()
+    rotor_inertia: tuple[float, ...] = ()
+    mimic: Mimic | None = None
+
+    @property
+    def coordinates(self) -> Coordinates:
+        """How its configuration is written in files and answers."""
+        return COORDINATES[self.type]

@@ -1,0 +1,1 @@
+"""Descriptions as text: generated, migrated, and with a configuration written into them."""

@@ -1,0 +1,124 @@
+"""The description of a robot with the configuration ``assembled`` written into it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from eurdf.diagnostics import Diagnostics
+from eurdf.kinematics.array import Vector
+from eurdf.kinematics.residual import residual
+from eurdf.linking.configurations import within_limits
+from eurdf.linking.description import Description
+from eurdf.linking.rereading import reread
+from eurdf.mechanism.joint_type import COORDINATES, JointType
+from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
+from eurdf.pinocchio.configuration import configuration_vector
+from eurdf.pinocchio.robot import Robot
+from eurdf.writing.edit_configuration import with_configuration
+
+NAME = "assembled"
+
+#: Largest row of the residual, m or rad, at which a configuration written to a file counts as closed in full.
+CLOSED_IN_FULL = 1e-12
+
+#: Two configurations whose entries differ by no more are the same.
+_SAME = 1e-12
+
+#: Decimals, of m or rad, beyond which a coordinate is noise.
+_DECIMALS = 15
+
+
+@dataclass(frozen=True, slots=True)
+class BeyondLimit:
+    """A coordinate beyond the limits of its joint.
+
+    Attributes:
+        joint: Name of the joint.
+        coordinate: What the coordinate is: an angle or a length.
+        value: rad or m.
+        lower: Lower limit.
+        upper: Upper limit.
+    """
+
+    joint: str
+    coordinate: str
+    value: float
+    lower: float
+    upper: float
+
+    def __str__(self) -> str:
+        unit = "m" if self.coordinate == "length" else "rad"
+        return f"'{self.joint}' at {self.value:.6g} {unit} (limits {self.lower:g} to {self.upper:g})"
+
+
+def beyond_limits(mechanism: Mechanism, coordinates: Mapping[str, Sequence[float]]) -> list[BeyondLimit]:
+    """The coordinates that a configuration in a file must not have."""
+    return [
+        BeyondLimit(joint.name, name, value, lower, upper)
+        for joint in mechanism.joints
+        if joint.name in coordinates and joint.coordinates.quaternion is None
+        for name, value, lower, upper in zip(
+            joint.coordinates.names, coordinates[joint.name], joint.lower, joint.upper, strict=True
+        )
+        if not within_limits(value, lower, upper)
+    ]
+
+
+def is_stated(robot: Robot, q: Vector) -> bool:
+    """Whether the configuration ``assembled`` of a robot is this one, to 1e-12 in each entry of q (nq,)."""
+    stated = robot.configurations.get(NAME)
+    return stated is not None and bool(np.abs(stated - q).max(initial=0.0) <= _SAME)
+
+
+def with_assembled(description: Description, robot: Robot, q: Vector) -> tuple[str, Diagnostics]:
+    """The text of a description in which the configuration ``assembled`` is q.
+
+    Joints at their neutral are left out, unless the file states them already. Numbers are rounded to 15 decimals where
+    the loops stay as closed.
+
+    Args:
+        description: Of version 2, with a mechanism.
+        robot: The robot built from it, with its own root.
+        q: Configuration (nq,).
+
+    Returns:
+        The text, and what a reader finds wrong with it, such as a coordinate beyond its limits.
+
+    Raises:
+        NotEditable: The file is written in a way in which that cannot be changed alone.
+    """
+    assert description.document is not None
+    assert description.urdf is not None
+    file = description.document.source.file
+    exact = robot.coordinates(q)
+    enough = max(CLOSED_IN_FULL, _largest_row(robot, q))
+    rounded = {name: tuple(round(value, _DECIMALS) for value in values) for name, values in exact.items()}
+    text, diagnostics = "", Diagnostics()
+    for coordinates in (rounded, exact):
+        text = with_configuration(description.document, NAME, _to_state(description, robot, coordinates))
+        mechanism, diagnostics = reread(text, description.urdf, file)
+        if mechanism is None:
+            break
+        back = configuration_vector(robot.mechanism, robot.model, mechanism.configurations[NAME])
+        if _largest_row(robot, back) <= enough:
+            break
+    return text, diagnostics
+
+
+def _to_state(
+    description: Description, robot: Robot, coordinates: Mapping[str, Sequence[float]]
+) -> dict[str, Sequence[float]]:
+    """The coordinates of the joints that a file has to state."""
+    assert description.extension is not None
+    entries = {entry.name: entry.joints for entry in description.extension.configurations}
+    stated = entries.get(NAME, {})
+    neutral = {joint.name: joint.coordinates.neutral for joint in robot.mechanism.joints}
+    neutral[ROOT_JOINT] = COORDINATES[JointType.FLOATING].neutral
+    return {name: values for name, values in coordinates.items() if name in stated or tuple(values) != neutral[name]}
+
+
+def _largest_row(robot: Robot, q: Vector) -> float:
+    return float(np.abs(residual(robot, q)).max(initial=0.0))

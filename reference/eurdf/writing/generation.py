@@ -1,0 +1,115 @@
+"""From the names in a URDF to a description of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from eurdf.diagnostics import Diagnostics
+from eurdf.format.field import is_own_key
+from eurdf.format.urdf import Urdf
+from eurdf.linking.merging import find_chains
+from eurdf.linking.rereading import reread
+from eurdf.linking.urdf_tree import joint_of
+from eurdf.mechanism.constraint import ClosureType
+from eurdf.mechanism.mechanism import Mechanism, Root
+from eurdf.writing.closure_choice import choose_types
+from eurdf.writing.naming_conventions import Conventions, Found, find, version1_text, version2_text, with_type
+
+
+@dataclass(frozen=True, slots=True)
+class Generation:
+    """A description that was generated.
+
+    Attributes:
+        text: Of the YAML file.
+        found: What the names say.
+        merges: For each spherical joint made of three revolutes whose axes meet, their names.
+        mechanism: That the text describes; None where the names say what cannot be.
+        diagnostics: Found in the text.
+        notes: Why closures have the types that they have, where their names do not say it; one sentence each.
+    """
+
+    text: str
+    found: Found
+    merges: Mapping[str, tuple[str, str, str]]
+    mechanism: Mechanism | None
+    diagnostics: Diagnostics
+    notes: tuple[str, ...] = ()
+
+
+def generate(
+    urdf: Urdf,
+    conventions: Conventions,
+    version: Literal["1", "2"] = "2",
+    root: Root = "fixed",
+    urdf_path: str = "robot.urdf",
+    schema: str | None = None,
+    closure_type: ClosureType | None = None,
+) -> Generation:
+    """Describe a robot by the names in its URDF.
+
+    Three revolutes whose axes meet, none of them a motor, are merged as version 1 does by itself. The text is read once
+    more, so that whoever writes it knows that it is sound.
+
+    Args:
+        urdf: The URDF.
+        conventions: What its names mean.
+        version: Version of the description.
+        root: Whether the root is fixed or floating; version 1 can only say fixed.
+        urdf_path: Path of the URDF from the folder of the description; version 1 cannot say it.
+        schema: Path of the schema from the folder of the description, for its first line; None for no such line.
+        closure_type: Type of every closure; by default what their names say, and else what `choose_types` finds.
+    """
+    if version == "1" and root != "fixed":
+        raise ValueError("version 1 cannot say that the root floats")
+    found = find(urdf, conventions)
+    notes = _hinge_notes(found)
+    if closure_type is not None:
+        found, notes = with_type(found, closure_type), ()
+    merges = _merges(urdf, found, version)
+
+    def written(found: Found) -> tuple[str, Mechanism | None, Diagnostics]:
+        text = version2_text(found, merges, root, urdf_path, schema)
+        if version == "1":
+            text = version1_text(found, schema)
+        return text, *reread(text, urdf, "the description")
+
+    text, mechanism, diagnostics = written(found)
+    undecided = [index for index, closure in enumerate(found.closures) if closure.type is None]
+    if mechanism is not None and undecided:
+        # Version 1 has no names of closures; their order is that of the file in both versions.
+        names = {mechanism.closures[index].name: index for index in undecided}
+        choice = choose_types(mechanism, names, [closure.name for closure in found.closures])
+        closures = list(found.closures)
+        for name, kind in choice.types.items():
+            closures[names[name]] = replace(closures[names[name]], type=kind)
+        found, notes = replace(found, closures=tuple(closures)), (*notes, *choice.notes)
+        text, mechanism, diagnostics = written(found)
+    return Generation(text, found, merges, mechanism, diagnostics, notes)
+
+
+def _hinge_notes(found: Found) -> tuple[str, ...]:
+    """What is said of closures that are 3d because two points hold a hinge."""
+    return tuple(
+        f"'{closure.name}' is a revolute mate, since its frames have others on its axis: '{closure.name}' and "
+        f"'{closure.name}_z' hold the hinge, each 3d"
+        for closure in found.closures
+        if closure.hinge and any(other.name == f"{closure.name}_z" and other.hinge for other in found.closures)
+    )
+
+
+def _merges(urdf: Urdf, found: Found, version: Literal["1", "2"]) -> dict[str, tuple[str, str, str]]:
+    """EU-ONE-007, but for motors, which version 1 would merge as well."""
+    joints = {joint.name: joint_of(joint) for joint in urdf.joints.values()}
+    coupled = {name for joint in urdf.joints.values() if joint.mimic for name in (joint.name, joint.mimic.joint)}
+    links = {
+        frame if frame in urdf.links else urdf.joints[frame].child
+        for closure in found.closures
+        for frame in closure.frames
+    }
+    excluded = {*found.sphericals, *coupled, *(found.motors if version == "2" else ())}
+    chains = [tuple(joint.name for joint in chain.joints) for chain in find_chains(urdf, joints, excluded, links)]
+    # A key that begins with x- would be data of the user's own.
+    return {third: (first, second, third) for first, second, third in chains if version == "1" or not is_own_key(third)}

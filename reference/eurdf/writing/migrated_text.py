@@ -1,0 +1,317 @@
+"""The text of a version 1 description in version 2: what version 1 does by itself is said, and comments are kept."""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_left
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from eurdf.diagnostics import Fault
+from eurdf.format.extension import Extension, FrameReference, JointEntry, Pointer
+from eurdf.format.field import is_own_key
+from eurdf.format.schema import FILES
+from eurdf.format.urdf import Urdf
+from eurdf.format.version1 import Version1
+from eurdf.format.version2 import VERSION
+from eurdf.format.yaml_text import (
+    WIDTH,
+    Entry,
+    Value,
+    item_of_mapping,
+    lines_of,
+    lines_of_item,
+    modeline,
+    scalar,
+    section,
+    text_of,
+)
+from eurdf.reading.source import BREAK, Source
+from eurdf.reading.yaml_reader import YamlDocument, read_yaml
+from eurdf.writing.comments import Attached, Comment, attach, comments_of
+
+# The comment by which an editor finds the schema.
+_MODELINE = re.compile(r"#\s*yaml-language-server:\s*\$schema=(.*)")
+
+# The keys of version 1 that become one key of version 2.
+_SECTIONS = {"closures": ("closed_loop", "type"), "joints": ("joint_name", "joint_type"), "actuators": ("name_mot",)}
+
+
+class NotMigratable(Exception):  # noqa: N818 - said to the user as it stands
+    """Version 2 cannot say what the file says; its text tells what.
+
+    Attributes:
+        pointer: Where the file says it.
+    """
+
+    def __init__(self, message: str, pointer: Pointer) -> None:
+        self.pointer = pointer
+        super().__init__(message)
+
+
+@dataclass(frozen=True, slots=True)
+class Migrated:
+    """A description in version 2, and what was done to it, one sentence each."""
+
+    text: str
+    notes: tuple[str, ...]
+
+
+def migrated(
+    document: YamlDocument,
+    extension: Extension,
+    urdf: Urdf,
+    merged: Mapping[str, Sequence[str]],
+    urdf_path: str = "robot.urdf",
+    schema: str | None = None,
+) -> Migrated:
+    """Write a description of version 1 in version 2.
+
+    Args:
+        document: The file.
+        extension: What it says, of version 1 and linked without error.
+        urdf: Its URDF.
+        merged: The joints that version 1 merges by rule: for each spherical joint, the three it is made of.
+        urdf_path: Path of the URDF from the new file.
+        schema: Path of the schema from the new file, for its first line; None for no such line.
+
+    Raises:
+        NotMigratable: Version 2 cannot say the same.
+    """
+    return _Migration(document, extension, urdf, merged, urdf_path, schema).migrated()
+
+
+def schema_named(document: YamlDocument) -> str | None:
+    """Path of the schema of version 2, where a file of version 1 names that of version 1; None where it names none."""
+    for match in map(_MODELINE.match, document.source.text.splitlines()):
+        if match and match[1].strip().endswith(FILES["1"]):
+            return match[1].strip().removesuffix(FILES["1"]) + FILES["2"]
+    return None
+
+
+def own_keys(data: Iterable[str]) -> dict[str, str]:
+    """For each key of a version 1 file that is the user's own, what it is called in version 2: ``x-`` and the key."""
+    own = [key for key in data if key not in Version1.model_fields]
+    taken = {key for key in own if is_own_key(key)}
+    names = {}
+    for key in own:
+        name = key
+        if not is_own_key(key):
+            name = f"x-{key}"
+            while name in taken:
+                name = f"x-{name}"
+            taken.add(name)
+        names[key] = name
+    return names
+
+
+def split_halves(extension: Extension) -> dict[str, tuple[str, int]]:
+    """For each revolute that version 1 makes of a universal joint: that joint, and 0 or 1 for the first or second."""
+    return {
+        f"{entry.name}_{letter}": (entry.name, index)
+        for entry in extension.joints
+        for index, letter in enumerate(entry.split)
+    }
+
+
+class _Migration:
+    """One file at work."""
+
+    def __init__(
+        self,
+        document: YamlDocument,
+        extension: Extension,
+        urdf: Urdf,
+        merged: Mapping[str, Sequence[str]],
+        urdf_path: str,
+        schema: str | None,
+    ) -> None:
+        self.document = document
+        self.extension = extension
+        self.urdf = urdf
+        self.merged = merged
+        self.urdf_path = urdf_path
+        self.schema = schema
+        self.halves = split_halves(extension)
+        self.notes: list[str] = []
+
+    def migrated(self) -> Migrated:
+        comments = comments_of(self.document.source)
+        own, comments = self.own_entries(comments)
+        attached = attach(comments, self.pointers(), self.document)
+        top = attached[()].above
+        head = [text for text in top if not _MODELINE.match(text)]
+        line = [] if self.schema is None else [modeline(self.schema)]
+        items = {
+            "closures": list(self.closures(attached)),
+            "joints": list(self.joints(attached)),
+            "actuators": list(self.actuators(attached)),
+        }
+        entries = [
+            Entry(lines_of("extended_urdf", VERSION), (*line, *head)),
+            Entry(lines_of("urdf", self.urdf_path)),
+        ]
+        foot = attached[()].beside
+        for key, written in items.items():
+            above, beside = _together(attached, [(old,) for old in _SECTIONS[key]])
+            if written:
+                entries.append(_section(key, written, above, beside))
+            else:
+                foot = [*above, *([beside] if beside else []), *foot]
+        for key, entry in own.items():
+            above, beside = _together(attached, [(key,)])
+            entries.append(Entry(entry.lines, above, beside))
+        foot_text = "".join(f"{comment}\n" for comment in foot)
+        return Migrated(text_of(entries) + foot_text, tuple(self.notes))
+
+    def pointers(self) -> Iterator[Pointer]:
+        """The entries that comments may go with."""
+        for key, value in self.document.data.items():
+            yield (key,)
+            if key in Version1.model_fields:
+                yield from ((key, index) for index in range(len(value)))
+
+    # -- what the format knows ------------------------------------------------------------------------------------
+
+    def closures(self, attached: Mapping[Pointer, Attached]) -> Iterator[Entry]:
+        for index, closure in enumerate(self.extension.closures):
+            value: dict[str, Value] = {
+                "name": closure.name,
+                "type": closure.type,
+                "frames": [self.frame(closure.a), self.frame(closure.b)],
+            }
+            yield Entry(item_of_mapping(value), *_together(attached, [("closed_loop", index), ("type", index)]))
+        count = len(self.extension.closures)
+        if count:
+            to = f" to 'closure_{count}'" if count > 1 else ""
+            self.notes.append(
+                f"closures are named as version 1 counts them, 'closure_1'{to}: names of your own say more"
+            )
+
+    def frame(self, reference: FrameReference) -> str:
+        """The name of a closure's frame; the second half of a universal joint is now the joint itself."""
+        name = reference.name
+        assert name is not None
+        if name not in self.halves or name in self.urdf.links:
+            return name
+        joint, index = self.halves[name]
+        if index == 0:
+            raise NotMigratable(
+                f"the frame '{name}' lies between the two axes of universal joint '{joint}', "
+                "and version 2 has no frame there",
+                reference.pointer,
+            )
+        return joint
+
+    def joints(self, attached: Mapping[Pointer, Attached]) -> Iterator[Entry]:
+        pointers: dict[str, Pointer] = {entry.name: entry.pointer for entry in self.extension.joints}
+        for name in (*pointers, *self.merged):
+            if is_own_key(name):
+                raise NotMigratable(
+                    f"joint '{name}' cannot be a key: version 2 takes keys that begin with 'x-' for data of your own",
+                    pointers.get(name, ()),
+                )
+        for index, entry in enumerate(self.extension.joints):
+            lines = lines_of(entry.name, self.joint(entry))
+            yield Entry(lines, *_together(attached, [("joint_name", index), ("joint_type", index)]))
+        for name, joints in self.merged.items():
+            yield Entry(lines_of(name, {"type": "spherical", "merges": list(joints)}))
+        if self.merged:
+            self.notes.append(
+                "merged from three revolutes, which version 1 does by itself and version 2 says: spherical "
+                + _joints(self.merged)
+            )
+        split = [entry.name for entry in self.extension.joints if entry.split]
+        if split:
+            self.notes.append(f"one joint of two angles, where version 1 has two revolutes: universal {_joints(split)}")
+
+    def joint(self, entry: JointEntry) -> Value:
+        if not entry.split:
+            return entry.type
+        return {"type": "universal", "axes": entry.split.lower()}
+
+    def actuators(self, attached: Mapping[Pointer, Attached]) -> Iterator[Entry]:
+        entries = iter(self.extension.actuators)
+        for entry in entries:
+            name, pointers = entry.joint, [entry.pointer]
+            if name in self.halves:
+                name, index = self.halves[name]
+                other = next(entries, None)
+                if index != 0 or other is None or self.halves.get(other.joint) != (name, 1):
+                    first, second = (half for half, (joint, _) in self.halves.items() if joint == name)
+                    raise NotMigratable(
+                        f"actuator '{entry.joint}' is one of the two axes of universal joint '{name}', and version 2 "
+                        f"actuates both, one after the other: '{first}', '{second}'",
+                        entry.pointer,
+                    )
+                pointers.append(other.pointer)
+            yield Entry(lines_of_item(name), *_together(attached, pointers))
+
+    # -- the user's own -------------------------------------------------------------------------------------------
+
+    def own_entries(self, comments: list[Comment]) -> tuple[dict[str, Entry], list[Comment]]:
+        """The user's own entries, as they are written where that is possible; and the comments that are not in them."""
+        document = self.document
+        source = document.source
+        starts = [0, *(found.end() for found in BREAK.finditer(source.text))]
+
+        def index(line: int | None, column: int | None) -> int:
+            assert line is not None
+            assert column is not None
+            return starts[line - 1] + column - 1
+
+        places = {key: document.place((key,), key=True) for key in document.data}
+        begins = sorted(index(place.line, place.column) for place in places.values())
+        begins.append(len(source.text))
+        indices = [comment.index for comment in comments]
+        entries = {}
+        kept: set[int] = set()
+        for key, name in own_keys(document.data).items():
+            if name != key:
+                self.notes.append(f"'{key}', data of your own, is now '{name}'")
+            place = places[key]
+            entries[key] = Entry(lines_of(name, document.data[key]))
+            if place.end_column is None:
+                continue
+            begin = index(place.line, place.end_column)
+            end = begins[bisect_left(begins, begin)]
+            inside = comments[bisect_left(indices, begin) : bisect_left(indices, end)]
+            while inside and not inside[-1].beside:
+                end = inside.pop().index
+            verbatim = BREAK.sub("\n", scalar(name) + source.text[begin:end].rstrip())
+            if _says(verbatim, name, document.data[key]):
+                entries[key] = Entry(tuple(verbatim.split("\n")))
+                kept.update(comment.index for comment in inside)
+        return entries, [comment for comment in comments if comment.index not in kept]
+
+
+def _says(text: str, key: str, value: object) -> bool:
+    """Whether the text is an entry of a block mapping at the top, with this key and this value."""
+    # What follows must still be read as the next entry.
+    text += "\nnext: entry\n"
+    try:
+        data = read_yaml(Source("", text, text.encode())).data
+    except Fault:
+        return False
+    return repr(data) == repr({key: value, "next": "entry"})
+
+
+def _section(key: str, items: list[Entry], above: tuple[str, ...], beside: str) -> Entry:
+    if key == "actuators" and not any(item.above or item.beside for item in items):
+        names = [item.lines[0].removeprefix("- ") for item in items]
+        one = f"{key}: [{', '.join(names)}]"
+        if len(one) <= WIDTH:
+            return Entry((one,), above, beside)
+    return section(key, items, above, beside)
+
+
+def _joints(names: Iterable[str]) -> str:
+    quoted = [f"'{name}'" for name in names]
+    return ("joint " if len(quoted) == 1 else "joints ") + ", ".join(quoted)
+
+
+def _together(attached: Mapping[Pointer, Attached], pointers: Iterable[Pointer]) -> tuple[tuple[str, ...], str]:
+    """The comments above and beside an entry that is made of several."""
+    several = [attached[pointer] for pointer in pointers if pointer in attached]
+    above = tuple(comment for one in several for comment in one.above if not _MODELINE.match(comment))
+    return above, " ".join(dict.fromkeys(comment for one in several for comment in one.beside))

@@ -1,0 +1,116 @@
+"""From version 1 of the format to version 2, with the same model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from eurdf.format.urdf import Urdf
+from eurdf.linking.description import Description
+from eurdf.linking.rereading import reread
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.same_model import differences, with_universal_joints
+from eurdf.reading.yaml_node import json_pointer
+from eurdf.writing.migrated_text import NotMigratable, migrated, own_keys
+
+#: Joints that a refusal names.
+_NAMED = 50
+
+
+@dataclass(frozen=True, slots=True)
+class Migration:
+    """A description in version 2.
+
+    Attributes:
+        text: Of the YAML file.
+        notes: What was done, one sentence each.
+        mechanism: That the text describes.
+    """
+
+    text: str
+    notes: tuple[str, ...]
+    mechanism: Mechanism
+
+
+def migrate(description: Description, urdf_path: str = "robot.urdf", schema: str | None = None) -> Migration:
+    """Write a robot's description of version 1 in version 2.
+
+    What version 1 does by itself is said; the user's own data and the comments are kept. The text is read once more,
+    and only returned where it describes the same model.
+
+    Args:
+        description: Of version 1, with a mechanism.
+        urdf_path: Path of the URDF from the folder of the new file.
+        schema: Path of the schema from the folder of the new file, for its first line; None for no such line.
+
+    Raises:
+        NotMigratable: Version 2 cannot say the same.
+    """
+    extension, document, urdf, before = (
+        description.extension,
+        description.document,
+        description.urdf,
+        description.mechanism,
+    )
+    assert extension is not None
+    assert document is not None
+    assert urdf is not None
+    assert before is not None
+    _refuse_mimics(urdf)
+    result = migrated(document, extension, urdf, merged_by_rule(description), urdf_path, schema)
+    after, diagnostics = reread(result.text, urdf, document.source.file)
+    if after is None:
+        raise NotMigratable(f"version 2 does not allow it: {diagnostics.errors[0].message}", ())
+    found = differences(before, after)
+    own = {str(key): value for (key,), value in extension.own_data.items()}
+    expected = {json_pointer([name]): own[key] for key, name in own_keys(own).items()}
+    if repr(expected) != repr(dict(after.own_data)):
+        found.append("your own data are others")
+    if found:
+        raise NotMigratable(f"version 2 would not be the same model: {'; '.join(found)}", ())
+    return Migration(result.text, (*result.notes, *_order(before, after)), after)
+
+
+def _refuse_mimics(urdf: Urdf) -> None:
+    """Refuse mimic joints: version 1 ignores what version 2 does not (EU-ONE-009).
+
+    Raises:
+        NotMigratable: There are some.
+    """
+    names = [f"'{joint.name}'" for joint in urdf.joints.values() if joint.mimic]
+    if names:
+        shown = ", ".join(names[:_NAMED]) + (f" and {len(names) - _NAMED} more" if len(names) > _NAMED else "")
+        what = f"joint {shown} has" if len(names) == 1 else f"joints {shown} have"
+        raise NotMigratable(
+            f"{what} a <mimic> in the URDF, which version 1 ignores and version 2 does not; "
+            "remove <mimic> from the URDF and migrate again: in version 1 this changes nothing",
+            (),
+        )
+
+
+def merged_by_rule(description: Description) -> dict[str, tuple[str, str, str]]:
+    """For each spherical joint that version 1 made of three revolutes by itself, their names (EU-ONE-007)."""
+    extension, urdf, mechanism = description.extension, description.urdf, description.mechanism
+    assert extension is not None
+    assert urdf is not None
+    assert mechanism is not None
+    listed = {entry.name for entry in extension.joints}
+    carrying = {joint.child: joint.name for joint in urdf.joints.values()}
+
+    def chain(third: str) -> tuple[str, str, str]:
+        second = carrying[urdf.joints[third].parent]
+        return carrying[urdf.joints[second].parent], second, third
+
+    return {
+        joint.name: chain(joint.name)
+        for joint in mechanism.joints
+        if joint.type is JointType.SPHERICAL and joint.name not in listed
+    }
+
+
+def _order(before: Mechanism, after: Mechanism) -> list[str]:
+    """Velocities follow the names of joints: one name in place of two may take another place among its siblings."""
+    names = [[joint.name for joint in mechanism.joints] for mechanism in (with_universal_joints(before), after)]
+    if names[0] == names[1]:
+        return []
+    return ["the joints, and with them the coordinates and velocities, come in another order"]

@@ -1,0 +1,402 @@
+"""What the names in a URDF say of its closures, motors and spherical joints, and that as the text of a description."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import cast
+
+from eurdf.format.field import is_own_key
+from eurdf.format.urdf import Urdf
+from eurdf.format.version2 import VERSION
+from eurdf.format.yaml_text import Entry, Value, item_of_mapping, lines_of, modeline, section, text_of
+from eurdf.linking.merging import MASSLESS
+from eurdf.mechanism.constraint import ClosureType
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mechanism import Root
+
+_ROTARY = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS})
+
+# Atomic groups, (?>…), keep a name of any length from being tried in more than a few ways.
+
+_LOOP_WORD = r"(?>.*(?:closed_?loop|fermeture))"
+_SIDE = r"(?:[_.-]|(?<=\d))(?P<side>[ab])"
+
+#: ``closedloop1_A`` and ``closedloop1_B``, ``closedloop3D_1A``, ``closed_loop_knee_a``; and with ``_frame`` behind it,
+#: the joint that some exporters fix such a link by.
+PUBLISHED_CLOSURE = rf"(?is)(?P<loop>{_LOOP_WORD}(?:_?(?P<type>[36]d))?.*){_SIDE}(?:_frame)?"
+
+#: ``closedloop0_A_3D`` and ``closedloop0_B_3D``: the type last.
+TYPE_LAST_CLOSURE = rf"(?is)(?P<loop>{_LOOP_WORD}.*){_SIDE}_?(?P<type>[36]d)(?:_frame)?"
+
+#: ``closing_knee_1`` and ``closing_knee_2``, as onshape-to-robot names the frames of a mate ``closing_knee``; and
+#: ``closing_knee_1_z`` and ``closing_knee_2_z``, on the axis of a mate that is revolute.
+MATE_CLOSURE = r"(?s)(?P<loop>(?>.*closing_).+)_(?P<side>[12])(?P<axis>_z)?(?:_frame)?"
+
+#: A pattern of closures, as the user writes it on the command line.
+EXAMPLE_CLOSURE = r"--closure '(?P<loop>rod\d+)_(?P<side>top|bottom)'"
+
+_WHERE = r"left|right|front|rear|back|hind|upper|lower|inner|outer|[lr]|[frhb][lr]|[lr][frhb]"
+
+#: Names that begin with the word ``mot`` or ``motor``, but for where it is on the robot: ``motor_knee``, ``mot1_rod2``
+#: and ``left_motor_ankle``, but not ``moteur_rod`` or ``free_motor_holder``.
+MOTOR = rf"(?i)^(?:(?:{_WHERE})\d*[_.-])*mot(?:or)?(?![^\W\d_])"
+
+#: Names that end with the word, numbers and ``joint`` aside: ``left_knee_motor``, ``ankle_motor_2_joint``.
+MOTOR_LAST = r"(?i)^(?!(?:free|passive|frame|fixed)[_.-]).*(?<![^\W_])mot(?:or)?[_.-]?\d*(?:[_.-]joint)?$"
+
+#: Names that have the word in them.
+SPHERICAL = r"(?i)spherical|to_rotule"
+
+
+class BadPattern(ValueError):  # noqa: N818 - said to the user as it stands
+    """A pattern that is no regular expression, or lacks a group; its text says which."""
+
+
+@dataclass(frozen=True, slots=True)
+class Conventions:
+    """Regular expressions (as of Python) that tell what a name means.
+
+    Attributes:
+        closures: Match the whole name of a link or a joint, which then is one frame of a closure. The group ``side``
+            tells the two frames apart; frame A is that whose side sorts first. The group ``loop``, or the name without
+            its side, is what they have in common, and names the closure. The group ``type``, where it matches ``3d`` or
+            ``6d`` in any case, is its type. Where the group ``axis`` matches, the frame is a second one, on the axis of
+            the loop's hinge.
+        motors: Found in the name of an actuated joint.
+        sphericals: Found in the name of a joint that is spherical, not revolute.
+    """
+
+    closures: tuple[re.Pattern[str], ...]
+    motors: tuple[re.Pattern[str], ...]
+    sphericals: tuple[re.Pattern[str], ...]
+
+
+def conventions(
+    closures: Sequence[str] = (), motors: Sequence[str] = (), sphericals: Sequence[str] = ()
+) -> Conventions:
+    """The user's conventions; of a kind that has none, the published ones.
+
+    Raises:
+        BadPattern: Not a regular expression, or one of a closure without the group ``side``.
+    """
+    closing = tuple(map(_compiled, closures or (PUBLISHED_CLOSURE, TYPE_LAST_CLOSURE, MATE_CLOSURE)))
+    for pattern in closing:
+        if "side" not in pattern.groupindex:
+            raise BadPattern(
+                f"the closure pattern '{pattern.pattern}' has no group 'side', which tells its two frames apart: "
+                r"for instance '(?P<loop>loop\d+)_(?P<side>A|B)'"
+            )
+    return Conventions(
+        closing, tuple(map(_compiled, motors or (MOTOR, MOTOR_LAST))), tuple(map(_compiled, sphericals or (SPHERICAL,)))
+    )
+
+
+def _compiled(pattern: str) -> re.Pattern[str]:
+    try:
+        return re.compile(pattern)
+    except (re.error, OverflowError, RecursionError) as error:
+        raise BadPattern(f"'{pattern}' is no regular expression: {error}") from None
+
+
+@dataclass(frozen=True, slots=True)
+class NamedClosure:
+    """A closure that two names say.
+
+    Attributes:
+        name: What its frames have in common.
+        type: None where the names do not state it.
+        frames: Names of frame A and frame B.
+        hinge: Whether it is one of the two that hold a hinge: a point on its axis, and a second one.
+    """
+
+    name: str
+    type: ClosureType | None
+    frames: tuple[str, str]
+    hinge: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """What the names in a URDF say.
+
+    Attributes:
+        closures: By the names of their loops, numbers in them counted as numbers.
+        motors: Actuated joints, in the order of the tree.
+        sphericals: Spherical joints, in the order of the tree.
+        warnings: What could not be taken as it is named, one sentence each.
+    """
+
+    closures: tuple[NamedClosure, ...]
+    motors: tuple[str, ...]
+    sphericals: tuple[str, ...]
+    warnings: tuple[str, ...]
+
+
+def find(urdf: Urdf, convention: Conventions) -> Found:
+    """Look for names that follow the conventions."""
+    warnings: list[str] = []
+    closures = tuple(_closures(urdf, convention.closures, warnings))
+    motors = tuple(_motors(urdf, convention.motors, warnings))
+    sphericals = tuple(_sphericals(urdf, convention.sphericals, warnings))
+    return Found(closures, motors, sphericals, tuple(warnings))
+
+
+def with_type(found: Found, closure_type: ClosureType) -> Found:
+    """Give every closure one type. A 6d closure holds a hinge by one point: the second one would be redundant."""
+    second = {f"{closure.name}_z" for closure in found.closures if closure.hinge}
+    closures = tuple(
+        replace(closure, type=closure_type, hinge=False)
+        for closure in found.closures
+        if not (closure_type == "6d" and closure.hinge and closure.name in second)
+    )
+    return replace(found, closures=closures)
+
+
+# -- closures -----------------------------------------------------------------------------------------------------
+
+
+@dataclass(slots=True)
+class _Loop:
+    """What names state of one loop.
+
+    Attributes:
+        sides: For each side, the names of links and joints.
+        types: Those that the names state.
+        axis_of: Name of the loop that it is the axis of, where it is a second point on a hinge.
+    """
+
+    sides: dict[str, list[str]] = field(default_factory=dict)
+    types: set[ClosureType] = field(default_factory=set)
+    axis_of: str | None = None
+
+
+def _closures(urdf: Urdf, patterns: Iterable[re.Pattern[str]], warnings: list[str]) -> list[NamedClosure]:
+    bodies = {name: name for name in urdf.links}
+    for joint in urdf.joints.values():
+        bodies.setdefault(joint.name, joint.child)
+    loops = _loops(bodies, patterns)
+    rigid = _rigid(urdf)
+    joined: dict[frozenset[str], str] = {}
+    paired: list[NamedClosure] = []
+    for name in sorted(loops, key=_natural):
+        loop = loops[name]
+        if len(loop.sides) != 2:
+            warnings.append(_unpaired(name, loop.sides))
+            continue
+        frames = [_frame(name, side, loop.sides[side], bodies, warnings) for side in sorted(loop.sides, key=_natural)]
+        a, b = bodies[frames[0]], bodies[frames[1]]
+        if rigid[a] == rigid[b]:
+            warnings.append(
+                f"'{frames[0]}' and '{frames[1]}' are fixed to each other and cannot be a closure: left out"
+            )
+        elif (pair := frozenset({a, b})) in joined:
+            warnings.append(f"'{frames[0]}' and '{frames[1]}' are the two frames of '{joined[pair]}' already: left out")
+        else:
+            joined[pair] = name
+            if len(loop.types) > 1:
+                warnings.append(f"the names of loop '{name}' say both 3d and 6d: neither is taken from them")
+            type_ = next(iter(loop.types)) if len(loop.types) == 1 else None
+            paired.append(NamedClosure(name, type_, (frames[0], frames[1])))
+    names = {closure.name for closure in paired}
+    hinges = {
+        each
+        for name in names
+        if (point := loops[name].axis_of) is not None and point in names
+        for each in (name, point)
+    }
+    # Two points hold a hinge, each in position alone.
+    return [replace(closure, type="3d", hinge=True) if closure.name in hinges else closure for closure in paired]
+
+
+def _loops(names: Iterable[str], patterns: Iterable[re.Pattern[str]]) -> dict[str, _Loop]:
+    """The loops that names of links and joints say, links first: of a link and the joint that fixes it, it is meant."""
+    loops: dict[str, _Loop] = {}
+    for pattern in patterns:
+        for name in names:
+            match = pattern.fullmatch(name)
+            if match is None or match["side"] is None:
+                continue
+            groups = match.groupdict()
+            point = _loop(match)
+            loop = loops.setdefault(point + (groups.get("axis") or ""), _Loop())
+            if groups.get("axis"):
+                loop.axis_of = point
+            side = loop.sides.setdefault(match["side"].upper(), [])
+            if name not in side:
+                side.append(name)
+            stated = (groups.get("type") or "").lower()
+            if stated in ("3d", "6d"):
+                loop.types.add(cast(ClosureType, stated))
+    return loops
+
+
+def _frame(loop: str, side: str, names: Sequence[str], bodies: Mapping[str, str], warnings: list[str]) -> str:
+    """The name that is taken for the frame of one side."""
+    if len({bodies[name] for name in names}) > 1:
+        others = ", ".join(f"'{name}'" for name in names[1:])
+        warnings.append(f"side {side} of loop '{loop}' is taken to be '{names[0]}'; it might be {others}")
+    return names[0]
+
+
+def _loop(match: re.Match[str]) -> str:
+    if "loop" in match.re.groupindex and match["loop"]:
+        return match["loop"]
+    begin, end = match.span("side")
+    return (match.string[:begin] + match.string[end:]).strip("_.-") or match.string
+
+
+def _unpaired(loop: str, sides: Mapping[str, Sequence[str]]) -> str:
+    names = ", ".join(f"'{names[0]}'" for names in sides.values())
+    if len(sides) == 1:
+        return f"{names} has no other side: a closure has two frames; left out"
+    return f"loop '{loop}' has {len(sides)} sides, {names}: a closure has two frames; left out"
+
+
+def _rigid(urdf: Urdf) -> dict[str, str]:
+    """For each link, the one nearest to the root that it is rigidly fixed to."""
+    rigid = {urdf.root: urdf.root}
+    for joint in urdf.walk():
+        rigid[joint.child] = rigid[joint.parent] if joint.type is JointType.FIXED else joint.child
+    return rigid
+
+
+def _natural(name: str) -> list[tuple[int, str]]:
+    """Sorts loop2 before loop10, by the length of a number before its digits."""
+    parts = re.split(r"(\d+)", name)
+    return [(len(part.lstrip("0")), part.lstrip("0")) if index % 2 else (-1, part) for index, part in enumerate(parts)]
+
+
+# -- joints -------------------------------------------------------------------------------------------------------
+
+
+def _motors(urdf: Urdf, patterns: Sequence[re.Pattern[str]], warnings: list[str]) -> list[str]:
+    named = [joint for joint in urdf.walk() if any(pattern.search(joint.name) for pattern in patterns)]
+    motors = []
+    for joint in named:
+        if joint.type is JointType.FIXED:
+            warnings.append(f"joint '{joint.name}' is named as a motor, but is fixed: left out")
+        elif joint.mimic is not None:
+            warnings.append(f"joint '{joint.name}' is named as a motor, but mimics '{joint.mimic.joint}': left out")
+        else:
+            motors.append(joint.name)
+    return motors
+
+
+def _sphericals(urdf: Urdf, patterns: Sequence[re.Pattern[str]], warnings: list[str]) -> Iterable[str]:
+    coupled = {name for joint in urdf.joints.values() if joint.mimic for name in (joint.name, joint.mimic.joint)}
+    for joint in urdf.walk():
+        if not any(pattern.search(joint.name) for pattern in patterns):
+            continue
+        if joint.type not in _ROTARY:
+            why = f"is {joint.type}, and only a revolute joint becomes spherical"
+        elif joint.name in coupled:
+            why = "mimics or is mimicked"
+        elif is_own_key(joint.name):
+            why = "begins with 'x-', as only data of the user's own do"
+        else:
+            yield joint.name
+            continue
+        warnings.append(f"joint '{joint.name}' is named as spherical, but {why}: left out")
+
+
+# -- hints --------------------------------------------------------------------------------------------------------
+
+
+def hints(urdf: Urdf, found: Found, convention: Conventions) -> tuple[str, ...]:
+    """How to get closures, or motors, where the names say none: one sentence each, with names of this robot."""
+    said = []
+    if not found.closures:
+        why = "no two links or joints are named as the frames of a closure"
+        if convention.closures != conventions().closures:
+            why = "no two names match a --closure pattern with different sides"
+        carrying = {joint.parent for joint in urdf.joints.values()}
+        ends = [
+            name
+            for name, link in urdf.links.items()
+            if name not in carrying and (link.inertia is None or link.inertia.mass < MASSLESS)
+        ]
+        may_be = f"; links without mass at the ends of the tree, such frames perhaps: {_some(ends)}" if ends else ""
+        said.append(
+            f"{why}: name them closedloop1_A and closedloop1_B in CAD, or give a pattern of their names, such as "
+            f"{EXAMPLE_CLOSURE}{may_be}"
+        )
+    if not found.motors:
+        moving = [joint.name for joint in urdf.walk() if joint.type is not JointType.FIXED and joint.mimic is None]
+        why = "no joint is named as a motor"
+        if convention.motors != conventions().motors:
+            why = "no joint that can move matches a --motor pattern"
+        if moving:
+            likely = next((name for name in moving if "mot" in name.lower()), moving[0])
+            said.append(
+                f"{why}: give a pattern that is found in the names of the actuated joints, such as "
+                f"--motor {shlex.quote(f'^{re.escape(likely)}$')}; the joints that move: {_some(moving)}"
+            )
+        else:
+            said.append("no joint can be actuated: each is fixed or mimics another; change its type in the URDF")
+    return tuple(said)
+
+
+def _some(names: Sequence[str]) -> str:
+    return ", ".join(f"'{name}'" for name in names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
+
+
+# -- text ---------------------------------------------------------------------------------------------------------
+
+
+def version2_text(
+    found: Found,
+    merges: Mapping[str, Sequence[str]],
+    root: Root = "fixed",
+    urdf_path: str = "robot.urdf",
+    schema: str | None = None,
+) -> str:
+    """The description in version 2.
+
+    Args:
+        found: What the names say.
+        merges: For each spherical joint made of three revolutes, their names.
+        root: Whether the root is fixed or floating.
+        urdf_path: Path of the URDF from the folder of the description.
+        schema: Path of the schema from the folder of the description, for editors; no line names it where it is None.
+    """
+    entries = [
+        Entry(lines_of("extended_urdf", VERSION), _schema_line(schema)),
+        Entry(lines_of("urdf", urdf_path)),
+    ]
+    if root != "fixed":
+        entries.append(Entry(lines_of("root", root)))
+    if found.closures:
+        items = [
+            Entry(item_of_mapping({"name": closure.name, "type": closure.type or "6d", "frames": closure.frames}))
+            for closure in found.closures
+        ]
+        entries.append(section("closures", items))
+    joints: dict[str, Value] = dict.fromkeys(found.sphericals, "spherical")
+    joints |= {name: {"type": "spherical", "merges": list(three)} for name, three in merges.items()}
+    if joints:
+        entries.append(section("joints", [Entry(lines_of(name, value)) for name, value in joints.items()]))
+    if found.motors:
+        entries.append(Entry(lines_of("actuators", found.motors)))
+    return text_of(entries)
+
+
+def version1_text(found: Found, schema: str | None = None) -> str:
+    """The description in version 1, which merges revolutes by itself; `schema` as in `version2_text`."""
+    values: dict[str, Value] = {
+        "closed_loop": [closure.frames for closure in found.closures],
+        "type": [closure.type or "6d" for closure in found.closures],
+        "name_mot": found.motors,
+        "joint_name": found.sphericals,
+        "joint_type": ["SPHERICAL"] * len(found.sphericals),
+    }
+    # Without any key of the format, it would still be a description of version 1: of nothing.
+    entries = [Entry(lines_of(key, value)) for key, value in values.items() if value or key in ("closed_loop", "type")]
+    first, *rest = entries
+    return text_of([Entry(first.lines, _schema_line(schema)), *rest])
+
+
+def _schema_line(schema: str | None) -> tuple[str, ...]:
+    return () if schema is None else (modeline(schema),)
