@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import ast
 import inspect
 import re
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,18 +17,6 @@ def test_every_public_name_can_be_loaded() -> None:
     for name in eurdf.__all__:
         assert getattr(eurdf, name) is not None
     assert set(eurdf.__all__) <= set(dir(eurdf))
-
-
-def test_the_lists_of_public_names_agree() -> None:
-    tree = ast.parse(Path(eurdf.__file__).read_text(encoding="utf-8"))
-    checked = next(node for node in tree.body if isinstance(node, ast.If))
-    imported = {
-        (node.module, alias.name) for node in checked.body if isinstance(node, ast.ImportFrom) for alias in node.names
-    }
-    loaded = {(home, name) for home, names in eurdf._NAMES.items() for name in names}
-    assert imported == loaded
-    assert sorted(eurdf.__all__) == sorted(["__version__", *(name for _, name in loaded)])
-    assert list(eurdf._NAMES) == sorted(eurdf._NAMES)
 
 
 #: Public functions that take several names or folders, each called with one alone and with a list of it.
