@@ -12,16 +12,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-from eurdf.exceptions import (
+from eurdf.kinematics import dynamics
+from eurdf.kinematics.assembly import assemble
+from eurdf.kinematics.dynamics import achievable_acceleration, forward_dynamics, inverse_dynamics
+from eurdf.kinematics.exceptions import (
     InconsistentMotion,
     NotClosable,
     SimulationDiverged,
     UnderactuatedMotion,
     UndeterminedMotion,
 )
-from eurdf.kinematics import dynamics
-from eurdf.kinematics.assembly import assemble
-from eurdf.kinematics.dynamics import achievable_acceleration, forward_dynamics, inverse_dynamics
 from eurdf.kinematics.residual import residual, residual_and_jacobian
 from eurdf.kinematics.simulation import simulate
 from eurdf.pinocchio.configuration import joint_coordinates

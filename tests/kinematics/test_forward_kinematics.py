@@ -12,15 +12,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-from eurdf.exceptions import DependentActuators, EurdfError, NotClosable
+from eurdf.exceptions import EurdfError
 from eurdf.kinematics.assembly import assemble
+from eurdf.kinematics.exceptions import DependentActuators, NotClosable
 from eurdf.kinematics.forward_kinematics import forward_kinematics
 from eurdf.kinematics.residual import residual, residual_and_jacobian
 from eurdf.kinematics.sensitivity import actuated_jacobian, dq_dq_actuated
 from eurdf.kinematics.split import split_configuration
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.mechanism import JointType, Mechanism
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.mimic import Mimic
 from eurdf.pinocchio.robot import build_robot
 from support.actuated import ROBOTS, actuated, closed_near, robot_called
 from support.linkage import Linkage, X, Z, bennett, closure, loop, n_bar, slider_crank, stewart, translation
@@ -174,7 +177,7 @@ def test_what_are_no_coordinates_of_the_robot_is_refused() -> None:
 def test_a_joint_that_mimics_is_told_through_its_leader() -> None:
     lead = Joint("lead", JointType.REVOLUTE, "base", "a", axes=(Z,))
     follow = Joint("follow", JointType.REVOLUTE, "a", "b", axes=(X,))
-    mimic = dataclasses.replace(follow, mimic=eurdf.mechanism.mimic.Mimic("lead", 2.0, 0.1))
+    mimic = dataclasses.replace(follow, mimic=Mimic("lead", 2.0, 0.1))
     mechanism = Mechanism("two", "", "fixed", (Body("base"), Body("a"), Body("b")), (lead, mimic), actuators=("lead",))
     robot = build_robot(mechanism, geometry=False)
     np.testing.assert_array_equal(forward_kinematics(robot, {"lead": 0.4}), [0.4])

@@ -11,9 +11,10 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from eurdf.exceptions import EurdfError, NotClosable
+from eurdf.exceptions import EurdfError
 from eurdf.kinematics.acceleration_drift import acceleration_drift
 from eurdf.kinematics.assembly import assemble
+from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.projection import project_acceleration, project_configuration, project_velocity
 from eurdf.kinematics.residual import residual, residual_and_jacobian
 from support.actuated import ROBOTS, closed_near, robot_called

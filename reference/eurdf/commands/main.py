@@ -17,7 +17,6 @@ from typing import TextIO
 from eurdf import __version__
 from eurdf.commands import assemble, certify, check, generate, info, migrate, robots, schema
 from eurdf.commands.cannot_run import CannotRun
-from eurdf.commands.start import INTERRUPTED, start
 from eurdf.exceptions import CannotExpand, MissingExtra
 
 #: The commands, in the order in which the help shows them.
@@ -51,8 +50,6 @@ def main(argv: Sequence[str] | None = None) -> int:
         args = _parser().parse_args(argv)
         code: int = args.run(args)
         sys.stdout.flush()
-    except KeyboardInterrupt:
-        return INTERRUPTED
     except BrokenPipeError:
         # Nobody reads any more. The interpreter flushes once more at its end: let that go nowhere.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -85,7 +82,3 @@ def _write_any_character(stream: TextIO) -> None:
     """Let a character that the locale cannot write be written as its escape rather than end the command."""
     if isinstance(stream, io.TextIOWrapper):
         stream.reconfigure(errors="backslashreplace")
-
-
-if __name__ == "__main__":
-    sys.exit(start())

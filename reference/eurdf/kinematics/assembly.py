@@ -25,7 +25,7 @@ from eurdf.kinematics.loop import LoopGroup, find_loops, independent_groups
 from eurdf.kinematics.position_limit import JointAtLimit, Limits, PositionLimits, chosen_limits
 from eurdf.kinematics.residual import CLOSED, Opening
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
-from eurdf.several import several
+from eurdf.kinematics.several import several
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot

@@ -21,10 +21,10 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from eurdf.exceptions import InconsistentMotion, UnderactuatedMotion, UndeterminedMotion
 from eurdf.kinematics.acceleration_drift import acceleration_drift
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import start
+from eurdf.kinematics.exceptions import InconsistentMotion, UnderactuatedMotion, UndeterminedMotion
 from eurdf.kinematics.frame_index import frame_index
 from eurdf.kinematics.loop import Loop, find_loops
 from eurdf.kinematics.mass_matrix import mass_times

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pinocchio as pin
 
-from eurdf.exceptions import NotClosable
 from eurdf.kinematics.array import Indices, Vector
 from eurdf.kinematics.assembly import Assembler, assemble, start
+from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.residual import closure_openings, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.mechanism.mechanism import ROOT_JOINT

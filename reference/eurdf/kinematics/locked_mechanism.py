@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
 
-from eurdf.exceptions import CannotLock
+from eurdf.kinematics.exceptions import CannotLock
 from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_transform import joint_transform

@@ -8,17 +8,17 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from eurdf.exceptions import CannotLock, LockedOpen
 from eurdf.kinematics.array import Indices, Vector
 from eurdf.kinematics.assembly import start
+from eurdf.kinematics.exceptions import CannotLock, LockedOpen
 from eurdf.kinematics.locked_mechanism import LockedMechanism, lock_joints
 from eurdf.kinematics.loop import find_loops
 from eurdf.kinematics.residual import CLOSED, closure_openings, residual
+from eurdf.kinematics.several import several
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.configuration import joint_coordinates
 from eurdf.pinocchio.coordinates import slots
 from eurdf.pinocchio.robot import Robot, build_robot
-from eurdf.several import several
 
 
 class LockedRobot(Robot):

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pinocchio as pin
 
-from eurdf.exceptions import DependentActuators
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import start
+from eurdf.kinematics.exceptions import DependentActuators
 from eurdf.kinematics.frame_index import frame_index
 from eurdf.kinematics.metric import metric, orthonormal
 from eurdf.kinematics.rank import numerical_rank

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import pinocchio as pin
 
-from eurdf.exceptions import NotClosable, SimulationDiverged
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import assemble, start
 from eurdf.kinematics.dynamics import External, checked_vector, forward_dynamics
+from eurdf.kinematics.exceptions import NotClosable, SimulationDiverged
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
 

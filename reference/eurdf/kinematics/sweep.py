@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from eurdf.exceptions import NotClosable
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.branch import Branch, Point
+from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.position_limit import Limits, PositionLimits, chosen_limits
 from eurdf.kinematics.scale import characteristic_length
 from eurdf.mechanism.joint_type import JointType

@@ -7,8 +7,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from urllib.parse import unquote
 
-from eurdf.several import several
-
 #: What to do where a file of a package is not found.
 HINT = (
     "put them beside the URDF, or name the folder that holds their package by --package-dir (package_dirs= in Python), "
@@ -59,7 +57,7 @@ def package_homes(folder: Path, package_dirs: Sequence[str | os.PathLike[str]] =
         folder: Folder of the URDF.
         package_dirs: Folders that hold packages.
     """
-    given = several(package_dirs)
+    given = (package_dirs,) if isinstance(package_dirs, str | os.PathLike) else package_dirs
     homes = [Path(os.path.abspath(home)) for home in given]
     homes += [Path(home) for home in os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep) if home]
     homes += [Path(home) / "share" for home in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep) if home]

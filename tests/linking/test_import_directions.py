@@ -1,0 +1,48 @@
+"""Imports go one way, with no circle: the contracts are in pyproject.toml, under tool.importlinter."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+def lint(folder: Path) -> str:
+    """What import-linter says of the packages that are imported from a folder."""
+    run = "from importlinter.cli import lint_imports_command as run; run()"
+    command = [sys.executable, "-c", run, "--no-cache", "--config", str(ROOT / "pyproject.toml")]
+    return " ".join(subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False).stdout.split())
+
+
+def test_every_import_goes_the_right_way() -> None:
+    said = lint(ROOT)
+    assert " 0 broken." in said, said
+
+
+@pytest.mark.parametrize(
+    ("file", "wrong", "complaint"),
+    [
+        ("mechanism/pose.py", "import eurdf.diagnostics", "eurdf.mechanism is not allowed to import eurdf.diagnostics"),
+        ("format/near.py", "import eurdf.linking.link", "eurdf.format is not allowed to import eurdf.linking"),
+        (
+            "linking/merging.py",
+            "def later() -> None:\n    import eurdf.kinematics.scale",
+            "eurdf.linking is not allowed to import eurdf.kinematics",
+        ),
+        ("linking/merging.py", "import pinocchio", "eurdf.linking is not allowed to import pinocchio"),
+        ("pinocchio/frames.py", "import eurdf.linking.link", "eurdf.pinocchio is not allowed to import eurdf.linking"),
+        ("linking/frame_names.py", "import eurdf.linking.closures", "No cycles are allowed in eurdf.linking"),
+    ],
+)
+def test_a_wrong_import_breaks_a_contract(tmp_path: Path, file: str, wrong: str, complaint: str) -> None:
+    sources = shutil.ignore_patterns("corpus", "__pycache__")
+    shutil.copytree(ROOT / "reference/eurdf", tmp_path / "eurdf", ignore=sources)
+    shutil.copytree(ROOT / "conformance/eurdf_conformance", tmp_path / "eurdf_conformance", ignore=sources)
+    with (tmp_path / "eurdf" / file).open("a", encoding="utf-8") as module:
+        module.write(f"\n{wrong}\n")
+    assert complaint in lint(tmp_path)
