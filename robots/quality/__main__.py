@@ -18,7 +18,7 @@ from rich.text import Text
 import eurdf
 from eurdf.commands.output import has_boxes, write_json, write_lines, write_rendered
 from eurdf.diagnostics.text import visible
-from eurdf.kinematics.sweep import Sweep, Way
+from eurdf.kinematics.sweep import MotionPath, Sweep
 from robots.quality.candidate import Candidate
 from robots.quality.motion import is_angular, is_endless, shown
 from robots.quality.verdict import RULES, Verdict, judge
@@ -72,7 +72,7 @@ def _sweeps(candidate: Candidate) -> Table:
         angular, ways = is_angular(candidate.robot, actuator), (found.lower, found.upper)
         table.add_row(
             Text(actuator, "bold"),
-            "none" if is_endless(candidate.robot, actuator) else _range(found.stops, angular),
+            "none" if is_endless(candidate.robot, actuator) else _range(found.bounds, angular),
             _range((way.reached for way in ways), angular),
             *(way.joint or way.end for way in ways),
             f"{max(way.residual for way in ways):.0e}",
@@ -108,14 +108,14 @@ def _as_json(verdict: Verdict) -> dict[str, Any]:
 def _sweep_as_json(found: Sweep) -> dict[str, Any]:
     return {
         "actuator": found.actuator,
-        "stops": found.stops,
-        "lower": _way_as_json(found.lower),
-        "upper": _way_as_json(found.upper),
-        "comes_round": found.comes_round,
+        "bounds": found.bounds,
+        "lower": _path_as_json(found.lower),
+        "upper": _path_as_json(found.upper),
+        "periodic": found.periodic,
     }
 
 
-def _way_as_json(way: Way) -> dict[str, Any]:
+def _path_as_json(way: MotionPath) -> dict[str, Any]:
     return {
         "end": way.end,
         "joint": way.joint,

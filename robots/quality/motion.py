@@ -9,7 +9,7 @@ import pinocchio as pin
 
 import eurdf
 from eurdf.kinematics.array import Matrix
-from eurdf.kinematics.sweep import Sweep, Way
+from eurdf.kinematics.sweep import MotionPath, Sweep
 from robots.quality.candidate import Candidate
 
 _ASSEMBLED = 1e-12  # largest row of the residual at the assembled configuration, m or rad
@@ -72,20 +72,20 @@ def moves(candidate: Candidate) -> list[str] | None:
             faults.append(found)
             continue
         angular = is_angular(candidate.robot, actuator)
-        for way, stop in zip((found.lower, found.upper), found.stops, strict=True):
+        for way, stop in zip((found.lower, found.upper), found.bounds, strict=True):
             faults += [f"'{actuator}' {fault}" for fault in _faults(way, stop, angular)]
-        if found.comes_round is False:
+        if found.periodic is False:
             faults.append(f"'{actuator}' does not come round: a full turn leads to another configuration")
         if is_endless(candidate.robot, actuator):
             faults += [
                 f"'{actuator}' has no stops, but '{way.joint}' comes to its own at {shown(way.reached, angular)}"
                 for way in (found.lower, found.upper)
-                if way.end == "passive stop"
+                if way.end == "passive limit"
             ]
     return faults
 
 
-def _faults(way: Way, stop: float, angular: bool) -> list[str]:
+def _faults(way: MotionPath, stop: float, angular: bool) -> list[str]:
     faults = []
     if way.end == "dead point":
         faults.append(f"has a dead point at {shown(way.reached, angular)}, before its stop at {shown(stop, angular)}")

@@ -265,7 +265,7 @@ def test_each_group_of_loops_is_analysed_on_its_own_and_the_whole_is_their_sum()
 
 
 @pytest.mark.parametrize(
-    ("build", "uncontrolled", "surplus", "fighting"),
+    ("build", "uncontrolled", "dependent", "dependent_actuators"),
     [
         (lambda: n_bar(4), 0, 0, ()),
         (lambda: n_bar(4, actuated=["j0", "j2"]), 0, 1, (("j0", "j2"),)),
@@ -285,12 +285,16 @@ def test_each_group_of_loops_is_analysed_on_its_own_and_the_whole_is_their_sum()
     ],
 )
 def test_actuators_suffice_are_redundant_or_fight(
-    build: Callable[[], Linkage], uncontrolled: int, surplus: int, fighting: tuple[tuple[str, ...], ...]
+    build: Callable[[], Linkage], uncontrolled: int, dependent: int, dependent_actuators: tuple[tuple[str, ...], ...]
 ) -> None:
     analysis = analyze(build())
-    assert (analysis.uncontrolled, analysis.surplus, analysis.fighting) == (uncontrolled, surplus, fighting)
+    assert (analysis.uncontrolled, analysis.dependent, analysis.dependent_actuators) == (
+        uncontrolled,
+        dependent,
+        dependent_actuators,
+    )
     assert analysis.mobility is not None
-    assert analysis.controlled == analysis.actuated - surplus == analysis.mobility - uncontrolled
+    assert analysis.controlled == analysis.actuated - dependent == analysis.mobility - uncontrolled
 
 
 def test_actuators_that_fight_are_told_from_those_of_the_same_loops_that_do_not() -> None:
@@ -309,8 +313,8 @@ def test_actuators_that_fight_are_told_from_those_of_the_same_loops_that_do_not(
     analysis = analyze(linkage)
     assert [loops.closures for loops in analysis.loops] == [("end", "other")]
     assert analysis.mobility == 2
-    assert analysis.surplus == 1
-    assert analysis.fighting == (("j0", "j2"),)
+    assert analysis.dependent == 1
+    assert analysis.dependent_actuators == (("j0", "j2"),)
 
 
 def test_an_uncontrolled_motion_keeps_the_loops_closed_and_the_actuators_still() -> None:
@@ -413,17 +417,19 @@ def test_what_does_not_close_has_no_motions_and_no_distances() -> None:
     linkage = n_bar(4, actuated=["j0", "j1"])
     linkage.constraint_models[0].joint1_placement = translation(50.0, 0.0, 0.0)
     analysis = analyze(linkage)
-    assert (analysis.controlled, analysis.surplus, analysis.singularity, analysis.actuation_singularity) == (None,) * 4
-    assert (analysis.fighting, analysis.motions, analysis.loops) == ((), (), ())
+    assert (analysis.controlled, analysis.dependent, analysis.singularity, analysis.actuation_singularity) == (
+        None,
+    ) * 4
+    assert (analysis.dependent_actuators, analysis.motions, analysis.loops) == ((), (), ())
 
 
 def test_info_says_what_the_actuators_leave_and_what_they_fight_over() -> None:
     robot = load(*described(side_by_side(n_bar(6, actuated=["j1"]), n_bar(4, actuated=["j0", "j2"]))))
     analysis = eurdf.analyze(robot)
     info = robot_info(robot, analysis)
-    assert (info.controlled, info.surplus, info.uncontrolled) == (2, 1, 2)
+    assert (info.controlled, info.dependent, info.uncontrolled) == (2, 1, 2)
     assert [motion.joints for motion in info.motion_list] == [motion.joints for motion in analysis.motions]
-    assert info.fighting_list == (("b0", "b2"),)
+    assert info.dependent_list == (("b0", "b2"),)
     assert [(loops.closures, loops.mobility, loops.uncontrolled) for loops in info.loop_list] == [
         (("a_end",), 3, 2),
         (("b_end",), 1, 0),

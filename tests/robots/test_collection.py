@@ -87,7 +87,7 @@ def test_a_robot_has_the_dimensions_it_was_asked_for(folder):
     asked = DIMENSIONS[folder.name]
     assert asked == tuple(value if wish is not None else None for value, wish in zip(measured, asked, strict=True))
     assert found.controlled == CONTROLLED.get(folder.name, found.controlled)
-    assert found.surplus == 0
+    assert found.dependent == 0
     assert robot.mechanism.root == ("floating" if folder.name in TWO_LEGGED else "fixed")
 
 

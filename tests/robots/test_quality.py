@@ -331,4 +331,4 @@ def test_the_command_writes_the_same_as_json(copy, capsys):
     assert list(robot["rules"]) == list(RULES)
     assert [rule for rule, found in robot["rules"].items() if found] == ["pictured"]
     (sweep,) = robot["sweeps"]
-    assert (sweep["actuator"], sweep["comes_round"], sweep["lower"]["end"]) == ("motor_crank", True, "half turn")
+    assert (sweep["actuator"], sweep["periodic"], sweep["lower"]["end"]) == ("motor_crank", True, "half turn")

@@ -91,4 +91,4 @@ def test_every_actuator_moves_though_no_range_is_given(robots: dict[str, eurdf.R
     for actuator in robot.actuation.joints:
         found = eurdf.sweep(robot, actuator, steps=10)
         assert found.upper.reached - found.lower.reached > 0.05
-        assert {found.lower.end, found.upper.end} <= {"half turn", "dead point", "passive stop"}
+        assert {found.lower.end, found.upper.end} <= {"half turn", "dead point", "passive limit"}

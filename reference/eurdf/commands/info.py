@@ -87,8 +87,8 @@ def _show(info: RobotInfo) -> None:
         shown.append(_loops(info))
     if info.motion_list and info.actuated:  # without actuators, that is every motion
         shown.append(_motions(info))
-    if info.fighting_list:
-        shown.append(_fighting(info))
+    if info.dependent_list:
+        shown.append(_dependent(info))
     if info.joint_list:
         shown.append(_joints(info))
     if info.frame_list:
@@ -137,7 +137,7 @@ def _dimensions(info: RobotInfo) -> Table:
         ("mobility", info.mobility, "motions that the closures leave, nv - rank"),
         ("actuated", info.actuated, "velocities"),
         ("uncontrolled", info.uncontrolled, "motions left with every actuator held"),
-        ("surplus", info.surplus, "actuated velocities that follow from the others"),
+        ("dependent", info.dependent, "actuated velocities that depend on the others"),
     ]
     if info.singularity is not None:
         rows.append(("singularity", f"{info.singularity:.2g}", "distance to it: 0 where the closures lose rank"))
@@ -185,9 +185,9 @@ def _motions(info: RobotInfo) -> Table:
     return table
 
 
-def _fighting(info: RobotInfo) -> Table:
-    table = new_table("actuators that fight through the closures")
-    for joints in info.fighting_list:
+def _dependent(info: RobotInfo) -> Table:
+    table = new_table("actuators that depend on one another through the closures")
+    for joints in info.dependent_list:
         table.add_row(cell(", ".join(joints), "yellow"))
     return table
 

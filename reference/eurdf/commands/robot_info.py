@@ -145,23 +145,23 @@ class RobotInfo(_Entry):
     nc: Count
     """Number of constraint rows of all closures."""
     rank: Count | None
-    """Rank of the constraint Jacobian at a closed configuration; null where the loops do not close."""
+    """Rank of the constraint Jacobian at a closed configuration; null if the loops do not close."""
     mobility: Count | None
-    """Motions left by the closures, nv - rank; null where the loops do not close."""
+    """Degrees of freedom of the closed mechanism, nv - rank; null if the loops do not close."""
     redundant: Count | None
-    """Constraint rows that say nothing new, nc - rank; null where the loops do not close."""
+    """Redundant constraint rows, nc - rank; null if the loops do not close."""
     uncontrolled: Count | None
-    """Motions left with every actuator held; null where the loops do not close."""
+    """Degrees of freedom left with every actuator held; null if the loops do not close."""
     actuated: Count
     """Number of actuated velocities."""
     controlled: Count | None
-    """Motions that the actuators decide, mobility - uncontrolled; null where the loops do not close."""
-    surplus: Count | None
-    """Actuated velocities that follow from the others, actuated - controlled; null where the loops do not close."""
+    """Degrees of freedom that the actuators control, mobility - uncontrolled; null if the loops do not close."""
+    dependent: Count | None
+    """Actuated velocities that depend on the others, actuated - controlled; null if the loops do not close."""
     singularity: float | None
-    """Distance to singularity: least singular value of the constraint Jacobian, free of unit; null without loops."""
+    """Distance to singularity: least singular value of the dimensionless constraint Jacobian; null without loops."""
     actuation_singularity: float | None
-    """The same of the constraint Jacobian with the rows that select the actuated velocities."""
+    """The same for the constraint Jacobian stacked with the rows that select the actuated velocities."""
     mass: float | None
     """Mass of all links, the root included, kg."""
     residual: float | None
@@ -169,17 +169,17 @@ class RobotInfo(_Entry):
     closes: bool
     """Whether a configuration was found at which every loop is closed."""
     left_out: str | None
-    """What was not computed, and is null, since the robot is too large; null where all was."""
+    """What was not computed because the robot is too large; those values are null. Null if all was computed."""
     joint_list: tuple[JointInfo, ...]
     """The moving joints, depth first."""
     closure_list: tuple[ClosureInfo, ...]
     """The closures, in file order."""
     loop_list: tuple[LoopInfo, ...]
-    """The independent groups of loops; empty where the loops do not close."""
+    """The independent groups of loops; empty if the loops do not close."""
     motion_list: tuple[MotionInfo, ...]
-    """The motions left with every actuator held, each of few joints; empty where the loops do not close."""
-    fighting_list: tuple[tuple[str, ...], ...]
-    """Sets of actuated joints of which none moves without another of its set or, alone in it, at all."""
+    """The motions left with every actuator held, each of few joints; empty if the loops do not close."""
+    dependent_list: tuple[tuple[str, ...], ...]
+    """Sets of dependent actuators: none moves unless another one of its set moves; alone in a set, it cannot move."""
     actuator_list: tuple[ActuatorInfo, ...]
     """The actuated joints, in file order."""
     frame_list: tuple[FrameInfo, ...]
@@ -217,7 +217,7 @@ def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
         uncontrolled=analysis.uncontrolled,
         actuated=len(robot.actuation.idx_v),
         controlled=analysis.controlled,
-        surplus=analysis.surplus,
+        dependent=analysis.dependent,
         singularity=_finite(analysis.singularity),
         actuation_singularity=_finite(analysis.actuation_singularity),
         mass=_finite(math.fsum(body.inertia.mass for body in mechanism.bodies if body.inertia)),
@@ -254,7 +254,7 @@ def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
             for loops in analysis.loops
         ),
         motion_list=tuple(MotionInfo(joints=motion.joints) for motion in analysis.motions),
-        fighting_list=analysis.fighting,
+        dependent_list=analysis.dependent_actuators,
         actuator_list=tuple(
             ActuatorInfo(joint=name, type=joints[name].type, nv=joints[name].coordinates.nv)
             for name in mechanism.actuators

@@ -62,7 +62,7 @@ class LoopAnalysis:
         controlled: Motions that its actuators decide, mobility - uncontrolled: the rank of Sᵀ on the null space of K.
         singularity: See `Analysis`.
         actuation_singularity: See `Analysis`.
-        fighting: See `Analysis`.
+        dependent_actuators: See `Analysis`.
         motions: Its uncontrolled motions: see `Analysis`.
     """
 
@@ -78,7 +78,7 @@ class LoopAnalysis:
     controlled: int
     singularity: float
     actuation_singularity: float
-    fighting: tuple[tuple[str, ...], ...]
+    dependent_actuators: tuple[tuple[str, ...], ...]
     motions: tuple[Motion, ...]
 
 
@@ -99,10 +99,11 @@ class Analysis:
             suffice where it is 0.
         actuated: Number of actuated velocities.
         controlled: Motions that the actuators decide, mobility - uncontrolled: the rank of Sᵀ on the null space of K.
-        surplus: Actuated velocities that follow from the others through the closures, actuated - controlled. Torques of
-            as many dimensions move nothing and only load the closures: actuation is redundant where it is not 0.
-        fighting: Names of the actuators that are in surplus together, set by set: none of a set can move without
-            another of it, or, alone in its set, it cannot move at all.
+        dependent: Number of actuated velocities that depend on the others through the closures, actuated - controlled.
+            A space of torques of this dimension moves nothing and only loads the closures: if it is not 0, the
+            actuation is redundant.
+        dependent_actuators: Sets of names of dependent actuators: no actuator of a set can move unless another one of
+            the set moves; an actuator that is alone in its set cannot move at all.
         motions: The uncontrolled motions: a basis of the null space of [K; Sᵀ], each of few joints. They are those at
             ``q``, or where q is singular those at a configuration beside it.
         singularity: Distance to singularity at ``q``: singular value number ``rank`` of K, lengths counted in
@@ -125,8 +126,8 @@ class Analysis:
     uncontrolled: int | None
     actuated: int
     controlled: int | None
-    surplus: int | None
-    fighting: tuple[tuple[str, ...], ...]
+    dependent: int | None
+    dependent_actuators: tuple[tuple[str, ...], ...]
     motions: tuple[Motion, ...]
     singularity: float | None
     actuation_singularity: float | None
@@ -191,8 +192,8 @@ def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
         uncontrolled=len(motions) if ranked else None,
         actuated=count,
         controlled=nv - rank - len(motions) if ranked else None,
-        surplus=count - (nv - rank - len(motions)) if ranked else None,
-        fighting=tuple(together for loop in loops for together in loop.fighting),
+        dependent=count - (nv - rank - len(motions)) if ranked else None,
+        dependent_actuators=tuple(together for loop in loops for together in loop.dependent_actuators),
         motions=tuple(motions),
         singularity=min((loop.singularity for loop in loops), default=None),
         actuation_singularity=min((loop.actuation_singularity for loop in loops), default=None),
@@ -275,7 +276,7 @@ def _analyze(
         controlled=held - rank,
         singularity=_nth(_singular_values(looked_at), rank),
         actuation_singularity=_nth(_singular_values(stacked), held),
-        fighting=_fighting(A, rank, held - rank, actuated, members),
+        dependent_actuators=_dependent_actuators(A, rank, held - rank, actuated, members),
         motions=_motions(A, held, actuated, evaluation, members, q),
     )
 
@@ -288,7 +289,7 @@ def _ranks(A: Matrix, actuated: Mask) -> tuple[int, int]:
     return numerical_rank(values, reference), int(actuated.sum()) + rest
 
 
-def _fighting(
+def _dependent_actuators(
     A: Matrix, rank: int, controlled: int, actuated: Mask, members: Sequence[str]
 ) -> tuple[tuple[str, ...], ...]:
     """Names of the actuators whose velocities depend on one another, set by set.

@@ -1,8 +1,8 @@
-"""Steps along the branch of closed configurations through which one actuator leads its loops, the others held.
+"""Steps along the branch of closed configurations on which one actuator moves its loops, the others held.
 
-The passive joints follow along the tangent, K_p v_p = -K_a v_a with the least v_p, and the loops are closed again after
-the step. Here K_a is the actuator's column of K, and K_p has those of the joints that nothing drives or holds. Two
-branches meet where K_p loses rank, in a dead point: there the passive joints no longer follow from the actuator.
+The passive joints move along the tangent, K_p v_p = -K_a v_a with the least v_p, and the loops are closed again after
+the step. K_a is the actuator's column of K, K_p has the columns of the passive joints. Two branches meet at a dead
+point, where K_p loses rank: there the actuator no longer determines the passive joints.
 """
 
 from __future__ import annotations
@@ -24,19 +24,20 @@ from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_sc
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
-# A step is short enough where two things hold. The correction that closes the loops after it is at most this part of
-# it. Toward a dead point at distance d the passive joints go as √d does, and a step h needs a correction of h / 4d of
-# it: so it goes less than half the way there, and does not come to another branch. ...
+# A step is short enough if two conditions hold.
+# 1. The correction that closes the loops after it is at most this fraction of the step. At distance d from a dead point
+#    the passive joints move as √d does, and a step h needs a correction of h / 4d of it: so the step covers less than
+#    half the distance to the dead point, and cannot reach another branch.
 _MOST_CORRECTION = 0.1
-# ... And K_p changes by less than the sum of its smallest singular values before and after: by as much it would have to
-# change to lose rank and to get it back (Eckart, Young, 1936), so there is no dead point within the step.
+# 2. K_p changes by less than the sum of its smallest singular values before and after the step. It would have to change
+#    by as much to lose rank and to regain it (Eckart, Young, 1936), so there is no dead point within the step.
 
-# The corrections use the Jacobian from before the step: they converge fast where it changes little.
+# The corrections use the Jacobian from before the step: they converge fast if it changes little.
 _MOST_CORRECTIONS = 12
-_CLOSED = 1e-13  # what each row of the residual is brought to, m or rad, ...
-_ROUNDING = 1e-14  # ... unless the corrections come to this (rad, or characteristic lengths), as with redundant rows
+_CLOSED = 1e-13  # bound of each row of the residual after the corrections, m or rad, ...
+_ROUNDING = 1e-14  # ... unless a correction is smaller than this (rad, or characteristic lengths): redundant rows
 
-_SAME = 1e-6  # how far apart configurations may be that count as one (rad, or characteristic lengths)
+_SAME = 1e-6  # largest difference of configurations that count as the same (rad, or characteristic lengths)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -46,7 +47,7 @@ class Point:
     Attributes:
         q: The configuration (nq,).
         residual: Its largest row, m or rad.
-        correction: What closed the loops after the step that led here, in parts of the step.
+        correction: Size of the correction that closed the loops after the step to this point, relative to the step.
         K: Its columns (m, n) for the loops that the actuator moves.
         rank: Of K_p.
         smallest: The smallest singular value of K_p that is not zero; inf if there is none.
@@ -70,8 +71,8 @@ class Branch:
 
         Args:
             robot: The robot.
-            actuator: Index in v of the actuator that is led.
-            limits: The position limits at which passive joints stop, if any.
+            actuator: Index in v of the actuator that is moved.
+            limits: The position limits of the passive joints, if any.
             data: A `pin.Data` to compute in.
         """
         model = self._model = robot.model
@@ -79,7 +80,7 @@ class Branch:
         groups = [group for group in independent_groups(robot, held) if actuator in group.velocities]
         length = characteristic_length(robot)
         rows, unit = row_scale(robot, length), velocity_scale(robot, length)
-        # A joint that mimics another has columns of its own, which only the loops know to add up.
+        # A mimic joint has its own columns, which only the loops add to those of its leader.
         mimics = model.nv < model.nvExtended
         if data is None and not mimics:
             data = model.createData()
@@ -92,7 +93,7 @@ class Branch:
         self._turns = _whole_turns(model)[self._velocities]
 
     def at(self, q: Vector, correction: float = 0.0) -> Point:
-        """The point that is the closed configuration q (nq,)."""
+        """The point at the closed configuration q (nq,)."""
         residual = float(np.abs(self._residual(q)).max(initial=0.0))
         K = self._loops.jacobian() if self._loops else np.zeros((0, len(self._unit)))
         left, values, right = np.linalg.svd(K[:, self._passive], full_matrices=False)
@@ -103,7 +104,7 @@ class Branch:
         return Point(q, residual, correction, K, rank, smallest, inverse)
 
     def step(self, here: Point, h: float) -> Point | None:
-        """The point to which a step h of the actuator, rad or m, leads; None if it is too long."""
+        """The point after a step h of the actuator, rad or m; None if the step is too long."""
         step = np.where(self._passive, 0.0, h / self._unit)
         step -= here.inverse @ (here.K @ step)
         q = self._moved(here.q, step)
@@ -126,10 +127,10 @@ class Branch:
         change = float(np.linalg.norm((there.K - here.K)[:, self._passive]))
         return there if change <= here.smallest + there.smallest else None
 
-    def passive_stop(self, here: Point, there: Point) -> tuple[str, float] | None:
-        """The passive joint that comes first to its stop between two points, and after what part of the step.
+    def passive_limit(self, here: Point, there: Point) -> tuple[str, float] | None:
+        """The passive joint that first reaches its position limit between two points, and after what part of the step.
 
-        A joint that is beyond its stop already, as it may be at the start, may come back, but not go farther.
+        A joint that is already beyond its limit, which is possible at the start, can move back, but not farther out.
         """
         if self._limits is None:
             return None
@@ -142,18 +143,18 @@ class Branch:
         if not over.max(initial=0.0) > 0.0:
             return None
         part = np.full(len(over), -np.inf)
-        np.divide(over, np.abs(after - before), out=part, where=over > 0.0)  # what goes farther has moved
+        np.divide(over, np.abs(after - before), out=part, where=over > 0.0)  # a joint that goes beyond has moved
         first = int(np.argmax(part))
         return self._limits.joints[passive[first]], 1.0 - float(part[first])
 
     def same(self, one: Point, other: Point) -> bool:
-        """Whether two points with the actuator in one place are one, but for motions that the actuators leave free.
+        """Whether two points at the same actuator position are equal, except for motions that no actuator controls.
 
-        An angle is in one place with all that differ from it by whole turns.
+        Angles that differ by whole turns are equal.
         """
         apart = np.asarray(pin.difference(self._model, one.q, other.q))[self._velocities]
         apart = np.where(self._turns, np.remainder(apart + math.pi, 2.0 * math.pi) - math.pi, apart) / self._unit
-        # K_p⁺ K takes out of it what K_p lets move.
+        # K_p⁺ K removes the motions that K_p leaves free.
         return bool(np.abs(one.inverse @ (one.K @ apart)).max() <= _SAME)
 
     def _residual(self, q: Vector) -> Vector:
@@ -163,12 +164,12 @@ class Branch:
     def _moved(self, q: Vector, step: Vector) -> Vector:
         v = np.zeros(self._model.nv)
         v[self._velocities] = self._unit * step
-        # Pinocchio brings quaternions back to unit length to first order alone.
+        # Pinocchio normalizes quaternions to first order only.
         return np.asarray(pin.normalize(self._model, pin.integrate(self._model, q, v)))
 
 
 def _whole_turns(model: Any) -> Mask:
-    """Which velocities (nv,) drive a plain angle that whole turns leave where it is: nothing counts its turns."""
+    """Which velocities (nv,) drive an angle whose whole turns change nothing, since it is not unwrapped."""
     turns: Mask = np.zeros(model.nv, dtype=bool)
     neutral = pin.neutral(model)
     for joint in model.joints[1:]:
@@ -177,6 +178,6 @@ def _whole_turns(model: Any) -> Mask:
             joint.calc(data, neutral)
             S = data.S.reshape(6, -1)
             turns[joint.idx_v : joint.idx_v + joint.nv] = ~S[:3].any(axis=0)
-    for joint in model.mimicking_joints:  # one that follows by half an angle does count them
+    for joint in model.mimicking_joints:  # a multiplier of 0.5 makes whole turns matter
         turns[model.joints[joint].idx_v] = False
     return turns

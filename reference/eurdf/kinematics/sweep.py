@@ -1,4 +1,4 @@
-"""How far an actuator can move its mechanism, and what ends the way."""
+"""How far an actuator can move its mechanism, and what ends its path."""
 
 from __future__ import annotations
 
@@ -20,31 +20,32 @@ from eurdf.pinocchio.coordinates import slots
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
-#: What ends a path: a stop of the actuator; without one, half a turn, or the characteristic length of an actuator that
-#: translates; a stop of a passive joint; a dead point.
-End = Literal["stop", "half turn", "characteristic length", "passive stop", "dead point"]
+#: What ends a path: the position limit of the actuator; if it has none, half a turn, or the characteristic length if it
+#: translates; the position limit of a passive joint; a dead point (singular configuration).
+End = Literal["limit", "half turn", "characteristic length", "passive limit", "dead point"]
 
-# A mechanism is at a dead point where the smallest singular value of K_p is below this part of the largest one met:
-# there, forces are a hundredfold, and play and rounding decide where it goes.
+# A mechanism is at a dead point if the smallest singular value of K_p is below this fraction of the largest one met:
+# forces are multiplied by a hundred there, and play and rounding decide which branch it takes.
 _DEAD = 0.01
 
-_SHORTEST_STEP = 2.0**-12  # steps are halved down to this part of one
+_SHORTEST_STEP = 2.0**-12  # steps are halved down to this fraction of one
 
-_TOLERANCE = 1e-12  # what each row of the residual may be at the start, m or rad
+_TOLERANCE = 1e-12  # bound of each row of the residual at the start, m or rad
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Way:
-    """The way of an actuator from where it stands toward one of its stops.
+class MotionPath:
+    """The path of an actuator from its start toward one of its position limits.
 
     Attributes:
-        end: What ends it.
-        joint: The passive joint that ends it at its stop, else None.
-        reached: Coordinate of the actuator at its end, rad or m; of a continuous joint, seen from the start.
-        configurations: Closed configurations (n, nq) on it, from the start on, in equal steps of the actuator.
+        end: What ends the path.
+        joint: The passive joint whose position limit ends the path, else None.
+        reached: Coordinate of the actuator at the end, rad or m; for a continuous joint, relative to the start.
+        configurations: Closed configurations (n, nq) on the path, from the start on, in equal steps of the actuator.
         residual: Largest row of their residuals, m or rad.
-        correction: Largest correction that closed the loops after a step along the tangent, in parts of the step.
-        singularity: Smallest singular value of K_p on it, in parts of the largest one of both ways; 1 without loops.
+        correction: Largest correction that closed the loops after a step along the tangent, relative to the step.
+        singularity: Smallest singular value of K_p on the path, relative to the largest one on both paths; 1 without
+            loops.
     """
 
     end: End
@@ -58,23 +59,23 @@ class Way:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sweep:
-    """What `sweep` found.
+    """The range of motion of one actuator, as `sweep` returns it.
 
     Attributes:
         actuator: Name of the joint.
-        stops: Its lowest and its highest coordinate, rad or m. On a side without a stop: half a turn, or the
-            characteristic length, from the start. Of a continuous joint, seen from the start.
-        lower: The way toward the lower stop.
-        upper: The way toward the upper stop.
-        comes_round: Whether two ways of half a turn end in one configuration, but for motions that the actuators leave
-            free; None where they are no such ways.
+        bounds: Its lower and upper position limit, rad or m. Where it has no limit: half a turn, or the characteristic
+            length, from the start. For a continuous joint, relative to the start.
+        lower: The path toward the lower bound.
+        upper: The path toward the upper bound.
+        periodic: Whether a full turn of the actuator leads back to the same configuration, except for motions that the
+            actuators do not control; None unless both paths end after half a turn.
     """
 
     actuator: str
-    stops: tuple[float, float]
-    lower: Way
-    upper: Way
-    comes_round: bool | None
+    bounds: tuple[float, float]
+    lower: MotionPath
+    upper: MotionPath
+    periodic: bool | None
 
 
 def sweep(
@@ -86,69 +87,70 @@ def sweep(
     limits: Limits = True,
     data: Any = None,
 ) -> Sweep:
-    """Lead one actuator from a closed configuration to its stops, the other actuators held.
+    """Move one actuator from a closed configuration to its position limits, with the other actuators held.
 
-    With K_a the actuator's column of K, and K_p those of the joints that nothing drives or holds, it follows
-    K_p v_p = -K_a v_a and r(q) = 0, the passive joints moving as little as they can, until the actuator or a passive
-    joint comes to its stop, or K_p loses rank, in a dead point. Where the passive joints turn fast, steps are halved
-    until none can lead through a dead point or to another branch.
+    Let K_a be the actuator's column of K, and K_p the columns of the passive joints. The motion satisfies
+    K_p v_p = -K_a v_a and r(q) = 0 with the least v_p. It ends where the actuator or a passive joint reaches its
+    position limit, or where K_p loses rank (a dead point). Steps are halved until none can jump over a dead point or to
+    another branch.
 
-    An actuator without a stop on one side, such as a continuous joint or one whose URDF gives no range, is led half a
-    turn from the start there, at most; where it translates, by the characteristic length of the loops: the reach of
-    the longest one, 1 m without loops. A passive joint that starts beyond its stop may come back, but not go farther.
+    If an actuator has no limit in one direction (a continuous joint, or no range in the URDF), it moves at most half a
+    turn from the start in that direction. If it translates, it moves at most by the characteristic length of the loops:
+    the reach of the longest loop, 1 m without loops. A passive joint that starts beyond its limit can move back, but
+    not farther out.
 
     Args:
         robot: The robot.
         actuator: Name of an actuated joint that has one coordinate.
-        q0: Where to start (nq,). It is closed first if it is not. The `assembled` configuration by default, or else the
-            neutral one.
-        steps: How many steps each of the two ways has.
-        limits: Whether actuator and passive joints have stops at their position limits. A range of zero width counts as
-            no range (`urdf-no-range`), unless it is ``"strict"``.
-        data: A `pin.Data` of the model to compute in; it takes O(nv³) numbers, and else is made anew.
+        q0: Where to start (nq,); the loops are closed first if they are open. The default is the `assembled`
+            configuration, or the neutral one if there is none.
+        steps: Number of steps of each of the two paths.
+        limits: Whether position limits end a path. A range of zero width counts as no range (`urdf-no-range`), unless
+            ``limits`` is ``"strict"``.
+        data: A `pin.Data` of the model to compute in (O(nv³) numbers); by default a new one is created.
 
     Raises:
         NotClosable: The loops cannot be closed at q0.
-        ValueError: ``actuator`` is not actuated, or has several coordinates; ``q0`` is no configuration.
+        ValueError: ``actuator`` is not actuated, or has several coordinates; ``q0`` is not a configuration.
     """
     kept = chosen_limits(robot.model, limits)
     first = assemble(robot, q0, tolerance=_TOLERANCE)
     if not first.closes:
-        raise NotClosable("there is no closed configuration near the start", first.open, first.q)
+        raise NotClosable("no closed configuration was found near the start", first.open, first.q)
     drive = _drive(robot, actuator, first.q, kept)
     branch = Branch(robot, drive.velocity, kept, data)
     start = branch.at(first.q)
-    below = _follow(branch, start, drive.stops[0] - drive.at, steps, start.smallest)
-    above = _follow(branch, start, drive.stops[1] - drive.at, steps, below.largest)
+    below = _follow(branch, start, drive.bounds[0] - drive.at, steps, start.smallest)
+    above = _follow(branch, start, drive.bounds[1] - drive.at, steps, below.largest)
     largest = max(below.largest, above.largest)
-    lower, upper = below.way(drive, drive.ends[0], largest), above.way(drive, drive.ends[1], largest)
-    comes_round = branch.same(below.points[-1], above.points[-1]) if lower.end == upper.end == "half turn" else None
-    return Sweep(actuator, drive.stops, lower, upper, comes_round)
+    lower, upper = below.path(drive, drive.ends[0], largest), above.path(drive, drive.ends[1], largest)
+    periodic = branch.same(below.points[-1], above.points[-1]) if lower.end == upper.end == "half turn" else None
+    return Sweep(actuator, drive.bounds, lower, upper, periodic)
 
 
 @dataclass(frozen=True, slots=True)
 class _Drive:
-    """The actuator that is led.
+    """The actuator that is moved.
 
     Attributes:
         velocity: Its index in v.
-        at: Where it starts, rad or m; 0 for a continuous joint.
-        stops: Where it is led to.
+        at: Its coordinate at the start, rad or m; 0 for a continuous joint.
+        bounds: The coordinates it is moved to.
         ends: What ends the path there.
     """
 
     velocity: int
     at: float
-    stops: tuple[float, float]
+    bounds: tuple[float, float]
     ends: tuple[End, End]
 
 
 def _drive(robot: Robot, actuator: str, q: Vector, limits: PositionLimits | None) -> _Drive:
     if actuator not in robot.actuation.joints:
-        raise ValueError(f"'{actuator}' is no actuated joint of this robot")
+        raise ValueError(f"'{actuator}' is not an actuated joint of this robot")
     slot = slots(robot.mechanism, robot.model)[actuator]
     if slot.nv != 1:
-        raise ValueError(f"actuator '{actuator}' has {slot.nv} velocities; a sweep leads one")
+        raise ValueError(f"actuator '{actuator}' has {slot.nv} velocities; sweep moves joints with one velocity")
     at = 0.0 if slot.joint.type is JointType.CONTINUOUS else float(q[slot.idx_q])
     translates = slot.joint.type is JointType.PRISMATIC
     farthest = characteristic_length(robot) if translates else math.pi
@@ -161,25 +163,25 @@ def _drive(robot: Robot, actuator: str, q: Vector, limits: PositionLimits | None
             float(lower) if math.isfinite(lower) else at - farthest,
             float(upper) if math.isfinite(upper) else at + farthest,
         ),
-        ("stop" if math.isfinite(lower) else without, "stop" if math.isfinite(upper) else without),
+        ("limit" if math.isfinite(lower) else without, "limit" if math.isfinite(upper) else without),
     )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Trail:
-    """A way as it was gone.
+    """The steps of one path.
 
     Attributes:
-        points: Every one, from the start on.
+        points: All points, from the start on.
         configurations: Those after whole steps, from the start on.
-        went: How far the actuator went, rad or m.
-        end: What stopped it, if not the actuator itself.
-        joint: The passive joint that did.
+        moved: How far the actuator moved, rad or m.
+        end: What ended the path before the bound of the actuator, else None.
+        joint: The passive joint that ended it, else None.
     """
 
     points: list[Point]
     configurations: list[Vector]
-    went: float
+    moved: float
     end: End | None
     joint: str | None
 
@@ -188,19 +190,19 @@ class _Trail:
         """The largest of the smallest singular values of K_p on it."""
         return max(point.smallest for point in self.points)
 
-    def way(self, drive: _Drive, end: End, largest: float) -> Way:
-        """The path, where the smallest singular value of K_p is at most ``largest`` on both.
+    def path(self, drive: _Drive, end: End, largest: float) -> MotionPath:
+        """The public form of the path.
 
         Args:
             drive: The actuator.
-            end: What ends the path where nothing stopped it.
-            largest: See above.
+            end: What ends the path at the bound of the actuator.
+            largest: The largest value of the smallest singular value of K_p on both paths.
         """
         smallest = min(point.smallest for point in self.points)
-        return Way(
+        return MotionPath(
             end=self.end or end,
             joint=self.joint,
-            reached=drive.at + self.went,
+            reached=drive.at + self.moved,
             configurations=np.array(self.configurations),
             residual=max(point.residual for point in self.points),
             correction=max(point.correction for point in self.points),
@@ -209,18 +211,18 @@ class _Trail:
 
 
 def _follow(branch: Branch, start: Point, reach: float, steps: int, largest: float) -> _Trail:
-    """Lead the actuator as far as ``reach`` (rad or m); ``largest`` is that of the points met before."""
+    """Move the actuator by at most ``reach`` (rad or m); ``largest`` is that of the points met before."""
     points, configurations = [start], [start.q]
     end: End | None = None
-    joint, done, part = None, 0.0, 1.0  # of a step: how much is done, how much is tried
+    joint, done, part = None, 0.0, 1.0  # fraction of a step that is done, and that is tried next
     while len(configurations) <= steps and reach:
         there = branch.step(points[-1], part * reach / steps)
         if there is None and part > _SHORTEST_STEP:
             part *= 0.5
             continue
-        met = branch.passive_stop(points[-1], there) if there else None
+        met = branch.passive_limit(points[-1], there) if there else None
         if met:
-            end, (joint, until) = "passive stop", met
+            end, (joint, until) = "passive limit", met
             done += part * until
             break
         if there is None or there.rank != start.rank or there.smallest < _DEAD * max(largest, there.smallest):

@@ -141,7 +141,7 @@ def _candidate(mechanism: Mechanism, types: Mapping[str, ClosureType]) -> _Candi
         True,
         sum(loop.mobility for loop in analysis.loops),
         sum(loop.uncontrolled for loop in analysis.loops),
-        analysis.fighting,
+        analysis.dependent_actuators,
         sum(loop.mobility == 0 and not loop.actuated for loop in analysis.loops),
     )
 

@@ -58,7 +58,7 @@ def advise_on_actuation(description: Description, robot: Robot, q: Vector, diagn
         place = _place_of_key(description, _closures_key(mechanism))
         diagnostics.report("x-loops-not-checked", analysis.left_out, place, "analyze parts of the robot by themselves")
         return
-    dependent = [loop for loop in analysis.loops if loop.fighting]
+    dependent = [loop for loop in analysis.loops if loop.dependent_actuators]
     if dependent:
         for loop, locking in zip(dependent, _locking(robot, analysis.q, dependent), strict=True):
             _report_dependent(description, robot, loop, locking, diagnostics)
@@ -69,10 +69,10 @@ def _report_dependent(
     description: Description, robot: Robot, loop: LoopAnalysis, locking: Sequence[str], diagnostics: Diagnostics
 ) -> None:
     """Report the dependent actuators of a group of loops, and the 6d closures that lock them where some were found."""
-    dependent = [name for together in loop.fighting for name in together]
+    dependent = [name for together in loop.dependent_actuators for name in together]
     # Each is alone in its set, and has one velocity: of several, others may be free.
     one_each = len(frozenset(loop.joints).intersection(robot.actuation.joints)) == loop.actuated
-    locked = one_each and len(dependent) == len(loop.fighting)
+    locked = one_each and len(dependent) == len(loop.dependent_actuators)
     message = (
         f"{_counted('actuator', dependent)} cannot move{'' if locked else ' independently'}: "
         f"{'locked' if locked else 'coupled'} by {_counted('closure', loop.closures)}"
@@ -114,8 +114,8 @@ def _locking(robot: Robot, q: Vector, loops: Sequence[LoopAnalysis]) -> list[tup
             loop, freed = loops[index], after.get(loops[index].closures)
             if freed is None:  # not even so do the loops close
                 continue
-            still = {name for together in freed.fighting for name in together}
-            if still.isdisjoint(name for together in loop.fighting for name in together) and (
+            still = {name for together in freed.dependent_actuators for name in together}
+            if still.isdisjoint(name for together in loop.dependent_actuators for name in together) and (
                 len(passive.without_spins(freed)) <= uncontrolled[index]
             ):
                 found[index] = tried[index]
