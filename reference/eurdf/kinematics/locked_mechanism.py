@@ -1,4 +1,4 @@
-"""Joints of a mechanism locked where they stand: what moved becomes fixed, and all else keeps its name and place."""
+"""Lock joints of a mechanism: they become fixed; everything else keeps its name and place."""
 
 from __future__ import annotations
 
@@ -18,7 +18,8 @@ from eurdf.mechanism.mimic import Mimic, drivers
 from eurdf.mechanism.pose import Pose
 from eurdf.mechanism.spanning_tree import rigid_roots
 
-#: A named configuration may place a locked joint's child this far from where it is locked, in m and in rad.
+#: A named configuration is kept if its pose of each locked joint differs from the locked pose by at most this, m and
+#: rad.
 AGREEMENT = 1e-6
 
 Coordinates = Mapping[str, Sequence[float]]
@@ -26,14 +27,14 @@ Coordinates = Mapping[str, Sequence[float]]
 
 @dataclass(frozen=True, slots=True)
 class LockedMechanism:
-    """A mechanism some of whose joints are locked, and what went with them.
+    """A mechanism with locked joints, and what was removed from it.
 
     Attributes:
-        mechanism: The mechanism, its locked joints fixed. Bodies, joints and frames have kept names and order.
-        joints: Names of the joints that were locked, those that follow one of them too, in the mechanism's order.
-        closures: Those that are gone, since nothing moves their two frames against each other any more.
-        actuators: Names of those that are gone, since they are locked.
-        configurations: Names of those that are gone, since they have a locked joint elsewhere.
+        mechanism: The mechanism, in which locked joints are fixed. Bodies, joints and frames keep names and order.
+        joints: Names of the locked joints, including their mimic joints, in the mechanism's order.
+        closures: The removed closures: those whose two frames no longer move relative to each other.
+        actuators: Names of the removed actuators: those that are locked.
+        configurations: Names of the removed configurations: those with a different pose of a locked joint.
     """
 
     mechanism: Mechanism
@@ -46,24 +47,23 @@ class LockedMechanism:
 def lock_joints(mechanism: Mechanism, joints: Iterable[str], coordinates: Coordinates) -> LockedMechanism:
     """Fix joints at given coordinates.
 
-    The placement of a locked joint becomes ``placement * joint_transform(joint, c) * offset``, so that its child, and
-    the frame that bears the joint's name, stay where they are. Whether the closures that are gone were closed is not
-    looked at.
+    The placement of a locked joint becomes ``placement * joint_transform(joint, c) * offset``, so the child link and
+    the joint's frame stay in place. The function does not check that the removed closures were closed.
 
     Args:
         mechanism: The mechanism.
-        joints: Names of joints. With a joint, those that follow it are locked; one that is fixed stays so.
-        coordinates: For each joint its coordinates as files have them. A joint left out is at its neutral; those of a
-            mimic joint are ignored.
+        joints: Names of joints. The mimic joints of a locked joint are locked too; a fixed joint stays fixed.
+        coordinates: Coordinates of joints as in files. A joint that is not given is at its neutral coordinates; those
+            of a mimic joint are ignored.
 
     Raises:
-        CannotLock: A name is that of no joint, or of one that follows another that is not locked.
-        ValueError: A joint is given too few or too many coordinates, or a quaternion of length 0.
+        CannotLock: A name is not the name of a joint, or a mimic joint is named without its leader.
+        ValueError: The number of coordinates of a joint is wrong, or a quaternion has length 0.
     """
     by_name = {joint.name: joint for joint in mechanism.joints}
-    laws = drivers({joint.name: joint.mimic for joint in mechanism.joints if joint.mimic is not None})
-    locked = _locked(by_name, joints, laws)
-    at = {name: joint_transform(by_name[name], _coordinates(by_name, name, coordinates, laws)) for name in locked}
+    mimics = drivers({joint.name: joint.mimic for joint in mechanism.joints if joint.mimic is not None})
+    locked = _locked(by_name, joints, mimics)
+    at = {name: joint_transform(by_name[name], _coordinates(by_name, name, coordinates, mimics)) for name in locked}
     ordered = tuple(_fixed(joint, at) for joint in mechanism.joints)
     rigid = rigid_roots(mechanism.bodies[0].name, ordered)
     movable: list[Closure] = []
@@ -74,7 +74,7 @@ def lock_joints(mechanism: Mechanism, joints: Iterable[str], coordinates: Coordi
         name: MappingProxyType({joint: values for joint, values in configuration.items() if joint not in at})
         for name, configuration in mechanism.configurations.items()
         if all(
-            _near(pose, joint_transform(by_name[joint], _coordinates(by_name, joint, configuration, laws)))
+            _near(pose, joint_transform(by_name[joint], _coordinates(by_name, joint, configuration, mimics)))
             for joint, pose in at.items()
         )
     }
@@ -93,34 +93,34 @@ def lock_joints(mechanism: Mechanism, joints: Iterable[str], coordinates: Coordi
     )
 
 
-def _locked(by_name: Mapping[str, Joint], names: Iterable[str], laws: Mapping[str, Mimic]) -> list[str]:
-    """The joints to be locked, in the mechanism's order: those named, but fixed ones, and all that follow them."""
+def _locked(by_name: Mapping[str, Joint], names: Iterable[str], mimics: Mapping[str, Mimic]) -> list[str]:
+    """The joints to lock, in the mechanism's order: those named and their mimic joints, without fixed ones."""
     named = set(names)
     for name in sorted(named - by_name.keys()):
         near = difflib.get_close_matches(name, list(by_name), n=1)
-        raise CannotLock(name, "there is no such joint" + (f"; did you mean '{near[0]}'?" if near else ""))
+        raise CannotLock(name, "the robot has no such joint" + (f"; did you mean '{near[0]}'?" if near else ""))
     locked = []
     for name in by_name:
-        leader = laws[name].joint if name in laws else name
+        leader = mimics[name].joint if name in mimics else name
         if leader in named:
             locked.append(name)
         elif name in named:
-            raise CannotLock(name, f"it follows '{leader}'; lock that one", leader)
+            raise CannotLock(name, f"it is a mimic joint of '{leader}'; lock '{leader}' instead", leader)
     return [name for name in locked if by_name[name].type is not JointType.FIXED]
 
 
 def _coordinates(
-    by_name: Mapping[str, Joint], name: str, coordinates: Coordinates, laws: Mapping[str, Mimic]
+    by_name: Mapping[str, Joint], name: str, coordinates: Coordinates, mimics: Mapping[str, Mimic]
 ) -> Sequence[float]:
-    if name in laws:
-        law = laws[name]
-        (leading,) = coordinates.get(law.joint, by_name[law.joint].coordinates.neutral)
-        return (law.multiplier * leading + law.offset,)
+    if name in mimics:
+        mimic = mimics[name]
+        (leading,) = coordinates.get(mimic.joint, by_name[mimic.joint].coordinates.neutral)
+        return (mimic.multiplier * leading + mimic.offset,)
     return coordinates.get(name, by_name[name].coordinates.neutral)
 
 
 def _fixed(joint: Joint, at: Mapping[str, Pose]) -> Joint:
-    """The joint, fixed where it is if it is locked."""
+    """The joint; if it is locked, a fixed joint at its locked pose."""
     if joint.name not in at:
         return joint
     placement = joint.placement * at[joint.name] * joint.offset

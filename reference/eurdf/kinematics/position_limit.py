@@ -1,4 +1,4 @@
-"""The position limits that kinematics can be asked to keep."""
+"""Position limits of joints, as kinematics respects them."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ import numpy as np
 from eurdf.kinematics.array import Indices, Vector
 from eurdf.kinematics.velocity_names import velocity_names
 
-#: Which position limits to keep: all but the ranges of zero width (True), none (False), or all (``"strict"``).
+#: Which position limits to respect: all except ranges of zero width (True), none (False), or all (``"strict"``).
 Limits = bool | Literal["strict"]
 
-#: How far a coordinate may be beyond its limit, rad or m, as in EU-CFG-004.
+#: Tolerance of a limit, rad or m, as in EU-CFG-004.
 BEYOND = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
 class JointAtLimit:
-    """A coordinate of a joint that is at its limit.
+    """A joint whose coordinate is at one of its limits.
 
     Attributes:
         joint: Name of the joint.
-        limit: Its limit, rad or m.
-        side: Which of its two limits this is.
+        limit: The limit, rad or m.
+        side: Whether it is the lower or the upper limit.
     """
 
     joint: str
@@ -37,15 +37,15 @@ class JointAtLimit:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PositionLimits:
-    """Limits of the coordinates that are plain angles or lengths, by the velocity that drives them.
+    """Limits of the coordinates that are angles or lengths, by the velocity that drives them.
 
-    The coordinates of quaternions, and of cosine and sine, have none; neither has a joint that mimics another.
+    Quaternions, (cos, sin) pairs and mimic joints have no limits here.
 
     Attributes:
         joints: For each velocity (nv) the name of its joint.
-        coordinates: Index (nv,) in q of the coordinate that each velocity drives; 0 where there is no such one.
-        lower: Lower limits (nv,), rad or m; -inf where there is none.
-        upper: Upper limits (nv,); inf where there is none.
+        coordinates: Index (nv,) in q of the coordinate that each velocity drives; 0 if there is none.
+        lower: Lower limits (nv,), rad or m; -inf if there is none.
+        upper: Upper limits (nv,); inf if there is none.
     """
 
     joints: tuple[str, ...]
@@ -54,7 +54,7 @@ class PositionLimits:
     upper: Vector
 
     def clip(self, q: Vector, velocities: Indices) -> Vector:
-        """The configuration with the coordinates that the given velocities drive brought into their limits."""
+        """The configuration with the coordinates that the given velocities drive clipped to their limits."""
         within = np.array(q)
         bounded = velocities[np.isfinite(self.lower[velocities]) | np.isfinite(self.upper[velocities])]
         coordinates = self.coordinates[bounded]
@@ -62,12 +62,12 @@ class PositionLimits:
         return within
 
     def room(self, q: Vector, velocities: Indices) -> tuple[Vector, Vector]:
-        """How far each coordinate may go down (not above 0) and up (not below 0) from q, by velocity."""
+        """Distance from q to the lower limits (at most 0) and to the upper limits (at least 0), by velocity."""
         at = q[self.coordinates[velocities]]
         return np.minimum(self.lower[velocities] - at, 0.0), np.maximum(self.upper[velocities] - at, 0.0)
 
     def pressed(self, q: Vector, v: Vector) -> tuple[JointAtLimit, ...]:
-        """The coordinates that are at a limit at q, or within 1e-9 of it, and that v (nv,) would move beyond it."""
+        """The joints that are within 1e-9 of a limit at q, and that v (nv,) would move beyond it."""
         at, least = q[self.coordinates], 1e-6 * float(np.abs(v).max(initial=0.0))
         low = (at - self.lower <= BEYOND) & (v < -least)
         high = (self.upper - at <= BEYOND) & (v > least)
@@ -82,8 +82,8 @@ class PositionLimits:
 def position_limits(model: Any, *, strict: bool = False) -> PositionLimits:
     """Position limits of a model.
 
-    A range whose lower and upper limits are both zero is what URDF makes of a range that is left out (`urdf-no-range`).
-    It counts as no range, and the coordinate as unlimited, unless ``strict``.
+    If a URDF gives no range, lower and upper limit are both zero (`urdf-no-range`). Such a coordinate is unlimited,
+    unless ``strict``.
     """
     coordinates = np.zeros(model.nv, dtype=np.intp)
     lower, upper = np.full(model.nv, -np.inf), np.full(model.nv, np.inf)
@@ -100,11 +100,11 @@ def position_limits(model: Any, *, strict: bool = False) -> PositionLimits:
 
 
 def chosen_limits(model: Any, limits: Limits) -> PositionLimits | None:
-    """The position limits of a model that are to be kept, if any.
+    """The position limits of a model to respect, or None.
 
     Raises:
-        ValueError: ``limits`` is none of True, False and ``"strict"``.
+        ValueError: ``limits`` is not True, False or ``"strict"``.
     """
     if isinstance(limits, str) and limits != "strict":
-        raise ValueError(f"limits is {limits!r}; it must be True, False or 'strict'")
+        raise ValueError(f"limits is {limits!r}; use True, False or 'strict'")
     return position_limits(model, strict=limits == "strict") if limits else None

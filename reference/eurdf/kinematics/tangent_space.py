@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TangentSpace:
-    """What K lets move, and what it does not.
+    """The null space of K, and its pseudoinverse.
 
     Attributes:
         basis: Z (nv, nv - rank) with K Z = 0 and Zᵀ Z = 1.
-        inverse: K⁺ (nv, nc), for which v = K⁺ b solves K v = b where that can be solved: the least of all v, and else
-            the v that comes nearest to it, lengths counted in characteristic lengths.
+        inverse: K⁺ (nv, nc): v = K⁺ b is the least-squares solution of K v = b with the least norm, in units of the
+            characteristic length.
     """
 
     basis: Matrix
@@ -31,7 +31,7 @@ class TangentSpace:
 
 
 class TangentSpaces:
-    """Finds the tangent spaces of one robot, having looked at its structure once.
+    """Computes tangent spaces of one robot; its structure is analysed once.
 
     Attributes:
         scale: Unit (nv,) of each velocity: the characteristic length for one of a loop that only translates, else 1.
@@ -45,10 +45,10 @@ class TangentSpaces:
         self._groups = independent_groups(robot)
 
     def at(self, K: Matrix) -> TangentSpace:
-        """The tangent space where the constraint Jacobian is K (nc, nv).
+        """The tangent space for the constraint Jacobian K (nc, nv).
 
-        The rank is decided as in `eurdf.kinematics.analysis.analyze`: of K free of unit, for each group of loops on its
-        own, as `numerical_rank` says. At a singular configuration the space is larger than around it.
+        The rank is computed as in `eurdf.kinematics.analysis.analyze`: `numerical_rank` of the dimensionless K of each
+        group of loops. At a singular configuration the space is larger than around it.
         """
         nc, nv = K.shape
         blocks, inverse = [], np.zeros((nv, nc))
