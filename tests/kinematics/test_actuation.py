@@ -14,7 +14,7 @@ BALL = "joints: {d: spherical}\n"
 
 @pytest.mark.parametrize("root", ["fixed", "floating"])
 @pytest.mark.parametrize("names", [["a"], ["c", "a"], ["d", "b", "a"], ["f", "e", "d", "c", "b", "a"]])
-def test_actuated_joints_stand_in_file_order_with_all_their_coordinates(names: list[str], root: str) -> None:
+def test_actuated_joints_are_in_file_order_with_all_coordinates(names: list[str], root: str) -> None:
     loaded = load(STAR, f"{BALL}actuators: [{', '.join(names)}]\n", root=root)
     model, actuation = loaded.model, loaded.actuation
     assert actuation.joints == tuple(names)
@@ -28,13 +28,13 @@ def test_actuated_joints_stand_in_file_order_with_all_their_coordinates(names: l
     np.testing.assert_array_equal(actuation.selection, expected)
 
 
-def test_a_spherical_joint_is_actuated_along_its_three_velocities() -> None:
+def test_spherical_joint_has_three_actuated_velocities() -> None:
     loaded = load(STAR, f"{BALL}actuators: [d]\n")
     assert (len(loaded.actuation.idx_q), len(loaded.actuation.idx_v)) == (4, 3)
     assert loaded.actuation.selection.shape == (loaded.model.nv, 3)
 
 
-def test_a_selection_takes_the_torques_of_motors_to_the_mechanism() -> None:
+def test_selection_maps_motor_torques_to_velocities() -> None:
     loaded = load(STAR, "actuators: [c, a]\n")
     torques = loaded.actuation.selection @ np.array([3.0, 5.0])
     assert torques[at(loaded.model, "c")[2]] == 3
@@ -65,7 +65,7 @@ def test_a_selection_takes_the_torques_of_motors_to_the_mechanism() -> None:
     ],
 )
 @pytest.mark.parametrize("root", ["fixed", "floating"])
-def test_the_armature_is_what_is_stated_or_else_the_rotor_as_the_joint_feels_it(
+def test_armature_is_stated_or_reflected_rotor_inertia(
     joints: str, actuator: str, gear_ratio: list[float], rotor_inertia: list[float], armature: list[float], root: str
 ) -> None:
     model = load(STAR, f"joints: {joints}\nactuators: [{actuator}, c]\n", root=root).model
@@ -78,7 +78,7 @@ def test_the_armature_is_what_is_stated_or_else_the_rotor_as_the_joint_feels_it(
     assert not others.any()
 
 
-def test_a_ball_made_of_three_joints_has_its_motor_too() -> None:
+def test_merged_spherical_joint_can_be_actuated() -> None:
     urdf = robot(
         link_element("base"),
         link_element("one"),
@@ -110,10 +110,10 @@ def test_a_ball_made_of_three_joints_has_its_motor_too() -> None:
         ("actuators: [A]\n", "unknown-actuator"),
     ],
 )
-def test_an_actuator_is_a_joint_that_moves_listed_once(yaml: str, fault: str) -> None:
+def test_actuator_is_moving_joint_listed_once(yaml: str, fault: str) -> None:
     assert codes(STAR, yaml) == [fault]
 
 
-def test_the_selection_is_made_once() -> None:
+def test_selection_is_computed_once() -> None:
     actuation = load(STAR, "actuators: [c, a]\n").actuation
     assert actuation.selection is actuation.selection

@@ -103,7 +103,7 @@ KNOWN: dict[str, tuple[Callable[[], Linkage], tuple[int, int, int, int]]] = {
 
 
 @pytest.mark.parametrize(("build", "known"), KNOWN.values(), ids=KNOWN.keys())
-def test_the_dimensions_of_a_known_mechanism(build: Callable[[], Linkage], known: tuple[int, ...]) -> None:
+def test_dimensions_of_known_mechanisms(build: Callable[[], Linkage], known: tuple[int, ...]) -> None:
     linkage = build()
     nv, nc, rank, uncontrolled = known
     analysis = analyze(linkage)
@@ -118,7 +118,7 @@ def test_the_dimensions_of_a_known_mechanism(build: Callable[[], Linkage], known
 
 
 @pytest.mark.parametrize("build", [build for build, _ in KNOWN.values()], ids=KNOWN.keys())
-def test_exchanging_a_and_b_changes_no_dimension(build: Callable[[], Linkage]) -> None:
+def test_exchanging_frames_keeps_dimensions(build: Callable[[], Linkage]) -> None:
     linkage = build()
     one, other = analyze(linkage), analyze(swapped(linkage))
     assert (one.rank, one.mobility, one.uncontrolled) == (other.rank, other.mobility, other.uncontrolled)
@@ -126,7 +126,7 @@ def test_exchanging_a_and_b_changes_no_dimension(build: Callable[[], Linkage]) -
 
 @pytest.mark.parametrize("size", [1e-3, 1e-2, 1e2, 1e3])
 @pytest.mark.parametrize("build", [slider_crank, sarrus, n_bar, spherical_four_bar])
-def test_size_changes_no_dimension(build: Callable[..., Linkage], size: float) -> None:
+def test_scaling_keeps_dimensions(build: Callable[..., Linkage], size: float) -> None:
     linkage = n_bar(5, size=size, away=0.4) if build is n_bar else build(size=size)
     same = n_bar(5) if build is n_bar else build()
     one, other = analyze(linkage), analyze(same)
@@ -135,7 +135,7 @@ def test_size_changes_no_dimension(build: Callable[..., Linkage], size: float) -
 
 @given(n=st.integers(1, 9), seed=st.integers(0, 2**32 - 1))
 @settings(max_examples=40, deadline=None)
-def test_a_general_loop_of_n_revolutes_has_rank_n_up_to_six(n: int, seed: int) -> None:
+def test_loop_of_n_revolutes_has_rank_at_most_six(n: int, seed: int) -> None:
     random = np.random.default_rng(seed)
     pairs = [("R", random.uniform(-1.0, 1.0, 3), random.normal(size=3)) for _ in range(n)]
     linkage = loop(pairs)
@@ -144,7 +144,7 @@ def test_a_general_loop_of_n_revolutes_has_rank_n_up_to_six(n: int, seed: int) -
     assert analysis.mobility == max(n - 6, 0)
 
 
-def test_the_mobility_is_that_of_the_velocities_which_keep_the_loops_closed() -> None:
+def test_mobility_is_dimension_of_constrained_velocities() -> None:
     # Independent of K: the closed configurations around one of a five-bar, found by closing from random places, spread
     # in as many directions as the mobility says.
     linkage = n_bar(5)
@@ -154,7 +154,7 @@ def test_the_mobility_is_that_of_the_velocities_which_keep_the_loops_closed() ->
     assert int((spread > 1e-3 * spread[0]).sum()) == analyze(linkage).mobility == 2
 
 
-def test_a_robot_without_closures_moves_with_all_its_velocities() -> None:
+def test_robot_without_closures_has_full_mobility() -> None:
     linkage = Linkage(n_bar(5).model, actuated=["j0", "j3"])
     analysis = analyze(linkage)
     assert (analysis.nc, analysis.rank, analysis.mobility, analysis.redundant) == (0, 0, 5, 0)
@@ -163,7 +163,7 @@ def test_a_robot_without_closures_moves_with_all_its_velocities() -> None:
     assert analysis.residual == 0.0
 
 
-def test_joints_outside_the_loops_add_to_the_mobility() -> None:
+def test_joints_outside_loops_add_mobility() -> None:
     linkage = n_bar(4)
     linkage.model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "float")
     linkage.model.addJoint(2, pin.JointModelRX(), pin.SE3.Identity(), "gripper")
@@ -172,7 +172,7 @@ def test_joints_outside_the_loops_add_to_the_mobility() -> None:
     assert (analysis.nv, analysis.rank, analysis.mobility, analysis.uncontrolled) == (11, 3, 8, 6)
 
 
-def test_loops_that_do_not_close_have_no_rank() -> None:
+def test_open_loops_have_no_rank() -> None:
     linkage = n_bar(4)
     (end,) = linkage.constraint_models
     end.joint1_placement = translation(50.0, 0.0, 0.0)
@@ -184,12 +184,12 @@ def test_loops_that_do_not_close_have_no_rank() -> None:
     assert analysis.residual > 40.0
 
 
-def test_a_truss_at_its_dead_point_counts_the_motion_it_has_there() -> None:
+def test_truss_at_dead_point_has_its_motion() -> None:
     # The only closed configuration: the loop has no other at which K could have its full rank.
     assert analyze(flat_truss()).rank == 1
 
 
-def test_the_configuration_given_is_where_the_search_starts() -> None:
+def test_search_starts_at_given_configuration() -> None:
     linkage = n_bar(4, away=0.7)
     linkage.configurations["assembled"] = np.full(4, 0.7)
     np.testing.assert_array_equal(analyze(linkage).q, np.full(4, 0.7))
@@ -200,7 +200,7 @@ def test_the_configuration_given_is_where_the_search_starts() -> None:
         analyze(linkage, np.zeros(7))
 
 
-def test_a_closure_of_which_every_row_is_nothing_but_rounding_has_rank_0() -> None:
+def test_closure_of_rounding_noise_has_rank_zero() -> None:
     centre = np.array([0.3, 0.2, 0.1])
     axes = [(1, 0.2, 0.3), (0.1, 1, 0.2), (0.3, 0.1, 1)]
     points = [centre + distance * np.array(axis) for distance, axis in zip((0.7, 0.9, 1.1), axes, strict=True)]
@@ -209,7 +209,7 @@ def test_a_closure_of_which_every_row_is_nothing_but_rounding_has_rank_0() -> No
     assert (found.nv, found.nc, found.rank, found.mobility) == (3, 3, 0, 3)
 
 
-def test_small_levers_among_long_ones_count() -> None:
+def test_small_levers_count_among_long_ones() -> None:
     # A crank of 2 mm on a linkage of 4 m.
     linkage = loop([("R", (0, 0, 0), Z), ("R", (0.002, 0, 0), Z), ("R", (2, 2, 0), Z), ("R", (4, 0, 0), Z)])
     assert analyze(linkage).rank == 3
@@ -218,14 +218,14 @@ def test_small_levers_among_long_ones_count() -> None:
 
 @pytest.mark.parametrize("decimals", [6, 8, 10])
 @pytest.mark.parametrize("build", [slider_crank, sarrus, n_bar])
-def test_the_rounding_of_files_is_no_constraint(build: Callable[..., Linkage], decimals: int) -> None:
+def test_rounding_in_files_adds_no_constraint(build: Callable[..., Linkage], decimals: int) -> None:
     options: dict[str, Any] = {"decimals": decimals, "away": 0.3}
     rounded = n_bar(5, **options) if build is n_bar else build(**options)
     exact = n_bar(5) if build is n_bar else build()
     assert analyze(rounded).rank == analyze(exact).rank
 
 
-def test_a_mimic_joint_takes_a_velocity_away() -> None:
+def test_mimic_joint_removes_one_velocity() -> None:
     text = """<robot name="scissors"><link name="g"/><link name="a"/><link name="b"/><link name="c"/>
       <joint name="lead" type="revolute"><parent link="g"/><child link="a"/><axis xyz="0 0 1"/>
         <limit lower="-3" upper="3" effort="1" velocity="1"/></joint>
@@ -241,7 +241,7 @@ def test_a_mimic_joint_takes_a_velocity_away() -> None:
         assert (analysis.nv, analysis.rank, analysis.mobility) == expected
 
 
-def test_each_group_of_loops_is_analysed_on_its_own_and_the_whole_is_their_sum() -> None:
+def test_whole_is_sum_of_independent_loop_groups() -> None:
     parts = [n_bar(5), slider_crank(), n_bar(4, "3d", actuated=[]), stewart()]
     robot = side_by_side(*parts)
     robot.model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "float")
@@ -284,7 +284,7 @@ def test_each_group_of_loops_is_analysed_on_its_own_and_the_whole_is_their_sum()
         (lambda: Linkage(n_bar(5).model, actuated=["j0", "j3"]), 3, 0, ()),
     ],
 )
-def test_actuators_suffice_are_redundant_or_fight(
+def test_actuation_is_sufficient_redundant_or_dependent(
     build: Callable[[], Linkage], uncontrolled: int, dependent: int, dependent_actuators: tuple[tuple[str, ...], ...]
 ) -> None:
     analysis = analyze(build())
@@ -297,7 +297,7 @@ def test_actuators_suffice_are_redundant_or_fight(
     assert analysis.controlled == analysis.actuated - dependent == analysis.mobility - uncontrolled
 
 
-def test_actuators_that_fight_are_told_from_those_of_the_same_loops_that_do_not() -> None:
+def test_dependent_actuators_are_separated_from_independent_ones() -> None:
     # A four-bar whose coupler carries a five-bar: two groups of motors in one group of loops, through a shared pin.
     linkage = n_bar(4, "3d", actuated=["j0", "j2", "wheel"])
     model = linkage.model
@@ -317,7 +317,7 @@ def test_actuators_that_fight_are_told_from_those_of_the_same_loops_that_do_not(
     assert analysis.dependent_actuators == (("j0", "j2"),)
 
 
-def test_an_uncontrolled_motion_keeps_the_loops_closed_and_the_actuators_still() -> None:
+def test_uncontrolled_motion_keeps_loops_closed_and_actuators_fixed() -> None:
     for linkage in (rod_between_balls(), n_bar(8), n_bar(7, "3d", actuated=["j2", "j5"]), slider_crank(actuated=[])):
         analysis = analyze(linkage)
         K = residual_and_jacobian(linkage, analysis.q)[1]
@@ -336,14 +336,14 @@ def moves(linkage: Linkage, joint: int, v: Any) -> bool:
     return bool(np.any(v[first : first + width]))
 
 
-def test_a_rod_that_spins_turns_its_two_balls_and_nothing_else() -> None:
+def test_spinning_rod_moves_only_its_two_balls() -> None:
     (motion,) = analyze(rod_between_balls()).motions
     assert motion.joints == ("j1", "j2")
     # About the line between the balls, each as fast as the other.
     assert np.linalg.norm(motion.values[:3]) == pytest.approx(np.linalg.norm(motion.values[3:]))
 
 
-def test_a_planar_linkage_with_motions_left_names_four_pins_for_each() -> None:
+def test_planar_uncontrolled_motion_names_four_pins() -> None:
     for motion in analyze(n_bar(9)).motions:
         assert len(motion.joints) == 4
         assert "j0" not in motion.joints
@@ -351,7 +351,7 @@ def test_a_planar_linkage_with_motions_left_names_four_pins_for_each() -> None:
 
 @given(seed=st.integers(0, 2**32 - 1), sizes=st.lists(st.integers(1, 4), min_size=1, max_size=4))
 @settings(max_examples=50, deadline=None)
-def test_a_sparse_basis_takes_a_sum_of_spaces_apart(seed: int, sizes: list[int]) -> None:
+def test_sparse_basis_separates_sum_of_spaces(seed: int, sizes: list[int]) -> None:
     random = np.random.default_rng(seed)
     blocks = [random.normal(size=(size, size + 2)) for size in sizes]
     n, k = sum(block.shape[1] for block in blocks), sum(sizes)
@@ -370,7 +370,7 @@ def test_a_sparse_basis_takes_a_sum_of_spaces_apart(seed: int, sizes: list[int])
     assert np.abs(basis).max() <= 1.0011
 
 
-def test_the_distance_to_singularity_falls_to_nothing_where_a_linkage_folds_flat() -> None:
+def test_singularity_distance_vanishes_where_linkage_folds() -> None:
     flat = analyze(folded_parallelogram())
     assert flat.rank == 3
     assert flat.singularity == pytest.approx(0.0, abs=1e-12)
@@ -380,7 +380,7 @@ def test_the_distance_to_singularity_falls_to_nothing_where_a_linkage_folds_flat
     assert 0.0 < lifted[0] < 0.1 < lifted[3]
 
 
-def test_the_distance_is_that_to_the_nearest_matrix_of_lower_rank() -> None:
+def test_singularity_distance_is_distance_to_lower_rank() -> None:
     linkage = n_bar(4)
     analysis = analyze(linkage)
     assert analysis.singularity is not None
@@ -395,13 +395,13 @@ def test_the_distance_is_that_to_the_nearest_matrix_of_lower_rank() -> None:
     assert analysis.singularity == pytest.approx(np.linalg.norm(nearest - K, 2), rel=1e-9)
 
 
-def test_the_size_of_a_linkage_changes_no_distance_to_singularity() -> None:
+def test_scaling_keeps_singularity_distance() -> None:
     one, other = analyze(slider_crank()), analyze(slider_crank(size=100.0))
     assert other.singularity == pytest.approx(one.singularity, rel=1e-6)
     assert other.actuation_singularity == pytest.approx(one.actuation_singularity, rel=1e-6)
 
 
-def test_a_slider_crank_with_its_slide_driven_is_singular_for_it_at_the_dead_point_alone() -> None:
+def test_driven_slider_is_singular_at_dead_points_only() -> None:
     dead = loop([("R", (0, 0, 0), Z), ("R", (1, 0, 0), Z), ("R", (3, 0, 0), Z), ("P", (3, 0, 0), X)], actuated=["j3"])
     analysis = analyze(dead)
     assert analysis.uncontrolled == 0
@@ -413,7 +413,7 @@ def test_a_slider_crank_with_its_slide_driven_is_singular_for_it_at_the_dead_poi
     assert turned.actuation_singularity > 0.05
 
 
-def test_what_does_not_close_has_no_motions_and_no_distances() -> None:
+def test_open_robot_has_no_motions_and_distances() -> None:
     linkage = n_bar(4, actuated=["j0", "j1"])
     linkage.constraint_models[0].joint1_placement = translation(50.0, 0.0, 0.0)
     analysis = analyze(linkage)
@@ -423,7 +423,7 @@ def test_what_does_not_close_has_no_motions_and_no_distances() -> None:
     assert (analysis.dependent_actuators, analysis.motions, analysis.loops) == ((), (), ())
 
 
-def test_info_says_what_the_actuators_leave_and_what_they_fight_over() -> None:
+def test_info_shows_uncontrolled_motions_and_dependent_actuators() -> None:
     robot = load(*described(side_by_side(n_bar(6, actuated=["j1"]), n_bar(4, actuated=["j0", "j2"]))))
     analysis = eurdf.analyze(robot)
     info = robot_info(robot, analysis)
@@ -439,7 +439,7 @@ def test_info_says_what_the_actuators_leave_and_what_they_fight_over() -> None:
 
 @needs_wild
 @pytest.mark.parametrize("name", FACTS)
-def test_published_robots_have_their_known_dimensions(name: str) -> None:
+def test_published_robots_have_known_dimensions(name: str) -> None:
     facts = FACTS[name]
     analysis = analyze(eurdf.load(WILD / name, geometry=False))
     for key in ("nq", "nv", "nc", "rank", "mobility", "actuated", "uncontrolled", "closes"):
@@ -449,6 +449,6 @@ def test_published_robots_have_their_known_dimensions(name: str) -> None:
 
 
 @needs_wild
-def test_a_floating_root_adds_six_to_the_mobility() -> None:
+def test_floating_root_adds_six_to_mobility() -> None:
     analysis = analyze(eurdf.load(WILD / "digit_like", root="floating", geometry=False))
     assert (analysis.nv, analysis.rank, analysis.mobility, analysis.uncontrolled) == (33, 18, 15, 9)

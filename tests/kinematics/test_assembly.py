@@ -60,7 +60,7 @@ def four_bar(crank: float, coupler: float, rocker: float, ground: float) -> Link
 
 @pytest.mark.parametrize("build", OPEN.values(), ids=OPEN.keys())
 @pytest.mark.parametrize("size", [1.0, 1000.0, 0.01])
-def test_an_open_linkage_closes_whatever_its_size(build: Callable[[], Linkage], size: float) -> None:
+def test_open_linkage_closes_at_any_size(build: Callable[[], Linkage], size: float) -> None:
     linkage = build()
     for joint in range(1, linkage.model.njoints):
         linkage.model.jointPlacements[joint].translation *= size
@@ -85,7 +85,7 @@ def test_an_open_linkage_closes_whatever_its_size(build: Callable[[], Linkage], 
 
 @given(seed=st.integers(0, 2**32 - 1))
 @settings(max_examples=25, deadline=None)
-def test_a_stewart_platform_closes_from_where_its_legs_are_disturbed(seed: int) -> None:
+def test_disturbed_stewart_platform_closes(seed: int) -> None:
     linkage = stewart()
     random = np.random.default_rng(seed)
     q0 = pin.integrate(linkage.model, pin.neutral(linkage.model), random.uniform(-0.5, 0.5, linkage.model.nv))
@@ -97,7 +97,7 @@ def test_a_stewart_platform_closes_from_where_its_legs_are_disturbed(seed: int) 
 
 
 @pytest.mark.parametrize("angle", [-2.0, -0.5, 0.3, 1.0, 2.5])
-def test_a_four_bar_with_its_crank_held_closes_where_two_circles_meet(angle: float) -> None:
+def test_held_crank_closes_at_circle_intersection(angle: float) -> None:
     crank, coupler, rocker, ground = 1.0, 3.0, 2.5, 2.8  # the crank turns all round: 1 + 3 < 2.5 + 2.8
     linkage = four_bar(crank, coupler, rocker, ground)
     assembly = assemble(linkage, np.array([angle, 0.5, 0.5]), hold=["j0"])
@@ -115,14 +115,14 @@ def test_a_four_bar_with_its_crank_held_closes_where_two_circles_meet(angle: flo
     assert min(np.linalg.norm(reached - meeting) for meeting in meetings) < 1e-9
 
 
-def test_a_straight_start_where_the_gradient_vanishes_is_left() -> None:
+def test_straight_start_with_zero_gradient_closes() -> None:
     linkage = four_bar(1.0, 3.0, 2.0, 3.5)  # all pins on one line: no joint moves the end along it
     assembly = assemble(linkage)
     assert assembly.converged
     assert np.abs(assembly.q).max() > 0.1
 
 
-def test_loops_that_cannot_close_are_left_as_little_open_as_can_be() -> None:
+def test_impossible_loop_is_left_least_open() -> None:
     linkage = four_bar(1.0, 3.0, 2.0, 9.0)  # 6 m of bars for 9 m of ground
     assembly = assemble(linkage, np.array([0.4, -0.8, 0.5]))
     assert not assembly.converged
@@ -135,7 +135,7 @@ def test_loops_that_cannot_close_are_left_as_little_open_as_can_be() -> None:
     assert assembly.iterations < 500
 
 
-def test_a_loop_that_cannot_close_keeps_no_other_from_closing() -> None:
+def test_impossible_loop_does_not_block_others() -> None:
     model, constraints = pin.Model(), []
     for name, ground in (("good", 2.8), ("bad", 9.0), ("fine", 3.0)):
         parent = 0
@@ -152,7 +152,7 @@ def test_a_loop_that_cannot_close_keeps_no_other_from_closing() -> None:
     assert openings["bad"] == pytest.approx(3.0, abs=1e-6)
 
 
-def test_joints_held_stay_and_can_keep_a_loop_open() -> None:
+def test_held_joints_stay_and_can_keep_loop_open() -> None:
     linkage = four_bar(1.0, 3.0, 2.0, 5.5)
     q0 = np.array([np.pi, 0.3, -0.2])  # the crank points away: 5 m of bars for 6.5 m
     assembly = assemble(linkage, q0, hold=["j0"])
@@ -164,7 +164,7 @@ def test_joints_held_stay_and_can_keep_a_loop_open() -> None:
     assert not nothing.closes
 
 
-def test_joints_that_are_in_no_loop_stay_where_they_are() -> None:
+def test_joints_outside_loops_stay() -> None:
     linkage = n_bar(4, away=0.7)
     model = linkage.model
     model.addJoint(0, pin.JointModelFreeFlyer(), translation(1.0, 2.0, 3.0), "beside")
@@ -178,7 +178,7 @@ def test_joints_that_are_in_no_loop_stay_where_they_are() -> None:
         np.testing.assert_allclose(assembly.q[part], q0[part], atol=1e-12)
 
 
-def test_an_unknown_joint_to_hold_is_refused_with_the_nearest_name() -> None:
+def test_unknown_held_joint_is_refused_with_nearest_name() -> None:
     model = pin.Model()
     parent = model.addJoint(0, pin.JointModelRX(), pin.SE3.Identity(), "motor_knee")
     linkage = Linkage(model, [closure(model, 0, pin.SE3.Identity(), parent, pin.SE3.Identity())])
@@ -194,7 +194,7 @@ def test_an_unknown_joint_to_hold_is_refused_with_the_nearest_name() -> None:
         (np.zeros(4), "length zero"),
     ],
 )
-def test_a_start_that_is_no_configuration_is_refused(q0: Any, reason: str) -> None:
+def test_invalid_start_is_refused(q0: Any, reason: str) -> None:
     model = pin.Model()
     parent = model.addJoint(0, pin.JointModelSpherical(), pin.SE3.Identity(), "ball")
     linkage = Linkage(model, [closure(model, 0, pin.SE3.Identity(), parent, pin.SE3.Identity())])
@@ -202,7 +202,7 @@ def test_a_start_that_is_no_configuration_is_refused(q0: Any, reason: str) -> No
         assemble(linkage, q0)
 
 
-def test_a_start_is_normalised() -> None:
+def test_start_is_normalized() -> None:
     model = pin.Model()
     parent = model.addJoint(0, pin.JointModelSpherical(), pin.SE3.Identity(), "ball")
     linkage = Linkage(model, [closure(model, 0, pin.SE3.Identity(), parent, pin.SE3.Identity())])
@@ -210,7 +210,7 @@ def test_a_start_is_normalised() -> None:
     np.testing.assert_allclose(np.abs(assembly.q), [0.0, 0.0, 0.0, 1.0], atol=1e-10)
 
 
-def test_it_starts_at_the_assembled_configuration_where_there_is_one() -> None:
+def test_default_start_is_assembled_configuration() -> None:
     linkage = n_bar(4, away=0.7)
     linkage.configurations["assembled"] = np.full(4, 0.7)
     assembly = assemble(linkage)
@@ -219,13 +219,13 @@ def test_it_starts_at_the_assembled_configuration_where_there_is_one() -> None:
     assert not np.allclose(assemble(linkage, np.zeros(4)).q, 0.7)
 
 
-def test_the_same_question_has_the_same_answer() -> None:
+def test_assembly_is_deterministic() -> None:
     first, second = (assemble(four_bar(1.0, 3.0, 2.0, 3.5)) for _ in range(2))
     assert first.iterations > 5
     np.testing.assert_allclose(first.q, second.q, atol=1e-9)
 
 
-def test_limits_are_kept_where_that_is_asked() -> None:
+def test_limits_are_respected_on_request() -> None:
     linkage = n_bar(5, away=0.4)
     linkage.model.lowerPositionLimit = np.full(5, 0.1)
     linkage.model.upperPositionLimit = np.array([0.6, 0.6, 0.3, np.inf, 0.6])
@@ -236,7 +236,7 @@ def test_limits_are_kept_where_that_is_asked() -> None:
     assert (assembly.q <= linkage.model.upperPositionLimit).all()
 
 
-def test_joints_go_on_moving_when_others_have_come_to_their_limits() -> None:
+def test_other_joints_move_after_some_reach_limits() -> None:
     converged = 0
     for seed in range(40):
         random = np.random.default_rng(seed)
@@ -251,9 +251,7 @@ def test_joints_go_on_moving_when_others_have_come_to_their_limits() -> None:
 
 
 @pytest.mark.parametrize(("off", "closes"), [(0.5e-6, True), (0.7e-6, False)])
-def test_a_closure_that_stays_open_by_a_little_along_each_axis_is_open_by_the_length_of_it(
-    off: float, closes: bool
-) -> None:
+def test_opening_is_euclidean_length_of_all_axes(off: float, closes: bool) -> None:
     linkage = loop([("R", (0.0, 0.0, 0.0), Z)], "3d", (0.0, 0.0, 0.3))  # closed on the axis, which moves nothing
     constraint = linkage.constraint_models[0]
     constraint.joint1_placement = constraint.joint1_placement * pin.SE3(np.eye(3), np.full(3, off))
@@ -262,7 +260,7 @@ def test_a_closure_that_stays_open_by_a_little_along_each_axis_is_open_by_the_le
     assert assembly.open[0].is_open is not closes
 
 
-def test_limits_that_leave_no_closed_configuration_are_kept_all_the_same() -> None:
+def test_limits_are_respected_when_no_solution_exists() -> None:
     linkage = four_bar(1.0, 3.0, 2.0, 3.5)
     linkage.model.lowerPositionLimit = np.full(3, -0.2)
     linkage.model.upperPositionLimit = np.full(3, 0.2)
@@ -275,7 +273,7 @@ def test_limits_that_leave_no_closed_configuration_are_kept_all_the_same() -> No
     assert assembly.residual <= np.linalg.norm(end - [3.5, 0.0]) + 1e-6
 
 
-def test_limits_that_keep_a_loop_open_are_named() -> None:
+def test_limits_that_keep_loop_open_are_named() -> None:
     linkage = n_bar(4, away=0.7)
     linkage.model.lowerPositionLimit, linkage.model.upperPositionLimit = np.full(4, -0.1), np.full(4, 0.2)
     assembly = assemble(linkage, limits=True)
@@ -290,14 +288,14 @@ def test_limits_that_keep_a_loop_open_are_named() -> None:
     assert repr(free).startswith("<Assembly: closed; residual")
 
 
-def test_a_loop_that_cannot_close_at_all_is_not_put_down_to_limits() -> None:
+def test_impossible_loop_is_not_blamed_on_limits() -> None:
     linkage = four_bar(1.0, 1.0, 1.0, 9.0)
     linkage.model.lowerPositionLimit, linkage.model.upperPositionLimit = np.full(3, -3.0), np.full(3, 3.0)
     assembly = assemble(linkage, limits=True)
     assert (assembly.closes, assembly.reason, assembly.at_limits) == (False, "not closed", ())
 
 
-def test_a_range_of_zero_width_is_no_range_unless_strict() -> None:
+def test_zero_range_is_no_range_unless_strict() -> None:
     linkage = n_bar(4, away=0.7)
     linkage.model.lowerPositionLimit = linkage.model.upperPositionLimit = np.zeros(4)
     assert assemble(linkage, limits=True).converged
@@ -308,12 +306,12 @@ def test_a_range_of_zero_width_is_no_range_unless_strict() -> None:
         assemble(linkage, limits="none")  # type: ignore[arg-type]
 
 
-def test_redundant_rows_that_contradict_one_another_are_a_reason() -> None:
+def test_contradicting_redundant_rows_are_a_reason() -> None:
     assembly = assemble(sarrus(away=(0.3, -0.2, 0.4, 0.1, 0.2, 0.3), decimals=7))
     assert (assembly.converged, assembly.closes, assembly.reason) == (False, True, "rounding")
 
 
-def test_limits_do_not_hold_back_balls_and_turning_wheels() -> None:
+def test_limits_do_not_apply_to_balls_and_wheels() -> None:
     model = pin.Model()
     wheel = model.addJoint(0, pin.JointModelRUBZ(), pin.SE3.Identity(), "wheel")
     ball = model.addJoint(wheel, pin.JointModelSpherical(), translation(1.0, 0.0, 0.0), "ball")
@@ -339,14 +337,14 @@ def scissors() -> Linkage:
     return Linkage(model, [closure(model, slide, pin.SE3.Identity(), fold, translation(1.0, 0.0, 0.0), "3d")])
 
 
-def test_a_loop_closed_by_a_joint_that_mimics_another_closes() -> None:
+def test_loop_with_mimic_joint_closes() -> None:
     assembly = assemble(scissors(), np.array([0.8, 0.3]), hold=["fold"])
     assert assembly.converged
     np.testing.assert_allclose(assembly.q, [0.8, 2.0 * np.cos(0.8)], atol=1e-9)
 
 
 @pytest.mark.parametrize("build", [n_bar, lambda *a, **k: sarrus(**k)])
-def test_a_file_of_six_decimals_closes_as_far_as_its_digits_go(build: Callable[..., Linkage]) -> None:
+def test_six_decimal_file_closes_to_its_precision(build: Callable[..., Linkage]) -> None:
     exact = assemble(build(4, away=0.6))
     assert exact.converged
     rounded = assemble(build(4, away=0.6, decimals=6))
@@ -354,7 +352,7 @@ def test_a_file_of_six_decimals_closes_as_far_as_its_digits_go(build: Callable[.
     np.testing.assert_allclose(rounded.q, exact.q, atol=1e-4)
 
 
-def test_a_large_robot_is_closed_without_the_memory_that_data_takes(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_large_robot_closes_without_pinocchio_data(monkeypatch: pytest.MonkeyPatch) -> None:
     def refused(self: Any) -> Any:
         raise AssertionError("pin.Data of a large model")
 
@@ -376,9 +374,7 @@ def test_a_large_robot_is_closed_without_the_memory_that_data_takes(monkeypatch:
         scissors,
     ],
 )
-def test_the_two_ways_of_evaluation_agree_with_the_residual_and_its_jacobian(
-    build: Callable[[], Any], hold: bool
-) -> None:
+def test_both_evaluations_agree_with_residual_and_jacobian(build: Callable[[], Any], hold: bool) -> None:
     robot = build()
     model = robot.model
     random = np.random.default_rng(3)
@@ -403,7 +399,7 @@ def test_the_two_ways_of_evaluation_agree_with_the_residual_and_its_jacobian(
             np.testing.assert_allclose(evaluation.openings(), expected, atol=1e-12)
 
 
-def test_what_is_kept_with_a_robot_is_given_up_when_the_robot_changes() -> None:
+def test_cached_assembler_is_dropped_when_robot_changes() -> None:
     linkage = four_bar(1.0, 3.0, 2.5, 2.8)
     start = np.array([0.3, 0.5, 0.5])
     assert assemble(linkage, start).converged
@@ -424,7 +420,7 @@ def test_what_is_kept_with_a_robot_is_given_up_when_the_robot_changes() -> None:
     assert assemble(linkage, start).open == ()
 
 
-def test_what_is_kept_with_a_robot_keeps_nothing_else_alive() -> None:
+def test_cached_assembler_keeps_no_reference_to_robot() -> None:
     linkage = n_bar(5, away=0.3)
     for hold in ([], ["j0"], ["j1"]):
         assert assemble(linkage, hold=hold).converged
@@ -434,7 +430,7 @@ def test_what_is_kept_with_a_robot_keeps_nothing_else_alive() -> None:
     assert alive() is None
 
 
-def test_joints_held_before_are_not_held_now() -> None:
+def test_earlier_held_joints_are_released() -> None:
     linkage = n_bar(5, away=0.4)
     free = assemble(linkage).q
     held = assemble(linkage, hold=["j0", "j1"]).q
@@ -444,7 +440,7 @@ def test_joints_held_before_are_not_held_now() -> None:
     assert np.abs(free[:2]).min() > 1e-3
 
 
-def test_threads_get_the_answers_that_they_would_get_alone() -> None:
+def test_threads_get_single_threaded_results() -> None:
     robot = eurdf.load("digit_leg", geometry=False)
     random = np.random.default_rng(0)
     starts = [
@@ -458,7 +454,7 @@ def test_threads_get_the_answers_that_they_would_get_alone() -> None:
         np.testing.assert_allclose(one, other, atol=1e-9)
 
 
-def test_a_chain_of_loops_takes_as_many_evaluations_as_its_slowest_link() -> None:
+def test_chain_of_loops_needs_evaluations_of_slowest_loop() -> None:
     model, constraints = pin.Model(), []
     foot = 0
     for index in range(40):
@@ -478,7 +474,7 @@ def test_a_chain_of_loops_takes_as_many_evaluations_as_its_slowest_link() -> Non
 
 
 @pytest.mark.parametrize("name", ["digit_leg", "four_bar"])
-def test_within_limits_a_robot_closes_from_wherever_it_is_disturbed_to(name: str) -> None:
+def test_disturbed_robot_closes_within_limits(name: str) -> None:
     robot = eurdf.load(name, geometry=False)
     model, closed, random = robot.model, eurdf.assemble(robot).q, np.random.default_rng(5)
     bounded = np.isfinite(model.lowerPositionLimit) & np.isfinite(model.upperPositionLimit)
@@ -490,13 +486,13 @@ def test_within_limits_a_robot_closes_from_wherever_it_is_disturbed_to(name: str
         assert (assembly.q <= model.upperPositionLimit)[bounded].all()
 
 
-def test_a_robot_without_closures_is_closed() -> None:
+def test_robot_without_closures_is_closed() -> None:
     assembly = assemble(Linkage(n_bar(4).model))
     assert assembly.converged
     assert (assembly.residual, assembly.iterations, assembly.open) == (0.0, 0, ())
 
 
-def test_absurd_lengths_end_in_an_answer() -> None:
+def test_absurd_lengths_still_return() -> None:
     for length in (1e160, 1e308):
         linkage = loop([("R", (0, 0, 0), Z), ("R", (length, 0, 0), Z), ("P", (length, length, 0), X)], away=0.3)
         assembly = assemble(linkage)
@@ -506,7 +502,7 @@ def test_absurd_lengths_end_in_an_answer() -> None:
 
 @given(seed=st.integers(0, 2**32 - 1))
 @settings(max_examples=50, deadline=None)
-def test_the_answer_is_never_more_open_than_the_start(seed: int) -> None:
+def test_result_is_never_more_open_than_start(seed: int) -> None:
     random = np.random.default_rng(seed)
     linkage = four_bar(*random.uniform(0.2, 2.0, 4))  # half of them cannot close
     q0 = random.uniform(-3.0, 3.0, 3)
@@ -515,7 +511,7 @@ def test_the_answer_is_never_more_open_than_the_start(seed: int) -> None:
 
 
 @pytest.mark.parametrize("build", [flat_sarrus, n_bar])
-def test_what_is_closed_already_stays(build: Callable[..., Linkage]) -> None:
+def test_closed_start_is_unchanged(build: Callable[..., Linkage]) -> None:
     linkage = build() if build is flat_sarrus else build(6)
     assembly = assemble(linkage)
     np.testing.assert_array_equal(assembly.q, np.zeros(6))
@@ -524,7 +520,7 @@ def test_what_is_closed_already_stays(build: Callable[..., Linkage]) -> None:
 
 @needs_wild
 @pytest.mark.parametrize("name", [name for name, facts in FACTS.items() if facts["closes"]])
-def test_published_robots_close_from_their_neutral_configuration_in_few_steps(name: str) -> None:
+def test_published_robots_close_in_few_steps(name: str) -> None:
     robot = eurdf.load(WILD / name, geometry=False)
     assembly = assemble(robot)
     assert assembly.converged
@@ -533,7 +529,7 @@ def test_published_robots_close_from_their_neutral_configuration_in_few_steps(na
 
 
 @needs_wild
-def test_a_published_robot_that_does_not_close_is_known_in_bounded_steps() -> None:
+def test_published_robot_that_cannot_close_ends_in_bounded_steps() -> None:
     robot = eurdf.load(WILD / "kangaroo_like", geometry=False)
     assembly = assemble(robot)
     assert assembly.iterations <= (20 + 2) * (60 + 1)  # the descents and steps that `assemble` states

@@ -51,7 +51,7 @@ def twist_by_differences(robot: Any, q: Any, v: Any, frame: str, reference: Any,
 
 @pytest.mark.parametrize("reference", [pin.LOCAL, pin.WORLD, pin.LOCAL_WORLD_ALIGNED])
 @pytest.mark.parametrize("name", ["digit_leg", "five-bar", "arm"])
-def test_the_frame_moves_as_is_said_and_the_loops_stay_closed(name: str, reference: Any) -> None:
+def test_frame_gets_twist_and_loops_stay_closed(name: str, reference: Any) -> None:
     build = {"digit_leg": lambda: robot_called("digit_leg"), "five-bar": lambda: five_bar(["j0", "j4"]), "arm": arm}
     robot, frame = build[name](), "foot" if name == "digit_leg" else "end"
     random = np.random.default_rng(3)
@@ -70,7 +70,7 @@ def test_the_frame_moves_as_is_said_and_the_loops_stay_closed(name: str, referen
     np.testing.assert_allclose(again.v, found.v, atol=1e-8)
 
 
-def test_near_a_singularity_velocities_stay_bounded() -> None:
+def test_velocities_stay_bounded_near_singularity() -> None:
     robot = arm(3)  # x, y and heading of its end: straight, it cannot go outward
     outward = np.array([1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
     J = eurdf.actuated_jacobian(robot, np.array([0.0, 1e-13, 0.0]), "end")
@@ -86,7 +86,7 @@ def test_near_a_singularity_velocities_stay_bounded() -> None:
     assert eurdf.differential_inverse_kinematics(robot, bent.v, "end", outward, singular=0.9).rank == 1
 
 
-def test_motors_that_depend_on_one_another_share_the_motion() -> None:
+def test_dependent_motors_share_the_motion() -> None:
     robot = five_bar(["j0", "j1", "j4"])  # three motors for two motions
     q = closed_near(robot, np.random.default_rng(1))
     with pytest.raises(eurdf.DependentActuators):
@@ -98,7 +98,7 @@ def test_motors_that_depend_on_one_another_share_the_motion() -> None:
     np.testing.assert_allclose(found.twist, wanted, atol=1e-9)
 
 
-def test_motion_that_no_motor_decides_is_not_used() -> None:
+def test_uncontrolled_motion_is_not_used() -> None:
     robot = five_bar(["j0"])  # one motor, two motions
     found = eurdf.differential_inverse_kinematics(
         robot, closed_near(robot, np.random.default_rng(1)), "end", np.ones(6)
@@ -106,14 +106,14 @@ def test_motion_that_no_motor_decides_is_not_used() -> None:
     assert found.rank == 1
 
 
-def test_without_motors_nothing_moves() -> None:
+def test_nothing_moves_without_motors() -> None:
     found = eurdf.differential_inverse_kinematics(five_bar([]), assemble(five_bar([])).q, "end", np.ones(6))
     np.testing.assert_array_equal(found.v, np.zeros(5))
     np.testing.assert_array_equal(found.twist, np.zeros(6))
     assert (found.rank, found.actuated.shape) == (0, (0,))
 
 
-def test_what_is_no_twist_frame_or_threshold_is_refused() -> None:
+def test_invalid_twist_frame_or_threshold_is_refused() -> None:
     robot = arm()
     for twist in (np.ones(5), [np.nan] * 6, np.ones((6, 1))):
         with pytest.raises(ValueError, match="a twist is six finite numbers"):

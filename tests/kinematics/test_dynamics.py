@@ -178,7 +178,7 @@ def bias_by_hand(robot: Any, q: Any, v: Any, step: float = 1e-4) -> Any:
 
 
 @pytest.mark.parametrize(("name", "moving"), [("four_bar", True), ("four_bar", False), ("digit_leg", False)])
-def test_forward_dynamics_solves_the_equations_written_by_hand(name: str, moving: bool) -> None:
+def test_forward_dynamics_solves_handwritten_equations(name: str, moving: bool) -> None:
     random = np.random.default_rng(3)
     robot = eurdf.load(name, geometry=False)
     q, v = closed_state(robot, random)
@@ -201,7 +201,7 @@ def test_forward_dynamics_solves_the_equations_written_by_hand(name: str, moving
     np.testing.assert_allclose(stacked(found.forces), expected[nv:], atol=1e-5 * np.abs(expected[nv:]).max())
 
 
-def test_the_force_of_a_closure_is_what_holds_the_body_of_b() -> None:
+def test_closure_force_holds_body_of_frame_b() -> None:
     model = pin.Model()
     slider = model.addJoint(0, pin.JointModelPZ(), pin.SE3.Identity(), "slider")
     model.inertias[slider] = pin.Inertia(2.0, np.zeros(3), np.eye(3))
@@ -221,7 +221,7 @@ def test_the_force_of_a_closure_is_what_holds_the_body_of_b() -> None:
 @every_robot
 @given(seed=seeds)
 @settings(max_examples=5, deadline=None)
-def test_the_acceleration_satisfies_both_equations(name: str, seed: int) -> None:
+def test_acceleration_satisfies_both_equations(name: str, seed: int) -> None:
     random = np.random.default_rng(seed)
     robot = robot_named(name)
     model, S = robot.model, robot.actuation.selection
@@ -239,7 +239,7 @@ def test_the_acceleration_satisfies_both_equations(name: str, seed: int) -> None
 @every_robot
 @given(seed=seeds)
 @settings(max_examples=5, deadline=None)
-def test_inverse_dynamics_finds_the_torques_of_forward_dynamics(name: str, seed: int) -> None:
+def test_inverse_dynamics_recovers_torques(name: str, seed: int) -> None:
     random = np.random.default_rng(seed)
     robot = robot_named(name)
     S = robot.actuation.selection
@@ -255,7 +255,7 @@ def test_inverse_dynamics_finds_the_torques_of_forward_dynamics(name: str, seed:
 @every_robot
 @given(seed=seeds)
 @settings(max_examples=5, deadline=None)
-def test_forward_dynamics_makes_the_acceleration_of_inverse_dynamics(name: str, seed: int) -> None:
+def test_forward_dynamics_recovers_acceleration(name: str, seed: int) -> None:
     random = np.random.default_rng(seed)
     robot = robot_named(name)
     S = robot.actuation.selection
@@ -291,7 +291,7 @@ by_pinocchio = pytest.mark.parametrize("name", [*ROBOTS, *(name for name in LINK
 
 
 @by_pinocchio
-def test_the_solver_of_pinocchio_and_elimination_agree(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_pinocchio_solver_and_elimination_agree(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     robot = robot_named(name)
     q, v = closed_state(robot, np.random.default_rng(7))
     u = np.ones(robot.actuation.selection.shape[1])
@@ -311,7 +311,7 @@ def test_the_solver_of_pinocchio_and_elimination_agree(name: str, monkeypatch: p
 
 @by_pinocchio
 @pytest.mark.parametrize("factor", [1e-9, 1e9])
-def test_what_everything_weighs_does_not_matter(name: str, factor: float) -> None:
+def test_scaling_mass_keeps_acceleration(name: str, factor: float) -> None:
     robot = robot_named(name)
     q, v = closed_state(robot, np.random.default_rng(7))
     model, u = robot.model, np.ones(robot.actuation.selection.shape[1])
@@ -331,7 +331,7 @@ def test_what_everything_weighs_does_not_matter(name: str, factor: float) -> Non
 
 @given(seed=seeds)
 @settings(max_examples=10, deadline=None)
-def test_a_planar_loop_in_6d_moves_as_in_3d(seed: int) -> None:
+def test_planar_loop_moves_alike_in_6d_and_3d(seed: int) -> None:
     random = np.random.default_rng(seed)
     spatial, point = weighted(n_bar(5, "6d"), 1), weighted(n_bar(5, "3d"), 1)
     q, v = closed_state(spatial, random)
@@ -339,7 +339,7 @@ def test_a_planar_loop_in_6d_moves_as_in_3d(seed: int) -> None:
     np.testing.assert_allclose(a[:4], forward_dynamics(point, q[:4], v[:4], np.ones(1)).a, rtol=1e-8, atol=1e-8)
 
 
-def test_rows_that_differ_by_rounding_do_not_lock_the_loop() -> None:
+def test_rounding_does_not_lock_redundant_loop() -> None:
     exact = weighted(tilted(5, actuated=("j0",)), 2)
     rounded = weighted(tilted(5, actuated=("j0",), decimals=6), 2)
     singular = np.linalg.svd(residual_and_jacobian(rounded, assemble(rounded).q)[1], compute_uv=False)
@@ -371,7 +371,7 @@ FOLLOWING = (
 )
 
 
-def test_a_joint_that_mimics_moves_as_the_free_joint_bound_to_its_leader() -> None:
+def test_mimic_joint_moves_as_constrained_free_joint() -> None:
     yaml = PIN % "lower"
     robot, free = load(FOLLOWING, yaml), load(FOLLOWING, yaml, mimic=False)
     assert (robot.model.nv, free.model.nv) == (2, 3)
@@ -395,7 +395,7 @@ def test_a_joint_that_mimics_moves_as_the_free_joint_bound_to_its_leader() -> No
     np.testing.assert_allclose(found.a, np.linalg.solve(M, np.array([3.0, 0.0]) - h), rtol=1e-9)
 
 
-def test_a_leader_that_comes_after_its_mimic_joint_has_its_own_name_in_errors() -> None:
+def test_late_leader_is_named_in_errors() -> None:
     late = FOLLOWING.replace(
         '<mimic joint="a" multiplier="-1.5" offset="0.3"/>', '<mimic joint="c" multiplier="-1.5"/>'
     )
@@ -406,7 +406,7 @@ def test_a_leader_that_comes_after_its_mimic_joint_has_its_own_name_in_errors() 
     assert set(refused.value.missing) == {"a", "c"}
 
 
-def test_a_loop_with_a_joint_that_mimics_is_solved() -> None:
+def test_loop_with_mimic_joint_is_solved() -> None:
     geared = FOLLOWING.replace("</robot>", "") + body("tip")
     geared += joint_element("d", "revolute", "lower", "tip", LIMITED.format("0 1 0"), '<origin xyz="0.4 0 0"/>')
     yaml = PIN % "tip"
@@ -422,7 +422,7 @@ def test_a_loop_with_a_joint_that_mimics_is_solved() -> None:
     np.testing.assert_allclose(found.forces[0], [expected[3], 0.0, expected[4]], rtol=1e-7, atol=1e-9)
 
 
-def test_inertia_is_asked_for_only_where_the_closures_leave_it_alone() -> None:
+def test_inertia_is_needed_only_for_free_motions() -> None:
     linkage = weighted(n_bar(4))
     light = weighted(n_bar(4))
     for joint in (3, 4):  # the last two bars: the coupler's pin and what is welded to the ground
@@ -434,7 +434,7 @@ def test_inertia_is_asked_for_only_where_the_closures_leave_it_alone() -> None:
     assert inverse_dynamics(linkage, q, v, found.a).u == pytest.approx(1.0)
 
 
-def test_what_can_move_without_inertia_is_named() -> None:
+def test_massless_free_motion_is_named() -> None:
     model = weighted(n_bar(4)).model
     spinner = model.addJoint(1, pin.JointModelRX(), translation(0.1, 0.0, 0.0), "spinner")
     linkage = Linkage(model, n_bar(4).constraint_models, ["j0"])
@@ -452,7 +452,7 @@ def test_what_can_move_without_inertia_is_named() -> None:
     assert refused.value.missing == {"spinner": (pytest.approx(-1.0),)}
 
 
-def test_a_tree_without_closures_moves_as_in_pinocchio() -> None:
+def test_tree_without_closures_matches_pinocchio() -> None:
     model = pin.buildSampleModelManipulator()
     random = np.random.default_rng(0)
     q, v, tau = pin.randomConfiguration(model), random.normal(size=model.nv), random.normal(size=model.nv)
@@ -461,7 +461,7 @@ def test_a_tree_without_closures_moves_as_in_pinocchio() -> None:
     assert found.forces == ()
 
 
-def test_a_mechanism_of_one_joint_falls() -> None:
+def test_single_joint_falls() -> None:
     model = pin.Model()
     model.addJoint(0, pin.JointModelPZ(), pin.SE3.Identity(), "drop")
     model.inertias[1] = pin.Inertia(2.0, np.zeros(3), np.eye(3))
@@ -471,7 +471,7 @@ def test_a_mechanism_of_one_joint_falls() -> None:
 # --- actuation ------------------------------------------------------------------------------------------------------
 
 
-def test_redundant_motors_share_the_least_torque() -> None:
+def test_redundant_motors_share_least_torque() -> None:
     robot = weighted(n_bar(4, actuated=("j0", "j1", "j2")))
     random = np.random.default_rng(1)
     q, v = closed_state(robot, random)
@@ -493,7 +493,7 @@ def test_redundant_motors_share_the_least_torque() -> None:
         inverse_dynamics(robot, q, v, a, weights=np.array([1.0, 0.0, 1.0]))
 
 
-def test_a_motion_that_no_motor_makes_is_refused_and_the_joints_are_named() -> None:
+def test_motion_without_motor_is_refused_with_joint_names() -> None:
     robot = eurdf.load("digit_leg", geometry=False)
     random = np.random.default_rng(0)
     q, v = closed_state(robot, random)
@@ -517,7 +517,7 @@ def test_a_motion_that_no_motor_makes_is_refused_and_the_joints_are_named() -> N
     np.testing.assert_allclose(achievable_acceleration(robot, q, v, a + spin), a, atol=1e-6)
 
 
-def test_a_robot_without_motors_does_only_what_it_does_by_itself() -> None:
+def test_robot_without_motors_only_moves_passively() -> None:
     robot = weighted(n_bar(4, actuated=()))
     q, v = closed_state(robot, np.random.default_rng(0))
     a = forward_dynamics(robot, q, v).a
@@ -526,7 +526,7 @@ def test_a_robot_without_motors_does_only_what_it_does_by_itself() -> None:
         inverse_dynamics(robot, q, v, a + free_part(robot, q, np.array([1.0, 0.0, 0.0, 0.0])))
 
 
-def test_a_motion_that_opens_closures_is_refused_and_they_are_named() -> None:
+def test_motion_that_opens_closures_is_refused_with_names() -> None:
     robot = eurdf.load("digit_leg", geometry=False)
     q, v = closed_state(robot, np.random.default_rng(0))
     a = forward_dynamics(robot, q, v).a
@@ -552,7 +552,7 @@ def test_a_motion_that_opens_closures_is_refused_and_they_are_named() -> None:
 
 @given(seed=seeds)
 @settings(max_examples=10, deadline=None)
-def test_an_external_force_acts_at_its_frame_in_the_axes_of_the_world(seed: int) -> None:
+def test_external_force_acts_at_frame_in_world_axes(seed: int) -> None:
     random = np.random.default_rng(seed)
     robot = eurdf.load("digit_leg", geometry=False)
     model, data = robot.model, robot.data
@@ -571,7 +571,7 @@ def test_an_external_force_acts_at_its_frame_in_the_axes_of_the_world(seed: int)
     np.testing.assert_allclose(back.u, 0.0, atol=1e-6)
 
 
-def test_damping_and_friction_act_only_when_asked() -> None:
+def test_damping_and_friction_act_on_request() -> None:
     robot = eurdf.load("digit_leg", geometry=False)
     q, v = closed_state(robot, np.random.default_rng(0))
     model = robot.model
@@ -587,7 +587,7 @@ def test_damping_and_friction_act_only_when_asked() -> None:
 
 
 @pytest.mark.parametrize("name", ["four_bar", "digit_leg", "five-bar in 6d", "five-bar with rounded axes"])
-def test_gains_draw_an_open_mechanism_closed(name: str) -> None:
+def test_gains_close_open_mechanism(name: str) -> None:
     robot = robot_named(name)
     random = np.random.default_rng(0)
     q, v = closed_state(robot, random)
@@ -606,7 +606,7 @@ def test_gains_draw_an_open_mechanism_closed(name: str) -> None:
     assert_same(forward_dynamics(robot, q, v).a, a)
 
 
-def test_what_is_no_vector_of_the_robot_is_refused() -> None:
+def test_invalid_vector_is_refused() -> None:
     robot = eurdf.load("four_bar", geometry=False)
     q, v = assemble(robot).q, np.zeros(3)
     for arguments in (
@@ -625,7 +625,7 @@ def test_what_is_no_vector_of_the_robot_is_refused() -> None:
         inverse_dynamics(robot, q, v, np.zeros(2))
 
 
-def test_the_working_memory_given_changes_nothing() -> None:
+def test_given_data_does_not_change_result() -> None:
     robot = eurdf.load("digit_leg", geometry=False)
     q, v = closed_state(robot, np.random.default_rng(0))
     data = robot.model.createData()
@@ -650,9 +650,7 @@ def drift_of_energy(robot: Any, motion: Any) -> float:
 @pytest.mark.parametrize(
     ("name", "duration", "step", "bound"), [("four_bar", 1.0, 2.5e-3, 3e-6), ("digit_leg", 0.1, 1e-3, 1e-8)]
 )
-def test_a_passive_robot_keeps_its_energy_and_stays_closed(
-    name: str, duration: float, step: float, bound: float
-) -> None:
+def test_passive_robot_keeps_energy_and_closure(name: str, duration: float, step: float, bound: float) -> None:
     robot = eurdf.load(name, geometry=False)
     q, v = closed_state(robot, np.random.default_rng(5))
     motion = simulate(robot, q, 2.0 * v, duration=duration, step=step)
@@ -664,7 +662,7 @@ def test_a_passive_robot_keeps_its_energy_and_stays_closed(
         assert np.abs(K @ v).max() < 1e-10
 
 
-def test_the_steps_are_of_the_fourth_order_on_the_manifold() -> None:
+def test_integrator_is_fourth_order_on_manifold() -> None:
     robot = eurdf.load("digit_leg", geometry=False)
     q, v = closed_state(robot, np.random.default_rng(1))
     v *= 5.0
@@ -673,7 +671,7 @@ def test_the_steps_are_of_the_fourth_order_on_the_manifold() -> None:
     assert 11.0 < coarse / fine < 23.0
 
 
-def test_a_robot_is_held_by_the_torques_that_hold_it() -> None:
+def test_holding_torques_hold_robot() -> None:
     robot = eurdf.load("digit_leg", geometry=False)
     q = assemble(robot).q
     zero, idx_v = np.zeros(27), robot.actuation.idx_v
@@ -693,7 +691,7 @@ def test_a_robot_is_held_by_the_torques_that_hold_it() -> None:
     assert np.abs(pin.difference(robot.model, q, fallen)[idx_v]).max() > 1e-3
 
 
-def test_a_simulation_that_its_steps_cannot_follow_says_so() -> None:
+def test_too_long_steps_raise_simulation_diverged() -> None:
     robot = eurdf.load("digit_leg", geometry=False)
     q, idx_v = assemble(robot).q, robot.actuation.idx_v
 
@@ -706,7 +704,7 @@ def test_a_simulation_that_its_steps_cannot_follow_says_so() -> None:
     assert caught.value.step == 0.01
 
 
-def test_a_simulation_of_nothing_is_the_start_put_on_the_closures() -> None:
+def test_empty_simulation_returns_projected_start() -> None:
     robot = eurdf.load("four_bar", geometry=False)
     q = assemble(robot).q
     motion = simulate(robot, pin.integrate(robot.model, q, 0.01 * np.ones(3)), np.ones(3), duration=0.0)
@@ -719,7 +717,7 @@ def test_a_simulation_of_nothing_is_the_start_put_on_the_closures() -> None:
             simulate(robot, q, **wrong)
 
 
-def test_a_simulation_of_what_cannot_close_does_not_start() -> None:
+def test_simulation_of_open_robot_is_refused() -> None:
     model = pin.Model()
     model.addJoint(0, pin.JointModelRZ(), pin.SE3.Identity(), "j0")
     apart = Linkage(model, [closure(model, 0, translation(*X), 1, translation(*(2.0 * np.array(Y))), "3d", "gap")])

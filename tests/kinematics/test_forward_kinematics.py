@@ -61,7 +61,7 @@ def coupler_end(q: Any) -> Any:
 
 
 @pytest.mark.parametrize("name", BUILD)
-def test_the_motors_stand_where_they_are_told_and_the_loops_are_closed(name: str) -> None:
+def test_motors_reach_given_coordinates_with_closed_loops(name: str) -> None:
     robot, random = BUILD[name](), np.random.default_rng(0)
     q0 = assemble(robot).q
     for _ in range(3):
@@ -73,7 +73,7 @@ def test_the_motors_stand_where_they_are_told_and_the_loops_are_closed(name: str
 
 
 @pytest.mark.parametrize("name", BUILD)
-def test_motors_that_stay_leave_the_configuration_as_it_is(name: str) -> None:
+def test_unmoved_motors_keep_configuration(name: str) -> None:
     robot = BUILD[name]()
     q = closed_near(robot, np.random.default_rng(1))
     np.testing.assert_allclose(forward_kinematics(robot, split_configuration(robot, q)[0], q), q, atol=1e-12)
@@ -81,7 +81,7 @@ def test_motors_that_stay_leave_the_configuration_as_it_is(name: str) -> None:
 
 @pytest.mark.parametrize("turns", [0.3, 2.0, -3.0, 2.0 * np.pi, -12.0])
 @pytest.mark.parametrize("side", [1.0, -1.0])
-def test_a_crank_that_goes_far_in_one_call_stays_on_its_branch(turns: float, side: float) -> None:
+def test_large_crank_motion_stays_on_branch(turns: float, side: float) -> None:
     robot = crank_and_rocker(2.5)
     angle, height = 0.4, above(2.5, 0.4)
     q0 = assemble(robot, np.array([angle, 0.7 * side, -1.0 * side]), hold=["j0"]).q
@@ -95,7 +95,7 @@ def test_a_crank_that_goes_far_in_one_call_stays_on_its_branch(turns: float, sid
         assert height == pytest.approx(side * above(2.5, at), abs=1e-8)
 
 
-def test_one_long_way_ends_where_many_short_ones_do() -> None:
+def test_one_long_path_equals_many_short_ones() -> None:
     robot, random = robot_called("digit_leg"), np.random.default_rng(3)
     q0 = assemble(robot).q
     begin, _ = split_configuration(robot, q0)
@@ -113,7 +113,7 @@ def test_one_long_way_ends_where_many_short_ones_do() -> None:
     assert np.abs(end - begin).max() > 0.1
 
 
-def test_joints_can_be_told_by_name_with_the_coordinates_of_files() -> None:
+def test_joints_are_given_by_name_with_file_coordinates() -> None:
     robot = robot_called("four_bar")
     by_name = forward_kinematics(robot, {"motor_crank": 2.5})
     q_actuated = np.array([2.5]) if len(robot.actuation.idx_q) == 1 else np.array([np.cos(2.5), np.sin(2.5)])
@@ -129,7 +129,7 @@ def test_joints_can_be_told_by_name_with_the_coordinates_of_files() -> None:
         forward_kinematics(leg, {**told, "ball_rod1_end": [0.0, 0.0, 1.0]})
 
 
-def test_a_floating_root_stays_unless_it_is_told_otherwise() -> None:
+def test_floating_root_stays_unless_given() -> None:
     robot = eurdf.load("four_bar", root="floating", geometry=False)
     q0 = assemble(robot).q
     pose = [1.0, 2.0, 3.0, 0.0, 0.6, 0.0, 0.8]
@@ -139,42 +139,44 @@ def test_a_floating_root_stays_unless_it_is_told_otherwise() -> None:
     np.testing.assert_allclose(forward_kinematics(robot, {"motor_crank": 0.5}, q)[:7], pose, atol=1e-12)
 
 
-def test_a_motor_that_cannot_go_there_is_told_which_loops_stay_open() -> None:
+def test_unreachable_coordinates_report_open_loops() -> None:
     robot = crank_and_rocker(4.5)  # 4.5 m of bars: the crank cannot point away from the ground pin
     q0 = assemble(robot, np.array([0.3, 0.6, -1.0])).q
-    with pytest.raises(NotClosable, match=r"cannot be closed: closures stay open, 'end' by 1e\+03 mm") as raised:
+    with pytest.raises(
+        NotClosable, match=r"cannot be closed at the given coordinates: closures stay open, 'end' by 1e\+03 mm"
+    ) as raised:
         forward_kinematics(robot, np.array([np.pi]), q0)
     assert isinstance(raised.value, EurdfError)
     assert raised.value.openings[0].name == "end"
     assert raised.value.openings[0].position == pytest.approx(1.0, abs=1e-6)
 
 
-def test_a_way_that_is_blocked_is_told_from_an_end_that_is_open() -> None:
+def test_blocked_path_differs_from_open_goal() -> None:
     robot = crank_and_rocker(4.5)
     q0 = assemble(robot, np.array([0.3, 0.6, -1.0])).q
-    # Right through where the crank points away, to an angle that is one full turn from a sound one.
-    with pytest.raises(NotClosable, match="straight way of the given joints does not lead"):
+    # The path passes the angle at which the crank points away; the goal is one full turn from a reachable angle.
+    with pytest.raises(NotClosable, match="not on a straight path"):
         forward_kinematics(robot, np.array([2.0 * np.pi + 0.3]), q0)
     assert forward_kinematics(robot, np.array([-0.3]), q0)[0] == -0.3
 
 
-def test_a_start_that_cannot_be_closed_is_refused() -> None:
+def test_start_that_cannot_close_is_refused() -> None:
     robot = crank_and_rocker(9.0)
-    with pytest.raises(NotClosable, match="no closed configuration near the start"):
+    with pytest.raises(NotClosable, match="no closed configuration was found near the start"):
         forward_kinematics(robot, np.array([0.1]))
 
 
-def test_what_are_no_coordinates_of_the_robot_is_refused() -> None:
+def test_invalid_coordinates_are_refused() -> None:
     robot = robot_called("digit_leg")
-    with pytest.raises(ValueError, match=r"actuated coordinates of this robot have the shape \(6,\), not \(7,\)"):
+    with pytest.raises(ValueError, match=r"have the shape \(7,\); this robot needs \(6,\)"):
         forward_kinematics(robot, np.zeros(7))
-    with pytest.raises(ValueError, match=r"no joint 'motor_kne' that moves; did you mean 'motor_knee'\?"):
+    with pytest.raises(ValueError, match=r"no moving joint 'motor_kne'; did you mean 'motor_knee'\?"):
         forward_kinematics(robot, {"motor_kne": 0.1})
     with pytest.raises(ValueError, match="not finite"):
         forward_kinematics(robot, np.full(6, np.nan))
 
 
-def test_a_joint_that_mimics_is_told_through_its_leader() -> None:
+def test_mimic_joint_is_given_through_leader() -> None:
     lead = Joint("lead", JointType.REVOLUTE, "base", "a", axes=(Z,))
     follow = Joint("follow", JointType.REVOLUTE, "a", "b", axes=(X,))
     mimic = dataclasses.replace(follow, mimic=Mimic("lead", 2.0, 0.1))
@@ -184,12 +186,12 @@ def test_a_joint_that_mimics_is_told_through_its_leader() -> None:
     assert dq_dq_actuated(robot, np.array([0.4])).shape == (1, 1)
     assert actuated_jacobian(robot, np.array([0.4]), "b").shape == (6, 1)
     np.testing.assert_allclose(actuated_jacobian(robot, np.array([0.4]), "b")[3:, 0] @ np.array(X), 2.0)
-    with pytest.raises(ValueError, match="'follow' mimics another"):
+    with pytest.raises(ValueError, match="'follow' is a mimic joint"):
         forward_kinematics(robot, {"follow": 0.4})
 
 
 @pytest.mark.parametrize("name", BUILD)
-def test_the_sensitivity_is_the_derivative_of_the_forward_kinematics(name: str) -> None:
+def test_sensitivity_is_derivative_of_forward_kinematics(name: str) -> None:
     robot, random = BUILD[name](), np.random.default_rng(2)
     q = closed_near(robot, random, 0.2)
     q = assemble(robot, q, tolerance=1e-13, restarts=0).q
@@ -209,7 +211,7 @@ def test_the_sensitivity_is_the_derivative_of_the_forward_kinematics(name: str) 
 
 
 @pytest.mark.parametrize(("name", "free"), [("digit_leg", 3), ("four_bar", 0), ("Stewart", 0)])
-def test_motion_that_no_motor_controls_is_left_at_rest_in_the_metric(name: str, free: int) -> None:
+def test_uncontrolled_motion_is_minimal_in_metric(name: str, free: int) -> None:
     robot, random = BUILD[name](), np.random.default_rng(4)
     q, nv = closed_near(robot, random), robot.model.nv
     A = random.normal(size=(nv, nv))
@@ -225,7 +227,7 @@ def test_motion_that_no_motor_controls_is_left_at_rest_in_the_metric(name: str, 
         np.testing.assert_allclose(uncontrolled.T @ W @ D, 0.0, atol=1e-8)
 
 
-def test_motors_that_the_loops_tie_together_are_named() -> None:
+def test_dependent_motors_are_named() -> None:
     both = actuated(crank_and_rocker(), ["j0", "j2"])
     q = assemble(both, np.array([0.4, 0.7, -1.0])).q
     with pytest.raises(DependentActuators, match="'j0', 'j2'") as raised:
@@ -241,14 +243,14 @@ def test_motors_that_the_loops_tie_together_are_named() -> None:
     assert (raised.value.joints, raised.value.rank) == (("j2", "j0"), 2)
 
 
-def test_a_motor_in_a_rigid_loop_cannot_move_at_all() -> None:
+def test_motor_in_rigid_loop_cannot_move() -> None:
     triangle = actuated(loop([("R", (0, 0, 0), Z), ("R", (1, 0, 0), Z), ("R", (0.4, 0.8, 0), Z)]))
     with pytest.raises(DependentActuators) as raised:
         dq_dq_actuated(triangle, np.zeros(3))
     assert (raised.value.joints, raised.value.rank) == (("j0",), 0)
 
 
-def test_a_motor_at_its_dead_point_is_refused_and_beside_it_is_fast() -> None:
+def test_motor_at_dead_point_is_refused() -> None:
     # Driven by the hinge between coupler and rocker, a crank along the ground does not know which way to turn.
     robot = actuated(crank_and_rocker(), ["j2"])
     straight = assemble(robot, np.array([0.0, 0.7, -1.0]), hold=["j0"]).q
@@ -261,9 +263,7 @@ def test_a_motor_at_its_dead_point_is_refused_and_beside_it_is_fast() -> None:
 
 @pytest.mark.parametrize("reference", [pin.LOCAL, pin.WORLD, pin.LOCAL_WORLD_ALIGNED])
 @pytest.mark.parametrize(("name", "frame"), [("digit_leg", "foot"), ("four_bar", "rocker_pin_a"), ("four_bar", None)])
-def test_the_actuated_jacobian_is_the_twist_of_a_frame_that_the_motors_carry(
-    name: str, frame: str | None, reference: Any
-) -> None:
+def test_actuated_jacobian_gives_frame_twist(name: str, frame: str | None, reference: Any) -> None:
     robot = robot_called(name)
     model, data = robot.model, robot.model.createData()
     frame = frame or model.frames[model.nframes - 1].name
@@ -292,7 +292,7 @@ def test_the_actuated_jacobian_is_the_twist_of_a_frame_that_the_motors_carry(
         np.testing.assert_allclose(J[:, column], twist.vector, atol=1e-6)
 
 
-def test_frames_are_found_by_name_or_refused_with_the_nearest() -> None:
+def test_frames_are_found_by_name_or_nearest_suggested() -> None:
     robot = robot_called("digit_leg")
     q = assemble(robot).q
     with pytest.raises(ValueError, match=r"no frame 'fooot'; did you mean 'foot'\?"):
@@ -309,7 +309,7 @@ def test_frames_are_found_by_name_or_refused_with_the_nearest() -> None:
 
 @given(seed=st.integers(0, 2**32 - 1))
 @settings(max_examples=20, deadline=None)
-def test_a_stewart_platform_goes_where_its_legs_say(seed: int) -> None:
+def test_stewart_platform_follows_its_legs(seed: int) -> None:
     robot, random = BUILD["Stewart"](), np.random.default_rng(seed)
     lengths = random.uniform(-0.1, 0.1, 6)
     q = forward_kinematics(robot, lengths)
@@ -327,7 +327,7 @@ def test_a_stewart_platform_goes_where_its_legs_say(seed: int) -> None:
         assert after - before == pytest.approx(lengths[leg], abs=1e-9)
 
 
-def test_robots_without_loops_or_without_motors_are_no_exception() -> None:
+def test_robots_without_loops_or_motors_work() -> None:
     chain = actuated(Linkage(n_bar(4).model), ["j2", "j0"])
     q = forward_kinematics(chain, np.array([0.3, -0.4]), np.arange(4.0))
     np.testing.assert_array_equal(q, [-0.4, 1.0, 0.3, 3.0])

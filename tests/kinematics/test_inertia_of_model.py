@@ -34,7 +34,7 @@ def mass_matrix(mechanism: Mechanism, coordinates: dict[str, tuple[float, ...]])
 
 @given(seed=SEEDS)
 @settings(deadline=None)
-def test_the_mass_and_its_centre_are_those_of_the_bodies(seed: int) -> None:
+def test_mass_and_centre_match_bodies(seed: int) -> None:
     mechanism, coordinates, _ = at_random(seed)
     # A body that nothing moves is in no joint's inertia: Pinocchio leaves it out of the robot's mass.
     model = build_model(replace(mechanism, root="floating"))
@@ -49,7 +49,7 @@ def test_the_mass_and_its_centre_are_those_of_the_bodies(seed: int) -> None:
 
 @given(seed=SEEDS)
 @settings(deadline=None)
-def test_the_mass_matrix_is_that_of_the_bodies_kinetic_energy(seed: int) -> None:
+def test_mass_matrix_matches_kinetic_energy_of_bodies(seed: int) -> None:
     mechanism, coordinates, _ = at_random(seed)
     model = build_model(mechanism)
     M = pin.crba(model, model.createData(), configuration_vector(mechanism, model, coordinates))
@@ -60,7 +60,7 @@ def test_the_mass_matrix_is_that_of_the_bodies_kinetic_energy(seed: int) -> None
 
 @given(seed=SEEDS)
 @settings(deadline=None)
-def test_the_armature_adds_to_the_diagonal_of_the_mass_matrix(seed: int) -> None:
+def test_armature_adds_to_mass_matrix_diagonal(seed: int) -> None:
     mechanism, coordinates, random = at_random(seed)
     joints = tuple(
         replace(joint, armature=tuple(random.uniform(0.0, 1.0, joint.coordinates.nv))) for joint in mechanism.joints
@@ -74,7 +74,7 @@ def test_the_armature_adds_to_the_diagonal_of_the_mass_matrix(seed: int) -> None
 
 @given(seed=SEEDS)
 @settings(deadline=None)
-def test_gravity_pulls_with_the_weight_of_the_bodies(seed: int) -> None:
+def test_gravity_acts_with_weight_of_bodies(seed: int) -> None:
     mechanism, coordinates, _ = at_random(seed)
     model = build_model(mechanism)
     q = configuration_vector(mechanism, model, coordinates)
@@ -89,7 +89,7 @@ def test_gravity_pulls_with_the_weight_of_the_bodies(seed: int) -> None:
 
 @given(seed=SEEDS)
 @settings(deadline=None)
-def test_the_forward_dynamics_undo_the_inverse_dynamics(seed: int) -> None:
+def test_forward_dynamics_inverts_inverse_dynamics(seed: int) -> None:
     mechanism, coordinates, random = at_random(seed)
     model = build_model(mechanism)
     q = configuration_vector(mechanism, model, coordinates)

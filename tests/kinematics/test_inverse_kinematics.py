@@ -59,7 +59,7 @@ def arm(*lengths: float, limit: float = np.inf) -> Any:
 
 @pytest.mark.parametrize("name", [name for name in LED if name in ROBOTS])
 @pytest.mark.parametrize("as_pose", [True, False])
-def test_what_forward_kinematics_reaches_inverse_kinematics_finds_again(name: str, as_pose: bool) -> None:
+def test_inverse_kinematics_recovers_forward_kinematics(name: str, as_pose: bool) -> None:
     robot, frame = robot_called(name), LED[name]
     random, q0 = np.random.default_rng(0), assemble(robot_called(name), limits=True).q
     found = 0
@@ -83,7 +83,7 @@ def test_what_forward_kinematics_reaches_inverse_kinematics_finds_again(name: st
 
 
 @pytest.mark.parametrize("name", ROBOTS)
-def test_a_target_that_is_the_current_pose_takes_no_step(name: str) -> None:
+def test_target_at_current_pose_takes_no_step(name: str) -> None:
     robot = robot_called(name)
     q = assemble(robot).q
     frame = next(found.name for found in robot.model.frames if found.parentJoint == robot.model.njoints - 1)
@@ -93,7 +93,7 @@ def test_a_target_that_is_the_current_pose_takes_no_step(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ROBOTS)
-def test_a_pose_near_by_is_reached_with_the_default_limits(name: str) -> None:
+def test_nearby_pose_is_reached_with_default_limits(name: str) -> None:
     robot = robot_called(name)
     q = assemble(robot, limits=True).q
     frame = next(found.name for found in robot.model.frames if found.parentJoint == robot.model.njoints - 1)
@@ -103,7 +103,7 @@ def test_a_pose_near_by_is_reached_with_the_default_limits(name: str) -> None:
 
 @given(seed=st.integers(0, 2**32 - 1))
 @settings(max_examples=15, deadline=None)
-def test_the_legs_of_a_stewart_platform_are_found_from_its_pose(seed: int) -> None:
+def test_stewart_legs_are_found_from_platform_pose(seed: int) -> None:
     linkage, random = stewart(), np.random.default_rng(seed)
     model = linkage.model
     carrier = linkage.constraint_models[0].joint1_id
@@ -116,7 +116,7 @@ def test_the_legs_of_a_stewart_platform_are_found_from_its_pose(seed: int) -> No
     np.testing.assert_allclose(split_configuration(robot, answer.q)[0], lengths, atol=1e-7)
 
 
-def test_two_feet_are_led_at_once() -> None:
+def test_two_feet_reach_targets_together() -> None:
     if "wild/digit_like_2legs" not in ROBOTS:
         pytest.skip("no published robots: put their folder at ../shared/wild, beside the checkout")
     robot, random = robot_called("wild/digit_like_2legs"), np.random.default_rng(1)
@@ -133,7 +133,7 @@ def test_two_feet_are_led_at_once() -> None:
     assert answer.errors[1].angle == 0.0
 
 
-def test_a_foot_follows_a_trajectory_without_leaps() -> None:
+def test_foot_trajectory_has_no_jumps() -> None:
     robot = robot_called("digit_leg")
     q = assemble(robot, limits=True).q
     home, steps = pose(robot, q, "foot"), []
@@ -150,7 +150,7 @@ def test_a_foot_follows_a_trajectory_without_leaps() -> None:
 
 
 @pytest.mark.parametrize("name", [name for name in ("digit_leg", "four_bar", "wild/talos_like") if name in ROBOTS])
-def test_a_target_out_of_reach_ends_in_bounded_steps_as_near_as_can_be(name: str) -> None:
+def test_unreachable_target_ends_nearest_in_bounded_steps(name: str) -> None:
     robot, frame = robot_called(name), LED[name]
     q0 = assemble(robot).q
     target = pose(robot, q0, frame).translation + np.array([0.0, 0.4, -3.0])
@@ -167,7 +167,7 @@ def test_a_target_out_of_reach_ends_in_bounded_steps_as_near_as_can_be(name: str
     assert np.abs(J.T @ (at - target)).max() <= 1e-3 * error.position
 
 
-def test_an_arm_that_is_too_short_points_at_its_target() -> None:
+def test_short_arm_points_at_target() -> None:
     robot = arm(1.0, 0.7)
     answer = inverse_kinematics(robot, {"end": [3.0, 4.0, 0.0]}, np.array([0.3, 0.8]))
     assert not answer.converged
@@ -175,13 +175,13 @@ def test_an_arm_that_is_too_short_points_at_its_target() -> None:
     np.testing.assert_allclose(pose(robot, answer.q, "end").translation, [1.02, 1.36, 0.0], atol=1e-3)
 
 
-def test_a_target_at_the_very_edge_of_reach_is_reached() -> None:
+def test_target_at_edge_of_reach_is_reached() -> None:
     robot = arm(1.0, 0.7)
     answer = inverse_kinematics(robot, {"end": [1.02, 1.36, 0.0]}, np.array([0.3, 0.8]), tolerance=1e-7)
     assert answer.converged
 
 
-def test_limits_are_hard_and_what_they_cost_is_said() -> None:
+def test_limits_are_hard_and_reported() -> None:
     # Both joints turn by at most 0.5 rad, so that the end comes no higher than with both at it.
     robot = arm(1.0, 1.0, limit=0.5)
     answer = inverse_kinematics(robot, {"end": [0.0, 2.0, 0.0]}, np.zeros(2))
@@ -193,7 +193,7 @@ def test_limits_are_hard_and_what_they_cost_is_said() -> None:
     assert inverse_kinematics(robot, {"end": [0.0, 2.0, 0.0]}, np.zeros(2), limits=False).converged
 
 
-def test_a_range_of_zero_width_is_no_range_unless_strict() -> None:
+def test_zero_range_is_no_range_unless_strict() -> None:
     robot = arm(1.0, 1.0, limit=0.0)
     assert inverse_kinematics(robot, {"end": [0.0, 1.5, 0.0]}, np.zeros(2)).converged
     strict = inverse_kinematics(robot, {"end": [0.0, 1.5, 0.0]}, np.zeros(2), "strict")
@@ -204,7 +204,7 @@ def test_a_range_of_zero_width_is_no_range_unless_strict() -> None:
         inverse_kinematics(robot, {}, limits="all")  # type: ignore[arg-type]
 
 
-def test_the_joints_at_their_limits_are_the_reason() -> None:
+def test_joints_at_limits_are_the_reason() -> None:
     answer = inverse_kinematics(arm(1.0, 1.0, limit=0.5), {"end": [0.0, 2.0, 0.0]}, np.zeros(2))
     assert answer.reason == "joint limits"
     assert [(found.joint, found.side, found.limit) for found in answer.at_limits] == [
@@ -214,7 +214,7 @@ def test_the_joints_at_their_limits_are_the_reason() -> None:
     assert "at their limits: 'j0' (upper limit 0.5), 'j1' (upper limit 0.5)" in repr(answer)
 
 
-def test_a_joint_at_its_limit_that_does_not_matter_is_no_reason() -> None:
+def test_irrelevant_joint_at_limit_is_not_the_reason() -> None:
     robot = arm(1.0, limit=0.5)
     answer = inverse_kinematics(robot, {"end": [2.0 * np.cos(0.3), 2.0 * np.sin(0.3), 1.0]}, np.array([0.5]))
     assert answer.q[0] == pytest.approx(0.3, abs=1e-4)
@@ -222,19 +222,19 @@ def test_a_joint_at_its_limit_that_does_not_matter_is_no_reason() -> None:
     assert "no motion of the mechanism brings the frames nearer" in repr(answer)
 
 
-def test_an_arm_that_is_too_short_is_singular_where_it_ends() -> None:
+def test_short_arm_ends_singular() -> None:
     answer = inverse_kinematics(arm(1.0, 0.7), {"end": [3.0, 4.0, 0.0]}, np.array([0.3, 0.8]))
     assert (answer.reason, answer.at_limits) == ("singular", ())
     assert "'end' by 3.3e+03 mm" in repr(answer)
 
 
 @pytest.mark.parametrize(("name", "frame"), [("four_bar", "rocker_pin_a"), ("five_bar", "tip_b")])
-def test_a_frame_at_its_dead_point_is_singular(name: str, frame: str) -> None:
+def test_frame_at_dead_point_is_singular(name: str, frame: str) -> None:
     answer = inverse_kinematics(robot_called(name), {frame: [0.0, 0.0, 9.0]}, restarts=1)
     assert (answer.reason, answer.at_limits) == ("singular", ())
 
 
-def test_loops_that_are_folded_at_the_start_are_no_reason() -> None:
+def test_folded_start_is_not_the_reason() -> None:
     # All pins of the parallelogram are on a line: there, it has two motions.
     linkage = loop([("R", (0, 0, 0), Z), ("R", (0.5, 0, 0), Z), ("R", (1.5, 0, 0), Z)], "3d", (1.0, 0.0, 0.0))
     for joint in (1, 2):
@@ -245,13 +245,13 @@ def test_loops_that_are_folded_at_the_start_are_no_reason() -> None:
     assert answer.reason == "out of reach"
 
 
-def test_a_descent_that_has_no_steps_left_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_exhausted_steps_are_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("eurdf.kinematics.inverse_kinematics._MOST_STEPS", 1)
     answer = inverse_kinematics(arm(1.0, 0.7), {"end": [0.0, 1.2, 0.0]}, np.array([0.3, 0.8]), restarts=0)
     assert (answer.converged, answer.reason) == (False, "steps")
 
 
-def test_loops_that_limits_keep_open_are_the_reason() -> None:
+def test_loops_kept_open_by_limits_are_the_reason() -> None:
     linkage = n_bar(4, away=0.7)
     linkage.model.lowerPositionLimit, linkage.model.upperPositionLimit = np.full(4, -0.1), np.full(4, 0.2)
     linkage.model.addFrame(pin.Frame("tip", 2, 0, translation(0.1, 0.0, 0.0), pin.FrameType.OP_FRAME))
@@ -262,7 +262,7 @@ def test_loops_that_limits_keep_open_are_the_reason() -> None:
     assert "closures stay open; open: 'end' by" in repr(answer)
 
 
-def test_a_joint_that_was_at_its_limit_leaves_it_when_it_should() -> None:
+def test_joint_can_leave_its_limit() -> None:
     robot = arm(1.0, 1.0, 1.0, limit=0.5)
     target = pose(robot, np.array([0.2, -0.3, 0.4]), "end")
     answer = inverse_kinematics(robot, {"end": target}, np.array([0.5, 0.5, -0.5]))
@@ -271,7 +271,7 @@ def test_a_joint_that_was_at_its_limit_leaves_it_when_it_should() -> None:
     assert np.abs(answer.q).max() < 0.5
 
 
-def test_loops_and_limits_are_kept_together() -> None:
+def test_loops_and_limits_hold_together() -> None:
     found = 0
     for seed in range(20):
         random = np.random.default_rng(seed)
@@ -291,7 +291,7 @@ def test_loops_and_limits_are_kept_together() -> None:
     assert found >= 19
 
 
-def test_a_start_outside_the_limits_is_brought_within() -> None:
+def test_start_outside_limits_is_clipped() -> None:
     robot = arm(1.0, 1.0, limit=0.5)
     answer = inverse_kinematics(
         robot, {"end": pose(robot, np.array([0.4, 0.1]), "end").translation}, np.array([2.0, -3.0])
@@ -300,7 +300,7 @@ def test_a_start_outside_the_limits_is_brought_within() -> None:
     assert np.abs(answer.q).max() <= 0.5
 
 
-def test_a_mechanism_that_cannot_close_says_so_in_the_answer() -> None:
+def test_open_mechanism_is_reported() -> None:
     linkage = loop([("R", (0, 0, 0), Z), ("R", (1, 0, 0), Z)], "3d", (2, 0, 0))
     linkage.constraint_models[0].joint1_placement = translation(5.0, 0.0, 0.0)
     linkage.model.addFrame(pin.Frame("tip", 1, 0, translation(1.0, 0.0, 0.0), pin.FrameType.OP_FRAME))
@@ -310,7 +310,7 @@ def test_a_mechanism_that_cannot_close_says_so_in_the_answer() -> None:
     assert answer.open[0].position == pytest.approx(3.0, abs=1e-6)
 
 
-def test_without_targets_the_answer_is_the_start_closed() -> None:
+def test_start_is_closed_without_targets() -> None:
     linkage = n_bar(4, away=0.7)
     answer = inverse_kinematics(actuated(linkage), {}, limits=False)
     np.testing.assert_allclose(answer.q, assemble(linkage).q, atol=1e-12)
@@ -318,7 +318,7 @@ def test_without_targets_the_answer_is_the_start_closed() -> None:
     assert answer.errors == ()
 
 
-def test_the_same_question_has_the_same_answer() -> None:
+def test_result_is_deterministic() -> None:
     robot = robot_called("digit_leg")
     target = {"foot": pose(robot, closed_near(robot, np.random.default_rng(5), 0.5), "foot")}
     first, second = inverse_kinematics(robot, target), inverse_kinematics(robot, target)
@@ -337,14 +337,14 @@ def test_the_same_question_has_the_same_answer() -> None:
         ({"foot": pin.SE3(np.eye(3), np.full(3, np.inf))}, "is no pose"),
     ],
 )
-def test_what_is_no_target_is_refused(targets: Any, reason: str) -> None:
+def test_invalid_target_is_refused(targets: Any, reason: str) -> None:
     with pytest.raises(ValueError, match=reason):
         inverse_kinematics(robot_called("digit_leg"), targets)
 
 
 @given(seed=st.integers(0, 2**32 - 1), size=st.integers(1, 8), count=st.integers(0, 20))
 @settings(max_examples=200, deadline=None)
-def test_a_bounded_step_is_the_best_within_its_bounds(seed: int, size: int, count: int) -> None:
+def test_bounded_step_is_optimal_within_bounds(seed: int, size: int, count: int) -> None:
     random = np.random.default_rng(seed)
     A = random.normal(size=(size, size))
     H, g = A @ A.T + 0.1 * np.eye(size), random.normal(size=size)

@@ -43,7 +43,7 @@ def jacobian_of(model: pin.Model, q: np.ndarray, body: str) -> np.ndarray:
 @pytest.mark.parametrize("kind", by_hand.MOVING)
 @given(seed=SEEDS)
 @settings(deadline=None)
-def test_a_joint_moves_its_body_as_its_type_says(kind: JointType, seed: int) -> None:
+def test_joint_moves_body_by_its_type(kind: JointType, seed: int) -> None:
     random = np.random.default_rng(seed)
     joint = replace(by_hand.some_joint(kind, random), offset=by_hand.some_pose(random))
     mechanism = one_joint(joint)
@@ -56,7 +56,7 @@ def test_a_joint_moves_its_body_as_its_type_says(kind: JointType, seed: int) -> 
 @pytest.mark.parametrize("kind", by_hand.MOVING)
 @given(seed=SEEDS)
 @settings(deadline=None)
-def test_the_velocities_of_a_joint_are_those_of_its_definition_seen_from_the_child(kind: JointType, seed: int) -> None:
+def test_joint_velocities_are_in_child_frame(kind: JointType, seed: int) -> None:
     random = np.random.default_rng(seed)
     joint = replace(by_hand.some_joint(kind, random), offset=by_hand.some_pose(random))
     mechanism = one_joint(joint)
@@ -69,7 +69,7 @@ def test_the_velocities_of_a_joint_are_those_of_its_definition_seen_from_the_chi
 @pytest.mark.parametrize("kind", by_hand.MOVING)
 @given(seed=SEEDS)
 @settings(deadline=None)
-def test_the_jacobian_of_a_joint_is_the_derivative_of_its_pose(kind: JointType, seed: int) -> None:
+def test_joint_jacobian_is_derivative_of_pose(kind: JointType, seed: int) -> None:
     random = np.random.default_rng(seed)
     joint = by_hand.some_joint(kind, random)
     mechanism = one_joint(joint)
@@ -87,9 +87,7 @@ def test_the_jacobian_of_a_joint_is_the_derivative_of_its_pose(kind: JointType, 
 @pytest.mark.parametrize("kind", by_hand.MOVING)
 @given(seed=SEEDS)
 @settings(deadline=None)
-def test_the_acceleration_of_a_joint_at_constant_velocity_is_the_derivative_of_its_twist(
-    kind: JointType, seed: int
-) -> None:
+def test_joint_bias_acceleration_is_derivative_of_twist(kind: JointType, seed: int) -> None:
     random = np.random.default_rng(seed)
     joint = by_hand.some_joint(kind, random)
     mechanism = one_joint(joint)
@@ -106,7 +104,7 @@ def test_the_acceleration_of_a_joint_at_constant_velocity_is_the_derivative_of_i
 
 @given(seed=SEEDS)
 @settings(deadline=None)
-def test_bodies_of_a_tree_of_all_joint_types_stand_where_they_should(seed: int) -> None:
+def test_bodies_of_all_joint_types_have_expected_poses(seed: int) -> None:
     random = np.random.default_rng(seed)
     mechanism = by_hand.tree_of_all_types(random)
     model = build_model(mechanism)
@@ -120,7 +118,7 @@ def test_bodies_of_a_tree_of_all_joint_types_stand_where_they_should(seed: int) 
         np.testing.assert_allclose(jacobian_of(model, q, body.name), J[body.name], atol=1e-12)
 
 
-def test_a_screw_advances_by_its_pitch_in_one_turn_and_is_right_handed() -> None:
+def test_helical_joint_advances_by_pitch_right_handed() -> None:
     for axis in (X, Y, Z, (0.0, 3.0, 4.0)):
         mechanism = one_joint(Joint("screw", JointType.HELICAL, "base", "tip", axes=(axis,), pitch=0.005))
         model = build_model(mechanism)
@@ -129,7 +127,7 @@ def test_a_screw_advances_by_its_pitch_in_one_turn_and_is_right_handed() -> None
         np.testing.assert_allclose(turned, by_hand.transform(np.eye(3), 0.005 * along), atol=1e-12)
 
 
-def test_a_universal_joint_with_oblique_axes_turns_about_both_of_them() -> None:
+def test_oblique_universal_joint_turns_about_both_axes() -> None:
     axes = (X, (0.6, 0.8, 0.0))
     mechanism = one_joint(Joint("cardan", JointType.UNIVERSAL, "base", "tip", axes=axes))
     model = build_model(mechanism)
@@ -140,12 +138,12 @@ def test_a_universal_joint_with_oblique_axes_turns_about_both_of_them() -> None:
     np.testing.assert_allclose(pose[:3, :3], R, atol=1e-12)
 
 
-def test_a_universal_joint_with_perpendicular_axes_is_pinocchios_own() -> None:
+def test_perpendicular_universal_joint_matches_pinocchio() -> None:
     model = build_model(one_joint(Joint("cardan", JointType.UNIVERSAL, "base", "tip", axes=(Y, Z))))
     assert model.joints[1].shortname() == "JointModelUniversal"
 
 
-def test_both_frames_of_a_joint_whose_body_is_off_its_centre_stand_at_the_body() -> None:
+def test_joint_frames_are_at_offset_body() -> None:
     joint = Joint("ball", JointType.SPHERICAL, "base", "tip", Pose((0.0, 0.0, 1.0)), Pose((0.1, 0.0, 0.0)))
     mechanism = one_joint(joint)
     model = build_model(mechanism)
@@ -160,7 +158,7 @@ def test_both_frames_of_a_joint_whose_body_is_off_its_centre_stand_at_the_body()
 
 @given(seed=SEEDS, root=st.sampled_from(["fixed", "floating"]))
 @settings(deadline=None)
-def test_coordinates_survive_the_way_to_pinocchio_and_back(seed: int, root: str) -> None:
+def test_coordinates_survive_round_trip_through_pinocchio(seed: int, root: str) -> None:
     random = np.random.default_rng(seed)
     mechanism = replace(by_hand.tree_of_all_types(random), root=root)  # type: ignore[arg-type]
     model = build_model(mechanism)
@@ -177,7 +175,7 @@ def test_coordinates_survive_the_way_to_pinocchio_and_back(seed: int, root: str)
         assert back[name] == pytest.approx(values, abs=1e-12)
 
 
-def test_a_joint_left_out_stands_at_its_neutral() -> None:
+def test_missing_joint_is_at_neutral() -> None:
     mechanism = by_hand.tree_of_all_types(np.random.default_rng(1))
     model = build_model(mechanism)
     q = configuration_vector(mechanism, model, {})
@@ -187,7 +185,7 @@ def test_a_joint_left_out_stands_at_its_neutral() -> None:
         assert values == joint.coordinates.neutral
 
 
-def test_a_configuration_of_an_unknown_joint_or_of_a_wrong_length_is_refused() -> None:
+def test_unknown_joint_or_wrong_length_is_refused() -> None:
     mechanism = one_joint(Joint("ball", JointType.SPHERICAL, "base", "tip"))
     model = build_model(mechanism)
     with pytest.raises(ValueError, match="'knee' is no joint with coordinates"):
@@ -198,7 +196,7 @@ def test_a_configuration_of_an_unknown_joint_or_of_a_wrong_length_is_refused() -
         configuration_vector(mechanism, model, {"ball": (0.0, 0.0, 0.0, 0.0)})
 
 
-def test_a_quaternion_is_brought_to_unit_length() -> None:
+def test_quaternion_is_normalized() -> None:
     mechanism = one_joint(Joint("ball", JointType.SPHERICAL, "base", "tip"))
     model = build_model(mechanism)
     np.testing.assert_allclose(configuration_vector(mechanism, model, {"ball": (0, 3, 0, 4)}), (0, 0.6, 0, 0.8))

@@ -25,7 +25,7 @@ Z = (0.0, 0.0, 1.0)
 @pytest.mark.parametrize("kind", by_hand.MOVING)
 @given(seed=st.integers(0, 2**32 - 1))
 @settings(deadline=None, max_examples=50)
-def test_it_is_that_of_pinocchios_joint_model(kind: JointType, seed: int) -> None:
+def test_transform_matches_pinocchio_joint_model(kind: JointType, seed: int) -> None:
     random = np.random.default_rng(seed)
     joint = by_hand.some_joint(kind, random)
     if random.random() < 0.5:  # along coordinate axes, for which Pinocchio has models of their own
@@ -41,25 +41,25 @@ def test_it_is_that_of_pinocchios_joint_model(kind: JointType, seed: int) -> Non
 
 
 @pytest.mark.parametrize("kind", JointType)
-def test_at_its_neutral_a_joint_has_not_moved(kind: JointType) -> None:
+def test_neutral_transform_is_identity(kind: JointType) -> None:
     joint = by_hand.some_joint(kind, np.random.default_rng(0))
     assert joint_transform(joint, joint.coordinates.neutral) is IDENTITY
 
 
-def test_only_the_direction_of_an_axis_counts() -> None:
+def test_axis_length_does_not_matter() -> None:
     for length in (1e-200, 1e-3, 1e200, 1.5e308):
         slider = Joint("slider", JointType.PRISMATIC, "base", "tip", axes=((0.0, 0.6 * length, -0.8 * length),))
         np.testing.assert_allclose(joint_transform(slider, (2.0,)).xyz, (0.0, 1.2, -1.6), rtol=1e-12)
 
 
-def test_a_quaternion_is_brought_to_unit_length() -> None:
+def test_quaternion_is_normalized() -> None:
     ball = Joint("ball", JointType.SPHERICAL, "base", "tip")
     assert joint_transform(ball, (0.0, 3.0, 0.0, 4.0)) == Pose(quaternion=(0.0, 0.6, 0.0, 0.8))
     with pytest.raises(ValueError, match="quaternion of joint 'ball' has length 0"):
         joint_transform(ball, (0.0, 0.0, 0.0, 0.0))
 
 
-def test_too_few_or_too_many_coordinates_are_refused_with_the_names_of_the_right_ones() -> None:
+def test_wrong_number_of_coordinates_is_refused_with_names() -> None:
     with pytest.raises(ValueError, match="joint 'ball' is given 3 coordinates; it has 4: x, y, z, w"):
         joint_transform(Joint("ball", JointType.SPHERICAL, "base", "tip"), (0.0, 0.0, 0.0))
     with pytest.raises(ValueError, match="joint 'weld' is given 1 coordinates; it has 0: none"):

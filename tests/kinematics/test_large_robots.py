@@ -39,7 +39,7 @@ def peak(function: Callable[[], object]) -> int:
 
 
 @pytest.mark.parametrize("in_series", [False, True], ids=["side by side", "in series"])
-def test_memory_grows_as_the_number_of_four_bars(tmp_path: Path, in_series: bool) -> None:
+def test_memory_grows_linearly_with_four_bars(tmp_path: Path, in_series: bool) -> None:
     peaks = []
     for count in (25, 25, 200):  # twice the first, since modules are loaded with it
         path = write(tmp_path / str(count), *four_bars(count, in_series))
@@ -53,7 +53,7 @@ def test_memory_grows_as_the_number_of_four_bars(tmp_path: Path, in_series: bool
     assert peaks[2] < 16 * peaks[1]  # 8 where it is linear, 64 where it is quadratic
 
 
-def test_a_thousand_four_bars_need_no_data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_thousand_four_bars_need_no_data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     made: list[Any] = []
     monkeypatch.setattr(pin.Model, "createData", lambda model: made.append(model))
     path = write(tmp_path, *four_bars(1000, in_series=True))
@@ -68,14 +68,14 @@ def test_a_thousand_four_bars_need_no_data(tmp_path: Path, monkeypatch: pytest.M
 # -- the bounds of EU-FIL-002 --------------------------------------------------------------------------------------
 
 
-def test_a_robot_at_the_bound_of_velocities_is_read_and_one_beyond_it_is_not(tmp_path: Path) -> None:
+def test_number_of_velocities_is_bounded(tmp_path: Path) -> None:
     spherical = "joints: {j0: spherical}\n"
     at, beyond = (write(tmp_path / str(count), VERSION2 + spherical, star(count)) for count in (3998, 3999))
     assert eurdf.load(at, geometry=False).model.nv == VELOCITY_LIMIT
     assert refusal(beyond) == "the joints of the robot have 4,001 velocities; they may have 4,000"
 
 
-def test_a_joint_that_mimics_counts_as_one_that_does_not(tmp_path: Path) -> None:
+def test_mimic_joint_counts_toward_bound(tmp_path: Path) -> None:
     content = '<mimic joint="j0"/>'
     leader = joint("j0", "l0", "l1")
     joints = [leader, *(joint(f"j{i}", "l0", f"l{i + 1}", content=content) for i in range(1, 4001))]
@@ -83,12 +83,12 @@ def test_a_joint_that_mimics_counts_as_one_that_does_not(tmp_path: Path) -> None
     assert refusal(path) == "the joints of the robot have 4,001 velocities; they may have 4,000"
 
 
-def test_a_robot_beyond_the_bound_of_joints_is_refused(tmp_path: Path) -> None:
+def test_number_of_joints_is_bounded(tmp_path: Path) -> None:
     path = write(tmp_path, None, chain(JOINT_LIMIT + 1, "fixed"))
     assert refusal(path) == "the robot has 10,001 joints; it may have 10,000"
 
 
-def test_a_robot_at_the_bound_of_rows_is_read_and_one_beyond_it_is_not(tmp_path: Path) -> None:
+def test_number_of_rows_is_bounded(tmp_path: Path) -> None:
     at, beyond = (write(tmp_path / str(count), *shared(count, 200)) for count in (6666, 6667))
     assert eurdf.load(at, geometry=False).mechanism.nc == ROW_LIMIT - 2
     assert refusal(beyond) == "the closures of the robot have 20,001 constraint rows; they may have 20,000"
@@ -106,9 +106,7 @@ def refusal(path: Path) -> str:
 # -- what is left out -------------------------------------------------------------------------------------------------
 
 
-def test_loops_that_share_too_many_joints_are_left_out_in_one_line(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_loops_sharing_too_many_joints_are_skipped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("eurdf.kinematics.analysis._MOST_WORK", 50.0)
     loaded = eurdf.load(write(tmp_path, *four_bars(2, in_series=True)), geometry=False)
     analysis = eurdf.analyze(loaded)
@@ -121,7 +119,7 @@ def test_loops_that_share_too_many_joints_are_left_out_in_one_line(
     assert robot_info(loaded, analysis).left_out == analysis.left_out
 
 
-def test_what_was_not_checked_is_no_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_skipped_check_is_no_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("eurdf.kinematics.assembly._MOST_WORK", 100.0)
     path = write(tmp_path, *four_bars(2, in_series=True))
     assert [found.code for found in eurdf.check(path).diagnostics] == ["x-loops-not-checked"]
@@ -130,9 +128,7 @@ def test_what_was_not_checked_is_no_error(tmp_path: Path, monkeypatch: pytest.Mo
     assert eurdf.analyze(loaded).left_out.startswith("whether the loops can be closed is not computed")
 
 
-def test_a_group_that_is_too_large_does_not_keep_the_others_open(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_large_group_does_not_keep_others_open(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("eurdf.kinematics.assembly._MOST_VELOCITIES_WITH_DATA", 0)
     # The first three loops share their joints with one around them.
     description, urdf = four_bars(5, in_series=True)
@@ -162,7 +158,7 @@ def ancestors(node: int, parents: list[int]) -> list[int]:
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_common_ancestors_and_sums_are_those_of_a_walk(seed: int) -> None:
+def test_ancestors_and_sums_match_tree_walk(seed: int) -> None:
     parents = random_parents(seed, 200)
     ancestry, random = Ancestry(parents), np.random.default_rng(seed)
     weights = random.uniform(0.0, 1.0, 200).tolist()
@@ -176,7 +172,7 @@ def test_common_ancestors_and_sums_are_those_of_a_walk(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_groups_of_loops_are_those_that_share_a_joint(tmp_path: Path, seed: int) -> None:
+def test_loop_groups_are_connected_by_shared_joints(tmp_path: Path, seed: int) -> None:
     random = np.random.default_rng(seed)
     parents = random_parents(seed, 60)
     joints = [joint(f"j{i}", f"l{parents[i]}", f"l{i}") for i in range(1, 60)]

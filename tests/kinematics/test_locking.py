@@ -163,9 +163,7 @@ def leader_of(mechanism: Mechanism, name: str) -> str:
 @pytest.mark.parametrize("mimic", [True, False])
 @given(seed=st.integers(0, 2**32 - 1))
 @settings(deadline=None, max_examples=40)
-def test_wherever_the_free_joints_go_the_robot_with_locked_joints_is_the_same_as_the_one_with_still_joints(
-    mimic: bool, seed: int
-) -> None:
+def test_locked_robot_moves_as_original_with_held_joints(mimic: bool, seed: int) -> None:
     random = np.random.default_rng(seed)
     robot, coordinates = some_robot(random, mimic, str(random.choice(["fixed", "floating"])))
     chosen = [joint.name for joint in robot.mechanism.joints if random.random() < 0.5]
@@ -197,7 +195,7 @@ def test_wherever_the_free_joints_go_the_robot_with_locked_joints_is_the_same_as
 
 @given(seed=st.integers(0, 2**32 - 1))
 @settings(deadline=None, max_examples=20)
-def test_locking_one_joint_after_another_is_locking_both(seed: int) -> None:
+def test_locking_in_sequence_equals_locking_together(seed: int) -> None:
     random = np.random.default_rng(seed)
     robot, coordinates = some_robot(random, mimic=True)
     leaders = [joint.name for joint in moving(robot.mechanism) if not joint.mimic]
@@ -216,7 +214,7 @@ def test_locking_one_joint_after_another_is_locking_both(seed: int) -> None:
 
 @given(seed=st.integers(0, 2**32 - 1))
 @settings(deadline=None, max_examples=20)
-def test_locking_no_joint_gives_an_equal_robot(seed: int) -> None:
+def test_locking_nothing_gives_equal_robot(seed: int) -> None:
     robot, _ = some_robot(np.random.default_rng(seed), mimic=True)
     locked = lock(robot, [])
     assert locked.model == robot.model
@@ -230,7 +228,7 @@ def test_locking_no_joint_gives_an_equal_robot(seed: int) -> None:
 
 @given(seed=st.integers(0, 2**32 - 1))
 @settings(deadline=None, max_examples=20)
-def test_with_every_joint_locked_a_robot_is_one_body(seed: int) -> None:
+def test_locking_all_joints_gives_one_body(seed: int) -> None:
     robot, coordinates = some_robot(np.random.default_rng(seed), mimic=True)
     q = q_of(robot, coordinates)
     locked = lock(robot, [joint.name for joint in robot.mechanism.joints], q)
@@ -246,7 +244,7 @@ def test_with_every_joint_locked_a_robot_is_one_body(seed: int) -> None:
 
 @given(seed=st.integers(0, 2**32 - 1))
 @settings(deadline=None, max_examples=20)
-def test_without_followers_model_and_geometry_are_those_of_pinocchios_own_reduction(seed: int) -> None:
+def test_reduction_matches_pinocchio_without_mimic_joints(seed: int) -> None:
     random = np.random.default_rng(seed)
     robot, coordinates = some_robot(random, mimic=False)
     chosen = [joint.name for joint in moving(robot.mechanism) if random.random() < 0.5]
@@ -292,7 +290,7 @@ def four_bar() -> Robot:
     return eurdf.load("four_bar")
 
 
-def test_with_its_motors_locked_digits_leg_can_still_spin_its_three_rods(digit_leg: Robot) -> None:
+def test_digit_leg_spins_three_rods_with_motors_locked(digit_leg: Robot) -> None:
     locked = lock(digit_leg, digit_leg.actuation.joints)
     analysis = eurdf.analyze(locked)
     assert (analysis.nv, analysis.rank, analysis.mobility, analysis.actuated) == (21, 18, 3, 0)
@@ -301,14 +299,14 @@ def test_with_its_motors_locked_digits_leg_can_still_spin_its_three_rods(digit_l
     assert locked.dropped_closures == ()
 
 
-def test_the_motors_that_are_not_locked_stay_motors_in_their_order(digit_leg: Robot) -> None:
+def test_unlocked_motors_keep_their_order(digit_leg: Robot) -> None:
     locked = lock(digit_leg, ["motor_hip_z"])
     assert locked.actuation.joints == tuple(name for name in digit_leg.actuation.joints if name != "motor_hip_z")
     np.testing.assert_array_equal(locked.idx_v[locked.actuation.idx_v], np.delete(digit_leg.actuation.idx_v, 1))
     assert eurdf.analyze(locked).mobility == 8
 
 
-def test_a_four_bar_with_its_crank_locked_does_not_move(four_bar: Robot) -> None:
+def test_four_bar_with_locked_crank_is_immobile(four_bar: Robot) -> None:
     q = eurdf.assemble(four_bar, q_of(four_bar, {"motor_crank": (0.6,)}), hold=["motor_crank"]).q
     locked = lock(four_bar, ["motor_crank"], q)
     analysis = eurdf.analyze(locked, q[locked.idx_q])
@@ -317,7 +315,7 @@ def test_a_four_bar_with_its_crank_locked_does_not_move(four_bar: Robot) -> None
     assert_same_robot_at(four_bar, locked, q)
 
 
-def test_a_locked_joint_is_found_as_a_fixed_one_under_its_name(four_bar: Robot) -> None:
+def test_locked_joint_is_fixed_joint_of_same_name(four_bar: Robot) -> None:
     locked = lock(four_bar, ["motor_crank"])
     assert not locked.model.existJointName("motor_crank")
     frame = locked.model.frames[locked.model.getFrameId("motor_crank")]
@@ -326,7 +324,7 @@ def test_a_locked_joint_is_found_as_a_fixed_one_under_its_name(four_bar: Robot) 
     assert joint.type is JointType.FIXED
 
 
-def test_the_first_robot_stays_as_it_is(four_bar: Robot) -> None:
+def test_original_robot_is_unchanged(four_bar: Robot) -> None:
     before = four_bar.model.copy(), four_bar.visual_model.copy(), four_bar.mechanism
     q = q_of(four_bar, {"motor_crank": (0.6,)})
     lock(four_bar, ["motor_crank"], q)
@@ -334,12 +332,12 @@ def test_the_first_robot_stays_as_it_is(four_bar: Robot) -> None:
     assert list(four_bar.visual_model.geometryObjects) == list(before[1].geometryObjects)
 
 
-def test_without_a_configuration_joints_are_locked_where_the_robot_is_assembled(digit_leg: Robot) -> None:
+def test_default_is_assembled_configuration(digit_leg: Robot) -> None:
     q = digit_leg.configurations["assembled"]
     assert lock(digit_leg, ["motor_knee"]).mechanism == lock(digit_leg, ["motor_knee"], q).mechanism
 
 
-def test_a_robot_without_geometry_has_none_when_locked() -> None:
+def test_robot_without_geometry_has_none_when_locked() -> None:
     locked = lock(eurdf.load("four_bar", geometry=False), ["motor_crank"])
     assert locked.visual_model is locked.collision_model is None
 
@@ -347,7 +345,7 @@ def test_a_robot_without_geometry_has_none_when_locked() -> None:
 # -- closures that nothing moves ---------------------------------------------------------------------------------------
 
 
-def test_a_closure_between_bodies_that_are_now_one_is_left_out_and_told(four_bar: Robot) -> None:
+def test_closure_within_one_rigid_body_is_dropped(four_bar: Robot) -> None:
     q = eurdf.assemble(four_bar, q_of(four_bar, {"motor_crank": (0.6,)}), hold=["motor_crank"]).q
     locked = lock(four_bar, [joint.name for joint in four_bar.mechanism.joints], q)
     assert locked.dropped_closures == ("rocker_pin",)
@@ -355,7 +353,7 @@ def test_a_closure_between_bodies_that_are_now_one_is_left_out_and_told(four_bar
     assert locked.mechanism.closures == ()
 
 
-def test_a_closure_whose_own_joints_are_locked_is_left_out_and_those_beside_it_stay(digit_leg: Robot) -> None:
+def test_only_closures_without_moving_joints_are_dropped(digit_leg: Robot) -> None:
     q = digit_leg.configurations["assembled"]
     path = on_the_path(digit_leg, "rod1")
     locked = lock(digit_leg, path, q)
@@ -380,7 +378,7 @@ def on_the_path(robot: Robot, closure: str) -> list[str]:
     return sorted(upwards(found.a.body) ^ upwards(found.b.body))
 
 
-def test_a_closure_that_would_be_locked_open_is_refused_with_how_far_it_is_open(four_bar: Robot) -> None:
+def test_closure_locked_open_is_refused_with_opening(four_bar: Robot) -> None:
     q = q_of(four_bar, {"motor_crank": (0.3,)})
     joints = [joint.name for joint in four_bar.mechanism.joints]
     distance = np.linalg.norm(residual(four_bar, q))
@@ -392,7 +390,7 @@ def test_a_closure_that_would_be_locked_open_is_refused_with_how_far_it_is_open(
     assert lock(four_bar, joints, q, tolerance=distance).dropped_closures == ("rocker_pin",)
 
 
-def test_a_closure_that_can_still_be_closed_need_not_be_closed_where_joints_are_locked(four_bar: Robot) -> None:
+def test_closable_closure_may_be_open(four_bar: Robot) -> None:
     locked = lock(four_bar, ["motor_crank"], q_of(four_bar, {"motor_crank": (0.3,)}))
     assert locked.dropped_closures == ()
     assert eurdf.assemble(locked).converged
@@ -411,7 +409,7 @@ GRIPPER = urdf_of(
 )
 
 
-def test_followers_are_locked_with_the_joint_that_leads_them_where_it_puts_them() -> None:
+def test_mimic_joints_are_locked_with_leader() -> None:
     robot = load(GRIPPER)
     locked = lock(robot, ["m_lead"], q_of(robot, {"m_lead": (0.4,)}))
     assert locked.locked_joints == ("m_lead", "a_first", "z_second")
@@ -424,17 +422,19 @@ def test_followers_are_locked_with_the_joint_that_leads_them_where_it_puts_them(
 
 
 @pytest.mark.parametrize("name", ["a_first", "z_second"])
-def test_a_follower_is_not_locked_without_its_leader(name: str) -> None:
-    with pytest.raises(CannotLock, match=f"'{name}' cannot be locked: it follows 'm_lead'; lock that one") as refusal:
+def test_mimic_joint_alone_is_refused(name: str) -> None:
+    with pytest.raises(
+        CannotLock, match=f"'{name}' cannot be locked: it is a mimic joint of 'm_lead'; lock 'm_lead' instead"
+    ) as refusal:
         lock(load(GRIPPER), [name, "other"])
     assert (refusal.value.joint, refusal.value.leader) == (name, "m_lead")
 
 
-def test_a_follower_named_beside_its_leader_is_locked_with_it() -> None:
+def test_mimic_joint_named_with_leader_is_locked() -> None:
     assert lock(load(GRIPPER), ["z_second", "m_lead"]).locked_joints == ("m_lead", "a_first", "z_second")
 
 
-def test_followers_that_were_loaded_free_are_locked_each_by_itself() -> None:
+def test_mimic_joints_loaded_free_are_locked_alone() -> None:
     robot = load(GRIPPER, mimic=False)
     locked = lock(robot, ["a_first"], q_of(robot, {"a_first": (0.4,)}))
     assert locked.locked_joints == ("a_first",)
@@ -447,7 +447,7 @@ def test_followers_that_were_loaded_free_are_locked_each_by_itself() -> None:
 # -- what else a robot has ---------------------------------------------------------------------------------------------
 
 
-def test_named_configurations_are_kept_where_they_agree_and_told_where_they_do_not() -> None:
+def test_differing_named_configurations_are_dropped_and_listed() -> None:
     text = urdf_of(
         *(body(name) for name in ("base", "a", "b")),
         joint_element("wheel", "continuous", "base", "a", '<axis xyz="0 0 1"/>'),
@@ -469,13 +469,13 @@ def test_named_configurations_are_kept_where_they_agree_and_told_where_they_do_n
     assert locked.dropped_configurations == ("elsewhere", "neutral")
 
 
-def test_a_length_that_differs_by_more_than_a_micrometre_is_another_configuration() -> None:
+def test_configuration_tolerance_is_one_micrometre() -> None:
     text = urdf_of(body("base"), body("a"), joint_element("slide", "prismatic", "base", "a", LIMITED.format("0 0 1")))
     robot = load(text, "configurations:\n  same: {slide: 0.5000009}\n  other: {slide: 0.5000011}\n")
     assert lock(robot, ["slide"], q_of(robot, {"slide": (0.5,)})).dropped_configurations == ("other",)
 
 
-def test_a_quaternion_and_its_opposite_are_the_same_configuration() -> None:
+def test_opposite_quaternions_are_the_same_configuration() -> None:
     text = urdf_of(body("base"), body("a"), revolute("ball", "base", "a"))
     yaml = "joints: {ball: spherical}\nconfigurations: {opposite: {ball: [0, 0, -0.6, -0.8]}}"
     robot = load(text, yaml)
@@ -483,7 +483,7 @@ def test_a_quaternion_and_its_opposite_are_the_same_configuration() -> None:
     assert locked.dropped_configurations == ()
 
 
-def test_either_half_of_a_joint_that_version_1_splits_can_be_locked() -> None:
+def test_half_of_split_joint_can_be_locked() -> None:
     text = urdf_of(body("base"), body("a"), revolute("cardan", "base", "a", origin='<origin xyz="1 2 3" rpy="1 2 3"/>'))
     robot = load(text, "joint_name: [cardan]\njoint_type: [UJOINT_XY]\n")
     for name in ("cardan_X", "cardan_Y"):
@@ -491,7 +491,7 @@ def test_either_half_of_a_joint_that_version_1_splits_can_be_locked() -> None:
         assert_same_robot_at(robot, lock(robot, [name], q), q)
 
 
-def test_meshes_are_shared_and_no_file_is_read_again(tmp_path: Path) -> None:
+def test_meshes_are_shared_and_not_read_again(tmp_path: Path) -> None:
     corners = ("0 0 0", "0 1 0", "1 0 0")
     facet = "facet normal 0 0 1\nouter loop\n" + "".join(f"vertex {corner}\n" for corner in corners)
     mesh = tmp_path / "part.stl"
@@ -512,7 +512,7 @@ def test_meshes_are_shared_and_no_file_is_read_again(tmp_path: Path) -> None:
     np.testing.assert_allclose(after.placement.translation, (-1.0, 1.0, 3.0), atol=1e-12)
 
 
-def test_collision_pairs_and_objects_that_were_added_by_hand_are_kept() -> None:
+def test_geometry_and_pairs_added_by_hand_are_kept() -> None:
     robot = eurdf.load("four_bar")
     crank = robot.model.getJointId("motor_crank")
     for name, joint in (("tool", crank), ("obstacle", 0)):
@@ -528,7 +528,7 @@ def test_collision_pairs_and_objects_that_were_added_by_hand_are_kept() -> None:
     assert_same_robot_at(robot, locked, q)
 
 
-def test_what_was_found_wrong_with_a_robot_is_still_known_of_it_when_locked() -> None:
+def test_diagnostics_survive_locking() -> None:
     light = urdf_of(body("base"), link_element("a"), revolute("knee", "base", "a"))
     robot = load(light)
     assert robot.diagnostics
@@ -538,9 +538,9 @@ def test_what_was_found_wrong_with_a_robot_is_still_known_of_it_when_locked() ->
 # -- what is refused ---------------------------------------------------------------------------------------------------
 
 
-def test_an_unknown_joint_is_refused_with_the_one_that_was_meant(four_bar: Robot) -> None:
+def test_unknown_joint_is_refused_with_suggestion(four_bar: Robot) -> None:
     with pytest.raises(
-        CannotLock, match="'motor_crnk' cannot be locked: there is no such joint; did you mean 'motor_crank'"
+        CannotLock, match="'motor_crnk' cannot be locked: the robot has no such joint; did you mean 'motor_crank'"
     ) as refusal:
         lock(four_bar, ["motor_crnk"])
     assert refusal.value.joint == "motor_crnk"
@@ -548,23 +548,23 @@ def test_an_unknown_joint_is_refused_with_the_one_that_was_meant(four_bar: Robot
         lock(four_bar, "motor")
 
 
-def test_one_joint_may_be_given_by_its_name_alone(four_bar: Robot) -> None:
+def test_single_joint_name_is_accepted(four_bar: Robot) -> None:
     assert lock(four_bar, "motor_crank").locked_joints == ("motor_crank",)
 
 
-def test_a_floating_root_is_not_locked_and_the_way_out_is_told() -> None:
+def test_floating_root_is_refused_with_hint() -> None:
     robot = eurdf.load("four_bar", root="floating")
     with pytest.raises(CannotLock, match="root='fixed'"):
         lock(robot, ["root_joint"])
     assert lock(robot, ["motor_crank"]).model.nv == robot.model.nv - 1
 
 
-def test_what_is_no_configuration_is_refused(four_bar: Robot) -> None:
+def test_invalid_configuration_is_refused(four_bar: Robot) -> None:
     with pytest.raises(ValueError, match="has the shape"):
         lock(four_bar, ["motor_crank"], np.zeros(2))
 
 
-def test_plain_data_is_locked_at_coordinates_of_its_own() -> None:
+def test_plain_data_is_locked_at_given_coordinates() -> None:
     joints = (
         Joint("lead", JointType.PRISMATIC, "base", "a", axes=((0.0, 0.0, 2.0),)),
         Joint("led", JointType.PRISMATIC, "a", "b", axes=((1.0, 0.0, 0.0),), mimic=Mimic("lead", 3.0, 1.0)),
@@ -585,7 +585,7 @@ WILD_ROBOTS = sorted(found.parent.name for found in WILD.glob("*/robot.yaml"))
     not WILD_ROBOTS, reason="no published robots: put their folder at ../shared/wild, beside the checkout"
 )
 @pytest.mark.parametrize("name", WILD_ROBOTS or [""])
-def test_what_moves_with_the_motors_of_a_published_robot_locked_is_its_uncontrolled_mobility(name: str) -> None:
+def test_mobility_with_locked_motors_is_uncontrolled_mobility(name: str) -> None:
     robot = eurdf.load(WILD / name, geometry=False)
     before = eurdf.analyze(robot)
     locked = lock(robot, robot.actuation.joints, before.q)

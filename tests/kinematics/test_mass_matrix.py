@@ -51,7 +51,7 @@ def kinetic_energy(robot: Any, q: Any, v: Any, step: float = 1e-6) -> float:
 
 
 @pytest.mark.parametrize("name", ["hand", "free hand", "digit_leg", "delta"])
-def test_half_v_m_v_is_the_kinetic_energy(name: str) -> None:
+def test_kinetic_energy_is_half_v_m_v(name: str) -> None:
     robot = load(hand(), ARMATURE, mimic=name == "hand") if "hand" in name else eurdf.load(name, geometry=False)
     random = np.random.default_rng(0)
     for _ in range(3):
@@ -62,7 +62,7 @@ def test_half_v_m_v_is_the_kinetic_energy(name: str) -> None:
         assert 0.5 * v @ M @ v == pytest.approx(kinetic_energy(robot, q, v), rel=1e-6)
 
 
-def test_a_mimic_joint_with_branches_has_the_mass_matrix_of_the_free_joint_bound_to_its_leader(tmp_path: Path) -> None:
+def test_branched_mimic_joint_matches_constrained_free_joint(tmp_path: Path) -> None:
     robot = load(hand(), ARMATURE)
     bound = np.array([[1.0, 0.0, 0.0], [-1.5, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     q = np.array([0.4, 0.9, -0.6])
@@ -78,13 +78,13 @@ def test_a_mimic_joint_with_branches_has_the_mass_matrix_of_the_free_joint_bound
     np.testing.assert_allclose(eurdf.mass_matrix(robot, q), M, rtol=1e-6, atol=1e-6)
 
 
-def test_without_mimic_joints_it_is_pinocchios() -> None:
+def test_matches_pinocchio_without_mimic_joints() -> None:
     robot = eurdf.load("digit_leg", geometry=False)
     q = eurdf.assemble(robot).q
     M = np.triu(pin.crba(robot.model, robot.model.createData(), q))
     np.testing.assert_allclose(eurdf.mass_matrix(robot, q, data=robot.data), M + np.triu(M, 1).T, rtol=1e-12)
 
 
-def test_what_is_no_configuration_is_refused() -> None:
+def test_invalid_configuration_is_refused() -> None:
     with pytest.raises(ValueError, match=r"has the shape \(3,\), not \(2,\)"):
         eurdf.mass_matrix(load(hand()), np.zeros(2))

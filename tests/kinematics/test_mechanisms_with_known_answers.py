@@ -60,7 +60,7 @@ def disturbed(robot: Any, closed: Any, seed: int, by: float = 0.5) -> Any:
 
 
 @pytest.mark.parametrize(("build", "known"), KNOWN.values(), ids=KNOWN.keys())
-def test_the_dimensions_are_those_of_the_textbook(build: Callable[[], Linkage], known: tuple[int, ...]) -> None:
+def test_dimensions_match_textbook(build: Callable[[], Linkage], known: tuple[int, ...]) -> None:
     robot = load(*described(build()))
     assert robot.diagnostics == ()
     nv, nc, rank, uncontrolled = known
@@ -70,7 +70,7 @@ def test_the_dimensions_are_those_of_the_textbook(build: Callable[[], Linkage], 
     assert analysis.controlled == nv - rank - uncontrolled
 
 
-def test_the_leg_of_digit_has_nine_motions_of_which_three_are_rods_that_spin() -> None:
+def test_digit_leg_has_nine_motions_with_three_spins() -> None:
     analysis = eurdf.analyze(eurdf.load("digit_leg", geometry=False))
     assert (analysis.nv, analysis.rank, analysis.mobility, analysis.uncontrolled) == (27, 18, 9, 3)
     assert [set(motion.joints) for motion in analysis.motions] == [
@@ -85,7 +85,7 @@ def test_the_leg_of_digit_has_nine_motions_of_which_three_are_rods_that_spin() -
 
 
 @pytest.mark.parametrize("build", MOVING.values(), ids=MOVING.keys())
-def test_a_linkage_closes_from_wherever_it_is_disturbed_to(build: Callable[[], Linkage]) -> None:
+def test_disturbed_linkage_closes(build: Callable[[], Linkage]) -> None:
     robot = load(*described(build()))
     closed = eurdf.assemble(robot).q
     assemblies = [eurdf.assemble(robot, disturbed(robot, closed, seed)) for seed in range(15)]
@@ -97,7 +97,7 @@ def test_a_linkage_closes_from_wherever_it_is_disturbed_to(build: Callable[[], L
 @pytest.mark.parametrize(
     "name", ["digit_leg", "four_bar", *(f"wild {name}" for name, facts in FACTS.items() if facts["closes"])]
 )
-def test_a_robot_closes_from_wherever_it_is_disturbed_to(name: str) -> None:
+def test_disturbed_robot_closes(name: str) -> None:
     robot = eurdf.load(WILD / name[5:] if name.startswith("wild ") else name, geometry=False)
     closed = eurdf.assemble(robot).q
     assemblies = [eurdf.assemble(robot, disturbed(robot, closed, seed)) for seed in range(40)]
@@ -106,7 +106,7 @@ def test_a_robot_closes_from_wherever_it_is_disturbed_to(name: str) -> None:
     assert np.median([assembly.iterations for assembly in assemblies]) <= 8
 
 
-def test_a_ball_closed_in_6d_and_no_ball_closed_in_3d_are_one_mechanism() -> None:
+def test_ball_in_6d_equals_no_ball_in_3d() -> None:
     three, six = load(*described(ball_ended("3d"))), load(*described(ball_ended("6d")))
     assert eurdf.analyze(three).mobility == eurdf.analyze(six).mobility == 1
     start = np.array([0.2, -0.1, 0.05, 0.1])
@@ -127,7 +127,7 @@ def null_space(robot: Any, q: Any) -> Any:
     return np.linalg.svd(K)[2][np.linalg.matrix_rank(K, 1e-8) :]
 
 
-def test_a_bennett_linkage_moves_all_the_way_round() -> None:
+def test_bennett_linkage_turns_fully() -> None:
     # The one motion that it has is no accident of one configuration: tan(θ₁/2) tan(θ₂/2) is the same all along it
     # (Bennett, 1903), for the angles between bars that follow one another.
     robot = load(*described(bennett()))

@@ -110,7 +110,7 @@ def assert_same_geometry(mine: pin.GeometryModel, expected: pin.GeometryModel) -
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("material", MATERIALS)
 @pytest.mark.parametrize("shape", SHAPES)
-def test_a_shape_is_what_pinocchios_own_parser_makes_of_it(parts: Path, shape: str, material: str, kind: str) -> None:
+def test_shape_matches_pinocchio_parser(parts: Path, shape: str, material: str, kind: str) -> None:
     pose = '<origin xyz="1 2 3" rpy="0.1 -0.2 0.3"/>'
     content = (
         f"<{kind}>{pose}<geometry>{SHAPES[shape]}</geometry>{MATERIALS[material] if kind == 'visual' else ''}</{kind}>"
@@ -141,7 +141,7 @@ def shapes(draw: st.DrawFn) -> str:
 
 @given(data=st.data(), root=st.sampled_from(["fixed", "floating"]))
 @settings(deadline=None)
-def test_the_geometry_of_a_tree_is_pinocchios_own(parts: Path, data: st.DataObject, root: Root) -> None:
+def test_tree_geometry_matches_pinocchio(parts: Path, data: st.DataObject, root: Root) -> None:
     count = data.draw(st.integers(1, 6))
     names = data.draw(st.permutations([f"j{index}" for index in range(1, count)]))
     links = [
@@ -169,7 +169,7 @@ def test_the_geometry_of_a_tree_is_pinocchios_own(parts: Path, data: st.DataObje
     assert_same_geometry(built.collision_model, pinocchios_own_geometry(text, built.model, "collision", parts))
 
 
-def test_a_capsule_lies_along_z() -> None:
+def test_capsule_is_along_z() -> None:
     mechanism = Mechanism("m", "", "fixed", (Body("base", collisions=(Shape("capsule", (0.1, 0.6)),)),), ())
     [capsule] = build_geometry(
         mechanism, build_model(mechanism), pin.GeometryType.COLLISION, Finder(Path())
@@ -181,7 +181,7 @@ def test_a_capsule_lies_along_z() -> None:
 
 
 @pytest.mark.parametrize("kind", by_hand.MOVING)
-def test_a_shape_moves_with_its_body(kind: JointType) -> None:
+def test_shape_moves_with_body(kind: JointType) -> None:
     random = np.random.default_rng(11)
     joint = by_hand.some_joint(kind, random)
     shape = Shape("sphere", (0.1,), by_hand.some_pose(random))
@@ -203,7 +203,7 @@ def _fields(joint: Joint) -> dict[str, object]:
     return {name: getattr(joint, name) for name in Joint.__dataclass_fields__}
 
 
-def test_a_mesh_that_is_used_often_is_read_once_and_shared(parts: Path) -> None:
+def test_repeated_mesh_is_read_once(parts: Path) -> None:
     shape = Shape("mesh", (1.0, 1.0, 1.0), Pose(), "package://parts/tetrahedron.stl")
     larger = Shape("mesh", (2.0, 2.0, 2.0), Pose(), "package://parts/tetrahedron.stl")
     mechanism = Mechanism("m", "", "fixed", (Body("base", None, (shape, larger), (shape,)),), ())
@@ -223,7 +223,7 @@ def test_a_mesh_that_is_used_often_is_read_once_and_shared(parts: Path) -> None:
         ("empty.obj", b"", "small"),
     ],
 )
-def test_a_file_that_is_no_mesh_is_named_with_the_reason(
+def test_invalid_mesh_is_named_with_reason(
     tmp_path: Path, capfd: pytest.CaptureFixture[str], name: str, content: bytes, reason: str
 ) -> None:
     (tmp_path / name).write_bytes(content)
@@ -237,7 +237,7 @@ def test_a_file_that_is_no_mesh_is_named_with_the_reason(
     assert capfd.readouterr() == ("", "")
 
 
-def test_a_mesh_that_is_not_found_is_an_error_and_not_left_out(tmp_path: Path) -> None:
+def test_missing_mesh_is_an_error(tmp_path: Path) -> None:
     shape = Shape("mesh", (1.0, 1.0, 1.0), filename="package://lost.stl")
     mechanism = Mechanism("m", "", "fixed", (Body("base", None, (shape,)),), ())
     for resolve in (Finder(tmp_path), None):

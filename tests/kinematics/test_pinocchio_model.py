@@ -98,13 +98,13 @@ def assert_equal(model: pin.Model, expected: pin.Model) -> None:
 
 @given(text=trees(), root=ROOTS, mimic=st.booleans())
 @settings(deadline=None)
-def test_a_plain_urdf_gives_pinocchios_own_model_to_the_last_bit(text: str, root: Root, mimic: bool) -> None:
+def test_plain_urdf_gives_identical_pinocchio_model(text: str, root: Root, mimic: bool) -> None:
     assert_equal(build_model(mechanism_of(text, root, mimic)), pinocchios_own(text, root, mimic))
 
 
 @pytest.mark.parametrize("root", ["fixed", "floating"])
 @pytest.mark.parametrize("mimic", [True, False])
-def test_a_urdf_with_every_feature_gives_pinocchios_own_model(root: Root, mimic: bool) -> None:
+def test_urdf_with_every_feature_matches_pinocchio(root: Root, mimic: bool) -> None:
     model = build_model(mechanism_of(EVERYTHING, root, mimic))
     assert_equal(model, pinocchios_own(EVERYTHING, root, mimic))
     assert len(model.mimicking_joints) == (1 if mimic else 0)
@@ -115,7 +115,7 @@ def test_a_urdf_with_every_feature_gives_pinocchios_own_model(root: Root, mimic:
 @pytest.mark.parametrize("mass", [-1.0, 0.0, 1e-12])
 @pytest.mark.parametrize("moments", [(0, 0, 0, 0, 0, 0), (-1, 0, 0, 2, 0, 3), (1, 5, 0, 1, 0, 1), (1, 0, 0, 1, 0, 7)])
 @pytest.mark.parametrize("origin", ["", '<origin xyz="0.1 0.2 0.3" rpy="1 2 3"/>'])
-def test_an_inertia_of_no_body_is_taken_as_it_is(
+def test_unphysical_inertia_is_kept(
     root: Root, kind: str, mass: float, moments: tuple[float, ...], origin: str
 ) -> None:
     text = robot(
@@ -130,7 +130,7 @@ def test_an_inertia_of_no_body_is_taken_as_it_is(
 @pytest.mark.skipif(
     not WILD.is_dir(), reason="no published robots: put their folder at ../shared/wild, beside the checkout"
 )
-def test_published_robots_give_pinocchios_own_model(root: Root) -> None:
+def test_published_robots_match_pinocchio(root: Root) -> None:
     for path in sorted(WILD.glob("*/robot.urdf")):
         text = path.read_text(encoding="utf-8")
         assert_equal(build_model(mechanism_of(text, root)), pinocchios_own(text, root))
@@ -145,7 +145,7 @@ def test_published_robots_give_pinocchios_own_model(root: Root) -> None:
 @example(axis=(9e-13, 0.0, 1.0), kind="continuous")
 @example(axis=(0.0, 1.0, 1.1e-12), kind="prismatic")
 @settings(max_examples=200, deadline=None)
-def test_an_axis_is_aligned_and_rounded_as_pinocchio_does_it(axis: tuple[float, float, float], kind: str) -> None:
+def test_axis_is_aligned_and_rounded_as_in_pinocchio(axis: tuple[float, float, float], kind: str) -> None:
     content = f'<axis xyz="{vector(axis)}"/><limit effort="1" velocity="1"/>'
     text = robot(link_element("a"), link_element("b"), joint_element("j", kind, "a", "b", content))
     assert_equal(build_model(mechanism_of(text)), pinocchios_own(text))
@@ -153,7 +153,7 @@ def test_an_axis_is_aligned_and_rounded_as_pinocchio_does_it(axis: tuple[float, 
 
 @pytest.mark.parametrize("kind", ["revolute", "continuous", "prismatic", "helical"])
 @pytest.mark.parametrize("size", [1e-200, 1e-160, 1e160, 1e200])
-def test_an_axis_whose_square_is_out_of_range_still_has_its_direction(kind: str, size: float) -> None:
+def test_axis_with_overflowing_square_keeps_direction(kind: str, size: float) -> None:
     # Pinocchio's own parser loses it: the axis becomes zero, or not a number.
     joint = Joint("j", JointType(kind), "a", "b", axes=((3 * size, 0.0, 4 * size),), pitch=2 * math.pi)
     mechanism = Mechanism("m", "", "fixed", (Body("a"), Body("b")), (joint,))
@@ -165,7 +165,7 @@ def test_an_axis_whose_square_is_out_of_range_still_has_its_direction(kind: str,
     np.testing.assert_allclose(data.oMi[1].homogeneous, expected["b"], atol=1e-12)
 
 
-def test_a_link_and_a_joint_of_one_name_are_two_frames() -> None:
+def test_link_and_joint_of_one_name_are_two_frames() -> None:
     text = robot(
         link_element("arm"),
         link_element("hand"),
@@ -178,7 +178,7 @@ def test_a_link_and_a_joint_of_one_name_are_two_frames() -> None:
     assert model.getFrameId("arm", pin.FrameType.BODY) != model.getFrameId("arm", pin.FrameType.FIXED_JOINT)
 
 
-def test_a_chain_of_three_thousand_links_is_built() -> None:
+def test_chain_of_3000_links_is_built() -> None:
     count = 3000
     joints = tuple(
         Joint(
@@ -226,7 +226,7 @@ def _coupled(kind: str, place: str, leader_kind: str) -> str:
 
 
 @pytest.mark.parametrize("title", FOLLOWING)
-def test_pinocchios_own_parser_refuses(title: str) -> None:
+def test_pinocchio_parser_refuses(title: str) -> None:
     text = _coupled(*FOLLOWING[title])
     with pytest.raises(
         ValueError, match=r"parent joint of the mimic joint|have different sizes|joint-mimic|not supported"
@@ -236,7 +236,7 @@ def test_pinocchios_own_parser_refuses(title: str) -> None:
 
 @pytest.mark.parametrize("root", ["fixed", "floating"])
 @pytest.mark.parametrize("title", FOLLOWING)
-def test_coupled_joints_move_as_free_ones_that_keep_the_law(title: str, root: Root) -> None:
+def test_mimic_joints_move_as_constrained_free_joints(title: str, root: Root) -> None:
     mechanism, uncoupled = (mechanism_of(_coupled(*FOLLOWING[title]), root, mimic) for mimic in (True, False))
     coupled, free = build_model(mechanism), build_model(uncoupled)
     followers = [joint.name for joint in mechanism.joints if joint.mimic]
@@ -286,7 +286,7 @@ def _symmetric(M: np.ndarray) -> np.ndarray:
     return np.triu(M) + np.triu(M, 1).T
 
 
-def test_a_leader_that_comes_late_keeps_its_coordinate_its_limits_and_its_motor() -> None:
+def test_late_leader_keeps_coordinate_limits_and_motor() -> None:
     mechanism = mechanism_of(_coupled("revolute", "later", "revolute"), "floating")
     mechanism = replace(mechanism, actuators=("b",))
     model = build_model(mechanism)
@@ -299,13 +299,13 @@ def test_a_leader_that_comes_late_keeps_its_coordinate_its_limits_and_its_motor(
     assert (actuation.idx_q.tolist(), actuation.idx_v.tolist()) == ([7], [6])
 
 
-def test_the_joint_of_a_late_leaders_coordinate_takes_no_name_that_is_taken() -> None:
+def test_helper_joint_of_late_leader_gets_free_name() -> None:
     text = _coupled("revolute", "later", "revolute").replace('name="end" type', 'name="b/coordinate" type')
     model = build_model(mechanism_of(text))
     assert list(model.names) == ["universe", "b/coordinate'", "a", "b", "b/coordinate"]
 
 
-def test_a_wheel_that_a_slider_follows_counts_its_turns() -> None:
+def test_wheel_leading_slider_has_unwrapped_angle() -> None:
     mechanism = mechanism_of(_coupled("prismatic", "before", "continuous"))
     model = build_model(mechanism)
     turns = 20.0
@@ -327,7 +327,7 @@ def _hand_made(joint: Joint, **changes: object) -> Mechanism:
 
 
 @pytest.mark.parametrize("kind", by_hand.MOVING)
-def test_properties_of_a_joint_stand_at_its_velocities(kind: JointType) -> None:
+def test_joint_properties_are_at_its_velocities(kind: JointType) -> None:
     joint = by_hand.some_joint(kind, np.random.default_rng(0))
     nv = joint.coordinates.nv
     names = ("velocity", "effort", "damping", "friction", "armature", "gear_ratio", "rotor_inertia")
@@ -368,7 +368,7 @@ LIMITS = {
 
 
 @pytest.mark.parametrize("kind", LIMITS)
-def test_position_limits_stand_at_the_coordinates_that_pinocchio_has(kind: str) -> None:
+def test_position_limits_are_at_pinocchio_coordinates(kind: str) -> None:
     joint = by_hand.some_joint(JointType(kind), np.random.default_rng(0))
     count = len(joint.coordinates.names)
     lower = tuple(-1.0 - 0.5 * index for index in range(count))
@@ -379,7 +379,7 @@ def test_position_limits_stand_at_the_coordinates_that_pinocchio_has(kind: str) 
     np.testing.assert_array_equal(model.upperPositionLimit, [*[UNIT] * 4, *expected_upper, INF])
 
 
-def test_a_body_that_is_no_link_has_no_frame_and_its_joint_stands_for_it() -> None:
+def test_body_without_link_has_no_frame() -> None:
     mechanism = _hand_made(
         Joint("j_X", JointType.REVOLUTE, "", "", axes=(X,)),
         closures=(Closure("loop", "3d", Anchor("second"), Anchor("third")),),
@@ -397,7 +397,7 @@ def test_a_body_that_is_no_link_has_no_frame_and_its_joint_stands_for_it() -> No
 
 
 @pytest.mark.parametrize("root", ["fixed", "floating"])
-def test_frames_are_found_by_name_where_they_were_put(root: Root) -> None:
+def test_frames_are_found_by_name(root: Root) -> None:
     random = np.random.default_rng(5)
     mechanism = by_hand.tree_of_all_types(random)
     frames = tuple(
@@ -425,7 +425,7 @@ def test_frames_are_found_by_name_where_they_were_put(root: Root) -> None:
         np.testing.assert_allclose(data.oMf[model.getFrameId(joint.name)].homogeneous, poses[joint.child], atol=1e-12)
 
 
-def test_frames_leave_inertias_as_they_are_to_the_last_bit() -> None:
+def test_frames_keep_inertias_identical() -> None:
     mechanism = by_hand.tree_of_all_types(np.random.default_rng(2))
     frames = tuple(Frame(f"on_{body.name}", body.name, Pose((0.1, 0.2, 0.3))) for body in mechanism.bodies)
     framed = build_model(replace(mechanism, frames=frames))
@@ -437,7 +437,7 @@ def test_frames_leave_inertias_as_they_are_to_the_last_bit() -> None:
 
 
 @pytest.mark.parametrize("root", ["fixed", "floating"])
-def test_a_constraint_model_joins_its_two_frames(root: Root) -> None:
+def test_constraint_model_joins_its_two_frames(root: Root) -> None:
     random = np.random.default_rng(7)
     mechanism = by_hand.tree_of_all_types(random)
     names = [body.name for body in mechanism.bodies]
@@ -473,7 +473,7 @@ def test_a_constraint_model_joins_its_two_frames(root: Root) -> None:
         )
 
 
-def test_the_actuation_selects_all_velocities_of_the_actuated_joints_in_file_order() -> None:
+def test_actuation_selects_velocities_in_file_order() -> None:
     mechanism = _hand_made(
         Joint("wheel", JointType.CONTINUOUS, "", "", axes=(X,)), actuators=("then", "wheel", "before")
     )
@@ -485,14 +485,14 @@ def test_the_actuation_selects_all_velocities_of_the_actuated_joints_in_file_ord
     np.testing.assert_array_equal(actuation.selection, np.eye(5)[:, [4, 3, 0, 1, 2]])
 
 
-def test_a_mechanism_without_actuators_has_an_empty_selection() -> None:
+def test_selection_is_empty_without_actuators() -> None:
     mechanism = mechanism_of(EVERYTHING)
     model = build_model(mechanism)
     actuation = build_actuation(mechanism, model)
     assert (actuation.selection.shape, actuation.idx_v.dtype) == ((model.nv, 0), np.intp)
 
 
-def test_a_robot_unpacks_and_holds_what_was_built() -> None:
+def test_robot_unpacks_into_its_parts() -> None:
     half = math.sqrt(0.5)
     mechanism = _hand_made(
         Joint("wheel", JointType.CONTINUOUS, "", "", axes=(X,)),
@@ -512,12 +512,12 @@ def test_a_robot_unpacks_and_holds_what_was_built() -> None:
     assert repr(built) == "<Robot 'hand-made': nq 7, nv 5, 1 closures, 1 actuators>"
 
 
-def test_a_robot_without_geometry_has_no_geometry_models() -> None:
+def test_robot_without_geometry_has_no_geometry_models() -> None:
     built = build_robot(mechanism_of(EVERYTHING), geometry=False)
     assert (built.visual_model, built.collision_model) == (None, None)
 
 
-def test_diagnostics_that_take_long_are_found_when_first_asked_for() -> None:
+def test_slow_diagnostics_are_computed_on_first_use() -> None:
     built = build_robot(mechanism_of(EVERYTHING), geometry=False)
     assert built.diagnostics == ()
     finding = Diagnostic("urdf-no-range", "joint 'finger' has the range 0 to 0", Place("robot.urdf"))
@@ -538,7 +538,7 @@ def test_building_a_robot_prints_nothing(capfd: pytest.CaptureFixture[str]) -> N
     assert capfd.readouterr() == ("", "")
 
 
-def test_chains_of_followers_keep_the_law_of_each_link() -> None:
+def test_mimic_chains_compose() -> None:
     joints = tuple(
         Joint(name, JointType.PRISMATIC, parent, child, axes=(X,), mimic=mimic)
         for name, parent, child, mimic in (

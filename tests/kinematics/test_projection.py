@@ -75,7 +75,7 @@ def some_metric(nv: int, random: np.random.Generator) -> Any:
 @pytest.mark.parametrize("name", JOINTS)
 @given(seed=seeds)
 @settings(max_examples=5, deadline=None)
-def test_the_drift_is_the_derivative_of_the_jacobian_for_every_joint_type(name: str, seed: int) -> None:
+def test_drift_is_derivative_of_jacobian_for_all_joints(name: str, seed: int) -> None:
     random = np.random.default_rng(seed)
     linkage = branching([JOINTS[name](), pin.JointModelRY(), JOINTS[name](), JOINTS[name]()], random)
     q, v = somewhere(linkage.model, random), random.normal(size=linkage.model.nv)
@@ -84,7 +84,7 @@ def test_the_drift_is_the_derivative_of_the_jacobian_for_every_joint_type(name: 
     np.testing.assert_allclose(drift, expected, rtol=0.0, atol=1e-7 * max(1.0, np.abs(expected).max()))
 
 
-def test_the_drift_is_exact_near_half_a_turn_and_at_a_closed_configuration() -> None:
+def test_drift_is_exact_near_half_turn_and_closed() -> None:
     random = np.random.default_rng(2)
     model = pin.Model()
     joint = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "body")
@@ -98,7 +98,7 @@ def test_the_drift_is_exact_near_half_a_turn_and_at_a_closed_configuration() -> 
     np.testing.assert_allclose(acceleration_drift(linkage, pin.neutral(model), v), 0.0, atol=1e-12)
 
 
-def test_the_drift_of_a_turning_bar_is_its_centripetal_acceleration() -> None:
+def test_drift_of_turning_bar_is_centripetal_acceleration() -> None:
     model = pin.Model()
     joint = model.addJoint(0, pin.JointModelRZ(), pin.SE3.Identity(), "hinge")
     tip = translation(2.0, 0.0, 0.0)
@@ -110,7 +110,7 @@ def test_the_drift_of_a_turning_bar_is_its_centripetal_acceleration() -> None:
     np.testing.assert_allclose(acceleration_drift(seen_from_it, np.array([0.3]), np.array([3.0])), 0.0, atol=1e-12)
 
 
-def test_the_drift_of_joints_that_mimic_others_is_exact() -> None:
+def test_drift_with_mimic_joints_is_exact() -> None:
     model = pin.buildModelFromXML(MIMIC, mimic=True)
     same, other = model.getJointId("same"), model.getJointId("other")
     tip = translation(0.1, 0.2, 0.3)
@@ -120,7 +120,7 @@ def test_the_drift_of_joints_that_mimic_others_is_exact() -> None:
 
 
 @pytest.mark.parametrize("name", BUILD)
-def test_a_projected_velocity_is_the_nearest_that_keeps_the_loops_closed(name: str) -> None:
+def test_projected_velocity_is_nearest_consistent_one(name: str) -> None:
     robot, random = BUILD[name](), np.random.default_rng(1)
     q = closed_near(robot, random)
     _, K = residual_and_jacobian(robot, q)
@@ -137,7 +137,7 @@ def test_a_projected_velocity_is_the_nearest_that_keeps_the_loops_closed(name: s
 
 
 @pytest.mark.parametrize("name", ["four-bar in 6d", "spherical four-bar", "Stewart", "digit_leg", "four_bar"])
-def test_a_projected_acceleration_is_the_nearest_that_keeps_the_loops_closed(name: str) -> None:
+def test_projected_acceleration_is_nearest_consistent_one(name: str) -> None:
     robot, random = BUILD[name](), np.random.default_rng(3)
     q, nv = closed_near(robot, random), robot.model.nv
     _, K = residual_and_jacobian(robot, q)
@@ -153,7 +153,7 @@ def test_a_projected_acceleration_is_the_nearest_that_keeps_the_loops_closed(nam
         np.testing.assert_allclose(project_acceleration(robot, q, v, projected, weights), projected, atol=1e-8)
 
 
-def test_projected_with_the_mass_matrix_an_acceleration_is_that_of_the_constrained_mechanism() -> None:
+def test_mass_matrix_metric_gives_constrained_acceleration() -> None:
     robot, random = robot_called("four_bar"), np.random.default_rng(7)
     model, q = robot.model, closed_near(robot_called("four_bar"), random)
     v = project_velocity(robot, q, random.normal(size=3))
@@ -173,7 +173,7 @@ def test_projected_with_the_mass_matrix_an_acceleration_is_that_of_the_constrain
 
 
 @pytest.mark.parametrize("name", ["four-bar in 6d", "Stewart", "digit_leg"])
-def test_with_both_projections_the_loops_open_only_by_the_third_order(name: str) -> None:
+def test_projections_open_loops_to_third_order_only(name: str) -> None:
     robot, random = BUILD[name](), np.random.default_rng(4)
     q, nv = closed_near(robot, random), robot.model.nv
     v = project_velocity(robot, q, random.normal(size=nv))
@@ -189,7 +189,7 @@ def test_with_both_projections_the_loops_open_only_by_the_third_order(name: str)
 
 @pytest.mark.parametrize("name", BUILD)
 @pytest.mark.parametrize("weighted", [False, True])
-def test_a_projected_configuration_is_closed_and_none_around_it_is_nearer(name: str, weighted: bool) -> None:
+def test_projected_configuration_is_closed_and_nearest(name: str, weighted: bool) -> None:
     robot, random = BUILD[name](), np.random.default_rng(5)
     model = robot.model
     W = some_metric(model.nv, random) if weighted else np.eye(model.nv)
@@ -216,13 +216,13 @@ def test_a_projected_configuration_is_closed_and_none_around_it_is_nearer(name: 
 
 
 @pytest.mark.parametrize("name", BUILD)
-def test_a_closed_configuration_is_its_own_projection(name: str) -> None:
+def test_closed_configuration_is_its_own_projection(name: str) -> None:
     robot = BUILD[name]()
     q = closed_near(robot, np.random.default_rng(6))
     np.testing.assert_allclose(project_configuration(robot, q), q, atol=1e-12)
 
 
-def test_the_nearest_point_of_a_circle_lies_on_the_ray_to_its_centre() -> None:
+def test_nearest_circle_point_is_on_ray_to_centre() -> None:
     model = pin.Model()
     bar = model.addJoint(0, pin.JointModelRZ(), pin.SE3.Identity(), "bar")
     x = model.addJoint(0, pin.JointModelPX(), pin.SE3.Identity(), "x")
@@ -235,7 +235,7 @@ def test_the_nearest_point_of_a_circle_lies_on_the_ray_to_its_centre() -> None:
         np.testing.assert_allclose(projected[0], np.arctan2(0.8, 0.6), atol=1e-6)
 
 
-def test_joints_that_are_in_no_loop_stay_where_they_are() -> None:
+def test_joints_outside_loops_stay() -> None:
     linkage = n_bar(4, away=0.7)
     model = linkage.model
     model.addJoint(0, pin.JointModelFreeFlyer(), translation(1.0, 2.0, 3.0), "beside")
@@ -245,7 +245,7 @@ def test_joints_that_are_in_no_loop_stay_where_they_are() -> None:
     np.testing.assert_allclose(projected[4:], q[4:], atol=1e-12)
 
 
-def test_loops_that_cannot_close_are_named_with_how_far_they_stay_open() -> None:
+def test_loops_that_cannot_close_are_named_with_openings() -> None:
     linkage = loop([("R", (0, 0, 0), Z), ("R", (1, 0, 0), Z)], "3d", (2, 0, 0))
     linkage.constraint_models[0].joint1_placement = translation(5.0, 0.0, 0.0)
     with pytest.raises(NotClosable, match=r"'end' by 3e\+03 mm") as raised:
@@ -256,7 +256,7 @@ def test_loops_that_cannot_close_are_named_with_how_far_they_stay_open() -> None
     assert raised.value.q.shape == (2,)
 
 
-def test_a_robot_without_loops_is_its_own_projection() -> None:
+def test_projection_without_loops_is_identity() -> None:
     linkage = Linkage(n_bar(4).model)
     q, v, a = np.arange(4.0), np.arange(4.0) + 1.0, np.arange(4.0) - 2.0
     np.testing.assert_array_equal(project_configuration(linkage, q), q)
@@ -264,7 +264,7 @@ def test_a_robot_without_loops_is_its_own_projection() -> None:
     np.testing.assert_allclose(project_acceleration(linkage, q, v, a), a, atol=1e-12)
 
 
-def test_what_is_no_metric_or_no_velocity_is_refused() -> None:
+def test_invalid_metric_or_velocity_is_refused() -> None:
     robot, q, v = robot_called("four_bar"), assemble(robot_called("four_bar")).q, np.zeros(3)
     for weights, reason in (
         (np.ones(5), r"shape \(3,\) or \(3, 3\), not \(5,\)"),

@@ -36,7 +36,7 @@ def differences(linkage: Linkage, q: Any, step: float = 1e-4) -> Any:
 @pytest.mark.parametrize("name", JOINTS)
 @given(seed=seeds)
 @settings(max_examples=10, deadline=None)
-def test_the_jacobian_is_the_derivative_of_the_residual_for_every_joint_type(name: str, seed: int) -> None:
+def test_jacobian_is_derivative_for_every_joint_type(name: str, seed: int) -> None:
     random = np.random.default_rng(seed)
     linkage = branching([JOINTS[name](), pin.JointModelRY(), JOINTS[name](), JOINTS[name]()], random)
     q = somewhere(linkage.model, random)
@@ -49,7 +49,7 @@ def test_the_jacobian_is_the_derivative_of_the_residual_for_every_joint_type(nam
 
 @given(seed=seeds, kinds=st.lists(st.sampled_from(sorted(JOINTS)), min_size=3, max_size=9))
 @settings(max_examples=50, deadline=None)
-def test_the_jacobian_is_the_derivative_of_the_residual_in_any_tree(seed: int, kinds: list[str]) -> None:
+def test_jacobian_is_derivative_in_any_tree(seed: int, kinds: list[str]) -> None:
     random = np.random.default_rng(seed)
     linkage = branching([JOINTS[kind]() for kind in kinds], random)
     q = somewhere(linkage.model, random)
@@ -60,7 +60,7 @@ def test_the_jacobian_is_the_derivative_of_the_residual_in_any_tree(seed: int, k
 
 @given(seed=seeds, kinds=st.lists(st.sampled_from(sorted(JOINTS)), min_size=3, max_size=9))
 @settings(max_examples=50, deadline=None)
-def test_the_answer_is_the_same_with_and_without_data(seed: int, kinds: list[str]) -> None:
+def test_result_is_equal_with_and_without_data(seed: int, kinds: list[str]) -> None:
     random = np.random.default_rng(seed)
     linkage = branching([JOINTS[kind]() for kind in kinds], random)
     q, data = somewhere(linkage.model, random), linkage.model.createData()
@@ -70,7 +70,7 @@ def test_the_answer_is_the_same_with_and_without_data(seed: int, kinds: list[str
         np.testing.assert_allclose(light, full, rtol=0.0, atol=1e-11)
 
 
-def test_a_6d_residual_is_log6_of_b_seen_from_a() -> None:
+def test_residual_6d_is_log6_of_b_in_a() -> None:
     # Turning by 90 degrees about z while moving by a quarter of a circle of radius 1 about (0, 1): a unit screw.
     model = pin.Model()
     joint = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "body")
@@ -81,7 +81,7 @@ def test_a_6d_residual_is_log6_of_b_seen_from_a() -> None:
     np.testing.assert_allclose(r, [np.pi / 2, 0.0, 0.0, 0.0, 0.0, np.pi / 2], atol=1e-12)
 
 
-def test_a_3d_residual_is_the_origin_of_b_in_a() -> None:
+def test_residual_3d_is_origin_of_b_in_a() -> None:
     model = pin.Model()
     joint = model.addJoint(0, pin.JointModelRZ(), translation(1.0, 0.0, 0.0), "hinge")
     oMa = pin.SE3(pin.exp3(np.array([0.0, 0.0, np.pi / 2])), np.array([1.0, 2.0, 3.0]))
@@ -92,7 +92,7 @@ def test_a_3d_residual_is_the_origin_of_b_in_a() -> None:
 
 
 @pytest.mark.parametrize("name", ["digit_leg", "four_bar"])
-def test_where_the_loops_are_closed_residual_and_jacobian_are_minus_pinocchios_own(name: str) -> None:
+def test_closed_residual_is_minus_pinocchios(name: str) -> None:
     """Pinocchio measures A from B, and in 3d along the axes of A as well: where they coincide only the sign differs."""
     robot = eurdf.load(name, geometry=False)
     model, data = robot.model, robot.data
@@ -115,7 +115,7 @@ def test_where_the_loops_are_closed_residual_and_jacobian_are_minus_pinocchios_o
     assert row == len(r)
 
 
-def test_closures_are_stacked_in_their_order() -> None:
+def test_closures_are_stacked_in_order() -> None:
     random = np.random.default_rng(5)
     linkage = branching([JOINTS[kind]() for kind in sorted(JOINTS)], random)
     q = somewhere(linkage.model, random)
@@ -133,7 +133,7 @@ def test_closures_are_stacked_in_their_order() -> None:
 
 @given(seed=seeds)
 @settings(max_examples=20, deadline=None)
-def test_exchanging_a_and_b_turns_the_sign_of_a_6d_closure(seed: int) -> None:
+def test_exchanging_frames_negates_6d_residual(seed: int) -> None:
     random = np.random.default_rng(seed)
     linkage = branching([JOINTS[kind]() for kind in ("spherical", "planar", "helical", "cylindrical")], random)
     linkage.constraint_models = [found for found in linkage.constraint_models if found.residualSize() == 6]
@@ -145,7 +145,7 @@ def test_exchanging_a_and_b_turns_the_sign_of_a_6d_closure(seed: int) -> None:
     np.testing.assert_allclose(K_swapped, -K, atol=1e-10)
 
 
-def test_joints_outside_a_loop_do_not_move_it() -> None:
+def test_joints_outside_loop_do_not_move_it() -> None:
     random = np.random.default_rng(1)
     linkage = branching([JOINTS[kind]() for kind in ("floating", "universal", "spherical", "planar")], random)
     linkage.constraint_models = linkage.constraint_models[:2]  # across the branches, with the floating trunk below
@@ -157,7 +157,7 @@ def test_joints_outside_a_loop_do_not_move_it() -> None:
 
 
 @pytest.mark.parametrize("with_data", [False, True])
-def test_a_joint_that_mimics_adds_to_the_column_of_the_one_it_follows(with_data: bool) -> None:
+def test_mimic_joint_adds_to_leader_column(with_data: bool) -> None:
     def robot(mimic: bool) -> Linkage:
         model = pin.buildModelFromXML(MIMIC, mimic=mimic)
         same, other = model.getJointId("same"), model.getJointId("other")
@@ -182,7 +182,7 @@ def test_a_joint_that_mimics_adds_to_the_column_of_the_one_it_follows(with_data:
     np.testing.assert_allclose(K, differences(follows, q), atol=1e-8)
 
 
-def test_an_opening_is_a_distance_and_an_angle() -> None:
+def test_opening_is_distance_and_angle() -> None:
     model = pin.Model()
     joint = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "body")
     linkage = Linkage(
@@ -206,7 +206,7 @@ def test_an_opening_is_a_distance_and_an_angle() -> None:
         assert pinned.angle == 0.0
 
 
-def test_a_robot_without_closures_has_an_empty_residual() -> None:
+def test_robot_without_closures_has_empty_residual() -> None:
     linkage = Linkage(n_bar(4).model)
     r, K = residual_and_jacobian(linkage, np.zeros(4))
     assert r.shape == residual(linkage, np.zeros(4)).shape == (0,)
@@ -215,7 +215,7 @@ def test_a_robot_without_closures_has_an_empty_residual() -> None:
 
 
 @pytest.mark.parametrize("joints", [0, 1])
-def test_the_smallest_robots_have_a_jacobian(joints: int) -> None:
+def test_smallest_robots_have_a_jacobian(joints: int) -> None:
     model = pin.Model()
     if joints:
         model.addJoint(0, pin.JointModelRZ(), pin.SE3.Identity(), "hinge")
@@ -227,7 +227,7 @@ def test_the_smallest_robots_have_a_jacobian(joints: int) -> None:
         assert analyze(linkage).residual > 0.5
 
 
-def test_a_long_chain_needs_neither_data_nor_recursion(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_long_chain_needs_no_data_or_recursion(monkeypatch: pytest.MonkeyPatch) -> None:
     model, parent, length = pin.Model(), 0, 2000
     for index in range(length):
         parent = model.addJoint(parent, pin.JointModelRZ(), translation(0.01, 0.0, 0.0), f"joint{index}")
@@ -243,7 +243,7 @@ def test_a_long_chain_needs_neither_data_nor_recursion(monkeypatch: pytest.Monke
     np.testing.assert_allclose(K[0, 0], -r[1], rtol=1e-9)
 
 
-def test_closures_that_are_exchanged_later_are_seen() -> None:
+def test_replaced_closures_are_used() -> None:
     linkage = stewart()
     q = pin.neutral(linkage.model)
     assert len(residual(linkage, q)) == 30
@@ -257,6 +257,6 @@ def test_closures_that_are_exchanged_later_are_seen() -> None:
     assert K[24:].any()
 
 
-def test_the_neutral_configuration_of_a_drawn_linkage_is_closed() -> None:
+def test_neutral_configuration_of_drawn_linkage_is_closed() -> None:
     linkage = n_bar(5)
     np.testing.assert_allclose(residual(linkage, np.zeros(5)), 0.0, atol=1e-12)

@@ -35,7 +35,7 @@ BUILD = {"digit_leg": lambda: robot_called("digit_leg"), "four_bar": lambda: rob
 @pytest.mark.parametrize("name", BUILD)
 @given(seed=st.integers(0, 2**32 - 1))
 @settings(max_examples=10, deadline=None)
-def test_merging_undoes_splitting_to_the_last_bit(name: str, seed: int) -> None:
+def test_merge_inverts_split(name: str, seed: int) -> None:
     robot, random = BUILD[name](), np.random.default_rng(seed)
     q, v = random.normal(size=robot.model.nq), random.normal(size=robot.model.nv)
     np.testing.assert_array_equal(merge_configuration(robot, *split_configuration(robot, q)), q)
@@ -47,7 +47,7 @@ def test_merging_undoes_splitting_to_the_last_bit(name: str, seed: int) -> None:
     np.testing.assert_array_equal(again_free, v_free)
 
 
-def test_motors_come_in_their_own_order_and_the_rest_in_that_of_the_model() -> None:
+def test_motors_are_in_file_order_others_in_model_order() -> None:
     robot = mixed()
     # In q: hinge 0, ball 1-4, wheel 5-6, slide 7, table 8-11; in v: hinge 0, ball 1-3, wheel 4, slide 5, table 6-8.
     q_actuated, q_free = split_configuration(robot, np.arange(12.0))
@@ -58,21 +58,21 @@ def test_motors_come_in_their_own_order_and_the_rest_in_that_of_the_model() -> N
     np.testing.assert_array_equal(v_free, [4, 6, 7, 8])
 
 
-def test_the_parts_are_no_views_of_the_whole() -> None:
+def test_split_returns_copies() -> None:
     robot, q = robot_called("four_bar"), np.arange(5.0)
     q_actuated, q_free = split_configuration(robot, q)
     q_actuated[:], q_free[:] = -1.0, -1.0
     np.testing.assert_array_equal(q, np.arange(5.0))
 
 
-def test_a_robot_without_motors_is_all_free() -> None:
+def test_robot_without_motors_is_all_free() -> None:
     robot = actuated(Linkage(mixed().model), [])
     q_actuated, q_free = split_configuration(robot, np.arange(12.0))
     assert q_actuated.shape == (0,)
     np.testing.assert_array_equal(q_free, np.arange(12.0))
 
 
-def test_vectors_of_another_size_are_refused_with_both_sizes() -> None:
+def test_wrong_size_is_refused_with_both_sizes() -> None:
     robot = mixed()
     with pytest.raises(ValueError, match=r"a configuration of this robot has the shape \(12,\), not \(9,\)"):
         split_configuration(robot, np.zeros(9))
