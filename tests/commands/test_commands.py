@@ -68,9 +68,7 @@ def finds(monkeypatch: pytest.MonkeyPatch, *codes: str) -> None:
 
 
 def in_a_process(*argv: str, **options: Any) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "eurdf.commands.main", *argv], capture_output=True, text=True, timeout=60, **options
-    )
+    return subprocess.run([sys.executable, "-m", "eurdf", *argv], capture_output=True, text=True, timeout=60, **options)
 
 
 # --- check -----------------------------------------------------------------------------------------------------------
@@ -543,7 +541,7 @@ def test_a_fault_of_the_program_is_not_taken_for_one_of_the_robot(
 
 def test_a_person_sees_colours_and_no_line_of_the_file_wraps(folder: Path) -> None:
     robot(folder, ACTUATES_NOTHING + "x-note: " + "long " * 100 + "\n")
-    _, seen = on_a_terminal(["-m", "eurdf.commands.main", "check", "."])
+    _, seen = on_a_terminal(["-m", "eurdf", "check", "."])
     assert "\x1b[1;31merror\x1b[0m" in seen
     assert "│" in seen
     piped = in_a_process("check", ".").stdout

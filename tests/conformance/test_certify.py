@@ -157,7 +157,7 @@ def test_a_first_try_that_passes_certifies_nothing(folder: Path) -> None:
 
 
 def test_a_first_try_runs_on_a_terminal_too(folder: Path) -> None:
-    code, seen = on_a_terminal(["-m", "eurdf.commands.main", "certify", "--parser", REFERENCE, "--smoke"])
+    code, seen = on_a_terminal(["-m", "eurdf", "certify", "--parser", REFERENCE, "--smoke"])
     assert (code, "certifying" in seen) == (0, True)
 
 

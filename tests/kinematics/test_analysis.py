@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from typing import Any
 
@@ -167,7 +168,7 @@ def test_joints_outside_loops_add_mobility() -> None:
     linkage = n_bar(4)
     linkage.model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "float")
     linkage.model.addJoint(2, pin.JointModelRX(), pin.SE3.Identity(), "gripper")
-    linkage.actuated = ["j0", "gripper"]
+    linkage = dataclasses.replace(linkage, actuated=["j0", "gripper"])
     analysis = analyze(linkage)
     assert (analysis.nv, analysis.rank, analysis.mobility, analysis.uncontrolled) == (11, 3, 8, 6)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import gc
 import weakref
 from collections.abc import Callable
@@ -399,25 +400,15 @@ def test_both_evaluations_agree_with_residual_and_jacobian(build: Callable[[], A
             np.testing.assert_allclose(evaluation.openings(), expected, atol=1e-12)
 
 
-def test_cached_assembler_is_dropped_when_robot_changes() -> None:
+def test_robot_with_other_closures_is_assembled_anew() -> None:
     linkage = four_bar(1.0, 3.0, 2.5, 2.8)
     start = np.array([0.3, 0.5, 0.5])
     assert assemble(linkage, start).converged
-    (end,) = linkage.constraint_models
+    end = pin.RigidConstraintModel(linkage.constraint_models[0])
     end.joint1_placement = translation(3.1, 0.0, 0.0)
-    moved = assemble(linkage, start)
-    assert np.abs(residual(linkage, moved.q)).max() <= 1e-10
-    linkage.model.jointPlacements[2].translation *= 1.1
-    longer = assemble(linkage, start)
-    assert np.abs(residual(linkage, longer.q)).max() <= 1e-10
-    linkage.model.lowerPositionLimit, linkage.model.upperPositionLimit = np.full(3, -1.0), np.full(3, 1.5)
-    assert assemble(linkage, start, limits=True).q.max() <= 1.5
-    linkage.model.upperPositionLimit = np.full(3, 0.7)
-    assert assemble(linkage, start, limits=True).q.max() <= 0.7
-    end.name = "renamed"
-    assert [opening.name for opening in assemble(linkage).open] == ["renamed"]
-    linkage.constraint_models.clear()
-    assert assemble(linkage, start).open == ()
+    moved = dataclasses.replace(linkage, constraint_models=[end])
+    assert np.abs(residual(moved, assemble(moved, start).q)).max() <= 1e-10
+    assert np.abs(residual(linkage, assemble(linkage, start).q)).max() <= 1e-10
 
 
 def test_cached_assembler_keeps_no_reference_to_robot() -> None:

@@ -13,7 +13,6 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from eurdf.diagnostics import Diagnostic, Place
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.frame import Anchor, Frame
@@ -515,22 +514,6 @@ def test_robot_unpacks_into_its_parts() -> None:
 def test_robot_without_geometry_has_no_geometry_models() -> None:
     built = build_robot(mechanism_of(EVERYTHING), geometry=False)
     assert (built.visual_model, built.collision_model) == (None, None)
-
-
-def test_slow_diagnostics_are_computed_on_first_use() -> None:
-    built = build_robot(mechanism_of(EVERYTHING), geometry=False)
-    assert built.diagnostics == ()
-    finding = Diagnostic("urdf-no-range", "joint 'finger' has the range 0 to 0", Place("robot.urdf"))
-    calls = []
-
-    def find() -> tuple[Diagnostic, ...]:
-        calls.append(1)
-        return (finding,)
-
-    built.defer_diagnostics(find)
-    assert calls == []
-    assert (built.diagnostics, built.diagnostics) == ((finding,), (finding,))
-    assert len(calls) == 1
 
 
 def test_building_a_robot_prints_nothing(capfd: pytest.CaptureFixture[str]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import shutil
 import struct
 import subprocess
@@ -244,33 +245,38 @@ def test_warnings_are_not_refused_when_strict(tmp_path: Path) -> None:
 APART = 'extended_urdf: "2.0"\nclosures: [{name: c, type: 3d, frames: [{link: base, xyz: [0, 0, 9]}, arm]}]\n'
 
 
-def test_loops_that_cannot_close_are_found_when_asked_and_refused_when_strict(tmp_path: Path) -> None:
+def test_loops_are_checked_on_request_and_when_strict(tmp_path: Path) -> None:
     folder = _write(tmp_path, URDF, APART)
-    loaded = eurdf.load(folder)
+    loaded = eurdf.load(folder, check_loops=True)
     assert len(loaded.constraint_models) == 1
     assert [found.code for found in loaded.diagnostics] == ["closure-cannot-close"]
-    assert loaded.diagnostics is loaded.diagnostics
     assert [found.code for found in eurdf.check(folder).diagnostics] == ["closure-cannot-close"]
     with pytest.raises(eurdf.InvalidRobot, match="'c' by"):
         eurdf.load(folder, strict=True)
 
 
-def test_loading_does_not_wait_for_a_solver(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    import eurdf.kinematics.assembly as assembly
+def test_a_loaded_robot_starts_no_solver(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*given: Any, **named: Any) -> None:
+        raise AssertionError("a solver was started")
 
-    asked: list[eurdf.Robot] = []
-    solve = assembly.assemble
+    monkeypatch.setattr("eurdf.kinematics.assembly.assemble", refuse)
+    folder = _write(tmp_path, URDF, APART)
+    loaded = eurdf.load(folder)
+    for name in dir(loaded):
+        getattr(loaded, name)
+    assert loaded.diagnostics == ()
+    with pytest.raises(AssertionError, match="solver"):
+        eurdf.load(folder, check_loops=True)
 
-    def watched(robot: eurdf.Robot, *given: Any, **named: Any) -> eurdf.Assembly:
-        asked.append(robot)
-        return solve(robot, *given, **named)
 
-    monkeypatch.setattr(assembly, "assemble", watched)
+def test_a_robot_cannot_be_changed(tmp_path: Path) -> None:
     loaded = eurdf.load(_write(tmp_path, URDF, APART))
-    assert asked == []
-    assert len(loaded.diagnostics) == 1
-    assert len(loaded.diagnostics) == 1
-    assert len(asked) == 1
+    for field in dataclasses.fields(loaded):
+        with pytest.raises(dataclasses.FrozenInstanceError):
+            setattr(loaded, field.name, None)
+    for name in ("data", "visual_model", "collision_model"):
+        with pytest.raises(AttributeError):
+            setattr(loaded, name, None)
 
 
 def test_an_assembled_configuration_that_is_open_is_found_at_once(tmp_path: Path) -> None:

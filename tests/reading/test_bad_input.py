@@ -44,7 +44,7 @@ def load_changed(folder: Path, old: str, new: str, *, assembled: bool = True) ->
     changed = description if assembled else description.replace("  assembled:", "  another:")
     (folder / "robot.yaml").write_text(changed, encoding="utf-8")
     report = eurdf.check(folder)
-    robot = eurdf.load(folder)
+    robot = eurdf.load(folder, check_loops=True)
     assert robot.diagnostics == tuple(found for found in report.diagnostics if found.clause is not None)  # not advice
     return robot
 

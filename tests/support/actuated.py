@@ -40,7 +40,7 @@ def actuated(linkage: Linkage, joints: Sequence[str] | None = None) -> Robot:
     idx_v = np.array([joint.idx_v + k for joint in found for k in range(joint.nv)], np.intp)
     actuation = Actuation(names, idx_q, idx_v, model.nv)
     no_mechanism: Any = None
-    return Robot(no_mechanism, model, linkage.constraint_models, actuation, None, None, dict(linkage.configurations))
+    return Robot(no_mechanism, model, linkage.constraint_models, actuation, linkage.configurations)
 
 
 def closed_near(robot: Any, random: np.random.Generator, spread: float = 0.3, limits: bool = False) -> Any:

@@ -24,9 +24,7 @@ def load(urdf: str, yaml: str = "", **options: Any) -> eurdf.Robot:
     """The robot of a URDF and a description of version 2, less its first line; of a bare URDF where there is none."""
     with tempfile.TemporaryDirectory() as folder:
         options.setdefault("geometry", False)
-        robot = eurdf.load(written(Path(folder), urdf, yaml), **options)
-        assert robot.diagnostics is not None  # while the files are there
-        return robot
+        return eurdf.load(written(Path(folder), urdf, yaml), **options)
 
 
 def codes(urdf: str, yaml: str = "") -> list[str]:

@@ -15,7 +15,7 @@ from support.plain_urdf import inertial, joint_element, link_element
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True, eq=False)
 class Linkage:
     """A robot as the kinematics sees it."""
 
@@ -23,6 +23,7 @@ class Linkage:
     constraint_models: list[Any] = field(default_factory=list)
     actuated: Sequence[str] = ()
     configurations: dict[str, Any] = field(default_factory=dict)
+    derived: dict[Any, Any] = field(default_factory=dict, init=False)
 
     @property
     def actuation(self) -> Actuation:

@@ -395,7 +395,7 @@ def try_case(path: Path, *, analyse: bool) -> str:
     refused = any(found.phase in REFUSED_PHASES for found in report.errors)
     restart_clock()
     try:
-        robot = eurdf.load(path)
+        robot = eurdf.load(path, check_loops=True)
     except eurdf.InvalidRobot as error:
         if not refused:
             raise AssertionError("load refuses what check passes") from error

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 
-from eurdf.checking.loops import assembled_diagnostics, closure_diagnostics
+from eurdf.checking.loops import closure_diagnostics
 from eurdf.exceptions import InvalidRobot
 from eurdf.linking.description import describe, find_meshes, place_of_file
 from eurdf.mechanism.mechanism import Root
@@ -22,6 +23,7 @@ def load(
     geometry: bool = True,
     *,
     mimic: bool = True,
+    check_loops: bool = False,
     strict: bool = False,
     package_dirs: Sequence[str | os.PathLike[str]] = (),
     xacro_args: Mapping[str, str] | None = None,
@@ -29,7 +31,8 @@ def load(
     """Load a robot.
 
     Errors that leave something to guess are refused (EU-CNF-001). Unphysical inertias and loops that cannot close are
-    not: real files have them, and their kinematics are still of use; they are in ``robot.diagnostics`` (EU-CNF-003).
+    not: real files have them, and their kinematics are still of use. They are in ``robot.diagnostics`` (EU-CNF-003);
+    whether loops can close is looked for only if `check_loops` says so.
 
     Args:
         path: A folder, a YAML file, a bare URDF or xacro, the name of a robot of the collection, ``-`` for standard
@@ -44,7 +47,10 @@ def load(
             ``pin.buildModelFromUrdf(path, mimic=True)``. If not, each is free, as in
             ``pin.buildModelFromUrdf(path)``, and an error in which joint it mimics is kept in ``robot.diagnostics``.
             With a description of version 1 they are free in any case (EU-ONE-009).
-        strict: Whether to refuse every error, those of the inertia and closure phases too.
+        check_loops: Whether to find out if the loops can close at all, which takes a solver, and to report in
+            ``robot.diagnostics`` if they cannot, as `eurdf.check` does. Whether a configuration ``assembled`` closes
+            them is reported in any case.
+        strict: Whether to refuse every error, those of the inertia and closure phases too; this also checks the loops.
         package_dirs: Folders to look for the packages of meshes in, before ``ROS_PACKAGE_PATH`` and
             ``AMENT_PREFIX_PATH``.
         xacro_args: Values of the arguments of a xacro.
@@ -81,19 +87,14 @@ def load(
         place = partial(place_of_file, description, "mesh", mesh.uri)
         diagnostics.report("urdf-mesh-unreadable", f"mesh '{mesh.uri}' cannot be read: {mesh.reason}", place)
         raise InvalidRobot(description.path, tuple(diagnostics), no_geometry) from None
-    if lacks_mesh:
-        # The kinematics need no mesh, so that what `check` passes is loaded; but shapes are not left out in silence.
-        robot.no_geometry = partial(InvalidRobot, description.path, tuple(missing), no_geometry)
-    if "assembled" in description.mechanism.configurations:
-        for found in assembled_diagnostics(description, robot):
+    if strict or check_loops or "assembled" in description.mechanism.configurations:
+        for found in closure_diagnostics(description, robot):
             diagnostics.add(found)
-        robot.diagnostics = tuple(diagnostics)
-    else:
-        # Whether loops can close at all takes a solver: it runs when somebody asks.
-        found_so_far = tuple(diagnostics)
-        robot.defer_diagnostics(lambda: (*found_so_far, *closure_diagnostics(description, robot)))
-    if strict:
-        errors = [found for found in robot.diagnostics if found.severity == "error"]
-        if errors:
-            raise InvalidRobot(description.path, robot.diagnostics)
-    return robot
+    if strict and diagnostics.error_count:
+        raise InvalidRobot(description.path, tuple(diagnostics))
+    return replace(
+        robot,
+        # The kinematics need no mesh, so that what `check` passes is loaded; but shapes are not left out in silence.
+        no_geometry=partial(InvalidRobot, description.path, tuple(missing), no_geometry) if lacks_mesh else None,
+        diagnostics=tuple(diagnostics),
+    )

@@ -49,7 +49,7 @@ def run(args: argparse.Namespace) -> int:
     import eurdf
 
     try:
-        robot = eurdf.load(path, root=args.root, geometry=False, **options)
+        robot = eurdf.load(path, root=args.root, geometry=False, check_loops=not args.json, **options)
     except eurdf.InvalidRobot as refusal:
         from eurdf.commands.check import write_reports
         from eurdf.diagnostics.report import Report, reports_to_json

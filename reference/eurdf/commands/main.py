@@ -17,13 +17,11 @@ from typing import TextIO
 from eurdf import __version__
 from eurdf.commands import assemble, certify, check, generate, info, migrate, robots, schema
 from eurdf.commands.cannot_run import CannotRun
+from eurdf.commands.exit_code import BROKEN_PIPE, INTERRUPTED
 from eurdf.exceptions import CannotExpand, MissingExtra
 
 #: The commands, in the order in which the help shows them.
 COMMANDS = (check, info, assemble, robots, migrate, generate, schema, certify)
-
-# What a shell reports of a program that SIGPIPE ended: 128 and the signal's number.
-_BROKEN_PIPE = 141
 
 # Half of the time of a check is start-up. The matrices are too small for a pool of threads to pay, and no plugin of
 # pydantic has a part in it.
@@ -50,10 +48,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         args = _parser().parse_args(argv)
         code: int = args.run(args)
         sys.stdout.flush()
+    except KeyboardInterrupt:
+        return INTERRUPTED
     except BrokenPipeError:
         # Nobody reads any more. The interpreter flushes once more at its end: let that go nowhere.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return _BROKEN_PIPE
+        return BROKEN_PIPE
     except (CannotRun, CannotExpand, MissingExtra, OSError) as reason:  # OSError: also RobotNotFound
         from eurdf.diagnostics.text import visible
 

@@ -9,8 +9,7 @@ from __future__ import annotations
 import signal
 from types import FrameType
 
-#: What a shell reports of a program that SIGINT ended: 128 and the signal's number.
-INTERRUPTED = 128 + signal.SIGINT
+from eurdf.commands.exit_code import INTERRUPTED
 
 
 def start() -> int:

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import difflib
 import math
-import weakref
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
@@ -132,13 +131,15 @@ def assemble(
     """
     q, held = start(robot, q0), several(hold)
     # Taken away while in use, so that no other thread works in the same memory.
-    known = _KNOWN.get(robot, {}).pop(held, None)
-    if known is None or not known.fits(robot):
-        known = _Known(robot, held)
-    known.assembler.tolerance = tolerance
-    known.assembler.limits = chosen_limits(robot.model, limits)
-    assembly = known.assembler.assemble(q, restarts)
-    known.keep(robot, held)
+    idle: dict[tuple[str, ...], Assembler] = robot.derived.setdefault(Assembler, {})
+    assembler = idle.pop(held, None) or Assembler(robot, held)
+    assembler.tolerance = tolerance
+    assembler.limits = chosen_limits(robot.model, limits)
+    assembly = assembler.assemble(q, restarts)
+    if robot.model.nv <= _MOST_VELOCITIES_WITH_DATA:  # else it takes much memory
+        if len(idle) >= _MOST_KEPT:
+            idle.clear()
+        idle[held] = assembler
     return assembly
 
 
@@ -327,37 +328,6 @@ class Assembler:
         return down / evaluation.unit, up / evaluation.unit
 
 
-class _Known:
-    """An assembler, and what the robot was like when it was made."""
-
-    def __init__(self, robot: Robot, held: tuple[str, ...]) -> None:
-        self.assembler = Assembler(robot, held)
-        self._small = robot.model.nv <= _MOST_VELOCITIES_WITH_DATA
-        self._model = robot.model
-        if self._small:
-            self._same_model = robot.model.copy()
-            self._closures = _said_of_closures(robot)
-
-    def fits(self, robot: Robot) -> bool:
-        """Whether the robot is as it was."""
-        return (
-            robot.model is self._model
-            and robot.model == self._same_model
-            and _said_of_closures(robot) == self._closures
-        )
-
-    def keep(self, robot: Robot, held: tuple[str, ...]) -> None:
-        """Keep it with the robot, where that is small: it takes memory, and time to compare."""
-        if self._small:
-            kept = _KNOWN.setdefault(robot, {})
-            if len(kept) >= _MOST_KEPT:
-                kept.clear()
-            kept[held] = self
-
-
-_KNOWN: weakref.WeakKeyDictionary[Any, dict[tuple[str, ...], _Known]] = weakref.WeakKeyDictionary()
-
-
 def _feasible(evaluation: Evaluation) -> bool:
     return _work_of_step(evaluation.group) <= _MOST_WORK
 
@@ -366,21 +336,6 @@ def _work_of_step(group: LoopGroup) -> float:
     """Multiplications that the smaller one of A Aᵀ and Aᵀ A takes, and what the evaluation of A takes beside them."""
     m, n = len(group.rows), len(group.velocities)
     return float(m) * n * min(m, n) + _WORK_OF_A_CLOSURE * len(group.closures)
-
-
-def _said_of_closures(robot: Robot) -> list[tuple[Any, ...]]:
-    """All that an assembler takes from the closures: Pinocchio finds two equal whose frames stand elsewhere."""
-    return [
-        (
-            found.name,
-            found.residualSize(),
-            found.joint1_id,
-            found.joint2_id,
-            pin.SE3(found.joint1_placement),  # for itself, it gives a reference
-            pin.SE3(found.joint2_placement),
-        )
-        for found in robot.constraint_models
-    ]
 
 
 def _merged(groups: Sequence[LoopGroup], nc: int) -> LoopGroup:

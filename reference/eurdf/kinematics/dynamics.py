@@ -12,7 +12,6 @@ Pinocchio's ``contact_force`` is what acts on the body of A: the negative of it.
 
 from __future__ import annotations
 
-import weakref
 from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -24,6 +23,7 @@ from numpy.typing import ArrayLike
 from eurdf.kinematics.acceleration_drift import acceleration_drift
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import start
+from eurdf.kinematics.derived import derived
 from eurdf.kinematics.exceptions import InconsistentMotion, UnderactuatedMotion, UndeterminedMotion
 from eurdf.kinematics.frame_index import frame_index
 from eurdf.kinematics.loop import Loop, find_loops
@@ -252,7 +252,7 @@ class _Motion:
         self.loops = find_loops(robot)
         self.r, self.K = residual_and_jacobian(robot, self.q, self.data)
         self.drift = acceleration_drift(robot, self.q, self.v, self.data)
-        spaces = _spaces(robot)
+        spaces = derived(robot, TangentSpaces)
         space = spaces.at(self.K)
         self.P, self.unit, self._basis = space.inverse, spaces.scale, space.basis
         self.bias: Vector = np.array(pin.rnea(model, self.data, self.q, self.v, np.zeros(model.nv)))
@@ -408,19 +408,6 @@ def _refuse_uncontrolled(motion: _Motion, a: Vector, deviation: Vector, missing:
         along = motion.free @ motion.by_motors[1]
         force = along @ (along.T @ (motion.unit * motion.mass(deviation))) / motion.unit
         raise UnderactuatedMotion(_by_joint(model, force), float(np.abs(deviation / motion.unit).max()))
-
-
-# Found once a robot: they depend on its structure alone.
-_SPACES: weakref.WeakKeyDictionary[Any, tuple[tuple[Loop, ...], TangentSpaces]] = weakref.WeakKeyDictionary()
-
-
-def _spaces(robot: Robot) -> TangentSpaces:
-    loops = find_loops(robot)
-    known = _SPACES.get(robot)
-    if known is None or known[0] is not loops:
-        known = loops, TangentSpaces(robot)
-        _SPACES[robot] = known
-    return known[1]
 
 
 def _stabilised(robot: Robot, gains: tuple[float, float] | None) -> tuple[Any, Vector, Vector]:

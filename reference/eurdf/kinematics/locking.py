@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,16 +12,17 @@ import pinocchio as pin
 from eurdf.kinematics.array import Indices, Vector
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.exceptions import CannotLock, LockedOpen
-from eurdf.kinematics.locked_mechanism import LockedMechanism, lock_joints
+from eurdf.kinematics.locked_mechanism import lock_joints
 from eurdf.kinematics.loop import find_loops
 from eurdf.kinematics.residual import CLOSED, closure_openings, residual
 from eurdf.kinematics.several import several
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.configuration import joint_coordinates
 from eurdf.pinocchio.coordinates import slots
-from eurdf.pinocchio.robot import Robot, build_robot
+from eurdf.pinocchio.robot import Geometry, Robot, build_robot
 
 
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class LockedRobot(Robot):
     """A robot some of whose joints are locked.
 
@@ -37,23 +39,12 @@ class LockedRobot(Robot):
         idx_v: Indices, in a v of that robot, of its own velocities (nv,).
     """
 
-    def __init__(self, robot: Robot, locked: LockedMechanism, idx_q: Indices, idx_v: Indices) -> None:
-        """Take over what was built of the locked mechanism."""
-        super().__init__(
-            robot.mechanism,
-            robot.model,
-            robot.constraint_models,
-            robot.actuation,
-            robot.visual_model,
-            robot.collision_model,
-            robot.configurations,
-        )
-        self.locked_joints = locked.joints
-        self.dropped_closures = tuple(closure.name for closure in locked.closures)
-        self.dropped_actuators = locked.actuators
-        self.dropped_configurations = locked.configurations
-        self.idx_q = idx_q
-        self.idx_v = idx_v
+    locked_joints: tuple[str, ...]
+    dropped_closures: tuple[str, ...]
+    dropped_actuators: tuple[str, ...]
+    dropped_configurations: tuple[str, ...]
+    idx_q: Indices
+    idx_v: Indices
 
 
 def lock(
@@ -94,13 +85,23 @@ def lock(
     locked = lock_joints(robot.mechanism, names, joint_coordinates(robot.mechanism, robot.model, q))
     _check_closed(robot, q, {closure.name for closure in locked.closures}, tolerance)
     built = build_robot(locked.mechanism, geometry=False)
-    for kind in ("visual_model", "collision_model"):
-        if robot.no_geometry is None and getattr(robot, kind) is not None:
-            setattr(built, kind, _carried_over(getattr(robot, kind), robot.model, built.model))
-    new = LockedRobot(built, locked, *_free_indices(robot, built))
-    new.no_geometry = robot.no_geometry
-    new.defer_diagnostics(lambda: robot.diagnostics)
-    return new
+    idx_q, idx_v = _free_indices(robot, built)
+    return LockedRobot(
+        built.mechanism,
+        built.model,
+        built.constraint_models,
+        built.actuation,
+        built.configurations,
+        robot.geometry and Geometry(*(_carried_over(each, robot.model, built.model) for each in robot.geometry)),
+        robot.no_geometry,
+        robot.diagnostics,
+        locked_joints=locked.joints,
+        dropped_closures=tuple(closure.name for closure in locked.closures),
+        dropped_actuators=locked.actuators,
+        dropped_configurations=locked.configurations,
+        idx_q=idx_q,
+        idx_v=idx_v,
+    )
 
 
 def _check_closed(robot: Robot, q: Vector, names: Collection[str], tolerance: float) -> None:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import weakref
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from eurdf.kinematics.ancestry import Ancestry
 from eurdf.kinematics.array import Indices, Vector
+from eurdf.kinematics.derived import derived
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -85,24 +85,14 @@ class Loop:
         )
 
 
-# The loops depend only on the tree and on the joints that carry the frames: they are kept until one of these changes.
-_LOOPS: weakref.WeakKeyDictionary[Any, tuple[Any, list[tuple[int, int, int]], tuple[Loop, ...]]]
-_LOOPS = weakref.WeakKeyDictionary()
-
-
 def find_loops(robot: Robot) -> tuple[Loop, ...]:
     """Loops of the robot's closures, in their order."""
+    return derived(robot, _trace)
+
+
+def _trace(robot: Robot) -> tuple[Loop, ...]:
     model = robot.model
     ends = [(found.joint1_id, found.joint2_id, found.residualSize()) for found in robot.constraint_models]
-    known = _LOOPS.get(robot)
-    if known is not None and known[0] is model and known[1] == ends:
-        return known[2]
-    loops = _trace(model, ends)
-    _LOOPS[robot] = model, ends, loops
-    return loops
-
-
-def _trace(model: Any, ends: Sequence[tuple[int, int, int]]) -> tuple[Loop, ...]:
     tree = _Tree(list(model.parents), list(model.idx_vExtendeds), list(model.nvExtendeds), list(model.idx_vs))
     ancestry = Ancestry(tree.parents)
     loops, row = [], 0

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any, NamedTuple
 
 import pinocchio as pin
 
@@ -17,10 +19,21 @@ from eurdf.pinocchio.geometry import Meshes, Resolve, build_geometry
 from eurdf.pinocchio.model import build_model
 
 
+class Geometry(NamedTuple):
+    """The shapes of a robot: what is seen, and what collides."""
+
+    visual: pin.GeometryModel
+    collision: pin.GeometryModel
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Robot:
     """A robot with closed kinematic chains, in Pinocchio's terms.
 
     It unpacks as ``model, constraint_models, actuation, visual_model, collision_model = robot``.
+
+    What the kinematics finds out about a robot once is kept with it. To change its model or its constraint models,
+    make another one: ``dataclasses.replace(robot, constraint_models=...)``.
 
     Take the mass matrix from `eurdf.mass_matrix`: up to Pinocchio 4.1, that of `pin.crba` has wrong entries where a
     mimic joint carries several branches.
@@ -31,41 +44,32 @@ class Robot:
         constraint_models: The closures, in file order.
         actuation: The actuated joints, in file order.
         configurations: For each named configuration its q.
+        geometry: Its shapes; None without geometry.
         no_geometry: What makes the error that `visual_model` and `collision_model` raise, where the geometry was asked
             for and cannot be built; else None.
+        diagnostics: What was found wrong with the robot when it was loaded, but did not keep it from being built.
+            Whether its loops can close is among it only where the robot has a configuration ``assembled``, or was
+            loaded with ``check_loops=True``.
+        derived: What functions of `eurdf.kinematics` have computed from the robot and keep with it.
     """
 
-    def __init__(
-        self,
-        mechanism: Mechanism,
-        model: pin.Model,
-        constraint_models: list[pin.RigidConstraintModel],
-        actuation: Actuation,
-        visual_model: pin.GeometryModel | None,
-        collision_model: pin.GeometryModel | None,
-        configurations: dict[str, Vector],
-        diagnostics: tuple[Diagnostic, ...] = (),
-    ) -> None:
-        self.mechanism = mechanism
-        self.model = model
-        self.constraint_models = constraint_models
-        self.actuation = actuation
-        self._visual_model = visual_model
-        self._collision_model = collision_model
-        self.no_geometry: Callable[[], Exception] | None = None
-        self.configurations = configurations
-        self._diagnostics: tuple[Diagnostic, ...] | Callable[[], tuple[Diagnostic, ...]] = diagnostics
-        self._data: pin.Data | None = None
+    mechanism: Mechanism
+    model: pin.Model
+    constraint_models: list[pin.RigidConstraintModel]
+    actuation: Actuation
+    configurations: Mapping[str, Vector]
+    geometry: Geometry | None = None
+    no_geometry: Callable[[], Exception] | None = None
+    diagnostics: tuple[Diagnostic, ...] = ()
+    derived: dict[Any, Any] = field(default_factory=dict, init=False)
 
-    @property
+    @cached_property
     def data(self) -> pin.Data:
         """Pinocchio's working memory for the model, made when first asked for.
 
         It takes some 64 nv³ bytes, 64 MB for 100 velocities. What needs none: `load`, `check`, `assemble`, `analyze`.
         """
-        if self._data is None:
-            self._data = self.model.createData()
-        return self._data
+        return self.model.createData()
 
     @property
     def visual_model(self) -> pin.GeometryModel | None:
@@ -74,12 +78,7 @@ class Robot:
         Raises:
             InvalidRobot: A mesh is missing.
         """
-        self._require_geometry()
-        return self._visual_model
-
-    @visual_model.setter
-    def visual_model(self, geometry_model: pin.GeometryModel | None) -> None:
-        self._visual_model = geometry_model
+        return self._shapes and self._shapes.visual
 
     @property
     def collision_model(self) -> pin.GeometryModel | None:
@@ -88,31 +87,13 @@ class Robot:
         Raises:
             InvalidRobot: A mesh is missing.
         """
-        self._require_geometry()
-        return self._collision_model
-
-    @collision_model.setter
-    def collision_model(self, geometry_model: pin.GeometryModel | None) -> None:
-        self._collision_model = geometry_model
-
-    def _require_geometry(self) -> None:
-        if self.no_geometry is not None:
-            raise self.no_geometry()
+        return self._shapes and self._shapes.collision
 
     @property
-    def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """What was found wrong with the robot, but did not keep it from being built."""
-        if callable(self._diagnostics):
-            self._diagnostics = self._diagnostics()
-        return self._diagnostics
-
-    @diagnostics.setter
-    def diagnostics(self, found: tuple[Diagnostic, ...]) -> None:
-        self._diagnostics = found
-
-    def defer_diagnostics(self, find: Callable[[], tuple[Diagnostic, ...]]) -> None:
-        """Let the diagnostics be found when first asked for."""
-        self._diagnostics = find
+    def _shapes(self) -> Geometry | None:
+        if self.no_geometry is not None:
+            raise self.no_geometry()
+        return self.geometry
 
     def coordinates(self, q: Vector) -> dict[str, tuple[float, ...]]:
         """The coordinates of a configuration as a file states them: the inverse of what makes `configurations`.
@@ -147,7 +128,6 @@ def build_robot(
     *,
     geometry: bool,
     resolve: Resolve | None = None,
-    diagnostics: tuple[Diagnostic, ...] = (),
 ) -> Robot:
     """Build the robot of a mechanism.
 
@@ -155,32 +135,31 @@ def build_robot(
         mechanism: A sound mechanism.
         geometry: Whether to build the visual and collision geometry.
         resolve: Path of the file that a URI of the URDF means; needed for geometry with meshes.
-        diagnostics: What was found wrong with it so far.
 
     Raises:
         UnreadableMesh: A mesh file is no mesh.
         FileNotFoundError: `resolve` does not find a mesh.
     """
     model = build_model(mechanism)
-    visual_model = collision_model = None
+    shapes = None
     if geometry:
         find = _nothing if resolve is None else resolve
         meshes: Meshes = {}
-        visual_model = build_geometry(mechanism, model, pin.GeometryType.VISUAL, find, meshes)
-        collision_model = build_geometry(mechanism, model, pin.GeometryType.COLLISION, find, meshes)
+        shapes = Geometry(
+            build_geometry(mechanism, model, pin.GeometryType.VISUAL, find, meshes),
+            build_geometry(mechanism, model, pin.GeometryType.COLLISION, find, meshes),
+        )
     at = slots(mechanism, model)
     return Robot(
         mechanism,
         model,
         build_constraint_models(mechanism, model),
         build_actuation(mechanism, model, at),
-        visual_model,
-        collision_model,
         {
             name: configuration_vector(mechanism, model, coordinates, at)
             for name, coordinates in mechanism.configurations.items()
         },
-        diagnostics,
+        shapes,
     )
 
 
