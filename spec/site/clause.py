@@ -15,8 +15,8 @@ ROOT = SPEC.parent
 #: Chapters that explain and bind nobody: they hold no clauses.
 INFORMATIVE = frozenset({"tutorial", "rationale", "comparison", "bibliography"})
 
-#: At what level of conformance a clause is tested; ``reader`` where it binds readers that no suite sees.
-LEVELS = ("accept", "structure", "kinematics", "dynamics", "diagnose", "reader")
+#: At what level of conformance a clause is tested; ``parser`` where no suite can test it.
+LEVELS = ("accept", "structure", "kinematics", "dynamics", "diagnose", "parser")
 
 #: Versions of the format that a clause can be of.
 VERSIONS = (1, 2)

@@ -41,7 +41,7 @@ A gear MUST be one of
 
 ````{admonition} Within
 :::{clause} EU-TST-002
-:level: reader
+:level: parser
 A reader SHOULD NOT
 `MUST` it.
 :::
