@@ -25,6 +25,5 @@ def pytest_addoption(parser: pytest.Parser, pluginmanager: pytest.PytestPluginMa
         pytest.UsageError: A package that it imports is not installed.
     """
     if lacking := missing(_NEEDED):
-        here = "." if Path.cwd() == _ROOT else os.fspath(_ROOT)
-        raise pytest.UsageError(f'{needs(lacking)}; install them with: pip install "{here}[conformance]"')
+        raise pytest.UsageError(needs([os.fspath(_ROOT) if name == "eurdf" else name for name in lacking]))
     pluginmanager.import_plugin("eurdf_conformance.suite.plugin")

@@ -1,4 +1,4 @@
-"""What the suite needs beside the dependencies of eurdf; the extra ``conformance`` installs it.
+"""What the suite needs beside the dependencies of eurdf, and what installs it where it is missing.
 
 Nothing but the standard library is imported here, so that a missing package is reported before an import fails.
 """
@@ -8,8 +8,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from importlib.util import find_spec
 
-#: Modules of the extra without which there is no run.
+#: Modules without which there is no run.
 REQUIRED = ("pytest", "hypothesis", "ruamel.yaml")
+
+# Where a module is not called as the distribution that has it.
+_DISTRIBUTIONS = {"xdist": "pytest-xdist"}
 
 
 def missing(names: Iterable[str] = REQUIRED) -> list[str]:
@@ -27,5 +30,6 @@ def is_installed(name: str) -> bool:
 
 
 def needs(names: Iterable[str]) -> str:
-    """The message that packages are missing, to which the caller adds how to install them."""
-    return f"the conformance suite needs packages that are not installed ({', '.join(names)})"
+    """The message that packages are missing, and how to install them."""
+    missing = " ".join(_DISTRIBUTIONS.get(name, name) for name in names)
+    return f"the conformance suite needs packages that are not installed; install them with: pip install {missing}"

@@ -30,6 +30,12 @@ def installed_from(monkeypatch: pytest.MonkeyPatch, origin: dict[str, Any] | Non
     monkeypatch.setattr(extras, "_pip_is_ours", lambda: True)
 
 
+def checkout(folder: Path) -> Path:
+    """A folder that has the suite, as a checkout has."""
+    (folder / "conformance").mkdir(parents=True)
+    return folder
+
+
 def not_installed(name: str) -> None:
     raise PackageNotFoundError(name)
 
@@ -71,8 +77,32 @@ def test_a_pip_of_another_python_is_not_proposed(monkeypatch: pytest.MonkeyPatch
     assert extras.install_command("xacro").startswith(f"{sys.executable} -m pip install ")
 
 
-@pytest.mark.parametrize("names", [["hypothesis", "ruamel.yaml", "xdist"], ["eurdf"]], ids=["extra", "eurdf"])
-def test_the_suite_names_what_is_not_installed_and_the_command(names: list[str]) -> None:
+@pytest.mark.parametrize(
+    ("origin", "command"),
+    [
+        ({"url": "CHECKOUT", "dir_info": {}}, 'pip install "CHECKOUT/conformance"'),
+        ({"url": "CHECKOUT", "dir_info": {"editable": True}}, 'pip install -e "CHECKOUT"'),
+        ({"url": "file:///elsewhere", "dir_info": {}}, "pip install eurdf-conformance"),
+        (None, "pip install eurdf-conformance"),
+    ],
+    ids=["checkout", "editable", "a folder that is gone", "index"],
+)
+def test_the_suite_is_installed_from_where_the_package_came_from(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, origin: dict[str, Any] | None, command: str
+) -> None:
+    folder = checkout(tmp_path / "a checkout")
+    if origin is not None:
+        origin = {**origin, "url": origin["url"].replace("CHECKOUT", folder.as_uri())}
+    installed_from(monkeypatch, origin)
+    assert extras.install_suite_command() == command.replace("CHECKOUT", str(folder))
+
+
+@pytest.mark.parametrize(
+    ("names", "packages"),
+    [(["hypothesis", "ruamel.yaml", "xdist"], "hypothesis ruamel.yaml pytest-xdist"), (["eurdf"], str(ROOT))],
+    ids=["of the suite", "eurdf"],
+)
+def test_the_suite_says_how_to_install_the_packages_it_lacks(names: list[str], packages: str) -> None:
     done = subprocess.run(
         [sys.executable, "-c", WITHOUT.format(names=names), "conformance/", "--collect-only"],
         cwd=ROOT,
@@ -84,5 +114,5 @@ def test_the_suite_names_what_is_not_installed_and_the_command(names: list[str])
     )
     assert done.returncode == pytest.ExitCode.USAGE_ERROR
     said = done.stdout + done.stderr
-    assert f'not installed ({", ".join(names)}); install them with: pip install ".[conformance]"' in said
+    assert f"not installed; install them with: pip install {packages}\n" in said
     assert "Traceback" not in said

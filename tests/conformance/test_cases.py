@@ -386,13 +386,6 @@ def test_an_archive_that_cannot_be_written_is_said_in_one_line_and_leaves_nothin
     assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "out"]
 
 
-def test_the_license_is_found_where_there_is_no_checkout(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(archive, "__file__", str(tmp_path / "eurdf_conformance" / "corpus" / "archive.py"))
-    found = archive.find_license()
-    assert found is not None
-    assert found.read_bytes() == (ROOT / "LICENSE").read_bytes()
-
-
 def test_the_manifest_says_every_case_with_the_texts_of_its_files(tmp_path: Path) -> None:
     archive.write_archive(tmp_path, CASES)
     manifest = json.loads((tmp_path / f"{archive.NAME}.json").read_text(encoding="utf-8"))

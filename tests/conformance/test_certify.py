@@ -14,12 +14,12 @@ from typing import Any
 import jsonschema
 import pytest
 
-from eurdf.commands.certificate_output import show
 from eurdf.commands.main import main
 from eurdf_conformance.certificate import suite_run
 from eurdf_conformance.certificate.certificate import certificate_schema, read_certificate
 from eurdf_conformance.certificate.issue import issue
 from eurdf_conformance.certificate.replay import replay_schema
+from eurdf_conformance.command.output import show
 from eurdf_conformance.corpus.case import InvalidCase
 from eurdf_conformance.corpus.read import read_cases
 from eurdf_conformance.level import Level
@@ -228,9 +228,16 @@ def test_without_the_suites_packages_it_says_what_to_install(
     monkeypatch.setattr(suite_run, "missing", lambda: ["hypothesis"])
     assert main(["certify", "--parser", ACCEPTS]) == 2
     said = capsys.readouterr().err
-    assert "packages that are not installed (hypothesis); install them with: " in said
-    assert said.endswith('pip install "eurdf[conformance]"\n')
+    assert said.endswith("needs packages that are not installed; install them with: pip install hypothesis\n")
     assert said.count("\n") == 1
+
+
+def test_without_the_suite_it_says_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("eurdf.commands.certify.entry_points", lambda **_: ())
+    assert main(["certify", "--parser", ACCEPTS]) == 2
+    assert capsys.readouterr().err.startswith("eurdf: the conformance suite is not installed; install it with: pip ")
 
 
 def test_the_users_own_settings_of_pytest_have_no_part_in_it(folder: Path) -> None:

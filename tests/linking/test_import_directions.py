@@ -36,6 +36,7 @@ def test_every_import_goes_the_right_way() -> None:
         ),
         ("linking/merging.py", "import pinocchio", "eurdf.linking is not allowed to import pinocchio"),
         ("pinocchio/frames.py", "import eurdf.linking.link", "eurdf.pinocchio is not allowed to import eurdf.linking"),
+        ("commands/certify.py", "import eurdf_conformance", "eurdf is not allowed to import eurdf_conformance"),
         ("linking/frame_names.py", "import eurdf.linking.closures", "No cycles are allowed in eurdf.linking"),
     ],
 )

@@ -43,10 +43,6 @@ class CannotRunSuite(Exception):  # noqa: N818 - said to the user as it stands
         super().__init__(why)
 
 
-class MissingPackages(CannotRunSuite):
-    """Packages of the extra ``conformance`` are not installed."""
-
-
 @dataclass(frozen=True)
 class SuiteRun:
     """What to run."""
@@ -77,12 +73,11 @@ def run_suite(run: SuiteRun, progress: Progress | None = None) -> Certificate:
         progress: Called after each item.
 
     Raises:
-        MissingPackages: The extra ``conformance`` is not installed.
-        CannotRunSuite: The reader does not start, or the suite broke off.
+        CannotRunSuite: A package is not installed, the reader does not start, or the suite broke off.
         KeyboardInterrupt: The user ended it.
     """
     if lacking := missing():
-        raise MissingPackages(needs(lacking))
+        raise CannotRunSuite(needs(lacking))
     import pytest
 
     _greet(run)

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 import argparse
 import base64
-import importlib.metadata
 import io
 import json
 import sys
@@ -24,6 +23,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from eurdf_conformance.carried import carried
 from eurdf_conformance.corpus.case import SCHEMA_FILE, ValidCase
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.expected import EXPECTED_FILE
@@ -39,7 +39,6 @@ MANIFEST = "1.0"
 _CASES = "cases"
 
 _README = Path(__file__).with_name("archive_readme.txt")
-_LICENSE = "LICENSE"
 
 #: The earliest that a zip can say.
 _DATE = (1980, 1, 1, 0, 0, 0)
@@ -79,26 +78,12 @@ def _zipped(cases: Iterable[CorpusCase]) -> bytes:
 def _beside() -> dict[str, bytes]:
     """What stands beside the cases, so that the zip is whole without this project."""
     clauses = {name: clause.text for name, clause in sorted(read_clauses().items())}
-    files = {
+    return {
         "README.txt": _README.read_bytes(),
         "clauses.json": (json.dumps(clauses, ensure_ascii=False, indent=1) + "\n").encode("utf-8"),
         SCHEMA_FILE.name: SCHEMA_FILE.read_bytes(),
+        "LICENSE": carried("LICENSE").read_bytes(),
     }
-    license_file = find_license()
-    return files if license_file is None else {**files, _LICENSE: license_file.read_bytes()}
-
-
-def find_license() -> Path | None:
-    """The license of the project: at the root of a checkout, or in what is known of the installed package."""
-    beside = Path(__file__).parents[2]
-    if beside.name == "conformance" and (beside.parent / _LICENSE).is_file():
-        return beside.parent / _LICENSE
-    try:
-        known = importlib.metadata.files("eurdf") or []
-    except importlib.metadata.PackageNotFoundError:
-        return None
-    found = (Path(str(path.locate())) for path in known if path.name == _LICENSE and ".dist-info" in path.parts[0])
-    return next((path for path in found if path.is_file()), None)
 
 
 def manifest(cases: Iterable[CorpusCase]) -> dict[str, Any]:
@@ -178,8 +163,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 2
     archive, plain = archive_paths(options.out)
     sys.stdout.write(f"{archive}: {len(cases)} cases\n{plain}: the same as one JSON value\n")
-    if find_license() is None:
-        sys.stderr.write(f"{archive}: without the license, which was not found; it is BSD-3-Clause\n")
     return 0
 
 

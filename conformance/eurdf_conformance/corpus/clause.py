@@ -6,16 +6,10 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 from types import MappingProxyType
 
+from eurdf_conformance.carried import carried
 from eurdf_conformance.level import VERSIONS, Version
-
-#: In an installed package, and in a checkout.
-_REGISTRIES = (
-    Path(__file__).parents[1] / "spec" / "clauses.json",
-    Path(__file__).parents[3] / "spec" / "clauses.json",
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +43,6 @@ class Clause:
 @cache
 def read_clauses() -> Mapping[str, Clause]:
     """The clauses of this edition by id, read once a process."""
-    path = next(path for path in _REGISTRIES if path.is_file())
     clauses = {
         entry["id"]: Clause(
             entry["id"],
@@ -60,6 +53,6 @@ def read_clauses() -> Mapping[str, Clause]:
             frozenset(entry["codes"]),
             entry["untested"] is None and entry["level"] != "reader",
         )
-        for entry in json.loads(path.read_text(encoding="utf-8"))["clauses"]
+        for entry in json.loads(carried("spec/clauses.json").read_text(encoding="utf-8"))["clauses"]
     }
     return MappingProxyType(clauses)

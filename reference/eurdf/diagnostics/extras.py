@@ -1,4 +1,4 @@
-"""The extras of this package: what to run where one of them is not installed."""
+"""What this package can use beside its dependencies: the command that installs it where it is missing."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def install_command(extra: str) -> str:
     Args:
         extra: Name of the extra, such as ``conformance``.
     """
-    pip = "pip" if _pip_is_ours() else f"{sys.executable} -m pip"
+    pip = _pip()
     try:
         folder, editable = _installed_from(distribution("eurdf"))
     except PackageNotFoundError:  # run from a checkout
@@ -28,6 +28,19 @@ def install_command(extra: str) -> str:
         return f'{pip} install {"-e " if editable else ""}".[{extra}]"'
     # It is installed: only the dependencies of the extra are.
     return f'{pip} install "eurdf[{extra}]"'
+
+
+def install_suite_command() -> str:
+    """The command that installs the conformance suite: of the same checkout, if this package came from one."""
+    try:
+        folder, editable = _installed_from(distribution("eurdf"))
+    except PackageNotFoundError:  # run from a checkout
+        folder, editable = _CHECKOUT, False
+    if folder is None or not (folder / "conformance").is_dir():
+        return f"{_pip()} install eurdf-conformance"
+    if editable:  # the suite of the checkout is part of it
+        return f'{_pip()} install -e "{folder}"'
+    return f'{_pip()} install "{folder / "conformance"}"'
 
 
 def _installed_from(package: Distribution) -> tuple[Path | None, bool]:
@@ -40,6 +53,11 @@ def _installed_from(package: Distribution) -> tuple[Path | None, bool]:
 
 def _is_here(folder: Path) -> bool:
     return folder.is_dir() and os.path.samefile(folder, os.curdir)
+
+
+def _pip() -> str:
+    """The command ``pip`` of this Python."""
+    return "pip" if _pip_is_ours() else f"{sys.executable} -m pip"
 
 
 def _pip_is_ours() -> bool:
