@@ -2,6 +2,5 @@
 
 Data flows one way: `corpus` and `properties` make cases, `oracle` says what is right, `runner` asks the reader through
 `protocol`, `comparison` compares, `suite` is what pytest runs of all this, `verdict` counts, `certificate` writes it
-down. Nothing here imports the reference but the adapter of it, which is a reader like any other, and `mutants`, which
-are that reader broken.
+down. Nothing here imports the reference but the adapter of it, which is a reader like any other.
 """

@@ -1,0 +1,31 @@
+"""Mutants: parsers with one thing wrong, to test that the suite notices. `MUTANTS` has them by name.
+
+Each is a decorated function. Its docstring says what is wrong, the decorator which clause that violates, and how: the
+parser reads other files than it is given (`reads_…`), gives them another meaning (`means`), or gives another answer
+(`answers`, `describes`, `evaluates`, `reports`, `refuses`). Those of `missing_rules` are made of the list of codes.
+`SPEAKERS` are processes that violate the protocol.
+"""
+
+from support.mutants import (  # noqa: F401  each adds its own
+    answering,
+    meaning,
+    missing_rules,
+    reading_descriptions,
+    reading_urdf,
+    reading_yaml,
+    reporting,
+)
+from support.mutants.mutant import MUTANTS, Mutant
+from support.mutants.speaking import SPEAKERS
+
+#: The clauses with a MUST that no mutant violates, each with the reason.
+UNBROKEN = {
+    "EU-CAN-005": "It binds who compares two canonical descriptions, not a parser.",
+    "EU-CNF-006": "It binds editions of the specification, not a program.",
+    "EU-PRO-006": "It binds runners, which are tested with misbehaving parsers.",
+    "EU-PRO-010": "It binds runners, which are tested with misbehaving parsers.",
+    "EU-SEC-003": "What a parser does on a network is not in its answers.",
+    "EU-URD-034": "Meshes are read where geometry is loaded, which the suite does not ask for.",
+}
+
+__all__ = ["MUTANTS", "SPEAKERS", "UNBROKEN", "Mutant"]

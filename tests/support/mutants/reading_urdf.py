@@ -1,0 +1,435 @@
+"""Parsers that read another URDF: mostly what today's URDF parsers do."""
+
+from __future__ import annotations
+
+import math
+import re
+import unicodedata
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from eurdf_conformance.oracle import tree, urdf
+from eurdf_conformance.oracle.transform import transform
+from support.mutants.mutant import Deviation, instead, means, reads_urdf, reads_xml, refuses
+
+# -- XML ------------------------------------------------------------------------------------------------------------
+
+
+@reads_xml("EU-URD-001")
+def lone_ampersands_are_text(text: str) -> str:
+    """An ampersand that begins no reference is text, as in tinyxml2 and in browsers."""
+    return re.sub(r"&(?![A-Za-z#])", "&amp;", text)
+
+
+@reads_xml("EU-URD-001")
+def text_after_the_root_is_ignored(text: str) -> str:
+    """A file is read to the end of its root element."""
+    head, end, _ = text.partition("</robot>")
+    return head + end
+
+
+@reads_xml("EU-URD-001")
+def values_without_quotes(text: str) -> str:
+    """An attribute may have its value without quotes, as in HTML."""
+    return re.sub(r"(<[^<>]*\s\w+=)([^\s\"'<>/]+)", r'\1"\2"', text)
+
+
+@reads_xml("EU-URD-002")
+def document_types_are_ignored(text: str) -> str:
+    """A document type declaration has no effect."""
+    return re.sub(r"<!DOCTYPE[^\[>]*(\[[^\]]*\])?\s*>", "", text)
+
+
+@reads_xml("EU-SEC-002")
+def document_types_are_ignored_with_their_entities(text: str) -> str:
+    """A document type declaration has no effect, and its entities are text."""
+    return re.sub(r"&(?!amp|lt|gt|quot|apos|#)", "&amp;", document_types_are_ignored(text))
+
+
+@reads_xml("EU-URD-001")
+def single_quotes_are_refused(text: str) -> str:
+    """A value in single quotes is a syntax error."""
+    return re.sub(r"=\s*'", "='<", text)
+
+
+@reads_xml("EU-URD-007")
+def decimal_commas(text: str) -> str:
+    """A number may have a comma for its point, as C programs read it in some locales."""
+    return re.sub(r"(?<=[0-9]),(?=[0-9])", ".", text)
+
+
+# -- Elements and attributes ----------------------------------------------------------------------------------------
+
+
+def _attributes(robot: Any, change: Callable[[str], str], *names: str) -> None:
+    for element in robot.iter("*"):
+        for name in names:
+            if name in element.attrib:
+                element.set(name, change(element.get(name)))
+
+
+NAMES = ("name", "link", "joint")
+
+
+@reads_urdf("EU-FRM-001")
+def names_are_trimmed(robot: Any) -> None:
+    """Names in the URDF are read without the white space around them."""
+    _attributes(robot, str.strip, *NAMES)
+
+
+@reads_urdf("EU-FRM-001")
+def names_are_normalised(robot: Any) -> None:
+    """Names in the URDF are brought to Unicode's composed form."""
+    _attributes(robot, lambda name: unicodedata.normalize("NFC", name), *NAMES)
+
+
+@reads_urdf("EU-FRM-001")
+def names_in_lower_case(robot: Any) -> None:
+    """Names in the URDF are read in lower case."""
+    _attributes(robot, str.lower, *NAMES)
+
+
+@reads_urdf("EU-URD-012")
+def joint_types_in_any_case(robot: Any) -> None:
+    """A joint's type may be in upper case."""
+    _attributes(robot, str.lower, "type")
+
+
+@reads_urdf("EU-URD-016")
+def last_of_two_parents_counts(robot: Any) -> None:
+    """Of two joints that carry one link, the last in the file counts."""
+    carrying: dict[str, Any] = {}
+    for joint in robot.findall("joint"):
+        if (child := joint.find("child")) is not None and child.get("link"):
+            if (other := carrying.get(child.get("link"))) is not None:
+                robot.remove(other)
+            carrying[child.get("link")] = joint
+
+
+def _drop(robot: Any, path: str) -> None:
+    for element in robot.findall(path):
+        element.getparent().remove(element)
+
+
+@reads_urdf("EU-URD-032", versions=("2",))
+def mimics_are_ignored(robot: Any) -> None:
+    """A joint that mimics moves by itself, as in Pinocchio by default."""
+    _drop(robot, "joint/mimic")
+
+
+@reads_urdf("EU-URD-006")
+def first_of_repeated_elements_counts(robot: Any) -> None:
+    """Of two elements where one is allowed, the first counts."""
+    for parent in robot.iter("joint", "link", "inertial"):
+        for tag in ("parent", "child", "axis", "limit", "dynamics", "mimic", "origin", "inertial", "mass", "inertia"):
+            for element in parent.findall(tag)[1:]:
+                parent.remove(element)
+
+
+@reads_urdf("EU-URD-005")
+def missing_limits_are_0(robot: Any) -> None:
+    """An effort or a velocity that is left out is 0, as in urdfdom of long ago."""
+    for limit in robot.findall("joint/limit"):
+        for name in ("effort", "velocity"):
+            limit.set(name, limit.get(name, "0"))
+
+
+@reads_urdf("EU-URD-019")
+def reversed_limits_are_swapped(robot: Any) -> None:
+    """Of two limits the smaller is the lower one."""
+    for limit in robot.findall("joint/limit"):
+        lower, upper = limit.get("lower", "0"), limit.get("upper", "0")
+        try:
+            if float(lower) > float(upper):
+                limit.set("lower", upper)
+                limit.set("upper", lower)
+        except ValueError:
+            pass
+
+
+@reads_urdf("EU-URD-013")
+def axes_of_zero_are_x(robot: Any) -> None:
+    """An axis of zero is x."""
+    for axis in robot.findall("joint/axis"):
+        if set(re.findall("[^ .+-]", axis.get("xyz", "1"))) == {"0"}:
+            axis.set("xyz", "1 0 0")
+
+
+@reads_urdf("EU-CAN-001")
+def safety_controllers_limit(robot: Any) -> None:
+    """The soft limits of a safety controller replace those of the joint."""
+    for joint in robot.findall("joint"):
+        limit, soft = joint.find("limit"), joint.find("safety_controller")
+        if limit is not None and soft is not None:
+            for side in ("lower", "upper"):
+                limit.set(side, soft.get(f"soft_{side}_limit", limit.get(side, "0")))
+
+
+# -- Rules too many -------------------------------------------------------------------------------------------------
+
+
+@refuses("EU-URD-004")
+def continuous_joints_need_limits(data: Any, robot: Any) -> bool:
+    """A continuous joint must have a limit."""
+    return any(joint.get("type") == "continuous" and joint.find("limit") is None for joint in robot.findall("joint"))
+
+
+@refuses("EU-URD-004")
+def links_need_inertia(data: Any, robot: Any) -> bool:
+    """A link must have an inertial element."""
+    return any(link.find("inertial") is None for link in robot.findall("link"))
+
+
+@refuses("EU-URD-014")
+def links_must_come_first(data: Any, robot: Any) -> bool:
+    """A joint must come after the links that it names."""
+    known = set()
+    for element in robot:
+        if element.tag == "link":
+            known.add(element.get("name"))
+        elif element.tag == "joint" and not {element.find(side).get("link") for side in ("parent", "child")} <= known:
+            return True
+    return False
+
+
+@refuses("EU-URD-018")
+def first_link_must_be_the_root(data: Any, robot: Any) -> bool:
+    """The first link of the file must be the root."""
+    return robot.find("link").get("name") in {child.get("link") for child in robot.findall("joint/child")}
+
+
+@refuses("EU-URD-015")
+def one_link_is_too_few(data: Any, robot: Any) -> bool:
+    """A robot must have a joint."""
+    return robot.find("joint") is None
+
+
+@refuses("EU-URD-019")
+def equal_limits_are_refused(data: Any, robot: Any) -> bool:
+    """A lower limit must be below the upper one."""
+    limits = robot.findall("joint/limit")
+    return any(limit.get("lower") and limit.get("lower") == limit.get("upper") for limit in limits)
+
+
+@refuses("EU-URD-020")
+def limits_of_zero_are_refused(data: Any, robot: Any) -> bool:
+    """Limits of effort and velocity must be greater than 0."""
+    return any(
+        float(limit.get(of, "1")) == 0 for limit in robot.findall("joint/limit") for of in ("effort", "velocity")
+    )
+
+
+@refuses("EU-URD-022", versions=("2",))
+def chains_of_mimics_are_refused(data: Any, robot: Any) -> bool:
+    """A joint may not mimic one that mimics."""
+    leaders = {mimic.getparent().get("name"): mimic.get("joint") for mimic in robot.findall("joint/mimic")}
+    return any(leader in leaders for leader in leaders.values())
+
+
+@refuses("EU-URD-024")
+def capsules_are_refused(data: Any, robot: Any) -> bool:
+    """A capsule is not a shape, as in urdfdom."""
+    return next(robot.iter("capsule"), None) is not None
+
+
+@refuses("EU-URD-024")
+def mirrored_meshes_are_refused(data: Any, robot: Any) -> bool:
+    """The scale of a mesh must be positive."""
+    return any("-" in mesh.get("scale", "") for mesh in robot.iter("mesh"))
+
+
+@refuses("EU-URD-013")
+def short_axes_are_refused(data: Any, robot: Any) -> bool:
+    """An axis must have unit length, within a thousandth."""
+    axes = [axis.get("xyz").split() for axis in robot.findall("joint/axis")]
+    return any(abs(math.hypot(*map(float, axis)) - 1) > 1e-3 for axis in axes)
+
+
+@refuses("EU-CNF-002")
+def unknown_elements_are_refused(data: Any, robot: Any) -> bool:
+    """An element that URDF does not have is refused, and those of other programs with it."""
+    return any(element.tag not in ("link", "joint", "material") for element in robot.iterchildren("*"))
+
+
+@refuses("EU-CNF-002")
+def names_beyond_ascii_are_refused(data: Any, robot: Any) -> bool:
+    """A name must be ASCII."""
+    return any(not element.get("name", "").isascii() for element in robot.iter("link", "joint"))
+
+
+@refuses("EU-CNF-002")
+def slashes_in_names_are_refused(data: Any, robot: Any) -> bool:
+    """A name may not have slashes, which are for namespaces of ROS."""
+    return any("/" in element.get("name", "") for element in robot.iter("link", "joint"))
+
+
+@refuses("EU-FIL-002")
+def thousand_links_at_most(data: Any, robot: Any) -> bool:
+    """A robot of more than 1000 links is refused."""
+    return len(robot.findall("link")) > 1000
+
+
+# -- Poses and axes -------------------------------------------------------------------------------------------------
+
+
+@means("EU-URD-035")
+def axis_left_out_is_z() -> Deviation:
+    """An axis that is left out is z, as in SDF and MJCF."""
+
+    def joint(right: Any, element: Any) -> Any:
+        if not element.all("axis"):
+            element.children.append(urdf.Element("axis", {"xyz": "0 0 1"}, []))
+        return right(element)
+
+    return instead(urdf, "joint", joint)
+
+
+@means("EU-URD-035")
+def axes_keep_their_length() -> Deviation:
+    """A joint moves by the vector of its axis, whatever its length."""
+    return instead(urdf, "unit", lambda unit, axis: axis)
+
+
+@means("EU-URD-035")
+def axes_are_one_of_three() -> Deviation:
+    """An axis is the nearest of x, y and z."""
+
+    def nearest(unit: Any, axis: Any) -> Any:
+        largest = int(np.argmax(np.abs(axis)))
+        return np.eye(3)[largest] * np.sign(axis[largest])
+
+    return instead(urdf, "unit", nearest)
+
+
+@means("EU-URD-035")
+def axes_in_the_parents_frame() -> Deviation:
+    """An axis is a direction in the frame of the parent link."""
+
+    def joint(right: Any, element: Any) -> Any:
+        found = right(element)
+        object.__setattr__(found, "axis", found.origin[:3, :3].T @ found.axis)
+        return found
+
+    return instead(urdf, "joint", joint)
+
+
+@means("EU-FRM-006")
+def rpy_about_moving_axes() -> Deviation:
+    """Roll, pitch and yaw are about x, y, z as each has been turned by those before."""
+    return _rpy(lambda from_rpy, rpy: from_rpy([rpy[0], 0, 0]) @ from_rpy([0, rpy[1], 0]) @ from_rpy([0, 0, rpy[2]]))
+
+
+@means("EU-FRM-006")
+def rpy_in_degrees() -> Deviation:
+    """Roll, pitch and yaw are in degrees."""
+    return _rpy(lambda from_rpy, rpy: from_rpy([math.radians(angle) for angle in rpy]))
+
+
+@means("EU-FRM-006")
+def rpy_is_yaw_pitch_roll() -> Deviation:
+    """The three angles are yaw, pitch and roll."""
+    return _rpy(lambda from_rpy, rpy: from_rpy(rpy[::-1]))
+
+
+@means("EU-FRM-006")
+def rpy_is_ignored() -> Deviation:
+    """The orientation of a pose is ignored."""
+    return _rpy(lambda from_rpy, rpy: np.eye(3))
+
+
+def _rpy(other: Callable[..., Any]) -> Deviation:
+    return instead(urdf, "from_rpy", other)
+
+
+@means("EU-FRM-006")
+def xyz_is_along_the_turned_axes() -> Deviation:
+    """The position of a pose is along the axes that its orientation has turned."""
+    return instead(urdf, "pose", lambda right, R, p: right(R) @ right(None, p))
+
+
+# -- Mimic joints ---------------------------------------------------------------------------------------------------
+
+
+def _mimic(change: Callable[[Any], Any]) -> Deviation:
+    return instead(urdf, "mimic", lambda mimic, element: change(mimic(element)))
+
+
+@means("EU-URD-032")
+def mimic_offset_is_dropped() -> Deviation:
+    """A mimic joint is at multiplier · q."""
+    return _mimic(lambda found: urdf.Mimic(found.joint, found.multiplier, 0.0))
+
+
+@means("EU-URD-032")
+def mimic_multiplier_is_dropped() -> Deviation:
+    """A mimic joint is at q + offset."""
+    return _mimic(lambda found: urdf.Mimic(found.joint, 1.0, found.offset))
+
+
+@means("EU-URD-032")
+def mimic_offset_is_multiplied() -> Deviation:
+    """A mimic joint is at multiplier · (q + offset)."""
+    return _mimic(lambda found: urdf.Mimic(found.joint, found.multiplier, found.multiplier * found.offset))
+
+
+@means("EU-URD-032")
+def mimic_is_inverted() -> Deviation:
+    """A mimic joint is at (q − offset) / multiplier."""
+
+    def inverted(found: Any) -> Any:
+        m = found.multiplier or 1.0
+        return urdf.Mimic(found.joint, 1.0 / m, -found.offset / m)
+
+    return _mimic(inverted)
+
+
+# -- Frames ---------------------------------------------------------------------------------------------------------
+
+
+@means("EU-FRM-004")
+def links_behind_fixed_joints_are_at_their_body() -> Deviation:
+    """A link behind a fixed joint has the frame of the body that it is part of."""
+
+    def fixed(right: Any, found: Any, joint: Any) -> None:
+        found.links[joint.child] = found.joint_frames[joint.name] = found.links[joint.parent]
+
+    return instead(tree, "add_fixed", fixed)
+
+
+@means("EU-FRM-005")
+def joint_frames_on_the_parents_side() -> Deviation:
+    """The name of a joint stands for the frame in which it turns, on its parent's side."""
+
+    def joint(right: Any, found: Any, of: Any, change: Any) -> None:
+        right(found, of, change)
+        found.joint_frames[of.name] = found.links[of.parent] @ of.origin
+
+    return instead(tree, "add_joint", joint)
+
+
+@means("EU-JNT-019")
+def joints_are_locked_in_the_middle() -> Deviation:
+    """A joint that becomes fixed is locked in the middle of its range."""
+
+    def fixed(right: Any, found: Any, joint: Any) -> None:
+        right(found, joint)
+        if joint.lower is not None:
+            middle = [(joint.lower + joint.upper) / 2]
+            moved = transform(joint.type, joint.axis[None, :], 0.0, middle)
+            found.links[joint.child] = found.joint_frames[joint.name] = found.links[joint.child] @ moved
+
+    return instead(tree, "add_fixed", fixed)
+
+
+@means("EU-JNT-019")
+def locked_joints_lose_their_origin() -> Deviation:
+    """What a locked joint carries is where its parent is."""
+
+    def fixed(right: Any, found: Any, joint: Any) -> None:
+        right(found, joint)
+        if joint.type != "fixed":
+            found.links[joint.child] = found.joint_frames[joint.name] = found.links[joint.parent]
+
+    return instead(tree, "add_fixed", fixed)

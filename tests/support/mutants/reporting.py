@@ -1,0 +1,179 @@
+"""Parsers that report errors with another code, severity or place, or report too much."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+from eurdf_conformance.protocol.message import Issue
+from support.mutants.mutant import Members, reports
+
+
+def _each(found: list[Issue], change: Callable[[Issue], Members]) -> list[Issue]:
+    return [issue.model_copy(update=change(issue)) for issue in found]
+
+
+# -- Codes and severities -------------------------------------------------------------------------------------------
+
+
+@reports("EU-DIA-001")
+def one_code_for_all(found: list[Issue], *files: Path) -> list[Issue]:
+    """Whatever is wrong has one code."""
+    return _each(found, lambda issue: {"code": "wrong-value"})
+
+
+@reports("EU-DIA-001")
+def no_codes(found: list[Issue], *files: Path) -> list[Issue]:
+    """What is wrong has no code, only a sentence."""
+    return _each(found, lambda issue: {"code": None})
+
+
+@reports("EU-DIA-001")
+def errors_are_reported_twice(found: list[Issue], *files: Path) -> list[Issue]:
+    """What is wrong is reported twice."""
+    return [*found, *found]
+
+
+@reports("EU-DIA-002")
+def what_follows_is_reported(found: list[Issue], *files: Path) -> list[Issue]:
+    """Beside an error it is reported that no configuration closes the loops."""
+    return [*found, *(_each(found[:1], lambda issue: {"code": "closure-cannot-close"}))]
+
+
+@reports("EU-DIA-004")
+def warnings_are_errors(found: list[Issue], *files: Path) -> list[Issue]:
+    """Whatever is reported is an error."""
+    return _each(found, lambda issue: {"severity": "error"})
+
+
+@reports("EU-DIA-004")
+def errors_are_warnings(found: list[Issue], *files: Path) -> list[Issue]:
+    """Whatever is reported is a warning."""
+    return _each(found, lambda issue: {"severity": "warning"})
+
+
+@reports("EU-DIA-005")
+def codes_of_its_own(found: list[Issue], *files: Path) -> list[Issue]:
+    """Codes are the parser's own, and do not begin with x-."""
+    return _each(found, lambda issue: {"code": f"{issue.code}-error"})
+
+
+@reports("EU-CNF-003")
+def open_loops_are_not_reported(found: list[Issue], *files: Path) -> list[Issue]:
+    """A robot with an error of inertia or closure is accepted without a word."""
+    late = ("negative-mass", "inertia-not-psd", "leaf-without-inertia", "assembled-open", "closure-cannot-close")
+    return [issue for issue in found if issue.code not in late]
+
+
+# -- Places ---------------------------------------------------------------------------------------------------------
+
+
+@reports("EU-DIA-009")
+def no_columns(found: list[Issue], *files: Path) -> list[Issue]:
+    """Only the line is reported."""
+    return _each(found, lambda issue: {"column": None})
+
+
+@reports("EU-DIA-009")
+def files_with_their_folder(found: list[Issue], *files: Path) -> list[Issue]:
+    """The file is reported with the folder that it is in."""
+    return _each(found, lambda issue: {"file": f"case/{issue.file}"})
+
+
+@reports("EU-DIA-009")
+def errors_are_in_the_description(found: list[Issue], *files: Path) -> list[Issue]:
+    """What is wrong with the URDF is reported in the description."""
+    return _each(found, lambda issue: {"file": files[0].name})
+
+
+@reports("EU-DIA-009")
+def columns_of_the_first_character(found: list[Issue], *files: Path) -> list[Issue]:
+    """The column is that of the first character on the line that is not a blank."""
+    return _moved(found, files, lambda line, before, after: (line, len(before) - len(before.lstrip())))
+
+
+@reports("EU-DIA-010")
+def files_begin_at_line_1(found: list[Issue], *files: Path) -> list[Issue]:
+    """What is wrong with a file as a whole is reported at its first character."""
+    return _each(found, lambda issue: {"line": issue.line or 1, "column": issue.column or 1})
+
+
+@reports("EU-DIA-011")
+def lines_from_0(found: list[Issue], *files: Path) -> list[Issue]:
+    """Lines are counted from 0."""
+    return _each(found, lambda issue: {"line": None if issue.line is None else issue.line - 1})
+
+
+@reports("EU-DIA-012")
+def columns_from_0(found: list[Issue], *files: Path) -> list[Issue]:
+    """Columns are counted from 0."""
+    return _each(found, lambda issue: {"column": None if issue.column is None else issue.column - 1})
+
+
+def _moved(
+    found: list[Issue], files: tuple[Path, ...], place: Callable[[int, str, str], tuple[int, int]]
+) -> list[Issue]:
+    """Places counted otherwise: (line, what is before on the line, what is after) -> line, characters before."""
+    texts = {path.name: path.read_bytes().decode(errors="replace") for path in files if path.is_file()}
+
+    def moved(issue: Issue) -> Members:
+        if issue.line is None or issue.column is None or issue.file not in texts:
+            return {}
+        lines = re.split("\r\n|\r|\n", texts[issue.file].removeprefix("\ufeff"))
+        text = lines[issue.line - 1] if issue.line <= len(lines) else ""
+        line, before = place(issue.line, text[: issue.column - 1], text[issue.column - 1 :])
+        return {"line": line, "column": before + 1}
+
+    return _each(found, moved)
+
+
+@reports("EU-DIA-012")
+def columns_in_bytes(found: list[Issue], *files: Path) -> list[Issue]:
+    """Columns count bytes of UTF-8."""
+    return _moved(found, files, lambda line, before, after: (line, len(before.encode())))
+
+
+@reports("EU-DIA-012")
+def columns_in_utf_16(found: list[Issue], *files: Path) -> list[Issue]:
+    """Columns count code units of UTF-16, as in JavaScript, C# and Java."""
+    return _moved(found, files, lambda line, before, after: (line, len(before.encode("utf-16-le")) // 2))
+
+
+@reports("EU-DIA-012")
+def tabs_of_8(found: list[Issue], *files: Path) -> list[Issue]:
+    """A tab counts up to the next multiple of 8."""
+    return _moved(found, files, lambda line, before, after: (line, len(before.expandtabs(8))))
+
+
+def _by_lines(found: list[Issue], files: tuple[Path, ...], ends: str) -> list[Issue]:
+    """Lines end where a pattern matches."""
+    texts = {path.name: path.read_bytes().decode(errors="replace") for path in files if path.is_file()}
+
+    def moved(issue: Issue) -> Members:
+        if issue.line is None or issue.file not in texts:
+            return {}
+        text = texts[issue.file]
+        starts = [0, *(end.end() for end in re.finditer("\r\n|\r|\n", text)), len(text)]
+        before = text[: starts[min(issue.line, len(starts)) - 1]]
+        return {"line": 1 + len(re.findall(ends, before))}
+
+    return _each(found, moved)
+
+
+@reports("EU-DIA-011")
+def carriage_returns_end_no_line(found: list[Issue], *files: Path) -> list[Issue]:
+    """A carriage return alone ends no line."""
+    return _by_lines(found, files, "\n")
+
+
+@reports("EU-DIA-011")
+def carriage_return_and_line_feed_are_two_lines(found: list[Issue], *files: Path) -> list[Issue]:
+    """A carriage return and a line feed end one line each."""
+    return _by_lines(found, files, "[\r\n]")
+
+
+@reports("EU-DIA-011")
+def lines_of_unicode(found: list[Issue], *files: Path) -> list[Issue]:
+    """A line also ends at the separators of Unicode, as in str.splitlines."""
+    return _by_lines(found, files, "\r\n|[\n\r\v\f\x1c-\x1e\x85\u2028\u2029]")
