@@ -20,7 +20,7 @@ class Clause:
         id: Permanent id.
         keyword: MUST, MUST NOT, SHOULD, SHOULD NOT or MAY.
         text: What it says.
-        level: Level at which it is tested; ``reader`` where no suite sees it.
+        level: Level at which it is tested; ``parser`` where no suite sees it.
         versions: Versions of the format that it is of.
         codes: Diagnostics that say that it is not met.
         testable: Whether a suite can test it.
@@ -51,7 +51,7 @@ def read_clauses() -> Mapping[str, Clause]:
             entry["level"],
             tuple(version for version in VERSIONS if int(version) in entry["versions"]),
             frozenset(entry["codes"]),
-            entry["untested"] is None and entry["level"] != "reader",
+            entry["untested"] is None and entry["level"] != "parser",
         )
         for entry in json.loads(carried("spec/clauses.json").read_text(encoding="utf-8"))["clauses"]
     }
