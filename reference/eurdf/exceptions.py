@@ -1,4 +1,4 @@
-"""What reading and loading a robot raises, and the base of all errors of the package."""
+"""Exceptions of reading and loading a robot, and the base class of all exceptions of the package."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ class EurdfError(Exception):
 
 
 class InvalidRobot(EurdfError, ValueError):  # noqa: N818 - part of the public interface
-    """A robot that cannot be built without guessing.
+    """A robot cannot be built without guessing.
 
     Attributes:
-        path: As the caller gave it.
-        diagnostics: Everything found, warnings too, in the order found; the text has the errors first.
+        path: The path that the caller gave.
+        diagnostics: All diagnostics, including warnings, in the order found; the text shows the errors first.
     """
 
     def __init__(self, path: str, diagnostics: tuple[Diagnostic, ...], reason: str = "") -> None:
@@ -27,10 +27,10 @@ class InvalidRobot(EurdfError, ValueError):  # noqa: N818 - part of the public i
 
 
 class RobotNotFound(EurdfError, FileNotFoundError):  # noqa: N818 - part of the public interface
-    """Neither a path nor the name of a robot of the collection.
+    """A path does not exist and is not the name of a robot of the collection.
 
     Attributes:
-        path: As the caller gave it.
+        path: The path that the caller gave.
     """
 
     def __init__(self, path: str, message: str) -> None:
@@ -39,11 +39,11 @@ class RobotNotFound(EurdfError, FileNotFoundError):  # noqa: N818 - part of the 
 
 
 class CannotExpand(EurdfError, ValueError):  # noqa: N818 - part of the public interface
-    """A xacro file that cannot be expanded with the arguments that are given.
+    """A xacro file cannot be expanded with the given arguments.
 
     Attributes:
         path: The file.
-        reason: Why not.
+        reason: The message of xacro.
     """
 
     def __init__(self, path: str, reason: str) -> None:
@@ -53,7 +53,7 @@ class CannotExpand(EurdfError, ValueError):  # noqa: N818 - part of the public i
 
 
 class MissingExtra(EurdfError, ImportError):  # noqa: N818 - part of the public interface
-    """An optional dependency that is needed and not installed.
+    """An optional dependency is not installed.
 
     Attributes:
         extra: The extra of this package that installs it.

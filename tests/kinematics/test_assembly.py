@@ -190,7 +190,7 @@ def test_unknown_held_joint_is_refused_with_nearest_name() -> None:
 @pytest.mark.parametrize(
     ("q0", "reason"),
     [
-        (np.zeros(3), r"shape \(4,\), not \(3,\)"),
+        (np.zeros(3), r"shape \(3,\); this robot needs \(4,\)"),
         (np.array([1.0, 0.0, 0.0, np.nan]), "not finite"),
         (np.zeros(4), "length zero"),
     ],
@@ -303,7 +303,7 @@ def test_zero_range_is_no_range_unless_strict() -> None:
     strict = assemble(linkage, limits="strict")
     assert (strict.closes, strict.reason) == (False, "joint limits")
     np.testing.assert_array_equal(strict.q, np.zeros(4))
-    with pytest.raises(ValueError, match="limits is 'none'; it must be True, False or 'strict'"):
+    with pytest.raises(ValueError, match="limits is 'none'; use True, False or 'strict'"):
         assemble(linkage, limits="none")  # type: ignore[arg-type]
 
 

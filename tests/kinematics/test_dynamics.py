@@ -490,7 +490,7 @@ def test_redundant_motors_share_least_torque() -> None:
     np.testing.assert_allclose(unseen @ (weights * dear), 0.0, atol=1e-8)
     for u in (found.u, dear):
         np.testing.assert_allclose(forward_dynamics(robot, q, v, u).a, a, rtol=1e-7, atol=1e-7)
-    with pytest.raises(ValueError, match="not positive"):
+    with pytest.raises(ValueError, match="must be positive"):
         inverse_dynamics(robot, q, v, a, weights=np.array([1.0, 0.0, 1.0]))
 
 

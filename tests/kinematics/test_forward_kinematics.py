@@ -303,7 +303,7 @@ def test_frames_are_found_by_name_or_nearest_suggested() -> None:
     same = actuated(Linkage(model, [], ["a"]))
     np.testing.assert_allclose(actuated_jacobian(same, np.zeros(1), "a"), np.eye(6)[:, 3:4], atol=1e-12)
     model.addFrame(pin.Frame("a", a, 0, translation(1.0, 0.0, 0.0), pin.FrameType.OP_FRAME), False)
-    with pytest.raises(ValueError, match="'a' is the name of two frames"):
+    with pytest.raises(ValueError, match="frame name 'a' is ambiguous"):
         actuated_jacobian(same, np.zeros(1), "a")
 
 

@@ -200,7 +200,7 @@ def test_zero_range_is_no_range_unless_strict() -> None:
     np.testing.assert_array_equal(strict.q, np.zeros(2))
     assert (strict.converged, strict.reason) == (False, "joint limits")
     assert [(found.joint, found.limit) for found in strict.at_limits] == [("j0", 0.0), ("j1", 0.0)]
-    with pytest.raises(ValueError, match="limits is 'all'; it must be True, False or 'strict'"):
+    with pytest.raises(ValueError, match="limits is 'all'; use True, False or 'strict'"):
         inverse_kinematics(robot, {}, limits="all")  # type: ignore[arg-type]
 
 
@@ -332,9 +332,9 @@ def test_result_is_deterministic() -> None:
         ({"foot": [0.0, 0.0]}, "target of frame 'foot' is neither a pose"),
         ({"foot": [0.0, 0.0, np.nan]}, "neither a pose"),
         ({"foot": "here"}, "neither a pose"),
-        ({"foot": pin.SE3(2.0 * np.eye(3), np.zeros(3))}, "is no pose"),
-        ({"foot": pin.SE3(-np.eye(3), np.zeros(3))}, "is no pose"),
-        ({"foot": pin.SE3(np.eye(3), np.full(3, np.inf))}, "is no pose"),
+        ({"foot": pin.SE3(2.0 * np.eye(3), np.zeros(3))}, "is not a pose"),
+        ({"foot": pin.SE3(-np.eye(3), np.zeros(3))}, "is not a pose"),
+        ({"foot": pin.SE3(np.eye(3), np.full(3, np.inf))}, "is not a pose"),
     ],
 )
 def test_invalid_target_is_refused(targets: Any, reason: str) -> None:

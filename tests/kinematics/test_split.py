@@ -74,11 +74,11 @@ def test_robot_without_motors_is_all_free() -> None:
 
 def test_wrong_size_is_refused_with_both_sizes() -> None:
     robot = mixed()
-    with pytest.raises(ValueError, match=r"a configuration of this robot has the shape \(12,\), not \(9,\)"):
+    with pytest.raises(ValueError, match=r"the configuration has the shape \(9,\); this robot needs \(12,\)"):
         split_configuration(robot, np.zeros(9))
-    with pytest.raises(ValueError, match=r"a velocity of this robot has the shape \(9,\), not \(12,\)"):
+    with pytest.raises(ValueError, match=r"the velocity has the shape \(12,\); this robot needs \(9,\)"):
         split_velocity(robot, np.zeros(12))
-    with pytest.raises(ValueError, match=r"the actuated part of a configuration .* \(6,\), not \(5,\)"):
+    with pytest.raises(ValueError, match=r"the actuated part of the configuration .* \(5,\); this robot needs \(6,\)"):
         merge_configuration(robot, np.zeros(5), np.zeros(6))
-    with pytest.raises(ValueError, match=r"the free part of a velocity .* \(4,\), not \(4, 1\)"):
+    with pytest.raises(ValueError, match=r"the free part of the velocity .* \(4, 1\); this robot needs \(4,\)"):
         merge_velocity(robot, np.zeros(5), np.zeros((4, 1)))

@@ -198,5 +198,5 @@ def test_coordinates_of_a_named_configuration_are_those_in_the_file() -> None:
 @pytest.mark.parametrize("shape", [(0,), (3,), (1, 12)])
 def test_coordinates_of_a_vector_of_another_shape_are_refused(shape: tuple[int, ...]) -> None:
     robot = eurdf.load(WORKBENCH, geometry=False)
-    with pytest.raises(ValueError, match="a configuration of this robot has the shape"):
+    with pytest.raises(ValueError, match="the configuration has the shape"):
         robot.coordinates(np.zeros(shape))

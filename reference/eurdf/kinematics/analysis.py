@@ -1,4 +1,4 @@
-"""The dimensions of a mechanism: how its loops constrain it, what can still move, and whether the actuators move it."""
+"""The dimensions of a mechanism: rank and mobility of its loops, and the motions that its actuators control."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from eurdf.kinematics.velocity_names import velocity_names
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
-# What n² max(m, n), K (m, n), may be for all groups together: each of some twenty decompositions takes a few times as
-# many multiplications, and all of them some ten seconds.
+# Bound of the sum of n² max(m, n) over the blocks K (m, n) of all groups: each of about twenty decompositions takes a
+# few times as many multiplications, and all of them about ten seconds.
 _MOST_WORK = 1e9
 
-# Closed configurations looked at beside the first, and how far each is stepped to (rad, or characteristic lengths).
+# Steps to further closed configurations that are analysed (rad, or characteristic lengths).
 _MOVES = (0.05, 0.1, 0.2, 0.2)
 
 
@@ -34,9 +34,9 @@ class Motion:
 
     Attributes:
         joints: Names of the joints that it moves.
-        velocities: Indices (k,) in v of their velocities that are not zero.
-        values: These velocities (k,), rad/s and m/s; the largest is 1, lengths counted in characteristic lengths.
-        q: The closed configuration (nq,) at which it is a motion.
+        velocities: Indices (k,) in v of the nonzero velocities.
+        values: These velocities (k,), rad/s and m/s; the largest is 1 in units of rad and characteristic lengths.
+        q: The closed configuration (nq,) of the motion.
     """
 
     joints: tuple[str, ...]
@@ -47,7 +47,7 @@ class Motion:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LoopAnalysis:
-    """Dimensions of a group of loops that share joints with one another and with no other loop.
+    """Dimensions of an independent group of loops: they share joints with one another and with no other loop.
 
     Attributes:
         closures: Names of its closures, in file order.
@@ -59,7 +59,7 @@ class LoopAnalysis:
         redundant: Redundant rows, nc - rank.
         uncontrolled: Motions left with its actuators held, nv - rank [K; Sᵀ].
         actuated: Number of its velocities that are actuated.
-        controlled: Motions that its actuators decide, mobility - uncontrolled: the rank of Sᵀ on the null space of K.
+        controlled: Motions that its actuators control, mobility - uncontrolled: the rank of Sᵀ on the null space of K.
         singularity: See `Analysis`.
         actuation_singularity: See `Analysis`.
         dependent_actuators: See `Analysis`.
@@ -84,9 +84,9 @@ class LoopAnalysis:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Analysis:
-    """Dimensions of a mechanism, of all of it and of each of its independent groups of loops.
+    """Dimensions of a mechanism, of the whole and of each independent group of loops.
 
-    What follows from ranks is None, or empty, where the loops do not close, or where it is left out.
+    Values that depend on ranks are None, or empty, if the loops do not close or if ``left_out`` is not empty.
 
     Attributes:
         nq: Coordinates of the spanning tree.
@@ -95,26 +95,26 @@ class Analysis:
         rank: Rank of the constraint Jacobian K at a generic closed configuration.
         mobility: nv - rank.
         redundant: Redundant rows, nc - rank.
-        uncontrolled: Uncontrolled mobility, nv - rank [K; Sᵀ]: what still moves with every actuator held. The actuators
-            suffice where it is 0.
+        uncontrolled: Uncontrolled mobility, nv - rank [K; Sᵀ]: degrees of freedom left with every actuator held. The
+            actuators suffice if it is 0.
         actuated: Number of actuated velocities.
-        controlled: Motions that the actuators decide, mobility - uncontrolled: the rank of Sᵀ on the null space of K.
+        controlled: Motions that the actuators control, mobility - uncontrolled: the rank of Sᵀ on the null space of K.
         dependent: Number of actuated velocities that depend on the others through the closures, actuated - controlled.
             A space of torques of this dimension moves nothing and only loads the closures: if it is not 0, the
             actuation is redundant.
         dependent_actuators: Sets of names of dependent actuators: no actuator of a set can move unless another one of
             the set moves; an actuator that is alone in its set cannot move at all.
-        motions: The uncontrolled motions: a basis of the null space of [K; Sᵀ], each of few joints. They are those at
-            ``q``, or where q is singular those at a configuration beside it.
-        singularity: Distance to singularity at ``q``: singular value number ``rank`` of K, lengths counted in
-            characteristic lengths. By so much K would have to change to lose rank (Eckart, Young, 1936); it is 0 where
-            q is singular. The smallest of all groups of loops; inf where no closure constrains, None without loops.
-        actuation_singularity: The same of [K; Sᵀ]: 0 where the actuators, held, leave one more motion at ``q``.
+        motions: The uncontrolled motions: a basis of the null space of [K; Sᵀ], each of few joints, at ``q`` or, if q
+            is singular, at a configuration near it.
+        singularity: Distance to singularity at ``q``: singular value number ``rank`` of K, in units of the
+            characteristic length. It is the least change of K that lowers its rank (Eckart, Young, 1936), and 0 at a
+            singular q. The smallest of all groups of loops; inf if no closure constrains, None without loops.
+        actuation_singularity: The same for [K; Sᵀ]: 0 if the held actuators leave one more motion at ``q``.
         loops: The independent groups of loops.
         residual: Norm of the residual at q, m and rad: the smallest found.
-        closes: Whether the loops close, with each closure open by at most 1e-6 (m, rad) at q.
-        q: The configuration (nq,) looked at: closed, or the least open one found.
-        left_out: Why the ranks were not computed, where they were not though the loops close; else empty.
+        closes: Whether the loops close: each closure is open by at most 1e-6 (m, rad) at q.
+        q: The analysed configuration (nq,): closed, or the least open one found.
+        left_out: Why the ranks were not computed though the loops close; else empty.
     """
 
     nq: int
@@ -139,22 +139,22 @@ class Analysis:
 
 
 def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
-    """Close the loops, count what they constrain and what moves, and name what the actuators leave or fight over.
+    """Close the loops, compute ranks and mobility, and find uncontrolled motions and dependent actuators.
 
     rank = rank K, mobility = nv - rank, redundant = nc - rank, uncontrolled = nv - rank [K; Sᵀ], where S (nv, nu)
-    selects the actuated velocities (the words of dimension at the head of the specification).
+    selects the actuated velocities (the dimensions defined at the start of the specification).
 
-    Ranks are those of a generic configuration: the largest found at the closed configuration and at some others
-    around it, reached by small steps along the null space of K that are closed again, so that a straight or folded
-    start does not pass for the rule. K is taken free of unit, lengths over the characteristic length of the robot,
-    and each group of loops on its own, and its rank is counted as `numerical_rank` says.
+    Ranks are those of a generic configuration: the largest ones found at the closed configuration and at some others
+    around it, so a straight or folded start does not change the result. The others are small steps along the null space
+    of K, closed again. K is dimensionless (lengths divided by the characteristic length of the robot); the rank of each
+    group of loops is its `numerical_rank`.
 
     Args:
         robot: The robot.
-        q: Where to start closing the loops (nq,). `assembled` by default, or else the neutral configuration.
+        q: Where to start closing the loops (nq,). The default is the `assembled` configuration, or the neutral one.
 
     Raises:
-        ValueError: ``q`` is no configuration.
+        ValueError: ``q`` is not a configuration.
     """
     model = robot.model
     actuated: Mask = np.zeros(model.nv, dtype=bool)
@@ -206,14 +206,14 @@ def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
 
 
 def _left_out(assembler: Assembler, assembly: Assembly) -> str:
-    """Why no ranks are computed of loops that are not known to be open: it would take too long."""
+    """Why no ranks are computed, if that would take too long; else empty."""
     given_up, groups = assembly.reason == "given up", [each.group for each in assembler.evaluations]
     if not given_up and not (assembly.closes and sum(map(_work, groups)) > _MOST_WORK):
         return ""
     group = max(groups, key=_work)
-    what = "ranks are" if assembly.closes else "whether the loops can be closed is"
+    what = "ranks were not computed" if assembly.closes else "it was not computed whether the loops can be closed"
     return (
-        f"{what} not computed: the loops that share joints with that of '{assembly.open[group.closures[0]].name}' have "
+        f"{what}: the loops that share joints with that of '{assembly.open[group.closures[0]].name}' have "
         f"{len(group.rows):,} constraint rows on {len(group.velocities):,} velocities"
     )
 
@@ -224,7 +224,7 @@ def _work(group: LoopGroup) -> float:
 
 
 def _generic_jacobians(assembler: Assembler, q: Vector) -> list[list[tuple[Vector, Matrix]]]:
-    """For each group a closed configuration (nq,) and some around it, each with the block of K (m, n), free of unit."""
+    """For each group a closed configuration (nq,) and some around it, each with the dimensionless block of K (m, n)."""
     evaluations = assembler.evaluations
     open_by = [_size(evaluation.residual(q)) for evaluation in evaluations]
     found = [[(q, evaluation.jacobian())] for evaluation in evaluations]
@@ -250,7 +250,7 @@ def _analyze(
 
     Args:
         evaluation: The group.
-        at: Closed configurations, each with its block of K, free of unit; the first is the one looked at.
+        at: Closed configurations, each with its dimensionless block of K; the first is the one to analyse.
         actuated: Which of its velocities (n,) are actuated.
         names: For each velocity of the robot, the name of its joint.
         closures: Names of the robot's closures.
@@ -282,7 +282,7 @@ def _analyze(
 
 
 def _ranks(A: Matrix, actuated: Mask) -> tuple[int, int]:
-    """Rank of K and of [K; Sᵀ]: the actuated velocities, and what K makes of the others."""
+    """Ranks of K and of [K; Sᵀ]; the latter is the number of actuated velocities plus the rank of the other columns."""
     values = _singular_values(A)
     reference = values.max(initial=0.0)
     rest = numerical_rank(_singular_values(A[:, ~actuated]), reference)
@@ -294,13 +294,13 @@ def _dependent_actuators(
 ) -> tuple[tuple[str, ...], ...]:
     """Names of the actuators whose velocities depend on one another, set by set.
 
-    The torques z with zᵀ Sᵀ v = 0 for all v with K v = 0 do no work on any motion: what actuators stand in one of a
-    sparse basis of them depend on one another, and so do those of two that have an actuator in common.
+    Torques z with zᵀ Sᵀ v = 0 for all v with K v = 0 do no work in any motion. The actuators in one vector of a sparse
+    basis of them depend on one another, and so do those of two vectors that have an actuator in common.
     """
     count = int(actuated.sum())
     if count == controlled:
         return ()
-    basis = _right_vectors(A)[rank:].T[actuated]  # of what the actuators can do, (nu, mobility)
+    basis = _right_vectors(A)[rank:].T[actuated]  # actuated velocities of the free motions, (nu, mobility)
     columns = np.linalg.svd(basis, full_matrices=True)[0][:, controlled:]
     names = [name for name, moves in zip(members, actuated.tolist(), strict=True) if moves]
     sets: list[set[str]] = []
@@ -316,7 +316,7 @@ def _dependent_actuators(
 def _motions(
     A: Matrix, held: int, actuated: Mask, evaluation: Evaluation, members: Sequence[str], q: Vector
 ) -> tuple[Motion, ...]:
-    """The motions of a group that its actuators, held, leave at q (nq,), where its block of K is A."""
+    """The motions of a group at q (nq,) with its actuators held; A is its block of K."""
     free = np.flatnonzero(~actuated)
     basis = _right_vectors(A[:, free])[held - int(actuated.sum()) :]
     motions = []
@@ -341,7 +341,7 @@ def _size(r: Vector) -> float:
 
 
 def _nth(values: Vector, number: int) -> float:
-    """The singular value number ``number``; there being none to lose, infinitely far from losing one."""
+    """Singular value number ``number``; inf for number 0, since there is no rank to lose."""
     return float(values[number - 1]) if number > 0 else math.inf
 
 
@@ -361,7 +361,7 @@ def _null_space(A: Matrix) -> Matrix:
 
 
 def _free_step(basis: Matrix, random: np.random.Generator, length: float) -> Vector:
-    """A random step (n,) in the space that ``basis`` spans, its largest entry ``length``; zero where there is none."""
+    """A random step (n,) in the span of ``basis`` whose largest entry is ``length``; zero if the span is empty."""
     free = np.asarray(random.normal(size=basis.shape[1]) @ basis.T @ basis)
     largest = np.abs(free).max(initial=0.0)
     return free * (length / largest) if largest > 1e-6 else np.zeros_like(free)

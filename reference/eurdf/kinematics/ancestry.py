@@ -1,6 +1,6 @@
 """Common ancestors in a tree, and sums along its paths, in time logarithmic in its depth.
 
-Each node has, beside its parent, one ancestor to jump to (E. W. Myers, *An applicative random-access stack*, 1983).
+Each node stores its parent and one ancestor to jump to (E. W. Myers, *An applicative random-access stack*, 1983).
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from collections.abc import Sequence
 class Ancestry:
     """The ancestors of the nodes of a tree.
 
-    Nodes are numbered from 0, the root, and a parent has a lower number than its children, as the joints of a Pinocchio
-    model have.
+    Nodes are numbered from 0, the root, and a parent has a lower number than its children, as in a Pinocchio
+    model.
     """
 
     def __init__(self, parents: Sequence[int]) -> None:
@@ -38,7 +38,7 @@ class Ancestry:
         return a
 
     def sums(self, weights: Sequence[float]) -> list[float]:
-        """For each node the sum of the weights from it to the node that it jumps to, without that one's."""
+        """For each node the sum of the weights from it to its jump target, excluding the target."""
         jump, parents, sums = self._jump, self.parents, [0.0]
         for node in range(1, len(parents)):
             parent = parents[node]
@@ -47,7 +47,7 @@ class Ancestry:
         return sums
 
     def sum_to(self, node: int, ancestor: int, weights: Sequence[float], sums: Sequence[float]) -> float:
-        """Sum of the weights from a node up to an ancestor of it, without that one's; ``sums`` as `sums` has them."""
+        """Sum of the weights from a node up to an ancestor, excluding the ancestor; ``sums`` as `sums` returns them."""
         depth, jump, total = self._depth, self._jump, 0.0
         while node != ancestor:
             if depth[jump[node]] >= depth[ancestor]:

@@ -1,9 +1,9 @@
 """Assembly: a configuration in which every loop is closed.
 
-The residual is brought to zero by damped Gauss-Newton steps on the configuration manifold: in a small robot that of all
-loops at once; where that fails, and in a large robot from the first, that of each group of loops that share joints on
-its own. Where a group's descent ends open, as it may from a straight or symmetric configuration, it starts again from
-places drawn around the first.
+Damped Gauss-Newton steps on the configuration manifold bring the residual to zero. In a small robot they close all
+loops at once. If that fails, and in a large robot, they close each group of loops that share joints by itself. A
+descent can end with open loops, for instance from a straight or symmetric configuration; the group then starts again
+from random configurations around the first one.
 """
 
 from __future__ import annotations
@@ -29,48 +29,48 @@ from eurdf.kinematics.several import several
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
-# Above this many velocities a pin.Data, some 8 nv³ numbers, takes longer to make than it saves, and all loops at once
-# take longer than one by one.
+# Above this many velocities, creating a pin.Data (about 8 nv³ numbers) takes longer than it saves, and closing all
+# loops at once takes longer than one by one.
 _MOST_VELOCITIES_WITH_DATA = 60
 
 _MOST_STEPS = 60
 
-# Multiplications that one assembly may take in its steps, some five seconds. Loops that share joints by the hundred are
-# given up earlier than after all restarts; those whose every step takes more are not tried.
+# Bound of the multiplications in the steps of one assembly, about five seconds. Groups with hundreds of shared joints
+# end before all restarts; a group with a single step above this bound is not tried.
 _MOST_WORK = 1e10
 
-# The residual and Jacobian of one closure take as long as so many multiplications.
+# Cost of the residual and Jacobian of one closure, in multiplications.
 _WORK_OF_A_CLOSURE = 3e5
 
-# How far from the first place further descents start (rad, or characteristic lengths); the last one is repeated.
+# Distance of the restarts from the first start (rad, or characteristic lengths); the last one is repeated.
 _SPREADS = (0.1, 0.3, 1.0, 2.0, 3.0)
 
-# Of one robot, at most so many assemblers are kept, each with its pin.Data: one for each set of joints held.
+# Number of assemblers cached for a robot, each with its pin.Data: one for each set of held joints.
 _MOST_KEPT = 2
 
 
-#: Why an assembly did not converge: joints at their limits keep the loops open; the loops were not closed, though no
-#: limit keeps them open; they share so many joints that no descent came to its end, and whether they can be closed is
-#: not known; or they close, but redundant rows contradict one another by the rounding of numbers in files.
+#: Why an assembly did not converge: joints at their limits keep the loops open; the loops stay open though no limit
+#: prevents closing; the loops share so many joints that no descent finished, and it is unknown whether they can close;
+#: or the loops close, but rounded numbers in the files make redundant rows contradict each other.
 AssemblyReason = Literal["joint limits", "not closed", "given up", "rounding"]
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Assembly:
-    """What `assemble` found.
+    """The result of `assemble`.
 
     Attributes:
         q: Configuration (nq,): closed, or the least open one found.
         residual: Euclidean norm of the residual at q, m and rad.
-        converged: Whether every row of the residual is within the tolerance asked for.
-        closes: Whether each closure is open by at most `CLOSED` (m, rad), which is all that is asked of a configuration
-            in a file. What closes but does not converge has redundant rows that contradict one another by the rounding
-            of numbers in its files.
+        converged: Whether every row of the residual is within ``tolerance``.
+        closes: Whether each closure is open by at most `CLOSED` (m, rad), as required of a configuration in a file. If
+            a robot closes but does not converge, rounded numbers in its files make redundant rows contradict each
+            other.
         iterations: Number of evaluations of the residual and its Jacobian.
-        open: How far each closure is open at q, in their order.
-        reason: Why it did not converge; None where it did.
-        at_limits: The joints that are at their limits at q, and would have to go beyond them to close the loops
-            farther; none where the loops close.
+        open: How far each closure is open at q, in file order.
+        reason: Why it did not converge; None if it did.
+        at_limits: The joints that are at their limits at q and would have to exceed them to close the loops further;
+            empty if the loops close.
     """
 
     q: Vector
@@ -86,9 +86,9 @@ class Assembly:
         is_open = ", ".join(str(found) for found in self.open if found.is_open)
         parts = [f"open: {is_open}" if is_open else "closed", f"residual {self.residual:.3g}"]
         if self.reason == "rounding":
-            parts.append("not converged: redundant rows contradict one another by rounding")
+            parts.append("not converged: rounding makes redundant rows contradict each other")
         if self.reason == "given up":
-            parts.append("given up: the loops share too many joints")
+            parts.append("gave up: the loops share too many joints")
         if self.at_limits:
             parts.append(f"at their limits: {', '.join(map(str, self.at_limits))}")
         return f"<Assembly: {'; '.join(parts)}; {self.iterations} iterations>"
@@ -103,40 +103,40 @@ def assemble(
     limits: Limits = False,
     restarts: int = 20,
 ) -> Assembly:
-    """Find a closed configuration near the one given: r(q) = 0.
+    """Find a closed configuration, r(q) = 0, near the given one.
 
     Each step x solves (KᵀK + μ 1) x = -Kᵀ r, and q becomes q ⊕ x (Levenberg, *A method for the solution of certain
-    non-linear problems in least squares*, 1944; Marquardt, 1963), on the residual r and the K of EU-CLO-008 to -010.
+    non-linear problems in least squares*, 1944; Marquardt, 1963), with the residual r and the K of EU-CLO-008 to -010.
 
-    Only joints of the loops move. The same arguments give the same answer. The time is bounded also where the loops
-    cannot be closed: by ``restarts`` + 2 descents of at most 60 steps.
+    Only joints of the loops move. The result is deterministic. The time is bounded even if the loops cannot be closed:
+    at most ``restarts`` + 2 descents of at most 60 steps.
 
-    What is found out about the structure of a small robot is kept with it, until its model or closures change.
+    The structure of a small robot is analysed once and cached with the robot.
 
     Args:
         robot: The robot.
-        q0: Where to start (nq,). The `assembled` configuration by default, or else the neutral one.
-        hold: Names of joints that stay where they are, or one name. A joint that mimics another is held with that one.
-        tolerance: What each row of the residual may be, m or rad, where the loops are closed.
-        limits: Whether to stay within the position limits of the joints whose coordinates are plain angles or lengths;
-            where the start is outside of them it is brought to the nearest limit first. A range of zero width counts as
-            no range (`urdf-no-range`), unless it is ``"strict"``.
-        restarts: How often to start again, at most, where loops are still open by more than `CLOSED`.
+        q0: Where to start (nq,). The default is the `assembled` configuration, or the neutral one if there is none.
+        hold: Names of joints that do not move, or one name. A mimic joint is held with its leader.
+        tolerance: Bound of each row of the residual for closed loops, m or rad.
+        limits: Whether to respect the position limits of joints whose coordinates are angles or lengths. A start
+            outside the limits is clipped first. A range of zero width counts as no range (`urdf-no-range`), unless
+            ``limits`` is ``"strict"``.
+        restarts: Maximum number of restarts while loops are open by more than `CLOSED`.
 
     Returns:
         The closed configuration, or the least open one found.
 
     Raises:
-        ValueError: ``q0`` is no configuration, or ``hold`` names no joint of the model.
+        ValueError: ``q0`` is not a configuration, or ``hold`` has a name that is not a joint of the model.
     """
     q, held = start(robot, q0), several(hold)
-    # Taken away while in use, so that no other thread works in the same memory.
+    # Removed from the cache while in use, so that no other thread uses the same memory.
     idle: dict[tuple[str, ...], Assembler] = robot.derived.setdefault(Assembler, {})
     assembler = idle.pop(held, None) or Assembler(robot, held)
     assembler.tolerance = tolerance
     assembler.limits = chosen_limits(robot.model, limits)
     assembly = assembler.assemble(q, restarts)
-    if robot.model.nv <= _MOST_VELOCITIES_WITH_DATA:  # else it takes much memory
+    if robot.model.nv <= _MOST_VELOCITIES_WITH_DATA:  # else the cache takes too much memory
         if len(idle) >= _MOST_KEPT:
             idle.clear()
         idle[held] = assembler
@@ -144,10 +144,10 @@ def assemble(
 
 
 def start(robot: Robot, q0: Vector | None = None) -> Vector:
-    """The configuration given, checked and normalised; else `assembled`, else the neutral one.
+    """The given configuration, checked and normalized; by default `assembled`, or else the neutral configuration.
 
     Raises:
-        ValueError: It is not (nq,), not finite, or cannot be normalised.
+        ValueError: Its shape is not (nq,), it is not finite, or it cannot be normalized.
     """
     model = robot.model
     if q0 is None:
@@ -156,30 +156,30 @@ def start(robot: Robot, q0: Vector | None = None) -> Vector:
         return np.array(pin.neutral(model))
     q = np.asarray(q0, dtype=np.float64)
     if q.shape != (model.nq,):
-        raise ValueError(f"a configuration of this robot has the shape ({model.nq},), not {q.shape}")
+        raise ValueError(f"the configuration has the shape {q.shape}; this robot needs ({model.nq},)")
     if not np.isfinite(q).all():
-        raise ValueError("a configuration has a number that is not finite")
+        raise ValueError("the configuration has a number that is not finite")
     q = np.array(pin.normalize(model, q))
     if not np.isfinite(q).all() or not pin.isNormalized(model, q, 1e-9):
-        raise ValueError("a configuration has a quaternion, or a cosine and sine, of length zero")
+        raise ValueError("the configuration has a quaternion, or a (cos, sin) pair, of length zero")
     return q
 
 
 class Assembler:
-    """Closes the loops of one robot, any number of times, having looked at its structure once.
+    """Closes the loops of one robot repeatedly; its structure is analysed once.
 
     Attributes:
         evaluations: One for each group of loops that share no joint with the others.
-        iterations: Evaluations of the residual and its Jacobian so far. Groups that descend side by side count once.
-        tolerance: What each row of the residual may be where the loops are closed, m or rad.
-        limits: The position limits to keep, if any.
+        iterations: Evaluations of the residual and its Jacobian so far. Groups that descend together count once.
+        tolerance: Bound of each row of the residual for closed loops, m or rad.
+        limits: The position limits to respect, or None.
     """
 
     def __init__(
         self, robot: Robot, hold: str | Iterable[str] = (), *, tolerance: float = 1e-10, limits: Limits = False
     ) -> None:
-        """For the arguments see `assemble`."""
-        # Not the robot: it would be kept alive by what is kept with it.
+        """The arguments are those of `assemble`."""
+        # No reference to the robot: the cache would keep it alive.
         model = self._model = robot.model
         self._names = [constraint.name for constraint in robot.constraint_models]
         loops = find_loops(robot)
@@ -198,15 +198,15 @@ class Assembler:
         self.evaluations = made[: len(groups)]
         self._whole = made[len(groups) :] if merged else self.evaluations
         self.iterations = 0
-        self._work = 0.0  # of the assembly under way, in multiplications
-        self._gave_up = False  # of the last one
+        self._work = 0.0  # of the current assembly, in multiplications
+        self._gave_up = False  # whether the last assembly gave up
         self.tolerance = tolerance
         self.limits = chosen_limits(model, limits)
 
     def assemble(self, q: Vector, restarts: int = 20) -> Assembly:
-        """Close the loops, starting from q (nq,) and then, up to ``restarts`` times, from around it."""
+        """Close the loops from q (nq,), then at most ``restarts`` times from configurations around it."""
         before = self.iterations
-        with np.errstate(over="ignore", invalid="ignore"):  # lengths such as 1e200 m overflow, and so never close
+        with np.errstate(over="ignore", invalid="ignore"):  # lengths such as 1e200 m overflow and never close
             q, _ = self.close(q, restarts)
             r, open_by = np.zeros(self._nc), [(0.0, 0.0)] * len(self._names)
             for evaluation in self._whole:
@@ -216,7 +216,7 @@ class Assembler:
         largest = float(np.abs(r).max(initial=0.0))
         enough = max(CLOSED, self.tolerance)
         converged = largest <= self.tolerance
-        closes = all(part <= enough for opening in open_by for part in opening)  # what is no number is not
+        closes = all(part <= enough for opening in open_by for part in opening)  # NaN is not closed
         at_limits = () if closes or self.limits is None else self._pressed(q, self.limits)
         return Assembly(
             q=q,
@@ -234,18 +234,18 @@ class Assembler:
             return "given up"
         return "joint limits" if at_limits else "not closed"
 
-    @np.errstate(over="ignore", invalid="ignore")  # lengths such as 1e200 m overflow, and so never close
+    @np.errstate(over="ignore", invalid="ignore")  # lengths such as 1e200 m overflow and never close
     def close(self, q: Vector, restarts: int = 20) -> tuple[Vector, list[float]]:
-        """The configuration (nq,) that `assemble` ends at, and the norm there of the residual of each group, m and rad.
+        """The final configuration (nq,), and the norm of the residual of each group there, m and rad.
 
         Args:
             q: Where to start (nq,).
-            restarts: How often to start again, at most, where a group is open by more than `CLOSED`.
+            restarts: Maximum number of restarts while a group is open by more than `CLOSED`.
         """
         self._work = 0.0
         q = self._within_limits(q, self.evaluations)
         best, errors = np.array(q), [math.inf] * len(self.evaluations)
-        tried = [False] * len(self.evaluations)  # whether a descent came to its end
+        tried = [False] * len(self.evaluations)  # whether a descent finished
         if self._whole is not self.evaluations:
             best, (descent,), (ended,) = self._descend(q, self._whole)
             errors = [math.hypot(*descent.r[evaluation.group.rows]) for evaluation in self.evaluations]
@@ -275,15 +275,15 @@ class Assembler:
         return best, errors
 
     def moved(self, q: Vector, going: Sequence[Evaluation], steps: Sequence[Vector]) -> Vector:
-        """Configuration (nq,) after a step of each group, lengths counted in characteristic lengths."""
+        """Configuration (nq,) after a step of each group; lengths are in characteristic lengths."""
         v = np.zeros(self._model.nv)
         for evaluation, step in zip(going, steps, strict=True):
             v[evaluation.group.velocities] = evaluation.unit * step
-        # Pinocchio brings quaternions back to unit length to first order alone.
+        # Pinocchio normalizes quaternions to first order only.
         return np.asarray(pin.normalize(self._model, pin.integrate(self._model, q, v)))
 
     def _descend(self, q: Vector, going: Sequence[Evaluation]) -> tuple[Vector, list[Descent], list[bool]]:
-        """Where the descents of the groups lead to (nq,), the descents, and whether each came to its end."""
+        """The configuration (nq,) after the descents of the groups, the descents, and whether each finished."""
         q = np.array(q)
         self.iterations += 1
         descents = [Descent(evaluation, q) for evaluation in going]
@@ -313,7 +313,7 @@ class Assembler:
 
     @np.errstate(over="ignore", invalid="ignore")
     def _pressed(self, q: Vector, limits: PositionLimits) -> tuple[JointAtLimit, ...]:
-        """The joints at their limits that -Kᵀ r, down the residual, would move beyond them."""
+        """The joints at their limits that the descent direction -Kᵀ r would move beyond them."""
         down = np.zeros(self._model.nv)
         for evaluation in filter(_feasible, self._whole):
             b = evaluation.row_scale * evaluation.residual(q)
@@ -321,7 +321,7 @@ class Assembler:
         return limits.pressed(q, down)
 
     def _room(self, q: Vector, evaluation: Evaluation) -> tuple[Vector, Vector] | None:
-        """How far the velocities of a group may go down and up, in rad and characteristic lengths."""
+        """Distance to the lower and upper limits, by velocity of a group, in rad and characteristic lengths."""
         if self.limits is None:
             return None
         down, up = self.limits.room(q, evaluation.group.velocities)
@@ -333,7 +333,7 @@ def _feasible(evaluation: Evaluation) -> bool:
 
 
 def _work_of_step(group: LoopGroup) -> float:
-    """Multiplications that the smaller one of A Aᵀ and Aᵀ A takes, and what the evaluation of A takes beside them."""
+    """Multiplications for the smaller of A Aᵀ and Aᵀ A, and for the evaluation of A."""
     m, n = len(group.rows), len(group.velocities)
     return float(m) * n * min(m, n) + _WORK_OF_A_CLOSURE * len(group.closures)
 

@@ -1,4 +1,4 @@
-"""A small convex quadratic program: the best step that stays within bounds."""
+"""A small convex quadratic program: the best step within bounds."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ import numpy as np
 from eurdf.kinematics.array import Matrix, Vector
 
 _ROUNDING = 1e-12
-# Changes of the active set, times the dimension and one more.
+# Maximum number of active-set changes, divided by the dimension plus one.
 _MOST_CHANGES = 5
 
 
 def bounded_step(H: Matrix, g: Vector, G: Matrix, h: Vector) -> Vector:
     """The y that minimises ½ yᵀ H y + gᵀ y subject to G y ≤ h.
 
-    A primal active-set method from y = 0. Every iterate is within the bounds and no worse than the one before; should
-    it walk in circles, as it may where many bounds meet, it stops at the best one found.
+    A primal active-set method from y = 0. Every iterate is within the bounds and not worse than the one before. If it
+    cycles, which is possible where many bounds meet, it stops at the best iterate.
 
     Source: Nocedal and Wright, Numerical Optimization, 2006, algorithm 16.3.
 
@@ -23,7 +23,7 @@ def bounded_step(H: Matrix, g: Vector, G: Matrix, h: Vector) -> Vector:
         H: Positive definite (m, m).
         g: (m,).
         G: (n, m).
-        h: Not negative (n,), so that y = 0 is within the bounds.
+        h: Nonnegative (n,), so that y = 0 is feasible.
 
     Returns:
         y (m,).
@@ -42,7 +42,7 @@ def bounded_step(H: Matrix, g: Vector, G: Matrix, h: Vector) -> Vector:
             y = y + reach[nearest] * p
             active.append(nearest)
             continue
-        y = y + p  # the lowest point on the active bounds: do all of them hold it back?
+        y = y + p  # minimum on the active bounds: are all multipliers nonnegative?
         pressures = -np.linalg.lstsq(G[active].T, H @ y + g, rcond=None)[0] if active else np.zeros(1)
         loosest = int(np.argmin(pressures))
         if pressures[loosest] >= -slack:
@@ -52,7 +52,7 @@ def bounded_step(H: Matrix, g: Vector, G: Matrix, h: Vector) -> Vector:
 
 
 def _to_lowest(H: Matrix, slope: Vector, normals: Matrix) -> Vector:
-    """The step (m,) to the lowest point from one with the given slope, across the normals (k, m)."""
+    """The step (m,) to the minimum orthogonal to the normals (k, m), from a point with the given gradient."""
     if not len(normals):
         return -np.asarray(np.linalg.solve(H, slope), dtype=np.float64)
     orthogonal, _ = np.linalg.qr(normals.T, mode="complete")

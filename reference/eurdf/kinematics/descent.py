@@ -9,45 +9,45 @@ import numpy as np
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.evaluation import Evaluation
 
-# A descent gives up after this many steps in a row that bring the squared residual down by less than 2%.
+# A descent gives up after this many consecutive steps that each reduce the squared residual by less than 2%.
 _MOST_IDLE_STEPS = 6
 
 
 class Descent:
-    """Where the descent of one group of loops is, and how far it trusts its steps.
+    """State of the descent of one group of loops.
 
-    A step δ solves (AᵀA + λ1) δ = -Aᵀb, with b the residual and A its derivative, lengths counted in characteristic
-    lengths. With λ in proportion to |b|² it is careful far away and converges quadratically near a solution, also where
-    rows are redundant.
+    A step δ solves (AᵀA + λ1) δ = -Aᵀb, with b the residual and A its derivative, in units of the characteristic
+    length. Since λ is proportional to |b|², steps are small far from a solution, and convergence near it is quadratic,
+    even with redundant rows.
 
     Attributes:
         evaluation: Evaluates the residual of the loops.
-        r: Residual here (m,), m and rad.
+        r: Current residual (m,), m and rad.
         error: Its norm.
     """
 
     def __init__(self, evaluation: Evaluation, q: Vector) -> None:
-        """Begin at q (nq,)."""
+        """Start at q (nq,)."""
         self.evaluation = evaluation
         self._A: Matrix | None = None
         r = evaluation.residual(q)
         b = evaluation.row_scale * r
         self._stay(r, b, float(b.dot(b)))
         self._damping = 1e-3  # λ / |b|²
-        self._expected = math.inf  # what the last step was to take off |b|²
-        self._idle = 0  # steps in a row that hardly brought it further
-        self._more = 8.0  # how much more damping the next step that is refused brings
+        self._expected = math.inf  # expected reduction of |b|² by the last step
+        self._idle = 0  # consecutive steps with little progress
+        self._more = 8.0  # factor of the damping after the next rejected step
 
     @property
     def stuck(self) -> bool:
-        """Whether a further step is not worth its while."""
+        """Whether further steps are not worthwhile."""
         return self._idle > _MOST_IDLE_STEPS or not self._expected > 1e-12 * self._square
 
     def step(self, room: tuple[Vector, Vector] | None = None) -> Vector:
         """The next step (n,), of at most 1 rad or characteristic length.
 
         Args:
-            room: How far each velocity may go down (n,), at most 0, and how far up (n,), at least 0.
+            room: Distances to the lower limits (n,), at most 0, and to the upper limits (n,), at least 0.
         """
         if self._A is None:
             self._A = self.evaluation.jacobian()
@@ -65,7 +65,7 @@ class Descent:
         return step
 
     def arrive(self, q: Vector) -> bool:
-        """Look at the residual at q (nq,), where the step led to, and tell whether to stay there."""
+        """Evaluate the residual at q (nq,), the end of the step; return whether the step is accepted."""
         r = self.evaluation.residual(q)
         b = self.evaluation.row_scale * r
         before, reached = self._square, float(b.dot(b))
@@ -83,11 +83,11 @@ class Descent:
     def _stay(self, r: Vector, b: Vector, square: float) -> None:
         self.r, self.error = r, math.hypot(*r.tolist())
         self._b, self._square = b, square
-        self._A = None  # evaluated with the next step, if there is one
+        self._A = None  # evaluated with the next step
 
 
 def _within(A: Matrix, b: Vector, damping: float, down: Vector, up: Vector) -> Vector:
-    """A damped step that keeps its room: what would leave at its limit stays there, and the others do its part."""
+    """A damped step within the limits: joints that would exceed a limit stay at it, and the others compensate."""
     step = np.zeros(len(down))
     free = np.ones(len(down), dtype=bool)
     while True:
@@ -101,10 +101,10 @@ def _within(A: Matrix, b: Vector, damping: float, down: Vector, up: Vector) -> V
 
 
 def _damped(A: Matrix, b: Vector, damping: float) -> Vector:
-    """The δ that minimises |A δ + b|² + λ |δ|², through the smaller one of A Aᵀ and Aᵀ A."""
+    """The δ that minimises |A δ + b|² + λ |δ|², from the smaller of A Aᵀ and Aᵀ A."""
     wide = A.shape[0] < A.shape[1]
     gram = A @ A.T if wide else A.T @ A
     diagonal = gram.ravel()[:: len(gram) + 1]
-    diagonal += max(damping, 1e-13 * float(diagonal.sum()), 1e-300)  # invertible, redundant rows or not
+    diagonal += max(damping, 1e-13 * float(diagonal.sum()), 1e-300)  # invertible even with redundant rows
     step: Vector = A.T.dot(np.linalg.solve(gram, -b)) if wide else np.linalg.solve(gram, A.T.dot(-b))
     return step

@@ -1,4 +1,4 @@
-"""Velocities of the closed mechanism that give a frame a twist."""
+"""Velocities of the closed mechanism for a desired twist of a frame."""
 
 from __future__ import annotations
 
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
 
 class FrameVelocity(NamedTuple):
-    """The velocity of a robot whose frame moves as asked, or as near to it as it can.
+    """The result of `differential_inverse_kinematics`.
 
     Attributes:
         v: Velocity (nv,), rad/s and m/s, with K v = 0.
         actuated: Velocities (nu,) of the actuators, Sᵀ v, in the order of ``robot.actuation``.
-        twist: Twist (6,) that the frame gets, linear (m/s), then angular (rad/s), in the axes asked for.
-        rank: Number of independent motions of the frame that are used, 6 at most.
+        twist: Resulting twist (6,) of the frame, linear (m/s), then angular (rad/s), in the axes of ``reference``.
+        rank: Number of independent motions of the frame that are used, at most 6.
     """
 
     v: Vector
@@ -44,39 +44,39 @@ def differential_inverse_kinematics(
     *,
     singular: float = 1e-3,
 ) -> FrameVelocity:
-    """The velocity of the closed mechanism that gives a frame a twist.
+    """The velocity of the closed mechanism for a desired twist of a frame.
 
-    With C (nv, r) a basis of the motions that the actuators decide, K C = 0, in which the motions that no actuator
-    decides are as small as can be, and J the Jacobian of the frame, it is v = C (J C)⁺ twist: of all velocities that
-    bring the twist nearest to the one asked for, the one whose actuators are the slowest. Lengths are counted in
-    characteristic lengths. In the pseudoinverse, singular values of J C below a part ``singular`` of the largest count
-    as zero: motions that would take so much faster actuators are left out, and so velocities stay bounded near a
-    singular configuration, |v_a| ≤ |twist| / (``singular`` σ₁).
+    Let C (nv, r) be a basis of the motions that the actuators control, K C = 0, in which uncontrolled motions are
+    minimal, and J the Jacobian of the frame. The result is v = C (J C)⁺ twist: of all velocities that bring the twist
+    nearest to the desired one, the one with the slowest actuators. Lengths are in characteristic lengths. In the
+    pseudoinverse, singular values of J C below the fraction ``singular`` of the largest one count as zero, so motions
+    that need much faster actuators are left out, and velocities stay bounded near a singular configuration:
+    |v_a| ≤ |twist| / (``singular`` σ₁).
 
-    Source: `inverseConstraintKinematicsSpeed` of the toolbox of Batto, De Matteïs and Mansard, 2025, there without a
-    decision on the rank.
+    Source: `inverseConstraintKinematicsSpeed` of the toolbox of Batto, De Matteïs and Mansard, 2025, which does not
+    truncate singular values.
 
     Args:
         robot: The robot. Its actuators may depend on one another.
         q: A closed configuration (nq,).
-        frame: Name of a link, a joint (its frame on the child's side), or a frame of the description.
-        twist: Twist (6,) of the frame against the world: linear (m/s), then angular (rad/s).
-        reference: In which axes: ``pin.LOCAL``, ``pin.WORLD`` or ``pin.LOCAL_WORLD_ALIGNED``.
-        singular: Part of the largest singular value below which one counts as zero, above 0 and below 1.
+        frame: Name of a link, a joint (its frame on the child side), or a frame of the description.
+        twist: Desired twist (6,) of the frame relative to the world: linear (m/s), then angular (rad/s).
+        reference: The axes of the twist: ``pin.LOCAL``, ``pin.WORLD`` or ``pin.LOCAL_WORLD_ALIGNED``.
+        singular: Fraction of the largest singular value below which a singular value counts as zero, between 0 and 1.
 
     Returns:
-        The velocity, and the twist that it gives. Where that is not the one asked for, the frame cannot move so, or
-        could only with much faster actuators.
+        The velocity and the resulting twist. If that differs from the desired one, the frame cannot move so, or only
+        with much faster actuators.
 
     Raises:
-        ValueError: There is no such frame, or its name is that of two; ``q`` is no configuration; ``twist`` is not six
-            finite numbers; ``singular`` is not between 0 and 1.
+        ValueError: The frame is unknown or ambiguous; ``q`` is not a configuration; ``twist`` is not six finite
+            numbers; ``singular`` is not between 0 and 1.
     """
     wanted = np.asarray(twist, dtype=np.float64)
     if wanted.shape != (6,) or not np.isfinite(wanted).all():
-        raise ValueError(f"a twist is six finite numbers, linear (m/s), then angular (rad/s), not {twist!r}")
+        raise ValueError(f"twist is {twist!r}; give six finite numbers, linear (m/s), then angular (rad/s)")
     if not 0.0 < singular < 1.0:
-        raise ValueError(f"singular is {singular!r}; it must be between 0 and 1")
+        raise ValueError(f"singular is {singular!r}; give a number between 0 and 1")
     model, index = robot.model, frame_index(robot.model, frame)
     q = start(robot, q)
     spaces = TangentSpaces(robot)
@@ -90,7 +90,7 @@ def differential_inverse_kinematics(
 
 
 def _actuated_motions(robot: Robot, q: Vector, spaces: TangentSpaces) -> Matrix:
-    """C (nv, r): motions that keep the loops closed and that the actuators decide; Sᵀ C is orthonormal."""
+    """C (nv, r): motions that keep the loops closed and that the actuators control; Sᵀ C is orthonormal."""
     _, K = residual_and_jacobian(robot, q)
     free, _ = np.linalg.qr(spaces.at(K).basis / spaces.scale[:, None])
     _, values, right = np.linalg.svd(free[robot.actuation.idx_v], full_matrices=False)

@@ -1,13 +1,13 @@
-"""Dynamics of the closed mechanism: the acceleration that torques make, and the torques that an acceleration takes.
+"""Forward and inverse dynamics of the closed mechanism.
 
-The equation of motion and the closures, differentiated twice, are
+The equation of motion and the second derivative of the closures are
 
     M(q) a + h(q, v) = S u + τ + Kᵀ λ,        K(q) a + K̇(q, v) v = 0,
 
 with K the derivative of the residual of `eurdf.kinematics.residual`. The forces λ of a closure are conjugate to its
-rows, so that λᵀ K v is their power: at a closed configuration (EU-CLO-008, EU-CLO-009), the force (N), and for a 6d
-closure also the moment (N·m), that act at frame A on the body of B, in the axes of A. The body of A gets the opposite.
-Pinocchio's ``contact_force`` is what acts on the body of A: the negative of it.
+rows: λᵀ K v is their power. At a closed configuration (EU-CLO-008, EU-CLO-009) they are the force (N), and for a 6d
+closure also the moment (N·m), that act at frame A on the body of B, in the axes of A. The opposite acts on the body of
+A, which is Pinocchio's ``contact_force``.
 """
 
 from __future__ import annotations
@@ -39,22 +39,22 @@ if TYPE_CHECKING:
 #: Forces and moments at frames, by frame name: six numbers each, or a `pin.Force`.
 External = Mapping[str, ArrayLike]
 
-# What Pinocchio's solver may leave, of the largest term, in either equation.
+# Accepted error of Pinocchio's solver in either equation, relative to the largest term.
 _SOLVED = 1e-9
 
-# Of the largest inertia of a free motion, what is below this is none.
+# An inertia below this, relative to the largest one of a free motion, counts as zero.
 _MASSLESS = 1e-14
 
-# μ regularises the solver's first step alone: with the steps that follow it has no part in the answer.
+# μ regularizes only the first step of the solver; after the following steps the result does not depend on it.
 _MU, _MOST_PROXIMAL_STEPS = 1e-8, 50
 
 
 class ForwardDynamics(NamedTuple):
-    """What the torques make of a motion.
+    """The result of `forward_dynamics`.
 
     Attributes:
         a: Acceleration (nv,), rad/s² and m/s².
-        forces: For each closure, in their order, λ: (3,) N, or (6,) N and N·m. See the head of this module.
+        forces: λ of each closure, in file order: (3,) N, or (6,) N and N·m; see the docstring of the module.
     """
 
     a: Vector
@@ -62,11 +62,11 @@ class ForwardDynamics(NamedTuple):
 
 
 class InverseDynamics(NamedTuple):
-    """What a motion takes.
+    """The result of `inverse_dynamics`.
 
     Attributes:
         u: Motor torques (nu,), in the order of the actuation, N·m and N.
-        forces: For each closure, in their order, λ: (3,) N, or (6,) N and N·m. See the head of this module.
+        forces: λ of each closure, in file order: (3,) N, or (6,) N and N·m; see the docstring of the module.
     """
 
     u: Vector
@@ -89,32 +89,32 @@ def forward_dynamics(
 
     Solves M a + h = S u + τ + Kᵀ λ together with K a + K̇ v = -kd K v - kp r, through Pinocchio's proximal solver
     (Carpentier, Budhiraja, Mansard, *Proximal and sparse resolution of constrained dynamic equations*, 2021).
-    Redundant rows share their force so that λ is the least, lengths counted in characteristic lengths.
+    With redundant rows, λ is the solution with the least norm, in units of the characteristic length.
 
-    Pinocchio's solver does not take joints that mimic; it wants inertia at every joint, also where the closures leave
-    it no motion of its own; it takes rows that differ by the rounding of numbers in files for independent ones, which
-    lock the mechanism. So its answer counts where it satisfies both equations to 1e-9, with the rank of K that
-    `analyze` counts. Elsewhere they are solved by elimination.
+    Pinocchio's solver does not support mimic joints. It needs inertia at every joint, even at one that the closures do
+    not let move. And it treats redundant rows that differ by rounding as independent rows, which lock the mechanism. So
+    its solution is used only if it satisfies both equations to 1e-9 with the rank of K that `analyze` finds. Otherwise
+    the equations are solved by elimination.
 
-    M contains the armature. Limits of joints and of motors are not looked at.
+    M includes the armature. Limits of joints and motors are ignored.
 
     Args:
         robot: The robot.
         q: Configuration (nq,), closed.
-        v: Velocity (nv,), with K v = 0. One that opens the closures keeps opening them, but for ``gains``.
+        v: Velocity (nv,), with K v = 0. A velocity that opens the closures is not corrected, except by ``gains``.
         u: Motor torques (nu,), in the order of the actuation, N·m and N; zero by default.
-        tau: Further generalized forces (nv,), such as of springs, N·m and N.
-        external: For frames of the model, by name, the force and moment (6,) that act at its origin, in the axes of
-            the world, N and N·m.
-        dissipation: Whether damping and dry friction of the joints act: -d v - f sign(v). They do not by default.
-            Friction does not hold what stands still: sign(0) = 0.
-        gains: Baumgarte's kp (1/s²) and kd (1/s), which draw an open mechanism closed; kd = 2 √kp without overshoot.
-            Those that the constraint models carry by default, which are zero unless set.
-        data: A `pin.Data` of the model to compute in; without one, one is made.
+        tau: Additional generalized forces (nv,), for instance of springs, N·m and N.
+        external: For frames of the model, by name, the force and moment (6,) that act at the frame's origin, in world
+            axes, N and N·m.
+        dissipation: Whether damping and dry friction of the joints act: -d v - f sign(v). Friction does not act at
+            rest, since sign(0) = 0.
+        gains: Baumgarte gains kp (1/s²) and kd (1/s), which close an open mechanism; kd = 2 √kp for critical damping.
+            The default is the gains of the constraint models, which are zero unless set.
+        data: A `pin.Data` of the model to compute in; by default a new one is created.
 
     Raises:
-        ValueError: A vector is of another shape or not finite, a frame is not known.
-        UndeterminedMotion: Something without inertia can move.
+        ValueError: A vector has a wrong shape or is not finite, or a frame is unknown.
+        UndeterminedMotion: A joint without inertia can move.
     """
     motion = _Motion(robot, q, v, data)
     force = motion.applied(u, tau, external, dissipation)
@@ -140,15 +140,15 @@ def inverse_dynamics(
     tolerance: float = 1e-6,
     data: Any = None,
 ) -> InverseDynamics:
-    """Motor torques that a motion of the closed mechanism takes, and the forces in its closures.
+    """Motor torques for a motion of the closed mechanism, and the forces in its closures.
 
-    Solves S u + Kᵀ λ = M a + h - τ. With N a basis of the motions that the closures leave, K N = 0, the torques are
-    those of least Σ wᵢ uᵢ² with Nᵀ S u = Nᵀ (M a + h - τ); λ is the least that does the rest, lengths counted in
-    characteristic lengths. (Nakamura, Ghodoussi, *Dynamics computation of closed-link robot mechanisms with
-    nonredundant and redundant actuators*, 1989.) It is the inverse of `forward_dynamics`.
+    Solves S u + Kᵀ λ = M a + h - τ. With N a basis of the free motions, K N = 0, the torques minimise Σ wᵢ uᵢ² subject
+    to Nᵀ S u = Nᵀ (M a + h - τ); λ is the solution with the least norm, in units of the characteristic length.
+    (Nakamura, Ghodoussi, *Dynamics computation of closed-link robot mechanisms with nonredundant and redundant
+    actuators*, 1989.) It is the inverse of `forward_dynamics`.
 
-    A motion that the closures forbid is refused, not changed: project it onto them first. So is one that the motors
-    cannot make; `achievable_acceleration` gives the nearest one that they can.
+    A motion that opens the closures is refused: project it onto them first. A motion that the motors cannot produce is
+    refused, too; `achievable_acceleration` returns the nearest one that they can produce.
 
     Args:
         robot: The robot.
@@ -159,17 +159,18 @@ def inverse_dynamics(
         external: As in `forward_dynamics`.
         dissipation: As in `forward_dynamics`.
         weights: w (nu,), positive; all 1 by default.
-        tolerance: By how much v and a may differ from the nearest that keep the closures closed, and a from what the
-            motors can make, in parts of 1 plus the largest component (rad and s, or characteristic lengths).
+        tolerance: Accepted difference of v and a from the nearest ones that keep the closures closed, and of a from the
+            nearest one that the motors can produce, relative to 1 plus the largest component (rad and s, or
+            characteristic lengths).
         data: As in `forward_dynamics`.
 
     Raises:
-        ValueError: A vector is of another shape or not finite, a frame is not known, a weight is not positive.
+        ValueError: A vector has a wrong shape or is not finite, a frame is unknown, or a weight is not positive.
         InconsistentMotion: v or a does not keep the closures closed.
-        UnderactuatedMotion: The motors cannot make this motion.
+        UnderactuatedMotion: The motors cannot produce this motion.
     """
     motion = _Motion(robot, q, v, data)
-    a = checked_vector(a, robot.model.nv, "an acceleration")
+    a = checked_vector(a, robot.model.nv, "the acceleration")
     S, norm = robot.actuation.selection, _norm(robot, weights)
     motion.refuse_open(a, tolerance)
     force = motion.bias - motion.applied(None, tau, external, dissipation)
@@ -195,11 +196,11 @@ def achievable_acceleration(
     tolerance: float = 1e-6,
     data: Any = None,
 ) -> Vector:
-    """The acceleration that the motors can make, which moves them as the one given does.
+    """The acceleration that the motors can produce, with the given accelerations of the motors.
 
-    What moves with every motor held goes as the dynamics has it: with U a basis of these motions, K U = 0 and
-    Sᵀ U = 0, the result is a' = a + U z with Uᵀ (M a' + h - τ) = 0. By Gauss' principle no other such acceleration is
-    as near to the unconstrained one. `inverse_dynamics` takes what comes out.
+    The uncontrolled motions follow from the dynamics: with U a basis of them, K U = 0 and Sᵀ U = 0, the result is
+    a' = a + U z with Uᵀ (M a' + h - τ) = 0. By Gauss' principle it is the one nearest to the unconstrained
+    acceleration. `inverse_dynamics` accepts the result.
 
     Args:
         robot: The robot.
@@ -216,12 +217,12 @@ def achievable_acceleration(
         a' (nv,), rad/s² and m/s².
 
     Raises:
-        ValueError: A vector is of another shape or not finite, a frame is not known.
+        ValueError: A vector has a wrong shape or is not finite, or a frame is unknown.
         InconsistentMotion: v or a does not keep the closures closed.
-        UnderactuatedMotion: What is without inertia would have to take a force.
+        UnderactuatedMotion: A motion without inertia would need a force.
     """
     motion = _Motion(robot, q, v, data)
-    a = checked_vector(a, robot.model.nv, "an acceleration")
+    a = checked_vector(a, robot.model.nv, "the acceleration")
     motion.refuse_open(a, tolerance)
     force = motion.bias - motion.applied(None, tau, external, dissipation)
     deviation, missing = _uncontrolled(motion, motion.mass(a), force)
@@ -231,14 +232,14 @@ def achievable_acceleration(
 
 
 class _Motion:
-    """A robot in motion, and what its equations are made of there.
+    """The terms of the equations of motion at a configuration and velocity.
 
     Attributes:
         r: Residual (nc,).
         K: Its derivative (nc, nv).
         drift: K̇ v (nc,).
-        P: Generalized inverse of K (nv, nc): P b is the least of the x with K x = b, lengths counted in
-            characteristic lengths; Pᵀ f the least of the λ with Kᵀ λ = f.
+        P: Pseudoinverse of K (nv, nc): P b is the x with K x = b of least norm, Pᵀ f the λ with Kᵀ λ = f of least norm,
+            in units of the characteristic length.
         unit: Unit (nv,) of each velocity: a characteristic length, or 1.
         bias: h (nv,).
     """
@@ -247,7 +248,7 @@ class _Motion:
         model = robot.model
         self.robot = robot
         self.q = start(robot, q)
-        self.v = checked_vector(v, model.nv, "a velocity")
+        self.v = checked_vector(v, model.nv, "the velocity")
         self.data = model.createData() if data is None else data
         self.loops = find_loops(robot)
         self.r, self.K = residual_and_jacobian(robot, self.q, self.data)
@@ -259,7 +260,7 @@ class _Motion:
 
     @cached_property
     def free(self) -> Matrix:
-        """Basis (nv, f) of the motions that the closures leave, orthonormal in the units of the velocities."""
+        """Basis (nv, f) of the free motions, orthonormal in the units of the velocities."""
         return np.linalg.qr(self._basis / self.unit[:, None])[0]
 
     @cached_property
@@ -269,9 +270,9 @@ class _Motion:
 
     @cached_property
     def by_motors(self) -> tuple[Matrix, Matrix]:
-        """Orthonormal bases, (f, k) and (f, f - k), of the free motions that motors make and of those that none makes.
+        """Orthonormal bases, (f, k) and (f, f - k), of the controlled and of the uncontrolled free motions.
 
-        The rank k is counted as in `numerical_rank`. With the second, Z, no motor moves along N Z.
+        The rank k is the `numerical_rank`. With the second, Z, no motor moves along N Z.
         """
         S = self.robot.actuation.selection
         if not S.shape[1]:
@@ -281,12 +282,12 @@ class _Motion:
         return basis[:, :rank], basis[:, rank:]
 
     def differ(self, change: Vector, given: Vector, tolerance: float) -> bool:
-        """Whether a velocity or acceleration (nv,) changed so is another: by parts of 1 + its largest component."""
+        """Whether a change of a velocity or acceleration (nv,) exceeds tolerance · (1 + its largest entry)."""
         largest = np.abs(change / self.unit).max(initial=0.0)
         return bool(largest > tolerance * (1.0 + np.abs(given / self.unit).max(initial=0.0)))
 
     def mass(self, a: Vector) -> Vector:
-        """M a, with the armature."""
+        """M a, including the armature."""
         return np.asarray(pin.rnea(self.robot.model, self.data, self.q, self.v, a) - self.bias)
 
     def mass_along(self, motions: Matrix) -> Matrix:
@@ -300,7 +301,7 @@ class _Motion:
         if u is not None:
             force += S @ checked_vector(u, S.shape[1], "the motor torques")
         if tau is not None:
-            force += checked_vector(tau, model.nv, "a generalized force")
+            force += checked_vector(tau, model.nv, "the generalized force")
         if external:
             at_joints = _at_joints(model, self.data, self.q, external)
             still = np.zeros(model.nv)
@@ -310,12 +311,12 @@ class _Motion:
         return force
 
     def refuse_open(self, a: Vector, tolerance: float) -> None:
-        """Raise `InconsistentMotion` where v or a would open the closures."""
+        """Raise `InconsistentMotion` if v or a would open the closures."""
         for order, opening, given in (
             ("velocity", self.K @ self.v, self.v),
             ("acceleration", self.K @ a + self.drift, a),
         ):
-            change = self.P @ opening  # nothing of what redundant rows have by rounding
+            change = self.P @ opening  # without the rounding errors of redundant rows
             if self.differ(change, given, tolerance):
                 opening = self.K @ change
                 least = 1e-3 * np.abs(opening).max()
@@ -327,9 +328,9 @@ class _Motion:
 
 
 def _proximal(motion: _Motion, constraint_models: Any, force: Vector, target: Vector) -> ForwardDynamics | None:
-    """What Pinocchio's solver finds; None where that does not solve the equations.
+    """The solution of Pinocchio's solver; None if it does not satisfy the equations.
 
-    Forces along rows that P does not count are left out of it, and so cannot hold anything.
+    Force components along rows that are redundant in P are removed.
     """
     model, data = motion.robot.model, motion.data
     constraint_datas = pin.StdVec_RigidConstraintData()
@@ -358,7 +359,7 @@ def _proximal(motion: _Motion, constraint_models: Any, force: Vector, target: Ve
 
 
 def _eliminate(motion: _Motion, force: Vector, target: Vector) -> ForwardDynamics:
-    """The equations in the motions that the closures leave: a = P b + N z, with Nᵀ M N z = Nᵀ (τ - h - M P b)."""
+    """Solve the equations in the free motions: a = P b + N z, with Nᵀ M N z = Nᵀ (τ - h - M P b)."""
     N, P = motion.N, motion.P
     a = P @ target
     MN = motion.mass_along(N)
@@ -374,7 +375,7 @@ def _eliminate(motion: _Motion, force: Vector, target: Vector) -> ForwardDynamic
 
 
 def _uncontrolled(motion: _Motion, inertial: Vector, force: Vector) -> tuple[Vector, Vector]:
-    """How far an acceleration is from what the motors can make.
+    """The part of an acceleration that the motors cannot produce.
 
     Args:
         motion: The robot in motion.
@@ -382,8 +383,8 @@ def _uncontrolled(motion: _Motion, inertial: Vector, force: Vector) -> tuple[Vec
         force: h - τ (nv,).
 
     Returns:
-        What a has too much (nv,), along motions that no motor moves, and the generalized force (nv,) that is missing
-        along those of them that have no inertia.
+        The deviation of a (nv,) along the uncontrolled motions, and the missing generalized force (nv,) along those of
+        them that have no inertia.
     """
     _, Z = motion.by_motors
     if not Z.shape[1]:
@@ -404,7 +405,7 @@ def _refuse_uncontrolled(motion: _Motion, a: Vector, deviation: Vector, missing:
     if missing.any():
         raise UnderactuatedMotion(_by_joint(model, missing), np.inf)
     if motion.differ(deviation, a, tolerance):
-        # The least force, besides motors and closures, that does it.
+        # The least additional force that produces the motion.
         along = motion.free @ motion.by_motors[1]
         force = along @ (along.T @ (motion.unit * motion.mass(deviation))) / motion.unit
         raise UnderactuatedMotion(_by_joint(model, force), float(np.abs(deviation / motion.unit).max()))
@@ -424,7 +425,7 @@ def _stabilised(robot: Robot, gains: tuple[float, float] | None) -> tuple[Any, V
 
 
 def _at_joints(model: Any, data: Any, q: Vector, external: External) -> Any:
-    """The forces at frames as Pinocchio's, at each joint and in its axes."""
+    """The forces at frames as Pinocchio needs them: at each joint, in the joint's axes."""
     pin.forwardKinematics(model, data, q)
     forces = [pin.Force.Zero() for _ in range(model.njoints)]
     for name, given in external.items():
@@ -446,7 +447,7 @@ def _norm(robot: Robot, weights: Vector | None) -> Vector:
         return np.ones(nu)
     given = checked_vector(weights, nu, "the weights")
     if not (given > 0.0).all():
-        raise ValueError("a weight of a motor is not positive")
+        raise ValueError("weights of motors must be positive")
     return np.asarray(1.0 / np.sqrt(given))
 
 
@@ -455,7 +456,7 @@ def _per_closure(loops: tuple[Loop, ...], lambdas: Vector) -> tuple[Vector, ...]
 
 
 def _by_joint(model: Any, values: Vector) -> dict[str, tuple[float, ...]]:
-    """The values (nv,) of the joints in which one is more than rounding, by joint name."""
+    """The values (nv,) by joint name, for the joints that have a value above rounding."""
     least = 1e-6 * np.abs(values).max(initial=0.0)
     found, names = {}, velocity_names(model)
     for first, width in zip(model.idx_vs, model.nvs, strict=True):
@@ -466,10 +467,10 @@ def _by_joint(model: Any, values: Vector) -> dict[str, tuple[float, ...]]:
 
 
 def checked_vector(given: ArrayLike, size: int, what: str) -> Vector:
-    """The numbers given, as an array of this size (size,) that is finite."""
+    """The given numbers as a finite array (size,)."""
     values = np.asarray(given, dtype=np.float64)
     if values.shape != (size,):
-        raise ValueError(f"{what} has the shape ({size},) here, not {values.shape}")
+        raise ValueError(f"{what} has the shape {values.shape}; this robot needs ({size},)")
     if not np.isfinite(values).all():
         raise ValueError(f"{what} has a number that is not finite")
     return values

@@ -1,4 +1,4 @@
-"""What the kinematics and dynamics of a closed mechanism raise."""
+"""Exceptions of the kinematics and dynamics of a closed mechanism."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ if TYPE_CHECKING:
 
 
 class CannotLock(EurdfError, ValueError):  # noqa: N818 - part of the public interface
-    """A joint that cannot be locked.
+    """A joint cannot be locked.
 
     Attributes:
-        joint: Its name, as the caller gave it.
-        reason: Why not.
-        leader: The joint to lock in its place, where it follows one; else None.
+        joint: Its name.
+        reason: Why it cannot be locked.
+        leader: For a mimic joint, the joint to lock instead; else None.
     """
 
     def __init__(self, joint: str, reason: str, leader: str | None = None) -> None:
@@ -30,11 +30,11 @@ class CannotLock(EurdfError, ValueError):  # noqa: N818 - part of the public int
 
 
 class LockedOpen(EurdfError, ValueError):  # noqa: N818 - part of the public interface
-    """Closures that locked joints would hold open.
+    """Locked joints would hold closures open.
 
     Attributes:
-        openings: How far each of them is open.
-        tolerance: What each row of their residual may be, m or rad.
+        openings: How far each of these closures is open.
+        tolerance: Bound of each row of their residual, m or rad.
     """
 
     def __init__(self, openings: tuple[Opening, ...], tolerance: float) -> None:
@@ -42,15 +42,15 @@ class LockedOpen(EurdfError, ValueError):  # noqa: N818 - part of the public int
         self.tolerance = tolerance
         apart = ", ".join(map(str, openings))
         super().__init__(
-            f"locked there, closures stay open: {apart}; each row of their residual may be {tolerance:g} m or rad"
+            f"closures stay open with the joints locked there: {apart}; the tolerance is {tolerance:g} m or rad"
         )
 
 
 class NotClosable(EurdfError, ValueError):  # noqa: N818 - part of the public interface
-    """Loops that were not closed as asked.
+    """No configuration was found that closes the loops.
 
     Attributes:
-        openings: How far each closure is open, at the least open configuration found.
+        openings: How far each closure is open at the least open configuration found.
         q: That configuration (nq,).
     """
 
@@ -62,12 +62,12 @@ class NotClosable(EurdfError, ValueError):  # noqa: N818 - part of the public in
 
 
 class DependentActuators(EurdfError, ValueError):  # noqa: N818 - part of the public interface
-    """Actuated joints that the closures do not let move independently of one another.
+    """The closures do not let the actuated joints move independently.
 
     Attributes:
-        joints: Those of them that depend on others, or cannot move at all.
+        joints: The actuated joints that depend on others or cannot move at all.
         actuated: Number of actuated velocities, nu.
-        rank: Number of independent ones.
+        rank: Number of independent actuated velocities.
     """
 
     def __init__(self, joints: tuple[str, ...], actuated: int, rank: int) -> None:
@@ -76,17 +76,17 @@ class DependentActuators(EurdfError, ValueError):  # noqa: N818 - part of the pu
         self.rank = rank
         names = ", ".join(f"'{name}'" for name in joints)
         super().__init__(
-            f"of {actuated} actuated velocities only {rank} are independent in the closed mechanism; "
-            f"the loops tie together or hold {names}"
+            f"only {rank} of {actuated} actuated velocities are independent in the closed mechanism; "
+            f"the loops couple or block {names}"
         )
 
 
 class InconsistentMotion(EurdfError, ValueError):  # noqa: N818 - part of the public interface
-    """A velocity or an acceleration that would open closures.
+    """A velocity or an acceleration would open closures.
 
     Attributes:
         order: ``velocity`` or ``acceleration``.
-        opening: For each closure that would open, the rows of K v or of K a + K̇ v, in m and rad over s or s².
+        opening: For each closure that would open, the rows of K v or of K a + K̇ v, in m and rad per s or s².
     """
 
     def __init__(self, order: str, opening: Mapping[str, tuple[float, ...]]) -> None:
@@ -94,48 +94,52 @@ class InconsistentMotion(EurdfError, ValueError):  # noqa: N818 - part of the pu
         self.opening = opening
         closures = ", ".join(f"'{name}' by {math.hypot(*rows):.3g}" for name, rows in opening.items())
         unit = {"velocity": "m/s and rad/s", "acceleration": "m/s² and rad/s²"}[order]
-        super().__init__(f"the {order} opens closures: {closures} ({unit}); it can be projected onto them")
+        super().__init__(f"the {order} opens closures: {closures} ({unit}); project it with project_{order} first")
 
 
 class UnderactuatedMotion(EurdfError, ValueError):  # noqa: N818 - part of the public interface
-    """A motion that the motors cannot make.
+    """The motors cannot produce a motion.
 
     Attributes:
-        missing: For each joint that moves though every motor is held, the generalized force that would have to act on
-            it as well, N·m and N.
-        deviation: By how much the acceleration that the motors can make differs, in its largest component, rad/s² or
-            characteristic lengths/s²; inf where what has no inertia would have to take a force.
+        missing: For each joint with an uncontrolled motion, the additional generalized force that the motion needs, N·m
+            and N.
+        deviation: Largest component of the difference from the acceleration that the motors can produce, rad/s² or
+            characteristic lengths/s²; inf if a motion without inertia would need a force.
     """
 
     def __init__(self, missing: Mapping[str, tuple[float, ...]], deviation: float) -> None:
         self.missing = missing
         self.deviation = deviation
         joints = ", ".join(f"'{name}' {math.hypot(*force):.3g}" for name, force in missing.items())
-        super().__init__(f"the motors cannot make this motion: forces are missing at joints that none moves: {joints}")
+        super().__init__(
+            f"the motors cannot produce this motion; it needs additional forces (N·m, N) at joints {joints}"
+        )
 
 
 class UndeterminedMotion(EurdfError, ValueError):  # noqa: N818 - part of the public interface
-    """Something without inertia can move, so that no acceleration follows from the forces.
+    """A motion without inertia is free, so the forces do not determine the acceleration.
 
     Attributes:
-        joints: Names of the joints that such a motion moves.
+        joints: Names of the joints of such motions.
     """
 
     def __init__(self, joints: tuple[str, ...]) -> None:
         self.joints = joints
         named = ", ".join(f"'{name}'" for name in joints)
-        super().__init__(f"no acceleration follows from the forces: what moves has no inertia at joints {named}")
+        super().__init__(f"the forces do not determine the acceleration: joints {named} move without inertia; add mass")
 
 
 class SimulationDiverged(EurdfError, ArithmeticError):  # noqa: N818 - part of the public interface
-    """A simulation whose steps are too long for the motion.
+    """The time step of a simulation is too long for the motion.
 
     Attributes:
-        t: Time at which it came to no number any more, s.
-        step: Time of a step, s.
+        t: Time at which the simulation diverged, s.
+        step: Time step, s.
     """
 
     def __init__(self, t: float, step: float) -> None:
         self.t = t
         self.step = step
-        super().__init__(f"the simulation diverges at {t:.6g} s: its steps of {step:g} s are too long for the motion")
+        super().__init__(
+            f"the simulation diverges at {t:.6g} s: the time step of {step:g} s is too long; use a smaller one"
+        )

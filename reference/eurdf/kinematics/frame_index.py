@@ -7,12 +7,12 @@ from typing import Any
 
 
 def frame_index(model: Any, name: str) -> int:
-    """Index in ``model.frames`` of the frame that a name stands for.
+    """Index in ``model.frames`` of the frame with this name.
 
-    A link and a joint may share a name where they share the frame (EU-FRM-002).
+    A link and a joint can have the same name if they have the same frame (EU-FRM-002).
 
     Raises:
-        ValueError: There is no such frame, or the name stands for two different ones.
+        ValueError: The frame is unknown, or two different frames have this name.
     """
     found = [(index, frame) for index, frame in enumerate(model.frames) if frame.name == name]
     if not found:
@@ -21,5 +21,5 @@ def frame_index(model: Any, name: str) -> int:
     index, first = found[0]
     for _, other in found[1:]:
         if other.parentJoint != first.parentJoint or not other.placement.isApprox(first.placement, 1e-12):
-            raise ValueError(f"'{name}' is the name of two frames of the model that are not the same")
+            raise ValueError(f"frame name '{name}' is ambiguous: two different frames of the model have it")
     return index

@@ -24,18 +24,19 @@ if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 _MOST_STEPS = 60
-# A descent gives up after this many steps in a row that bring the squared error down by less than a part of it: one
-# that is to reach the targets by 2%, the last one, where they are out of reach, by next to nothing; ...
+# A descent gives up after this many consecutive idle steps. A step is idle if it reduces the squared error by less than
+# this fraction; the last descent, after which the target is out of reach, uses a smaller fraction.
 _MOST_IDLE_STEPS = 6
 _IDLE = 0.02
 _IDLE_AT_LAST = 1e-8
-# ... or when a step is to bring it down by less than this part of it.
+# A descent also ends if the expected reduction of the next step is below this fraction of the squared error.
 _LEAST_GAIN = 1e-12
-# How far from the start further descents begin (rad, or characteristic lengths); the last one is repeated.
+# Distance of the restarts from the start (rad, or characteristic lengths); the last one is repeated.
 _SPREADS = (0.2, 0.5, 1.0, 2.0)
-# The squared error has no slope where that is below this part of |A| |e|, |A| no less than its least value elsewhere.
+# The gradient of the squared error counts as zero below this fraction of |A| |e|; |A| is at least its smallest value
+# met.
 _FLAT = 0.02
-# A configuration is singular where the smallest singular value of A is below this part of what it was elsewhere.
+# A configuration is singular if the smallest singular value of A is below this fraction of its largest value met.
 _SINGULAR = 0.05
 
 
@@ -45,8 +46,8 @@ class FrameError:
 
     Attributes:
         frame: Name of the frame.
-        position: Distance between its origin and the target's, m.
-        angle: Angle between its axes and the target's, rad; 0 where the target is a position, which leaves it free.
+        position: Distance of its origin from that of the target, m.
+        angle: Angle between its axes and those of the target, rad; 0 if the target is a position.
     """
 
     frame: str
@@ -59,31 +60,31 @@ class FrameError:
 
 
 #: Why inverse kinematics did not converge: closures stay open; joints at their limits keep the frames off target; the
-#: configuration is singular, at the edge of what the mechanism reaches; no motion of the mechanism brings the frames
-#: nearer; or the steps ended on the way.
+#: configuration is singular, at the edge of the workspace; no motion of the mechanism brings the frames nearer; or the
+#: maximum number of steps was reached.
 InverseKinematicsReason = Literal["closures open", "joint limits", "singular", "out of reach", "steps"]
 
 _SENTENCES: dict[InverseKinematicsReason, str] = {
     "closures open": "closures stay open",
     "joint limits": "joints are at their limits",
-    "singular": "the configuration is singular, at the edge of what the mechanism reaches",
+    "singular": "the configuration is singular, at the edge of the workspace",
     "out of reach": "no motion of the mechanism brings the frames nearer",
-    "steps": "the steps ended on the way; start nearer, or allow more restarts",
+    "steps": "the maximum number of steps was reached; start nearer, or allow more restarts",
 }
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class InverseKinematics:
-    """What `inverse_kinematics` found.
+    """The result of `inverse_kinematics`.
 
     Attributes:
-        q: Configuration (nq,): closed and within the limits, if any such was found, and nearest to the targets.
+        q: The configuration (nq,) nearest to the targets: closed and within the limits, if such a one was found.
         converged: Whether every frame is at its target, and every loop closed, within the tolerances.
         errors: How far each frame is from its target, in the order of the targets.
-        open: How far each closure is open at q, in their order.
+        open: How far each closure is open at q, in file order.
         iterations: Number of steps tried.
-        reason: Why it did not converge; None where it did.
-        at_limits: The joints that are at their limits at q, and would have to go beyond them to come nearer.
+        reason: Why it did not converge; None if it did.
+        at_limits: The joints that are at their limits at q and would have to exceed them to come nearer.
     """
 
     q: Vector
@@ -113,45 +114,46 @@ def inverse_kinematics(
     tolerance: float = 1e-8,
     restarts: int = 10,
 ) -> InverseKinematics:
-    """Bring frames of the closed mechanism to where they are wanted.
+    """Move frames of the closed mechanism to targets.
 
-    It minimises the sum over the frames of |oMf.translation - p|² / L² + |log3(Rᵀ oMf.rotation)|², the second for
-    targets that are poses, L the characteristic length of the robot's loops (1 m without loops), subject to r(q) = 0
-    and the joint limits. Every step is a damped Gauss-Newton step y along the closed configurations, v = Z y with
-    K Z = 0, bounded by the limits (an active set), and closed again by `assemble`: so loops are closed and limits kept
-    at every step, whether or not the targets can be reached. Where a descent ends off target, others start around q0.
+    It minimises the sum over the frames of |oMf.translation - p|² / L² + |log3(Rᵀ oMf.rotation)|² (the second term only
+    for targets that are poses), subject to r(q) = 0 and the joint limits. L is the characteristic length of the robot's
+    loops (1 m without loops). Every step is a damped Gauss-Newton step y along the closed configurations, v = Z y with
+    K Z = 0, bounded by the limits (active set), after which `assemble` closes the loops. So loops are closed and limits
+    respected at every step, even if the targets cannot be reached. If a descent ends off target, others start around
+    q0.
 
-    Source: `closedLoopInverseKinematics` of the toolbox of Batto, De Matteïs and Mansard, 2025, there with the loops as
-    equality constraints of a general solver.
+    Source: `closedLoopInverseKinematics` of the toolbox of Batto, De Matteïs and Mansard, 2025, which passes the loops
+    to a general solver as equality constraints.
 
     Args:
         robot: The robot.
-        targets: For each frame, by the name of a link, of a joint (its frame on the child's side) or of a frame of the
-            description, where it is wanted in the world: a pose (`pin.SE3`), or a position (3,), m, that leaves its
-            orientation free.
-        q0: Where to start (nq,): of all solutions, it ends at one near by. It is closed first, and brought within the
-            limits, unless its closures are open by no more than 1e-6 and its frames at their targets: then it is the
-            answer. The `assembled` configuration by default, or else the neutral one.
-        limits: Whether to keep the position limits of the joints whose coordinates are plain angles or lengths. Those
-            of a joint that mimics another are not looked at. A range of zero width counts as no range
-            (`urdf-no-range`), unless it is ``"strict"``: then such a joint does not move.
-        tolerance: How far a frame may be from its target, m and rad; loops are closed to 1e-10 where they can be.
-        restarts: How often to start again, at most, where frames are off target. The time is bounded by
-            ``restarts`` + 2 descents of at most 60 steps.
+        targets: For each frame its target in the world: a pose (`pin.SE3`), or a position (3,), m, that leaves the
+            orientation free. A frame is given by the name of a link, a joint (its frame on the child side) or a frame
+            of the description.
+        q0: Where to start (nq,); the solution is near it. It is closed and clipped to the limits first. If it already
+            is a solution, within 1e-6 for the closures, it is returned. The default is the `assembled` configuration,
+            or the neutral one if there is none.
+        limits: Whether to respect the position limits of joints whose coordinates are angles or lengths. Limits of
+            mimic joints are ignored. A range of zero width counts as no range (`urdf-no-range`), unless ``limits`` is
+            ``"strict"``: then such a joint does not move.
+        tolerance: Bound of the distance of a frame from its target, m and rad. Loops are closed to 1e-10 if possible.
+        restarts: Maximum number of restarts while frames are off target. The time is bounded by ``restarts`` + 2
+            descents of at most 60 steps.
 
     Returns:
-        The configuration found. The same arguments give the same answer.
+        The configuration found. The result is deterministic.
 
     Raises:
-        ValueError: ``q0`` is no configuration; a frame is unknown, or its name stands for two; a target is neither a
-            pose nor a finite position.
+        ValueError: ``q0`` is not a configuration; a frame is unknown or ambiguous; a target is neither a pose nor a
+            finite position.
     """
     search = _Search(robot, targets, limits, tolerance)
     return search.run(start(robot, q0), restarts)
 
 
 class _Search:
-    """The descents of one question."""
+    """The descents for one set of targets."""
 
     def __init__(self, robot: Robot, targets: Mapping[str, Any], limits: Limits, tolerance: float) -> None:
         self.robot = robot
@@ -166,7 +168,7 @@ class _Search:
         self.iterations = 0
         self.limits = chosen_limits(robot.model, limits)
         self.velocities = np.arange(robot.model.nv)
-        # Of E Z, where it was the farthest from singular.
+        # Of E Z, at the configuration farthest from singular.
         self.motions, self.rank, self.smallest = robot.model.nv, 0, 0.0
 
     def run(self, q: Vector, restarts: int) -> InverseKinematics:
@@ -208,7 +210,7 @@ class _Search:
         )
 
     def _why_off_target(self, q: Vector) -> tuple[InverseKinematicsReason, tuple[JointAtLimit, ...]]:
-        """Why no descent goes on from a closed configuration at which frames are off their targets."""
+        """Why no descent continues from a closed configuration at which frames are off their targets."""
         e, E = self._error_and_jacobian(q)
         Z = self._free_motions(q)
         A = E @ Z
@@ -228,11 +230,11 @@ class _Search:
         return "steps", at_limits
 
     def _descend(self, q: Vector, least: float = _IDLE) -> tuple[Vector, float]:
-        """Where a descent from a closed configuration leads to, and the squared error there.
+        """The configuration after a descent from a closed configuration, and the squared error there.
 
         Args:
             q: Where to start (nq,).
-            least: Part of the squared error that a step must take off it not to be idle.
+            least: A step that reduces the squared error by less than this fraction is idle.
         """
         e, E = self._error_and_jacobian(q)
         self._look_at_rank(E @ self._free_motions(q))
@@ -258,7 +260,7 @@ class _Search:
         return q, cost
 
     def _step(self, q: Vector, e: Vector, E: Matrix, damping: float) -> Vector:
-        """The v (nv,) of ker K that minimises |E v + e|² + λ|v|² within the limits, of at most 1 rad or length."""
+        """The v (nv,) with K v = 0 that minimises |E v + e|² + λ|v|² within the limits; at most 1 rad or length."""
         scale, Z = self.spaces.scale, self._free_motions(q)
         A = E @ Z
         H = A.T @ A
@@ -273,9 +275,10 @@ class _Search:
         return orthonormal(self.spaces.at(K).basis, np.diag(self.spaces.scale**-2.0))
 
     def _look_at_rank(self, A: Matrix) -> None:
-        """Keep the largest rank of A = E Z that was met, and with it the largest of its smallest singular values.
+        """Keep the largest rank of A = E Z met so far, and with it the largest of its smallest singular values.
 
-        Only where Z has the fewest columns: where the loops themselves are singular, it has more, and so may the rank.
+        Only configurations with the fewest columns of Z count: at singular loops, Z has more columns, and the rank can
+        be larger.
         """
         values = _singular_values(A)
         motions, rank = A.shape[1], numerical_rank(values, values.max(initial=0.0))
@@ -284,7 +287,7 @@ class _Search:
             self.motions, self.rank, self.smallest = motions, rank, smallest
 
     def _bounds(self, q: Vector, Z: Matrix) -> tuple[Matrix, Vector]:
-        """G and h such that v = Z y keeps the limits where G y ≤ h: those that a step of 1 rad or length can reach."""
+        """G and h such that v = Z y respects the limits if G y ≤ h, for limits within a step of 1 rad or length."""
         if self.limits is None:
             return np.empty((0, Z.shape[1])), np.empty(0)
         down, up = self.limits.room(q, self.velocities)
@@ -301,7 +304,7 @@ class _Search:
         return q if self.limits is None else self.limits.clip(q, self.velocities)
 
     def _error_and_jacobian(self, q: Vector) -> tuple[Vector, Matrix]:
-        """Errors of all frames, stacked, lengths in characteristic lengths, and their derivative by v."""
+        """Stacked errors of all frames, in characteristic lengths and rad, and their derivative with respect to v."""
         model, data = self.model, self.data
         pin.computeJointJacobians(model, data, q)
         errors, jacobians = [np.empty(0)], [np.empty((0, model.nv))]
@@ -343,7 +346,9 @@ def _target(name: str, target: Any) -> Any:
         R, p = target.rotation, target.translation
         if np.isfinite(p).all() and np.abs(R.T @ R - np.eye(3)).max() <= 1e-6 and np.linalg.det(R) > 0.0:
             return target
-        raise ValueError(f"the target of frame '{name}' is no pose: its rotation or its translation is not sound")
+        raise ValueError(
+            f"the target of frame '{name}' is not a pose: its rotation is not orthonormal, or a number is not finite"
+        )
     try:
         position = np.asarray(target, dtype=np.float64)
     except (TypeError, ValueError):

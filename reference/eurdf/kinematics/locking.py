@@ -1,4 +1,4 @@
-"""Locking joints of a robot: a smaller robot of the same parts, that moves as the first does with these joints held."""
+"""Lock joints of a robot: the result is a smaller robot that moves as the first one with these joints held."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ from eurdf.pinocchio.robot import Geometry, Robot, build_robot
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class LockedRobot(Robot):
-    """A robot some of whose joints are locked.
+    """A robot with locked joints.
 
-    With q (nq,) and v (nv,) of the robot that it comes from, at which the locked joints stand still, its own are
-    ``q[robot.idx_q]`` and ``v[robot.idx_v]``.
+    Let q and v be a configuration and a velocity of the original robot at which the locked joints do not move. Those of
+    this robot are ``q[robot.idx_q]`` and ``v[robot.idx_v]``.
 
     Attributes:
-        locked_joints: Names of the joints that were locked, those that follow one of them too.
-        dropped_closures: Names of the closures that have no constraint model any more, since no joint moves their
-            frames against each other. They are closed.
+        locked_joints: Names of the locked joints, including their mimic joints.
+        dropped_closures: Names of the closures that were removed, because no joint moves their two frames relative to
+            each other any more. They are closed.
         dropped_actuators: Names of the actuators that were locked.
-        dropped_configurations: Names of the configurations that have a locked joint elsewhere.
-        idx_q: Indices, in a q of the robot that it comes from, of its own coordinates (nq,).
-        idx_v: Indices, in a v of that robot, of its own velocities (nv,).
+        dropped_configurations: Names of the configurations with a different pose of a locked joint.
+        idx_q: Indices (nq,) of its coordinates in a q of the original robot.
+        idx_v: Indices (nv,) of its velocities in a v of the original robot.
     """
 
     locked_joints: tuple[str, ...]
@@ -50,37 +50,36 @@ class LockedRobot(Robot):
 def lock(
     robot: Robot, joints: str | Iterable[str], q: Vector | None = None, *, tolerance: float = CLOSED
 ) -> LockedRobot:
-    """Lock joints of a robot where they stand at a configuration.
+    """Lock joints of a robot at a configuration.
 
-    The locked joints are fixed ones of the new robot: their frames, and all links, joints and frames, are found under
-    their names, in the same order and, where the free joints stand as before, at the same poses. Closures, actuators,
-    geometry, limits and named configurations are those of the first robot, less what has no meaning any more, which
-    the new robot lists. A closure is left out where locked joints leave nothing that moves its frames against each
-    other; one that has become redundant stays. A named configuration is left out where it places the child of a locked
-    joint elsewhere than q does, by more than 1e-6 m or rad.
+    The locked joints become fixed joints of the new robot. All links, joints and frames keep their names and order and,
+    at equal coordinates of the free joints, their poses. The new robot has the closures, actuators, geometry, limits
+    and named configurations of the original one, except those that no longer apply; it lists what was dropped. A
+    closure is dropped if no free joint moves its two frames relative to each other; a closure that became redundant is
+    kept. A named configuration is dropped if the pose of a locked joint differs from that at q by more than 1e-6 m or
+    rad.
 
-    Model, constraint models and actuation are built from ``robot.mechanism``, so that what was changed in them by hand
-    is not carried over. Geometry is carried over as it is, with its collision pairs, and shares its meshes.
+    Model, constraint models and actuation are built from ``robot.mechanism``: manual changes to them are lost. Geometry
+    is copied with its collision pairs, and shares its meshes.
 
-    It does what `freezeJoints` of the published toolbox (Batto, De Matteïs, Mansard, 2025) is for, and
-    ``pin.buildReducedModel`` for a robot without closures.
+    It corresponds to `freezeJoints` of the published toolbox (Batto, De Matteïs, Mansard, 2025) and, for a robot
+    without closures, to ``pin.buildReducedModel``.
 
     Args:
-        robot: The robot, which stays as it is.
-        joints: Names of joints, or one name. With a joint, those that follow it are locked. One that is fixed already
-            stays so.
-        q: Where to lock them (nq,); the coordinates of the other joints matter to closures that are left out alone.
-            `assembled` by default, or else the neutral configuration.
-        tolerance: What each row of the residual of a closure that is left out may be at q, m or rad.
+        robot: The robot; it is not changed.
+        joints: Names of joints, or one name. Mimic joints are locked with their leader. A fixed joint stays fixed.
+        q: The configuration (nq,) to lock at. Coordinates of other joints matter only to the closures that are dropped.
+            The default is the `assembled` configuration, or the neutral one if there is none.
+        tolerance: Bound of each row of the residual of a dropped closure at q, m or rad.
 
     Raises:
-        CannotLock: A name is that of no joint, of one that follows another that is not locked, or of a floating root's.
-        LockedOpen: A closure that is left out is open at q.
-        ValueError: ``q`` is no configuration.
+        CannotLock: A name is not the name of a joint, or it is a mimic joint without its leader, or the floating root.
+        LockedOpen: A closure that would be dropped is open at q.
+        ValueError: ``q`` is not a configuration.
     """
     names = set(several(joints))
     if ROOT_JOINT in names and robot.mechanism.root == "floating":
-        raise CannotLock(ROOT_JOINT, "it is the robot's place in the world; load the robot with root='fixed'")
+        raise CannotLock(ROOT_JOINT, "it is the floating root; load the robot with root='fixed' instead")
     q = start(robot, q)
     locked = lock_joints(robot.mechanism, names, joint_coordinates(robot.mechanism, robot.model, q))
     _check_closed(robot, q, {closure.name for closure in locked.closures}, tolerance)
@@ -108,7 +107,7 @@ def _check_closed(robot: Robot, q: Vector, names: Collection[str], tolerance: fl
     """Refuse closures that are open at q.
 
     Raises:
-        LockedOpen: Some are.
+        LockedOpen: Some closures are open.
     """
     if not names:
         return
@@ -125,9 +124,9 @@ def _check_closed(robot: Robot, q: Vector, names: Collection[str], tolerance: fl
 def _carried_over(geometry_model: Any, before: Any, after: Any) -> Any:
     """The geometry, fixed to the joints of the new model.
 
-    Both models have the same frames in the same order: `build_model` gives a joint the same ones whether it is fixed or
-    moves; what was added to the first by hand comes after them. So the first frame of each joint tells where what is
-    fixed to the joint is now.
+    Both models have the same frames in the same order: `build_model` creates the same frames for a fixed and a moving
+    joint, and frames that were added by hand come after them. So the first frame of each joint gives the new pose of
+    what is attached to the joint.
     """
     sites: dict[int, tuple[int, Any]] = {}
     for old, new in zip(before.frames, after.frames, strict=False):
@@ -143,7 +142,7 @@ def _carried_over(geometry_model: Any, before: Any, after: Any) -> Any:
 
 
 def _free_indices(before: Robot, after: Robot) -> tuple[Indices, Indices]:
-    """Where the coordinates, and the velocities, of the new robot stand in those of the first."""
+    """Indices of the coordinates and velocities of the new robot in those of the original one."""
     nq, nv = (7, 6) if after.mechanism.root == "floating" else (0, 0)
     idx_q, idx_v = list(range(nq)), list(range(nv))
     old = slots(before.mechanism, before.model)

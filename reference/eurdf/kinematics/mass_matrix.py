@@ -1,4 +1,4 @@
-"""The mass matrix of the spanning tree, also where joints mimic others."""
+"""The mass matrix of the spanning tree, with or without mimic joints."""
 
 from __future__ import annotations
 
@@ -17,22 +17,23 @@ if TYPE_CHECKING:
 def mass_matrix(robot: Robot, q: Vector, *, data: Any = None) -> Matrix:
     """Mass matrix M(q) of the spanning tree, the armature included: its kinetic energy is ½ vᵀ M v.
 
-    It is that of `pin.crba`, but for robots with mimic joints: there `pin.crba` has wrong entries, up to Pinocchio 4.1,
-    where a mimic joint carries several branches. Their M comes from the inverse dynamics, column by column:
+    It is computed by `pin.crba`, except for robots with mimic joints: up to Pinocchio 4.1, `pin.crba` has wrong entries
+    if a mimic joint carries several branches. Their M is computed from the inverse dynamics, column by column:
     M eᵢ = rnea(q, 0, eᵢ) - rnea(q, 0, 0).
 
     Source: Featherstone, *Rigid Body Dynamics Algorithms*, 2008, chapter 6.
 
     Args:
         robot: The robot.
-        q: Configuration (nq,), closed or not.
-        data: A `pin.Data` of the model to compute in; without one, one is made.
+        q: Configuration (nq,), closed or open.
+        data: A `pin.Data` of the model to compute in; by default a new one is created.
 
     Returns:
-        M (nv, nv), symmetric, in the units of the velocities: kg for two of m/s, kg·m for one, kg·m² for none.
+        M (nv, nv), symmetric, in kg between two velocities in m/s, kg·m between m/s and rad/s, kg·m² between two in
+        rad/s.
 
     Raises:
-        ValueError: ``q`` is no configuration.
+        ValueError: ``q`` is not a configuration.
     """
     model = robot.model
     M = mass_times(model, model.createData() if data is None else data, start(robot, q), np.eye(model.nv))

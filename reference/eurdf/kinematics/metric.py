@@ -1,4 +1,4 @@
-"""What counts as the length of a velocity."""
+"""Metrics on the space of velocities."""
 
 from __future__ import annotations
 
@@ -11,34 +11,34 @@ def metric(weights: Vector | Matrix | None, nv: int) -> Matrix:
     """The matrix W (nv, nv) of the norm |v|² = vᵀ W v.
 
     Args:
-        weights: W itself, such as the mass matrix; its diagonal (nv,); or None for the identity, by which 1 rad/s and
-            1 m/s count alike.
+        weights: W itself, such as the mass matrix; its diagonal (nv,); or None for the identity, in which
+            1 rad/s and 1 m/s have the same norm.
         nv: Number of velocities.
 
     Raises:
-        ValueError: The weights have another shape, or W is not symmetric and positive definite.
+        ValueError: The weights have a wrong shape, or W is not symmetric and positive definite.
     """
     if weights is None:
         return np.eye(nv)
     given = np.asarray(weights, dtype=np.float64)
     if given.shape not in ((nv,), (nv, nv)):
-        raise ValueError(f"the weights of this robot have the shape ({nv},) or ({nv}, {nv}), not {given.shape}")
+        raise ValueError(f"weights have the shape {given.shape}; this robot needs ({nv},) or ({nv}, {nv})")
     W = np.diag(given) if given.ndim == 1 else given
     if not np.isfinite(W).all() or np.abs(W - W.T).max(initial=0.0) > 1e-9 * np.abs(W).max(initial=0.0):
-        raise ValueError("the weights are not a symmetric matrix of finite numbers")
+        raise ValueError("weights are not a symmetric matrix of finite numbers")
     try:
         np.linalg.cholesky(W)
     except np.linalg.LinAlgError:
-        raise ValueError("the weights are not positive definite") from None
+        raise ValueError("weights are not positive definite") from None
     return W
 
 
 def orthonormal(basis: Matrix, W: Matrix) -> Matrix:
-    """The basis Z (nv, m) made orthonormal in the metric, Zᵀ W Z = 1, without leaving its span."""
+    """An orthonormal basis in the metric, Zᵀ W Z = 1, of the span of Z (nv, m)."""
     lower = np.linalg.cholesky(basis.T @ W @ basis)
     return np.asarray(np.linalg.solve(lower, basis.T).T, dtype=np.float64)
 
 
 def nearest(basis: Matrix, W: Matrix, v: Vector) -> Vector:
-    """The v' = Z y (nv,) for which v' - v is shortest: Z (Zᵀ W Z)⁻¹ Zᵀ W v."""
+    """The v' = Z y (nv,) nearest to v in the metric: Z (Zᵀ W Z)⁻¹ Zᵀ W v."""
     return np.asarray(basis @ np.linalg.solve(basis.T @ W @ basis, basis.T @ (W @ v)), dtype=np.float64)

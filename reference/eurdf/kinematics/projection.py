@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 _MOST_STEPS = 50
 _MOST_HALVINGS = 20
 
-# Step of the differences that the second derivatives are taken by: they steer the search and are not in its answer.
+# Step of the finite differences for second derivatives, which only guide the search.
 _DIFFERENCE = 1e-6
 
 
@@ -35,24 +35,24 @@ def project_configuration(
     """The closed configuration nearest to q.
 
     It minimises ½ xᵀ W x subject to r(q ⊕ x) = 0, where x = q' ⊖ q is the velocity (nv,) that leads from q to q' in
-    unit time: W x is normal to the closed configurations. The loops are closed first, then q' slides along them by
-    Newton steps, and so comes to a nearest one of those around: there may be a nearer one beyond a farther one.
-    Where W is diagonal, joints that are in no loop stay where they are.
+    unit time: W x is normal to the closed configurations. The loops are closed first; then Newton steps move q' along
+    the closed configurations to a local minimum of the distance. If W is diagonal, joints outside the loops do not
+    move.
 
     Args:
         robot: The robot.
         q: Any configuration (nq,).
-        weights: The metric W: a matrix (nv, nv), or its diagonal (nv,). By default the identity: the sum of squares of
-            all motions, rad and m alike.
-        tolerance: What each row of the residual may be, m or rad, where the loops are closed.
+        weights: The metric W: a matrix (nv, nv), or its diagonal (nv,). The default is the identity: the sum of squares
+            of all motions, in rad and m.
+        tolerance: Bound of each row of the residual for closed loops, m or rad.
 
     Returns:
-        q' (nq,), which is q itself where that is closed. Where redundant rows contradict one another by the rounding of
-        numbers in files, it is as closed as `assemble` can do.
+        q' (nq,); q itself if it is closed. If rounding makes redundant rows contradict each other, it is closed as far
+        as `assemble` can close it.
 
     Raises:
-        NotClosable: No closed configuration was found; it says which closures stay open.
-        ValueError: ``q`` is no configuration, or ``weights`` are no metric.
+        NotClosable: No closed configuration was found; the error lists the closures that stay open.
+        ValueError: ``q`` is not a configuration, or ``weights`` is not a metric.
     """
     model, W = robot.model, metric(weights, robot.model.nv)
     q = start(robot, q)
@@ -61,7 +61,7 @@ def project_configuration(
     assembler, spaces, data = Assembler(robot, tolerance=tolerance), TangentSpaces(robot), model.createData()
     assembly = assembler.assemble(q)
     if not assembly.closes:
-        raise NotClosable("there is no closed configuration near this one", assembly.open, assembly.q)
+        raise NotClosable("no closed configuration was found near the given one", assembly.open, assembly.q)
 
     def away(at: Vector) -> Vector:
         return np.asarray(pin.difference(model, q, at))
@@ -103,11 +103,11 @@ def project_velocity(robot: Robot, q: Vector, v: Vector, weights: Vector | Matri
     """The velocity nearest to v that keeps the loops closed.
 
     The orthogonal projection onto ker K(q): v' = Z (Zᵀ W Z)⁻¹ Zᵀ W v with K Z = 0, which minimises (v' - v)ᵀ W (v' - v)
-    subject to K v' = 0. With the mass matrix for W it is the velocity after an impact of the closures on one another.
+    subject to K v' = 0. With the mass matrix as W it is the velocity after an impulse that closes the closures.
 
     Args:
         robot: The robot.
-        q: Configuration (nq,), closed or not. Where it is singular, motions of the first order count as free.
+        q: Configuration (nq,), closed or open. At a singular q, motions that are free to first order count as free.
         v: Velocity (nv,), rad/s or m/s.
         weights: The metric W: a matrix (nv, nv), or its diagonal (nv,); the identity by default.
 
@@ -115,7 +115,7 @@ def project_velocity(robot: Robot, q: Vector, v: Vector, weights: Vector | Matri
         v' (nv,).
 
     Raises:
-        ValueError: ``q`` or ``v`` has another shape or is not finite, or ``weights`` are no metric.
+        ValueError: ``q`` or ``v`` has another shape or is not finite, or ``weights`` is not a metric.
     """
     W = metric(weights, robot.model.nv)
     v = _velocity(robot, v, "velocity")
@@ -128,14 +128,14 @@ def project_acceleration(
 ) -> Vector:
     """The acceleration nearest to a that keeps the loops closed.
 
-    It minimises (a' - a)ᵀ W (a' - a) subject to K(q) a' + K̇ v = 0, K̇ v as `acceleration_drift` has it.
+    It minimises (a' - a)ᵀ W (a' - a) subject to K(q) a' + K̇ v = 0, with K̇ v from `acceleration_drift`.
 
     Args:
         robot: The robot.
         q: Configuration (nq,).
-        v: Velocity (nv,), rad/s or m/s. It should keep the loops closed, K v = 0. Where it does not, redundant rows may
-            ask for accelerations that contradict one another: they are then met in the least-squares sense, lengths
-            counted in characteristic lengths.
+        v: Velocity (nv,), rad/s or m/s. It should keep the loops closed, K v = 0. If it does not, redundant rows can
+            contradict each other; they are then satisfied in the least-squares sense, in units of the characteristic
+            length.
         a: Acceleration (nv,), rad/s² or m/s².
         weights: The metric W: a matrix (nv, nv), such as the mass matrix (Gauss' principle of least constraint), or
             its diagonal (nv,); the identity by default.
@@ -144,7 +144,7 @@ def project_acceleration(
         a' (nv,).
 
     Raises:
-        ValueError: ``q``, ``v`` or ``a`` has another shape or is not finite, or ``weights`` are no metric.
+        ValueError: ``q``, ``v`` or ``a`` has another shape or is not finite, or ``weights`` is not a metric.
     """
     W = metric(weights, robot.model.nv)
     v, a, q = _velocity(robot, v, "velocity"), _velocity(robot, a, "acceleration"), start(robot, q)
@@ -157,15 +157,14 @@ def project_acceleration(
 def _velocity(robot: Robot, values: Vector, what: str) -> Vector:
     vector = np.asarray(values, dtype=np.float64)
     if vector.shape != (robot.model.nv,):
-        article = "an" if what[0] in "aeiou" else "a"
-        raise ValueError(f"{article} {what} of this robot has the shape ({robot.model.nv},), not {vector.shape}")
+        raise ValueError(f"the {what} has the shape {vector.shape}; this robot needs ({robot.model.nv},)")
     if not np.isfinite(vector).all():
         raise ValueError(f"the {what} has a number that is not finite")
     return vector
 
 
 def _downhill(H: Matrix, slope: Vector) -> Vector:
-    """The Newton step -H⁻¹ slope, with H made positive definite where it is not."""
+    """The Newton step -H⁻¹ slope, with H made positive definite if it is not."""
     values, vectors = np.linalg.eigh(0.5 * (H + H.T))
     values = np.abs(values)
     values = np.maximum(values, max(1e-3 * values.max(initial=0.0), 1e-300))

@@ -1,4 +1,4 @@
-"""The rank of a matrix whose entries carry rounding, of arithmetic and of files."""
+"""The numerical rank of a matrix with rounded entries (of arithmetic and of numbers in files)."""
 
 from __future__ import annotations
 
@@ -6,20 +6,20 @@ import numpy as np
 
 from eurdf.kinematics.array import Vector
 
-#: Relative to the largest singular value, what is below this is rounding and never tells ranks apart.
+#: Singular values below this, relative to the largest one, are rounding and do not affect the rank.
 FLOOR = 1e-9
 
-#: A matrix scaled to one unit has entries about 1; where none of its singular values exceeds this, all are rounding.
+#: A matrix scaled to one unit has entries of about 1; if no singular value exceeds this, all of them are rounding.
 NOTHING = 1e-12
 
 
 def numerical_rank(singular_values: Vector, reference: float) -> int:
     """Number of singular values before the widest gap.
 
-    A fixed threshold would have to lie between the rounding of the numbers in files (an angle given as 1.5708 turns
-    an axis by 4e-6) and the honest small values of short levers. Instead the values, relative to ``reference`` and
-    not below `FLOOR`, are put between 1 and `FLOOR`, and those before the largest ratio of two neighbours count. A
-    value that stands alone so counts above about 3e-5 = √FLOOR.
+    A fixed threshold would have to separate the rounding of numbers in files (an angle given as 1.5708 turns an axis by
+    4e-6) from the small singular values of short levers. Instead, the values relative to ``reference``, clipped to
+    `FLOOR` from below, are placed between 1 and `FLOOR`, and those before the largest ratio of two consecutive values
+    count. A single small value therefore counts if it is above about 3e-5 = √FLOOR.
 
     Args:
         singular_values: In descending order, of a matrix scaled to one unit.

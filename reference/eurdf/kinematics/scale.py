@@ -1,4 +1,4 @@
-"""What brings lengths and angles to one scale."""
+"""Scaling of lengths and angles to one unit."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 
 def characteristic_length(robot: Robot) -> float:
-    """Reach of the robot's longest loop: half of what its bodies measure from joint to joint around it, m.
+    """Reach of the robot's longest loop: half the sum of the distances from joint to joint around it, m.
 
-    1 m for loops without extent, such as a spherical linkage whose joints all stand in one point.
+    1 m for loops without extent, such as a spherical linkage whose joints are all at one point.
     """
     longest = 0.0
     ancestry = Ancestry(robot.model.parents.tolist())
@@ -35,17 +35,17 @@ def characteristic_length(robot: Robot) -> float:
 
 
 def row_scale(robot: Robot, length: float) -> Vector:
-    """Factors (nc,) that make the rows of the residual free of unit: 1/length for those in m, 1 for those in rad."""
+    """Factors (nc,) that make the rows of the residual dimensionless: 1/length for those in m, 1 for those in rad."""
     scales = [(1.0 / length,) * 3 + (1.0,) * (3 if loop.spatial else 0) for loop in find_loops(robot)]
     return np.array([factor for row in scales for factor in row])
 
 
 def velocity_scale(robot: Robot, length: float) -> Vector:
-    """Unit (nv,) of each velocity of the loops: length for one that only translates (m/s), 1 for the others (rad/s)."""
+    """Unit (nv,) of each velocity of the loops: the length if it only translates (m/s), else 1 (rad/s)."""
     model = robot.model
     scale, neutral = np.ones(model.nv), pin.neutral(model)
     first_velocity = model.idx_vs.tolist()
-    # A joint that mimics another moves by the velocity of that one.
+    # A mimic joint moves with the velocity of its leader.
     moving = {first_velocity[joint] for joint in joints_of_loops(find_loops(robot), model.parents.tolist())}
     for joint, (first, width) in enumerate(zip(first_velocity, model.nvs, strict=True)):
         if width == 0 or first not in moving:

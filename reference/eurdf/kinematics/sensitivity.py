@@ -1,4 +1,4 @@
-"""How the closed mechanism moves with its actuated joints."""
+"""Derivatives of the closed configuration and of frames with respect to the actuated coordinates."""
 
 from __future__ import annotations
 
@@ -19,32 +19,32 @@ from eurdf.kinematics.tangent_space import TangentSpaces
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
-# An actuated joint has a part in a dependency if its share of the unit vector that states it is above this.
+# An actuated joint belongs to a dependency if its entry of the unit vector of that dependency is above this.
 _PART = 1e-6
 
 
 def dq_dq_actuated(robot: Robot, q: Vector, weights: Vector | Matrix | None = None) -> Matrix:
-    """Derivative of the closed configuration by the actuated coordinates: v = D u.
+    """Derivative of the closed configuration with respect to the actuated coordinates: v = D u.
 
-    D solves K D = 0, Sᵀ D = 1. Motion that no actuator controls is at rest as far as it can be: of all solutions, each
-    column of D is the shortest, in the metric W. With K Z = 0 and Zᵀ W Z = 1, D = Z (Sᵀ Z)⁺.
+    D solves K D = 0, Sᵀ D = 1. Of all solutions, each column of D is the one with the least norm in the metric W, so
+    uncontrolled motions are minimal. With K Z = 0 and Zᵀ W Z = 1, D = Z (Sᵀ Z)⁺.
 
-    Source: `computeDerivative_dq_dqmot` of the toolbox of Batto, De Matteïs and Mansard, 2025, there through the
-    pseudoinverse of the columns of K that are not actuated.
+    Source: `computeDerivative_dq_dqmot` of the toolbox of Batto, De Matteïs and Mansard, 2025, which uses the
+    pseudoinverse of the columns of K of the joints that are not actuated.
 
     Args:
         robot: The robot.
         q: A closed configuration (nq,).
-        weights: The metric W: a matrix (nv, nv), or its diagonal (nv,); the identity by default, rad/s and m/s alike.
+        weights: The metric W: a matrix (nv, nv), or its diagonal (nv,); the identity by default, in rad/s and m/s.
 
     Returns:
-        D (nv, nu): the velocity of each joint over that of each actuator, in the order of ``robot.actuation``.
+        D (nv, nu): velocity of each joint per velocity of each actuator, in the order of ``robot.actuation``.
 
     Raises:
-        DependentActuators: The closures do not let the actuators move independently at q; it names those concerned.
-            The rank of Sᵀ Z that says so is that of `numerical_rank`, Z orthonormal with lengths counted in
-            characteristic lengths: its singular values are then cosines between the motions asked for and those free.
-        ValueError: ``q`` is no configuration, or ``weights`` are no metric.
+        DependentActuators: The closures do not let the actuators move independently at q; the error names them. The
+            criterion is the `numerical_rank` of Sᵀ Z, with Z orthonormal in units of the characteristic length: its
+            singular values are the cosines between the actuated and the free motions.
+        ValueError: ``q`` is not a configuration, or ``weights`` is not a metric.
     """
     W = metric(weights, robot.model.nv)
     _, K = residual_and_jacobian(robot, start(robot, q))
@@ -59,10 +59,10 @@ def dq_dq_actuated(robot: Robot, q: Vector, weights: Vector | Matrix | None = No
 def actuated_jacobian(
     robot: Robot, q: Vector, frame: str, reference: Any = pin.LOCAL, weights: Vector | Matrix | None = None
 ) -> Matrix:
-    """Jacobian of a frame by the actuated velocities: its twist is J D u.
+    """Jacobian of a frame with respect to the actuated velocities: its twist is J D u.
 
-    J is the frame's Jacobian in the spanning tree and D that of `dq_dq_actuated`. The actuated velocities that give the
-    frame a wanted twist are those of the pseudoinverse of J D, and D makes the velocity of all joints of them.
+    J is the frame's Jacobian in the spanning tree and D is that of `dq_dq_actuated`. The pseudoinverse of J D gives the
+    actuated velocities for a desired twist, and D the velocities of all joints for these.
 
     Source: `computeClosedLoopFrameJacobian` and `inverseConstraintKinematicsSpeed` of the toolbox of Batto, De Matteïs
     and Mansard, 2025.
@@ -78,9 +78,8 @@ def actuated_jacobian(
         (6, nu): linear (m/s), then angular (rad/s), over the units of the actuated velocities.
 
     Raises:
-        DependentActuators: As from `dq_dq_actuated`.
-        ValueError: There is no such frame, or its name stands for two; ``q`` is no configuration; ``weights`` are no
-            metric.
+        DependentActuators: As in `dq_dq_actuated`.
+        ValueError: The frame is unknown or ambiguous, ``q`` is not a configuration, or ``weights`` is not a metric.
     """
     model, index = robot.model, frame_index(robot.model, frame)
     q = start(robot, q)
@@ -89,7 +88,7 @@ def actuated_jacobian(
 
 
 def _refuse_dependent(robot: Robot, scale: Vector, basis: Matrix) -> None:
-    """Raise if ker K, spanned by the basis, does not hold every choice of the actuated velocities."""
+    """Raise if the null space of K, spanned by the basis, does not contain every choice of the actuated velocities."""
     rows = robot.actuation.idx_v
     unit_free, _ = np.linalg.qr(basis / scale[:, None])
     left, values, _ = np.linalg.svd(unit_free[rows])

@@ -1,4 +1,4 @@
-"""Motion in time of the closed mechanism."""
+"""Simulation of the closed mechanism."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
 Control = Callable[[float, Vector, Vector], Vector]
 
 
-# What moves faster, rad/s or m/s, is no mechanism.
+# Velocities above this, rad/s or m/s, count as divergence.
 _FASTEST = 1e9
 
 
 class Simulation(NamedTuple):
-    """A motion, at equal steps of time.
+    """The result of `simulate`, at equal time steps.
 
     Attributes:
         t: Times (n + 1,), s.
@@ -51,38 +51,37 @@ def simulate(
     external: External | None = None,
     dissipation: bool = False,
 ) -> Simulation:
-    """Move the closed mechanism by its dynamics.
+    """Simulate the dynamics of the closed mechanism.
 
-    Each step is one of the classical Runge-Kutta method, of the fourth order, in the coordinates x of q ⊕ x around
-    where it begins, in which ẋ = J(x)⁻¹ v, J the derivative of ⊕ (Munthe-Kaas). At the start, and after each step, q
-    and v are put back on the closures, v by the least change, lengths counted in characteristic lengths.
+    Each step is a classical fourth-order Runge-Kutta step in the coordinates x of q ⊕ x around its start, in which
+    ẋ = J(x)⁻¹ v with J the derivative of ⊕ (Munthe-Kaas). At the start and after each step, q and v are projected onto
+    the closures, v by the least change in units of the characteristic length.
 
     Args:
         robot: The robot.
-        q: Configuration (nq,) to start from; where it is open, from what `assemble` makes of it.
-        v: Velocity (nv,) to start with; at rest by default.
-        duration: Time to move for, s: as many whole steps as come nearest to it.
-        step: Time of a step, s.
-        control: The motor torques; none by default.
-        external: As in `forward_dynamics`, the same all the time.
-        dissipation: As in `forward_dynamics`. Dry friction that changes sign within a step makes it one of the first
-            order.
+        q: Initial configuration (nq,); if it is open, `assemble` closes it first.
+        v: Initial velocity (nv,); zero by default.
+        duration: Simulated time, s, rounded to a whole number of steps.
+        step: Time step, s.
+        control: The motor torques; zero by default.
+        external: As in `forward_dynamics`, constant in time.
+        dissipation: As in `forward_dynamics`. A step in which dry friction changes sign is only first-order accurate.
 
     Raises:
-        NotClosable: There is no closed configuration near q.
-        ValueError: A vector is of another shape or not finite, the duration is negative, the step is not positive.
-        UndeterminedMotion: Something without inertia can move.
+        NotClosable: No closed configuration was found near q.
+        ValueError: A vector has a wrong shape or is not finite, the duration is negative, or the step is not positive.
+        UndeterminedMotion: A joint without inertia can move.
         SimulationDiverged: The steps are too long for the motion.
     """
     if not (step > 0.0 and duration >= 0.0 and np.isfinite(duration / step)):
-        raise ValueError("a simulation takes a duration of 0 s or more, and a step of more than 0 s")
+        raise ValueError("duration must be at least 0 s, and step above 0 s")
     model, data, spaces = robot.model, robot.model.createData(), TangentSpaces(robot)
     count = round(duration / step)
     times: Vector = np.linspace(0.0, count * step, count + 1)
     qs, vs = np.empty((count + 1, model.nq)), np.empty((count + 1, model.nv))
     assembly = assemble(robot, start(robot, q))
     if not assembly.closes:
-        raise NotClosable("the simulation cannot start", assembly.open, assembly.q)
+        raise NotClosable("the simulation cannot start from an open configuration", assembly.open, assembly.q)
 
     def rates(t: float, begin: Vector, x: Vector, v: Vector) -> tuple[Vector, Vector]:
         q = np.asarray(pin.integrate(model, begin, x))
@@ -99,7 +98,8 @@ def simulate(
         _, K = residual_and_jacobian(robot, q, data)
         return q, v - spaces.at(K).inverse @ (K @ v)
 
-    qs[0], vs[0] = closed(assembly.q, checked_vector(np.zeros(model.nv) if v is None else v, model.nv, "a velocity"), 0)
+    initial = checked_vector(np.zeros(model.nv) if v is None else v, model.nv, "the velocity")
+    qs[0], vs[0] = closed(assembly.q, initial, 0)
     for n in range(count):
         t, q, v, still = float(times[n]), qs[n], vs[n], np.zeros(model.nv)
         x1, v1 = rates(t, q, still, v)

@@ -1,4 +1,4 @@
-"""A basis of a space that shows which entries belong together."""
+"""A sparse basis of a space, which shows which entries belong together."""
 
 from __future__ import annotations
 
@@ -6,23 +6,22 @@ import numpy as np
 
 from eurdf.kinematics.array import Matrix
 
-#: Entries smaller than this beside the largest of their vector are taken for the rounding of numbers in files.
+#: Entries below this, relative to the largest of their vector, count as rounding of numbers in files.
 NEGLIGIBLE = 1e-4
 
 
 def sparse_basis(vectors: Matrix) -> Matrix:
-    """A basis of the same space whose vectors have few entries that are not zero.
+    """A basis of the same space whose vectors have few nonzero entries.
 
-    It is the reduced echelon form with complete pivoting: each vector is, but for a factor, the only one of the space
-    that is zero wherever it is zero. Where the space is a sum of spaces with no entry in common, each vector is of one
-    of them.
+    It is the reduced echelon form with complete pivoting: up to a factor, each vector is the only one of the space with
+    its pattern of zeros. If the space is a sum of spaces without common entries, each vector lies in one of them.
 
     Args:
         vectors: A basis (k, n), one vector a row.
 
     Returns:
-        The basis (k, n), one vector a row, in the order of the first entries that are not zero. An entry of each is 1:
-        the first of those that are the largest to within 0.1 %, so that rounding does not choose among equal ones.
+        The basis (k, n), one vector a row, in the order of their first nonzero entries. The first of the largest
+        entries of each vector, to within 0.1 %, is 1, so the choice does not depend on rounding.
     """
     basis = np.array(vectors, dtype=np.float64)
     for row in range(len(basis)):

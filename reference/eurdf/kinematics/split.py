@@ -16,32 +16,32 @@ if TYPE_CHECKING:
 
 
 def split_configuration(robot: Robot, q: Vector) -> tuple[Vector, Vector]:
-    """The coordinates of the actuated joints, and all others.
+    """Split a configuration into the coordinates of the actuated joints and the others.
 
     Args:
         robot: The robot.
-        q: Configuration (nq,), in rad, m, cosines and sines, and quaternions, as Pinocchio has them.
+        q: Configuration (nq,), as in Pinocchio: rad, m, (cos, sin) pairs and quaternions.
 
     Returns:
         q_actuated, joint by joint in the order of ``robot.actuation.joints``, and q_free, in the order of the model.
 
     Raises:
-        ValueError: ``q`` has another shape.
+        ValueError: ``q`` has a wrong shape.
     """
     return _split("configuration", q, robot.actuation.idx_q, robot.model.nq)
 
 
 def merge_configuration(robot: Robot, q_actuated: Vector, q_free: Vector) -> Vector:
-    """The configuration (nq,) that `split_configuration` splits into the two given.
+    """The inverse of `split_configuration`: the configuration (nq,).
 
     Raises:
-        ValueError: One of them has not the shape that it splits into.
+        ValueError: One of the parts has a wrong shape.
     """
     return _merge("configuration", q_actuated, q_free, robot.actuation.idx_q, robot.model.nq)
 
 
 def split_velocity(robot: Robot, v: Vector) -> tuple[Vector, Vector]:
-    """The velocities of the actuated joints, Sᵀ v, and all others; accelerations and torques split alike.
+    """Split a velocity (or acceleration, or torque) into the part of the actuated joints, Sᵀ v, and the others.
 
     Args:
         robot: The robot.
@@ -51,35 +51,35 @@ def split_velocity(robot: Robot, v: Vector) -> tuple[Vector, Vector]:
         v_actuated (nu,), in the order of ``robot.actuation``, and v_free (nv - nu,), in the order of the model.
 
     Raises:
-        ValueError: ``v`` has another shape.
+        ValueError: ``v`` has a wrong shape.
     """
     return _split("velocity", v, robot.actuation.idx_v, robot.model.nv)
 
 
 def merge_velocity(robot: Robot, v_actuated: Vector, v_free: Vector) -> Vector:
-    """The velocity (nv,) that `split_velocity` splits into the two given.
+    """The inverse of `split_velocity`: the velocity (nv,).
 
     Raises:
-        ValueError: One of them has not the shape that it splits into.
+        ValueError: One of the parts has a wrong shape.
     """
     return _merge("velocity", v_actuated, v_free, robot.actuation.idx_v, robot.model.nv)
 
 
 def _split(what: str, whole: Vector, actuated: Indices, size: int) -> tuple[Vector, Vector]:
-    whole = _of_size(f"a {what} of this robot", whole, size)
+    whole = _of_size(f"the {what}", whole, size)
     return whole[actuated], np.delete(whole, actuated)
 
 
 def _merge(what: str, of_actuated: Vector, of_others: Vector, actuated: Indices, size: int) -> Vector:
     whole = np.empty(size)
-    whole[actuated] = _of_size(f"the actuated part of a {what} of this robot", of_actuated, len(actuated))
+    whole[actuated] = _of_size(f"the actuated part of the {what}", of_actuated, len(actuated))
     others = np.delete(np.arange(size), actuated)
-    whole[others] = _of_size(f"the free part of a {what} of this robot", of_others, len(others))
+    whole[others] = _of_size(f"the free part of the {what}", of_others, len(others))
     return whole
 
 
 def _of_size(what: str, values: Vector, size: int) -> Vector:
     vector = np.asarray(values, dtype=np.float64)
     if vector.shape != (size,):
-        raise ValueError(f"{what} has the shape ({size},), not {vector.shape}")
+        raise ValueError(f"{what} has the shape {vector.shape}; this robot needs ({size},)")
     return vector
