@@ -95,18 +95,19 @@ def _signs(robot: eurdf.Robot, joints: list[tuple[Slot, Slot]]) -> list[Vector]:
 def _limits(left: Slot, right: Slot, sign: Vector) -> Iterator[str]:
     """Limits, damping and friction that differ."""
     one, other = left.joint, right.joint
-    stops = list(zip(one.lower, one.upper, strict=True))
+    stops = list(zip(one.properties.lower, one.properties.upper, strict=True))
     if len(stops) == len(sign):  # a coordinate for each velocity: else there are no stops
         kept = zip(stops, (sign > 0.0).tolist(), strict=True)
         stops = [(low, high) if same else (-high, -low) for (low, high), same in kept]
-    if stops != list(zip(other.lower, other.upper, strict=True)):
+    if stops != list(zip(other.properties.lower, other.properties.upper, strict=True)):
         yield f"'{one.name}' and '{other.name}' have other stops"
     if _drive(one) != _drive(other):
         yield f"'{one.name}' and '{other.name}' have other limits of velocity or effort, damping, friction or armature"
 
 
 def _drive(joint: Joint) -> tuple[tuple[float, ...], ...]:
-    return (joint.velocity, joint.effort, joint.damping, joint.friction, joint.armature)
+    has = joint.properties
+    return (has.velocity, has.effort, has.damping, has.friction, has.armature)
 
 
 def _unlike(robot: eurdf.Robot, pairs: Mapping[str, str], q: Vector) -> list[str]:

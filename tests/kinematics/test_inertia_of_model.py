@@ -9,6 +9,7 @@ import pinocchio as pin
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from eurdf.mechanism.joint import JointProperties
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.configuration import configuration_vector
 from eurdf.pinocchio.model import build_model
@@ -63,12 +64,13 @@ def test_mass_matrix_matches_kinetic_energy_of_bodies(seed: int) -> None:
 def test_armature_adds_to_mass_matrix_diagonal(seed: int) -> None:
     mechanism, coordinates, random = at_random(seed)
     joints = tuple(
-        replace(joint, armature=tuple(random.uniform(0.0, 1.0, joint.coordinates.nv))) for joint in mechanism.joints
+        replace(joint, properties=JointProperties(armature=tuple(random.uniform(0.0, 1.0, joint.coordinates.nv))))
+        for joint in mechanism.joints
     )
     mechanism = replace(mechanism, joints=joints)
     model = build_model(mechanism)
     M = pin.crba(model, model.createData(), configuration_vector(mechanism, model, coordinates))
-    armature = [value for joint in joints for value in joint.armature]
+    armature = [value for joint in joints for value in joint.properties.armature]
     np.testing.assert_allclose(np.diag(M), np.diag(mass_matrix(mechanism, coordinates)) + armature, atol=1e-10)
 
 

@@ -23,7 +23,7 @@ from eurdf.kinematics.residual import residual, residual_and_jacobian
 from eurdf.mechanism.body import Shape
 from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.frame import Anchor, Frame
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.mimic import Mimic
@@ -111,11 +111,13 @@ def some_robot(random: np.random.Generator, mimic: bool, root: str = "fixed") ->
             joint,
             mimic=followers.get(joint.name),
             offset=by_hand.some_pose(random) if joint.type is JointType.SPHERICAL else joint.offset,
-            lower=(-2.0,) * joint.coordinates.nv if joint.type in AXIAL else (),
-            upper=(3.0,) * joint.coordinates.nv if joint.type in AXIAL else (),
-            effort=tuple(random.uniform(1, 2, joint.coordinates.nv).tolist()),
-            armature=tuple(random.uniform(1, 2, joint.coordinates.nv).tolist()),
-            gear_ratio=tuple(random.uniform(1, 2, joint.coordinates.nv).tolist()),
+            properties=JointProperties(
+                lower=(-2.0,) * joint.coordinates.nv if joint.type in AXIAL else (),
+                upper=(3.0,) * joint.coordinates.nv if joint.type in AXIAL else (),
+                effort=tuple(random.uniform(1, 2, joint.coordinates.nv).tolist()),
+                armature=tuple(random.uniform(1, 2, joint.coordinates.nv).tolist()),
+                gear_ratio=tuple(random.uniform(1, 2, joint.coordinates.nv).tolist()),
+            ),
         )
         for joint in tree.joints
     ]

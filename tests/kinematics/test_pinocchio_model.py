@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.frame import Anchor, Frame
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.mimic import Mimic
@@ -331,7 +331,7 @@ def test_joint_properties_are_at_its_velocities(kind: JointType) -> None:
     nv = joint.coordinates.nv
     names = ("velocity", "effort", "damping", "friction", "armature", "gear_ratio", "rotor_inertia")
     values = {name: tuple(10.0 * row + column for column in range(nv)) for row, name in enumerate(names, 1)}
-    model = build_model(_hand_made(replace(joint, **values)))
+    model = build_model(_hand_made(replace(joint, properties=JointProperties(**values))))
     own = slice(3, 3 + nv)
     expected = {
         "upperVelocityLimit": "velocity",
@@ -372,7 +372,7 @@ def test_position_limits_are_at_pinocchio_coordinates(kind: str) -> None:
     count = len(joint.coordinates.names)
     lower = tuple(-1.0 - 0.5 * index for index in range(count))
     upper = tuple(2.0 + 0.5 * index for index in range(count))
-    model = build_model(_hand_made(replace(joint, lower=lower, upper=upper)))
+    model = build_model(_hand_made(replace(joint, properties=JointProperties(lower, upper))))
     expected_lower, expected_upper = LIMITS[kind]
     np.testing.assert_array_equal(model.lowerPositionLimit, [*[-UNIT] * 4, *expected_lower, -INF])
     np.testing.assert_array_equal(model.upperPositionLimit, [*[UNIT] * 4, *expected_upper, INF])

@@ -41,7 +41,9 @@ def canonical_robot(mechanism: Mechanism) -> CanonicalRobot:
         ],
         actuators=[
             CanonicalActuator(
-                joint=name, gear_ratio=list(joints[name].gear_ratio), rotor_inertia=list(joints[name].rotor_inertia)
+                joint=name,
+                gear_ratio=list(joints[name].properties.gear_ratio),
+                rotor_inertia=list(joints[name].properties.rotor_inertia),
             )
             for name in mechanism.actuators
         ],
@@ -62,13 +64,13 @@ def _joint(joint: Joint) -> CanonicalJoint:
         type=kind,
         parent=joint.parent,
         child=joint.child,
-        lower=_limits(joint.lower) if bounded else [],
-        upper=_limits(joint.upper) if bounded else [],
-        velocity=_limits(joint.velocity),
-        effort=_limits(joint.effort),
-        damping=list(joint.damping),
-        friction=list(joint.friction),
-        armature=list(joint.armature),
+        lower=_limits(joint.properties.lower) if bounded else [],
+        upper=_limits(joint.properties.upper) if bounded else [],
+        velocity=_limits(joint.properties.velocity),
+        effort=_limits(joint.properties.effort),
+        damping=list(joint.properties.damping),
+        friction=list(joint.properties.friction),
+        armature=list(joint.properties.armature),
         mimic=None
         if mimic is None
         else CanonicalMimic(joint=mimic.joint, multiplier=mimic.multiplier, offset=mimic.offset),

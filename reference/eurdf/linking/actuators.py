@@ -89,8 +89,9 @@ def with_motor(joint: Joint, entry: ActuatorEntry, *, armature_given: bool) -> J
     nv = joint.coordinates.nv
     ratio = 1.0 if entry.gear_ratio is None else entry.gear_ratio
     rotor = 0.0 if entry.rotor_inertia is None else entry.rotor_inertia
-    armature = joint.armature if armature_given else (ratio * ratio * rotor,) * nv
-    return replace(joint, gear_ratio=(ratio,) * nv, rotor_inertia=(rotor,) * nv, armature=armature)
+    armature = joint.properties.armature if armature_given else (ratio * ratio * rotor,) * nv
+    motor = replace(joint.properties, gear_ratio=(ratio,) * nv, rotor_inertia=(rotor,) * nv, armature=armature)
+    return replace(joint, properties=motor)
 
 
 def _place_of_name(entry: ActuatorEntry, document: YamlDocument) -> Place:

@@ -119,7 +119,9 @@ def _coordinates(
             )
             return None
         return (*values[:start], *(value / norm for value in values[start : start + 4]))
-    for value, lower, upper, name in zip(values, joint.lower, joint.upper, coordinates.names, strict=True):
+    for value, lower, upper, name in zip(
+        values, joint.properties.lower, joint.properties.upper, coordinates.names, strict=True
+    ):
         if not within_limits(value, lower, upper):
             diagnostics.report(
                 "configuration-limits",

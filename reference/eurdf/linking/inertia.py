@@ -126,7 +126,7 @@ def check_leaves(
             if joint.child in faulty:
                 passed_over.add(rigid[joint.child])
     for joint in moving:
-        if joint.child in passed_over or joint.mimic is not None or min(joint.armature, default=0.0) > 0.0:
+        if joint.child in passed_over or joint.mimic is not None or min(joint.properties.armature, default=0.0) > 0.0:
             continue
         why = _immaterial(joint, members.get(joint.child, ()))
         if why and joint.child in urdf.links:

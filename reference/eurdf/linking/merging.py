@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
 from eurdf.format.urdf import Urdf
-from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import COORDINATES, JointType
+from eurdf.mechanism.joint import Joint, JointProperties
+from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, squarable
 
 #: A link lighter than this, in kg, counts as being without inertia (EU-JNT-012).
@@ -110,28 +110,12 @@ def merge(chain: Chain, name: str) -> tuple[Joint, Joint, Joint]:
         offset = Pose(centre.inverse().act(zero.xyz))
         zero = centre
     nearest = _nearest_axes(chain)
-
-    def by_axis(read: Callable[[Joint], float]) -> tuple[float, ...]:
-        return tuple(read(joint) for joint in nearest)
-
-    coordinates = COORDINATES[JointType.SPHERICAL]
-    ball = Joint(
-        name,
-        JointType.SPHERICAL,
-        first.parent,
-        third.child,
-        zero,
-        offset,
-        lower=(-math.inf,) * len(coordinates.names),
-        upper=(math.inf,) * len(coordinates.names),
-        velocity=by_axis(lambda joint: joint.velocity[0]),
-        effort=by_axis(lambda joint: joint.effort[0]),
-        damping=by_axis(lambda joint: joint.damping[0]),
-        friction=by_axis(lambda joint: joint.friction[0]),
-        armature=by_axis(lambda joint: joint.armature[0]),
-        gear_ratio=(1.0,) * coordinates.nv,
-        rotor_inertia=(0.0,) * coordinates.nv,
-    )
+    by_axis = {
+        name: tuple(getattr(joint.properties, name)[0] for joint in nearest)
+        for name in ("velocity", "effort", "damping", "friction", "armature")
+    }
+    properties = replace(JointProperties.unlimited(JointType.SPHERICAL), **by_axis)
+    ball = Joint(name, JointType.SPHERICAL, first.parent, third.child, zero, offset, properties=properties)
     return fixed(first), fixed(second), ball
 
 

@@ -43,5 +43,5 @@ def _has_no_range(joint: UrdfJoint, made: Joint | None) -> bool:
         and limit.lower == limit.upper == 0.0
         and made is not None
         and made.type in _RANGED
-        and made.lower == made.upper == (0.0,)
+        and made.properties.lower == made.properties.upper == (0.0,)
     )

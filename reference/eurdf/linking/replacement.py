@@ -12,7 +12,7 @@ from eurdf.format.extension import JointEntry, Pointer
 from eurdf.format.urdf import Urdf
 from eurdf.linking.merging import PARALLEL, NotMergeable, check_chain, find_chains, fixed, merge
 from eurdf.mechanism.body import Body
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_type import COORDINATES, JointType
 from eurdf.mechanism.pose import Vector3, direction
 from eurdf.reading.yaml_reader import YamlDocument
@@ -254,8 +254,10 @@ class _Replacement:
 
     def _spread(self, joint: Joint, kind: JointType) -> Joint:
         """EU-JNT-020, -021: the joint with another type; its rates and dynamics are those of each of its velocities."""
-        coordinates = COORDINATES[kind]
-        n = coordinates.nv
+        each = {
+            name: getattr(joint.properties, name) * COORDINATES[kind].nv
+            for name in ("velocity", "effort", "damping", "friction", "armature", "gear_ratio", "rotor_inertia")
+        }
         return Joint(
             joint.name,
             kind,
@@ -263,15 +265,7 @@ class _Replacement:
             joint.child,
             joint.placement,
             axes=() if kind is JointType.SPHERICAL else joint.axes,
-            lower=(-math.inf,) * len(coordinates.names),
-            upper=(math.inf,) * len(coordinates.names),
-            velocity=joint.velocity * n,
-            effort=joint.effort * n,
-            damping=joint.damping * n,
-            friction=joint.friction * n,
-            armature=joint.armature * n,
-            gear_ratio=joint.gear_ratio * n,
-            rotor_inertia=joint.rotor_inertia * n,
+            properties=replace(JointProperties.unlimited(kind), **each),
         )
 
     def universal(self, joint: Joint) -> Joint | None:
@@ -294,7 +288,7 @@ class _Replacement:
             self.report("joint-axes-parallel", f"the two axes of universal joint '{joint.name}' are parallel", "axes")
             return None
         spread = self._spread(joint, JointType.UNIVERSAL)
-        return replace(spread, axes=axes, lower=joint.lower * 2, upper=joint.upper * 2)
+        return _limited(replace(spread, axes=axes), joint.properties.lower * 2, joint.properties.upper * 2)
 
     def split(self, joint: Joint) -> Joint | None:
         """EU-ONE-006: version 1's universal joint is two revolutes, ``j_A`` and then ``j_B``, each with j's limits."""
@@ -323,23 +317,15 @@ class _Replacement:
             between.name,
             joint.child,
             axes=(_LETTERS[letters[1]],),
-            lower=joint.lower,
-            upper=joint.upper,
-            velocity=joint.velocity,
-            effort=joint.effort,
-            damping=joint.damping,
-            friction=joint.friction,
-            armature=joint.armature,
-            gear_ratio=joint.gear_ratio,
-            rotor_inertia=joint.rotor_inertia,
+            properties=joint.properties,
         )
 
     def cylindrical(self, joint: Joint) -> Joint:
         """EU-JNT-027: limits of the URDF's joint stay with the coordinate of its kind; the other has none."""
         spread = self._spread(joint, JointType.CYLINDRICAL)
         if joint.type is JointType.PRISMATIC:
-            return replace(spread, lower=(joint.lower[0], -math.inf), upper=(joint.upper[0], math.inf))
-        return replace(spread, lower=(-math.inf, joint.lower[0]), upper=(math.inf, joint.upper[0]))
+            return _limited(spread, (*joint.properties.lower, -math.inf), (*joint.properties.upper, math.inf))
+        return _limited(spread, (-math.inf, *joint.properties.lower), (math.inf, *joint.properties.upper))
 
     def helical(self, joint: Joint) -> Joint | None:
         """EU-JNT-008, EU-JNT-029: a helix has a pitch; what the URDF says of a slide holds of the screw's angle."""
@@ -348,24 +334,20 @@ class _Replacement:
         if pitch == 0.0:
             self.report("joint-pitch-zero", f"helical joint '{joint.name}' has no pitch", "pitch")
             return None
-        lower, upper, velocity, effort = joint.lower[0], joint.upper[0], joint.velocity[0], joint.effort[0]
-        damping, friction = joint.damping[0], joint.friction[0]
+        properties = joint.properties
         if joint.type is JointType.PRISMATIC:
             lead = pitch / (2.0 * math.pi)
-            lower, upper = sorted((lower / lead, upper / lead))
-            velocity, effort = velocity / abs(lead), effort * abs(lead)
-            damping, friction = damping * lead * lead, friction * abs(lead)
-        return replace(
-            joint,
-            type=JointType.HELICAL,
-            pitch=pitch,
-            lower=(lower,),
-            upper=(upper,),
-            velocity=(velocity,),
-            effort=(effort,),
-            damping=(damping,),
-            friction=(friction,),
-        )
+            lower, upper = sorted((properties.lower[0] / lead, properties.upper[0] / lead))
+            properties = replace(
+                properties,
+                lower=(lower,),
+                upper=(upper,),
+                velocity=(properties.velocity[0] / abs(lead),),
+                effort=(properties.effort[0] * abs(lead),),
+                damping=(properties.damping[0] * lead * lead,),
+                friction=(properties.friction[0] * abs(lead),),
+            )
+        return replace(joint, type=JointType.HELICAL, pitch=pitch, properties=properties)
 
     # -- overrides ------------------------------------------------------------------------------------------------
 
@@ -401,10 +383,10 @@ class _Replacement:
             changes[attribute] = values
         if not changes:
             return joint
-        joint = replace(joint, **changes)  # type: ignore[arg-type]
+        properties = replace(joint.properties, **changes)
         if "armature" in changes:
             self.joints.armature_given.add(joint.name)
-        for lower, upper in zip(joint.lower, joint.upper, strict=True):
+        for lower, upper in zip(properties.lower, properties.upper, strict=True):
             if lower > upper:
                 key = "lower" if "lower" in changes else "upper"
                 left_out = {"lower", "upper"} - set(changes)
@@ -416,7 +398,11 @@ class _Replacement:
                     hint=f"the {left_out.pop()} limit is the URDF's; state it too" if left_out else "swap them",
                 )
                 return None
-        return joint
+        return replace(joint, properties=properties)
+
+
+def _limited(joint: Joint, lower: tuple[float, ...], upper: tuple[float, ...]) -> Joint:
+    return replace(joint, properties=replace(joint.properties, lower=lower, upper=upper))
 
 
 _PROPERTIES: dict[str, tuple[str, ...]] = {

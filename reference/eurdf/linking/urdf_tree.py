@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
+from dataclasses import replace
 
 from eurdf.format.urdf import Urdf, UrdfJoint
 from eurdf.mechanism.body import Body
-from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import COORDINATES, JointType
+from eurdf.mechanism.joint import Joint, JointProperties
+from eurdf.mechanism.joint_type import JointType
 
-_INF = math.inf
 _AXIAL = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC})
 
 
@@ -25,48 +24,16 @@ def joint_of(joint: UrdfJoint) -> Joint:
     their coordinates, of different units.
     """
     kind = joint.type
+    fixed = Joint(joint.name, kind, joint.parent, joint.child, joint.placement)
     if kind is JointType.FIXED:
-        return Joint(joint.name, kind, joint.parent, joint.child, joint.placement)
-    coordinates = COORDINATES[kind]
+        return fixed
+    properties = JointProperties.unlimited(kind)
     if kind not in _AXIAL:
-        unlimited = (_INF,) * coordinates.nv
-        nothing = (0.0,) * coordinates.nv
-        return Joint(
-            joint.name,
-            kind,
-            joint.parent,
-            joint.child,
-            joint.placement,
-            lower=(-_INF,) * len(coordinates.names),
-            upper=(_INF,) * len(coordinates.names),
-            velocity=unlimited,
-            effort=unlimited,
-            damping=nothing,
-            friction=nothing,
-            armature=nothing,
-            gear_ratio=(1.0,) * coordinates.nv,
-            rotor_inertia=nothing,
-        )
-    lower, upper, velocity, effort = -_INF, _INF, _INF, _INF
-    if joint.limit is not None:
-        velocity, effort = joint.limit.velocity, joint.limit.effort
+        return replace(fixed, properties=properties)
+    properties = replace(properties, damping=(joint.damping,), friction=(joint.friction,))
+    limit = joint.limit
+    if limit is not None:
+        properties = replace(properties, velocity=(limit.velocity,), effort=(limit.effort,))
         if kind is not JointType.CONTINUOUS:
-            lower, upper = joint.limit.lower, joint.limit.upper
-    return Joint(
-        joint.name,
-        kind,
-        joint.parent,
-        joint.child,
-        joint.placement,
-        axes=(joint.axis,),
-        lower=(lower,),
-        upper=(upper,),
-        velocity=(velocity,),
-        effort=(effort,),
-        damping=(joint.damping,),
-        friction=(joint.friction,),
-        armature=(0.0,),
-        gear_ratio=(1.0,),
-        rotor_inertia=(0.0,),
-        mimic=joint.mimic,
-    )
+            properties = replace(properties, lower=(limit.lower,), upper=(limit.upper,))
+    return replace(fixed, axes=(joint.axis,), properties=properties, mimic=joint.mimic)

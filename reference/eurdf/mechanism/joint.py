@@ -2,11 +2,49 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from eurdf.mechanism.joint_type import COORDINATES, Coordinates, JointType
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
+
+
+@dataclass(frozen=True, slots=True)
+class JointProperties:
+    """Limits, losses and motor of a joint: one number a velocity, a limit of position one a coordinate.
+
+    An empty tuple means no limit, no loss and no motor.
+
+    Attributes:
+        lower: Lower position limits, one a coordinate as in `Coordinates`; -inf where there is none.
+        upper: Upper position limits; inf where there is none.
+        velocity: Velocity limits, rad/s or m/s; inf where there is none.
+        effort: Effort limits, N·m or N; inf where there is none.
+        damping: Viscous damping, N·m·s/rad or N·s/m.
+        friction: Dry friction, N·m or N.
+        armature: Reflected inertia, kg·m² or kg.
+        gear_ratio: Motor revolutions per joint revolution.
+        rotor_inertia: Inertia of the motor's rotor about its own axis, kg·m².
+    """
+
+    lower: tuple[float, ...] = ()
+    upper: tuple[float, ...] = ()
+    velocity: tuple[float, ...] = ()
+    effort: tuple[float, ...] = ()
+    damping: tuple[float, ...] = ()
+    friction: tuple[float, ...] = ()
+    armature: tuple[float, ...] = ()
+    gear_ratio: tuple[float, ...] = ()
+    rotor_inertia: tuple[float, ...] = ()
+
+    @classmethod
+    def unlimited(cls, kind: JointType) -> JointProperties:
+        """Those of a joint of a type without limits, losses and motor, every number written out."""
+        coordinates = COORDINATES[kind]
+        n, nv = len(coordinates.names), coordinates.nv
+        infinite, zero = (math.inf,) * nv, (0.0,) * nv
+        return cls((-math.inf,) * n, (math.inf,) * n, infinite, infinite, zero, zero, zero, (1.0,) * nv, zero)
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,15 +63,7 @@ class Joint:
             prismatic, helical, cylindrical; two, first and second, for universal; none otherwise. Planar moves in
             the joint's xy plane.
         pitch: Advance of a helical joint along its axis, m per revolution, right-handed; 0 otherwise.
-        lower: Lower position limits, one a coordinate as in `Coordinates`; -inf where there is none.
-        upper: Upper position limits; inf where there is none.
-        velocity: Velocity limits, one a velocity, rad/s or m/s; inf where there is none.
-        effort: Effort limits, one a velocity, N·m or N; inf where there is none.
-        damping: Viscous damping, one a velocity, N·m·s/rad or N·s/m.
-        friction: Dry friction, one a velocity, N·m or N.
-        armature: Reflected inertia, one a velocity, kg·m² or kg.
-        gear_ratio: Motor revolutions per joint revolution, one a velocity.
-        rotor_inertia: Inertia of the motor's rotor about its own axis, one a velocity, kg·m².
+        properties: Limits, losses and motor.
         mimic: The joint this one follows, or None.
     """
 
@@ -45,15 +75,7 @@ class Joint:
     offset: Pose = IDENTITY
     axes: tuple[Vector3, ...] = ()
     pitch: float = 0.0
-    lower: tuple[float, ...] = ()
-    upper: tuple[float, ...] = ()
-    velocity: tuple[float, ...] = ()
-    effort: tuple[float, ...] = ()
-    damping: tuple[float, ...] = ()
-    friction: tuple[float, ...] = ()
-    armature: tuple[float, ...] = ()
-    gear_ratio: tuple[float, ...] = ()
-    rotor_inertia: tuple[float, ...] = ()
+    properties: JointProperties = JointProperties()
     mimic: Mimic | None = None
 
     @property

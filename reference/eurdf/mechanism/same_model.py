@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from dataclasses import fields, replace
 from typing import TypeVar
 
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.frame import Anchor, Frame
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Mechanism
 
@@ -96,15 +96,12 @@ def _joined(first: Joint, second: Joint) -> Joint:
         parent=first.parent,
         placement=first.placement,
         axes=first.axes + second.axes,
-        lower=first.lower + second.lower,
-        upper=first.upper + second.upper,
-        velocity=first.velocity + second.velocity,
-        effort=first.effort + second.effort,
-        damping=first.damping + second.damping,
-        friction=first.friction + second.friction,
-        armature=first.armature + second.armature,
-        gear_ratio=first.gear_ratio + second.gear_ratio,
-        rotor_inertia=first.rotor_inertia + second.rotor_inertia,
+        properties=JointProperties(
+            *(
+                getattr(first.properties, each.name) + getattr(second.properties, each.name)
+                for each in fields(JointProperties)
+            )
+        ),
     )
 
 

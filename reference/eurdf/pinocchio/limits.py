@@ -38,13 +38,14 @@ def set_limits(model: pin.Model, joints: Sequence[tuple[Joint, int]], root_nq: i
         lower += lowest
         upper += highest
         nv = joint.coordinates.nv
-        velocity += joint.velocity or (_INF,) * nv
-        effort += joint.effort or (_INF,) * nv
-        friction += joint.friction or (0.0,) * nv
-        damping += joint.damping or (0.0,) * nv
-        armature += joint.armature or (0.0,) * nv
-        rotor_inertia += joint.rotor_inertia or (0.0,) * nv
-        gear_ratio += joint.gear_ratio or (1.0,) * nv
+        properties = joint.properties
+        velocity += properties.velocity or (_INF,) * nv
+        effort += properties.effort or (_INF,) * nv
+        friction += properties.friction or (0.0,) * nv
+        damping += properties.damping or (0.0,) * nv
+        armature += properties.armature or (0.0,) * nv
+        rotor_inertia += properties.rotor_inertia or (0.0,) * nv
+        gear_ratio += properties.gear_ratio or (1.0,) * nv
     model.lowerPositionLimit = np.array(lower)
     model.upperPositionLimit = np.array(upper)
     # Pinocchio 4.1 gives the lower velocity limit the sign of the upper one. Whichever it gave its defaults is kept.
@@ -62,8 +63,8 @@ def set_limits(model: pin.Model, joints: Sequence[tuple[Joint, int]], root_nq: i
 
 def _position_bounds(joint: Joint, nq: int) -> tuple[tuple[float, ...], tuple[float, ...]]:
     """Lower and upper position limits as Pinocchio's coordinates have them, ``nq`` numbers each."""
-    lower = joint.lower or (-_INF,) * len(joint.coordinates.names)
-    upper = joint.upper or (_INF,) * len(joint.coordinates.names)
+    lower = joint.properties.lower or (-_INF,) * len(joint.coordinates.names)
+    upper = joint.properties.upper or (_INF,) * len(joint.coordinates.names)
     kind = joint.type
     if kind is JointType.SPHERICAL or (kind is JointType.CONTINUOUS and nq == 2):
         plain = 0

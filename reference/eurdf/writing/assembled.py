@@ -61,7 +61,11 @@ def beyond_limits(mechanism: Mechanism, coordinates: Mapping[str, Sequence[float
         for joint in mechanism.joints
         if joint.name in coordinates and joint.coordinates.quaternion is None
         for name, value, lower, upper in zip(
-            joint.coordinates.names, coordinates[joint.name], joint.lower, joint.upper, strict=True
+            joint.coordinates.names,
+            coordinates[joint.name],
+            joint.properties.lower,
+            joint.properties.upper,
+            strict=True,
         )
         if not within_limits(value, lower, upper)
     ]
