@@ -23,6 +23,7 @@ from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.constraint import build_constraint_models
 from eurdf.pinocchio.model import build_model
+from eurdf.pinocchio.tree import build_tree
 
 SIZES = (10, 100, 1000, 4000)
 LOOPS = (100, 200, 500, 1000)
@@ -122,7 +123,7 @@ def by_loops() -> None:
                 robot = eurdf.load(path, geometry=False)
 
                 def models(mechanism: Mechanism = mechanism) -> None:
-                    build_constraint_models(mechanism, build_model(mechanism))
+                    build_constraint_models(mechanism.constraints, build_tree(mechanism, build_model(mechanism)))
 
                 tasks: tuple[Callable[[], object], ...] = (
                     lambda p=path: describe(p),  # type: ignore[misc]

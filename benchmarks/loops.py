@@ -12,7 +12,7 @@ import pinocchio as pin
 import eurdf
 from benchmarks.assembly import timed
 from eurdf.mechanism.body import Body
-from eurdf.mechanism.constraint import Closure
+from eurdf.mechanism.constraint import PointClosure
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
@@ -37,7 +37,7 @@ def four_bars(count: int, in_series: bool) -> eurdf.Robot:
             parent = child
         ground_pin = Pose.from_xyz_rpy((at[0] + 1.6, at[1], at[2]), (0.0, 0.0, 0.0))
         rocker_pin = Pose.from_xyz_rpy((1.2, 0.0, 0.0), (0.0, 0.0, 0.0))
-        closures.append(Closure(f"loop{index}", "3d", Anchor(foot, ground_pin), Anchor(parent, rocker_pin)))
+        closures.append(PointClosure(f"loop{index}", Anchor(foot, ground_pin), Anchor(parent, rocker_pin)))
         if in_series:
             foot, place = parent, (0.0, 0.0, 0.1)
         else:

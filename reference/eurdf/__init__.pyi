@@ -60,6 +60,7 @@ from eurdf.kinematics.sweep import MotionPath as MotionPath
 from eurdf.kinematics.sweep import Sweep as Sweep
 from eurdf.kinematics.sweep import sweep as sweep
 from eurdf.mechanism.mechanism import Mechanism as Mechanism
+from eurdf.pinocchio.constraint import NoConstraintModel as NoConstraintModel
 from eurdf.pinocchio.robot import Robot as Robot
 
 __version__: str

@@ -15,10 +15,12 @@ import pinocchio as pin
 
 import eurdf
 from eurdf.kinematics.array import Vector
+from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.coordinates import Slot, slots
 from eurdf.pinocchio.frames import body_frame_ids
+from eurdf.pinocchio.robot import Robot
 from robots.quality.candidate import Candidate
 
 _MIRROR = np.array((1.0, -1.0, 1.0))
@@ -124,7 +126,7 @@ def _unlike(robot: eurdf.Robot, pairs: Mapping[str, str], q: Vector) -> list[str
     ]
     if faults:
         return faults[:1]  # and what hangs from it
-    closures = {closure.name: closure for closure in robot.constraint_models}
+    closures = {closure.name: closure for closure in robot.mechanism.closures}
     masses = {name: _inertia(model, data, model.getJointId(name)) for name in pairs if model.existJointName(name)}
     images = {name: _inertia(model, data, model.getJointId(pairs[name])) for name in masses}
     for name, (mass, center, moments) in masses.items():
@@ -138,7 +140,7 @@ def _unlike(robot: eurdf.Robot, pairs: Mapping[str, str], q: Vector) -> list[str
             faults.append(f"the inertias of what '{name}' and '{pairs[name]}' carry are no mirror images")
     for name in pairs:
         if name in closures:
-            ends = _ends(data, closures[name]), _ends(data, closures[pairs[name]])
+            ends = _ends(robot, data, closures[name]), _ends(robot, data, closures[pairs[name]])
             if closures[name].type != closures[pairs[name]].type or any(
                 _apart(one, other) > _SAME_PLACE for one, other in zip(*ends, strict=True)
             ):
@@ -153,11 +155,9 @@ def _inertia(model: Any, data: Any, joint: int) -> tuple[float, Vector, Any]:
     return float(carried.mass), oMi.act(carried.lever), R @ carried.inertia @ R.T
 
 
-def _ends(data: Any, closure: Any) -> tuple[Vector, Vector]:
+def _ends(robot: Robot, data: Any, closure: Closure) -> list[Vector]:
     """Places (3,) of its two frames in the world, m."""
-    a = data.oMi[closure.joint1_id] * closure.joint1_placement
-    b = data.oMi[closure.joint2_id] * closure.joint2_placement
-    return a.translation, b.translation
+    return [data.oMi[joint].act(placement.translation) for joint, placement in map(robot.tree.site, closure.anchors)]
 
 
 def _apart(left: Vector, right: Vector) -> float:

@@ -60,7 +60,7 @@ def dimension_row(robot: eurdf.Robot) -> list[str]:
 def _closures(mechanism: Mechanism) -> str:
     """How many, and of what type: ``3 (6d)``, ``12 (3×6d + 9×3d)``."""
     counts = Counter(closure.type for closure in mechanism.closures)
-    kinds = list(counts) if len(counts) == 1 else [f"{counts[kind]}×{kind}" for kind in ("6d", "3d") if counts[kind]]
+    kinds = list(counts) if len(counts) == 1 else [f"{counts[kind]}×{kind}" for kind in sorted(counts, reverse=True)]
     return f"{len(mechanism.closures)} ({' + '.join(kinds)})" if kinds else "0"
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -29,6 +29,7 @@ from support.linkage import (
     flat_sarrus,
     loop,
     n_bar,
+    pulled_apart,
     sarrus,
     slider_crank,
     spherical_four_bar,
@@ -63,12 +64,10 @@ def side_by_side(*linkages: Linkage) -> Linkage:
             name = letter + linkage.model.names[joint][1:]
             parent, placement = known[linkage.model.parents[joint]], linkage.model.jointPlacements[joint]
             known[joint] = model.addJoint(parent, linkage.model.joints[joint], placement, name)
-        for found in linkage.constraint_models:
-            a, b = known[found.joint1_id], known[found.joint2_id]
-            kind = {3: "3d", 6: "6d"}[found.residualSize()]
-            constraints.append(
-                closure(model, a, found.joint1_placement, b, found.joint2_placement, kind, f"{letter}_{found.name}")
-            )
+        names = {linkage.model.names[old]: model.names[new] for old, new in known.items()}
+        for found in linkage.constraints:
+            a, b = (replace(frame, body=names[frame.body]) for frame in found.anchors)
+            constraints.append(replace(found, name=f"{letter}_{found.name}", a=a, b=b))
         actuated += [letter + name[1:] for name in linkage.actuated]
     return Linkage(model, constraints, actuated)
 
@@ -168,15 +167,13 @@ def test_joints_outside_loops_add_mobility() -> None:
     linkage = n_bar(4)
     linkage.model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "float")
     linkage.model.addJoint(2, pin.JointModelRX(), pin.SE3.Identity(), "gripper")
-    linkage = dataclasses.replace(linkage, actuated=["j0", "gripper"])
+    linkage = replace(linkage, actuated=["j0", "gripper"])
     analysis = analyze(linkage)
     assert (analysis.nv, analysis.rank, analysis.mobility, analysis.uncontrolled) == (11, 3, 8, 6)
 
 
 def test_open_loops_have_no_rank() -> None:
-    linkage = n_bar(4)
-    (end,) = linkage.constraint_models
-    end.joint1_placement = translation(50.0, 0.0, 0.0)
+    linkage = pulled_apart(n_bar(4), translation(50.0, 0.0, 0.0))
     analysis = analyze(linkage)
     assert not analysis.closes
     assert (analysis.rank, analysis.mobility, analysis.redundant, analysis.uncontrolled) == (None, None, None, None)
@@ -310,7 +307,8 @@ def test_dependent_actuators_are_separated_from_independent_ones() -> None:
     data = model.createData()
     pin.forwardKinematics(model, data, pin.neutral(model))
     on_rocker = (data.oMi[3].inverse() * data.oMi[arm]) * end
-    linkage.constraint_models.append(closure(model, 3, on_rocker, arm, end, "3d", "other"))
+    other = closure(model, 3, on_rocker, arm, end, "3d", "other")
+    linkage = replace(linkage, constraints=[*linkage.constraints, other])
     analysis = analyze(linkage)
     assert [loops.closures for loops in analysis.loops] == [("end", "other")]
     assert analysis.mobility == 2
@@ -386,9 +384,9 @@ def test_singularity_distance_is_distance_to_lower_rank() -> None:
     analysis = analyze(linkage)
     assert analysis.singularity is not None
     K = residual_and_jacobian(linkage, analysis.q)[1]
-    (end,) = linkage.constraint_models
+    (end,) = linkage.constraints
     around = [linkage.model.jointPlacements[j].translation for j in range(1, 5)]
-    around += [end.joint1_placement.translation, end.joint2_placement.translation]
+    around += [np.array(frame.pose.xyz) for frame in end.anchors]
     K[:3] /= sum(np.linalg.norm(step) for step in around) / 2.0
     U, values, V = np.linalg.svd(K, full_matrices=False)
     values[2] = 0.0
@@ -415,8 +413,7 @@ def test_driven_slider_is_singular_at_dead_points_only() -> None:
 
 
 def test_open_robot_has_no_motions_and_distances() -> None:
-    linkage = n_bar(4, actuated=["j0", "j1"])
-    linkage.constraint_models[0].joint1_placement = translation(50.0, 0.0, 0.0)
+    linkage = pulled_apart(n_bar(4, actuated=["j0", "j1"]), translation(50.0, 0.0, 0.0))
     analysis = analyze(linkage)
     assert (analysis.controlled, analysis.dependent, analysis.singularity, analysis.actuation_singularity) == (
         None,

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import dataclasses
 import gc
 import weakref
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,8 @@ from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.evaluation import evaluations
 from eurdf.kinematics.loop import independent_groups
 from eurdf.kinematics.residual import closure_openings, residual, residual_and_jacobian
+from eurdf.mechanism.constraint import Closure
+from eurdf.mechanism.pose import Pose
 from support.linkage import (
     Linkage,
     X,
@@ -29,6 +31,7 @@ from support.linkage import (
     flat_sarrus,
     loop,
     n_bar,
+    pulled_apart,
     sarrus,
     slider_crank,
     spherical_four_bar,
@@ -52,11 +55,15 @@ OPEN = {
 def four_bar(crank: float, coupler: float, rocker: float, ground: float) -> Linkage:
     """Planar four-bar with all bars along x at zero, pinned at its end by a 3d closure to the ground at ``ground``."""
     linkage = loop([("R", (0, 0, 0), Z), ("R", (crank, 0, 0), Z), ("R", (crank + coupler, 0, 0), Z)], "3d")
-    (end,) = linkage.constraint_models
-    end.joint1_placement = translation(ground, 0.0, 0.0)
-    turn = linkage.model.jointPlacements[1] * linkage.model.jointPlacements[2] * linkage.model.jointPlacements[3]
-    end.joint2_placement = turn.inverse() * translation(crank + coupler + rocker, 0.0, 0.0)
-    return linkage
+    model = linkage.model
+    turn = model.jointPlacements[1] * model.jointPlacements[2] * model.jointPlacements[3]
+    tip = turn.inverse() * translation(crank + coupler + rocker, 0.0, 0.0)
+    return Linkage(model, [closure(model, 0, translation(ground, 0.0, 0.0), 3, tip, "3d", "end")], ["j0"])
+
+
+def sized(pose: Pose, size: float) -> Pose:
+    x, y, z = pose.xyz
+    return replace(pose, xyz=(size * x, size * y, size * z))
 
 
 @pytest.mark.parametrize("build", OPEN.values(), ids=OPEN.keys())
@@ -65,13 +72,10 @@ def test_open_linkage_closes_at_any_size(build: Callable[[], Linkage], size: flo
     linkage = build()
     for joint in range(1, linkage.model.njoints):
         linkage.model.jointPlacements[joint].translation *= size
-    for constraint in linkage.constraint_models:
-        constraint.joint1_placement = pin.SE3(
-            constraint.joint1_placement.rotation, size * constraint.joint1_placement.translation
-        )
-        constraint.joint2_placement = pin.SE3(
-            constraint.joint2_placement.rotation, size * constraint.joint2_placement.translation
-        )
+    (end,) = linkage.constraints
+    assert isinstance(end, Closure)
+    a, b = (replace(frame, pose=sized(frame.pose, size)) for frame in end.anchors)
+    linkage = replace(linkage, constraints=[replace(end, a=a, b=b)])
     assert np.linalg.norm(residual(linkage, pin.neutral(linkage.model))) > 1e-3
     assembly = assemble(linkage)
     assert assembly.converged
@@ -254,9 +258,7 @@ def test_other_joints_move_after_some_reach_limits() -> None:
 @pytest.mark.parametrize(("off", "closes"), [(0.5e-6, True), (0.7e-6, False)])
 def test_opening_is_euclidean_length_of_all_axes(off: float, closes: bool) -> None:
     linkage = loop([("R", (0.0, 0.0, 0.0), Z)], "3d", (0.0, 0.0, 0.3))  # closed on the axis, which moves nothing
-    constraint = linkage.constraint_models[0]
-    constraint.joint1_placement = constraint.joint1_placement * pin.SE3(np.eye(3), np.full(3, off))
-    assembly = assemble(linkage)
+    assembly = assemble(pulled_apart(linkage, translation(0.0, 0.0, 0.3) * translation(off, off, off)))
     assert assembly.closes is closes
     assert assembly.open[0].is_open is not closes
 
@@ -383,8 +385,7 @@ def test_both_evaluations_agree_with_residual_and_jacobian(build: Callable[[], A
     groups = independent_groups(robot, held)
     r, K = residual_and_jacobian(robot, pin.neutral(model))
     row_scale, velocity_scale = random.uniform(0.5, 2.0, len(r)), random.uniform(0.5, 2.0, model.nv)
-    ways = [None] if model.nv < model.nvExtended else [None, model.createData()]  # not where joints mimic
-    for data in ways * 3:
+    for data in [None, model.createData()] * 3:
         made = evaluations(robot, groups, row_scale, velocity_scale, data)
         q = pin.integrate(model, pin.neutral(model), random.uniform(-2.0, 2.0, model.nv))
         r, K = residual_and_jacobian(robot, q)
@@ -404,11 +405,19 @@ def test_robot_with_other_closures_is_assembled_anew() -> None:
     linkage = four_bar(1.0, 3.0, 2.5, 2.8)
     start = np.array([0.3, 0.5, 0.5])
     assert assemble(linkage, start).converged
-    end = pin.RigidConstraintModel(linkage.constraint_models[0])
-    end.joint1_placement = translation(3.1, 0.0, 0.0)
-    moved = dataclasses.replace(linkage, constraint_models=[end])
+    moved = pulled_apart(linkage, translation(3.1, 0.0, 0.0))
     assert np.abs(residual(moved, assemble(moved, start).q)).max() <= 1e-10
     assert np.abs(residual(linkage, assemble(linkage, start).q)).max() <= 1e-10
+
+
+def test_changed_limits_are_used() -> None:
+    linkage = four_bar(1.0, 3.0, 2.5, 2.8)
+    start = np.array([0.3, 0.5, 0.5])
+    assert assemble(linkage, start).converged
+    linkage.model.lowerPositionLimit, linkage.model.upperPositionLimit = np.full(3, -1.0), np.full(3, 1.5)
+    assert 0.7 < assemble(linkage, start, limits=True).q.max() <= 1.5
+    linkage.model.upperPositionLimit = np.full(3, 0.7)
+    assert assemble(linkage, start, limits=True).q.max() <= 0.7
 
 
 def test_cached_assembler_keeps_no_reference_to_robot() -> None:

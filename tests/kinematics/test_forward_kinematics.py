@@ -237,7 +237,7 @@ def test_dependent_motors_are_named() -> None:
     # A motor beside the loop is free, and not accused.
     model = both.model
     model.addJoint(0, pin.JointModelRX(), pin.SE3.Identity(), "beside")
-    three = actuated(Linkage(model, both.constraint_models), ["beside", "j2", "j0"])
+    three = actuated(Linkage(model, both.constraints), ["beside", "j2", "j0"])
     with pytest.raises(DependentActuators) as raised:
         dq_dq_actuated(three, np.append(q, 0.0))
     assert (raised.value.joints, raised.value.rank) == (("j2", "j0"), 2)

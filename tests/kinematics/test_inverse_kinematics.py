@@ -20,7 +20,7 @@ from eurdf.kinematics.residual import residual
 from eurdf.kinematics.sensitivity import actuated_jacobian
 from eurdf.kinematics.split import split_configuration
 from support.actuated import ROBOTS, actuated, closed_near, robot_called
-from support.linkage import Linkage, Z, loop, n_bar, stewart, translation
+from support.linkage import Linkage, Z, loop, n_bar, pulled_apart, stewart, translation
 
 # For each robot a frame to lead.
 LED = {
@@ -106,7 +106,7 @@ def test_nearby_pose_is_reached_with_default_limits(name: str) -> None:
 def test_stewart_legs_are_found_from_platform_pose(seed: int) -> None:
     linkage, random = stewart(), np.random.default_rng(seed)
     model = linkage.model
-    carrier = linkage.constraint_models[0].joint1_id
+    carrier = linkage.model.getJointId("ball0")
     model.addFrame(pin.Frame("top", carrier, 0, translation(0.1, 0.0, 0.2), pin.FrameType.OP_FRAME))
     robot = actuated(linkage)
     lengths = random.uniform(-0.1, 0.1, 6)
@@ -302,7 +302,7 @@ def test_start_outside_limits_is_clipped() -> None:
 
 def test_open_mechanism_is_reported() -> None:
     linkage = loop([("R", (0, 0, 0), Z), ("R", (1, 0, 0), Z)], "3d", (2, 0, 0))
-    linkage.constraint_models[0].joint1_placement = translation(5.0, 0.0, 0.0)
+    linkage = pulled_apart(linkage, translation(5.0, 0.0, 0.0))
     linkage.model.addFrame(pin.Frame("tip", 1, 0, translation(1.0, 0.0, 0.0), pin.FrameType.OP_FRAME))
     answer = inverse_kinematics(actuated(linkage), {"tip": [1.0, 0.0, 0.0]}, np.array([0.3, 0.4]), limits=False)
     assert not answer.converged

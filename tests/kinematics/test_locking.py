@@ -21,7 +21,7 @@ from eurdf.kinematics.locked_mechanism import lock_joints
 from eurdf.kinematics.locking import LockedRobot, lock
 from eurdf.kinematics.residual import residual, residual_and_jacobian
 from eurdf.mechanism.body import Shape
-from eurdf.mechanism.constraint import Closure
+from eurdf.mechanism.constraint import FrameClosure, PointClosure
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_type import JointType
@@ -142,7 +142,9 @@ def some_robot(random: np.random.Generator, mimic: bool, root: str = "fixed") ->
     for index in range(3):
         a, b = random.choice(sorted(set(rigid.values())), 2, False).tolist()
         oMa, oMb = (data.oMf[open_robot.model.getFrameId(name, pin.FrameType.BODY)] for name in (a, b))
-        closures.append(Closure(f"c{index}", ("3d", "6d")[index % 2], Anchor(a), Anchor(b, pose_of(oMb.actInv(oMa)))))
+        closures.append(
+            (PointClosure, FrameClosure)[index % 2](f"c{index}", Anchor(a), Anchor(b, pose_of(oMb.actInv(oMa))))
+        )
     configurations = {"here": {name: tuple(c) for name, c in coordinates.items() if name not in followers}}
     mechanism = replace(mechanism, closures=tuple(closures), configurations=configurations)
     return build_robot(mechanism, geometry=True), coordinates

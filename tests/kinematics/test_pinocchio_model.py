@@ -14,7 +14,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from eurdf.mechanism.body import Body
-from eurdf.mechanism.constraint import Closure
+from eurdf.mechanism.constraint import FrameClosure, PointClosure
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_type import JointType
@@ -27,6 +27,7 @@ from eurdf.pinocchio.constraint import build_constraint_models
 from eurdf.pinocchio.frames import body_frame_ids
 from eurdf.pinocchio.model import build_model
 from eurdf.pinocchio.robot import build_robot
+from eurdf.pinocchio.tree import build_tree
 from support import by_hand
 from support.plain_urdf import (
     Root,
@@ -381,7 +382,7 @@ def test_position_limits_are_at_pinocchio_coordinates(kind: str) -> None:
 def test_body_without_link_has_no_frame() -> None:
     mechanism = _hand_made(
         Joint("j_X", JointType.REVOLUTE, "", "", axes=(X,)),
-        closures=(Closure("loop", "3d", Anchor("second"), Anchor("third")),),
+        closures=(PointClosure("loop", Anchor("second"), Anchor("third")),),
     )
     bodies = tuple(replace(body, virtual=body.name == "second") for body in mechanism.bodies)
     mechanism = replace(mechanism, bodies=bodies)
@@ -391,7 +392,7 @@ def test_body_without_link_has_no_frame() -> None:
     assert model.frames[carried.parentFrame].name == "j_X"
     ids = body_frame_ids(mechanism)
     assert [model.frames[ids[body.name]].name for body in bodies] == ["base", "first", "j_X", "third"]
-    [constraint] = build_constraint_models(mechanism, model)
+    [constraint] = build_constraint_models(mechanism.constraints, build_tree(mechanism, model))
     assert (constraint.joint1_id, constraint.joint2_id) == (model.getJointId("j_X"), model.getJointId("then"))
 
 
@@ -441,9 +442,8 @@ def test_constraint_model_joins_its_two_frames(root: Root) -> None:
     mechanism = by_hand.tree_of_all_types(random)
     names = [body.name for body in mechanism.bodies]
     closures = tuple(
-        Closure(
+        (PointClosure if index % 2 else FrameClosure)(
             f"loop{index}",
-            "3d" if index % 2 else "6d",
             Anchor(a, by_hand.some_pose(random)),
             Anchor(b, by_hand.some_pose(random)),
         )
@@ -452,7 +452,7 @@ def test_constraint_model_joins_its_two_frames(root: Root) -> None:
     )
     mechanism = replace(mechanism, root=root, closures=closures)
     model = build_model(mechanism)
-    constraint_models = build_constraint_models(mechanism, model)
+    constraint_models = build_constraint_models(mechanism.constraints, build_tree(mechanism, model))
     coordinates = {joint.name: by_hand.some_coordinates(joint.type, random) for joint in mechanism.joints}
     coordinates = {name: values for name, values in coordinates.items() if values}
     data = model.createData()
@@ -495,7 +495,7 @@ def test_robot_unpacks_into_its_parts() -> None:
     half = math.sqrt(0.5)
     mechanism = _hand_made(
         Joint("wheel", JointType.CONTINUOUS, "", "", axes=(X,)),
-        closures=(Closure("loop", "6d", Anchor("base"), Anchor("third")),),
+        closures=(FrameClosure("loop", Anchor("base"), Anchor("third")),),
         actuators=("wheel",),
         configurations={"assembled": {"wheel": (math.pi / 2,), "before": (half, 0.0, 0.0, half)}},
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,8 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 import eurdf
+from eurdf.mechanism.pose import Pose
+from eurdf.pinocchio.robot import build_robot
 from robots.builder import Cylinder, Drawing, Motor, ball, revolute, write
 from support.wild import WILD, needs_wild
 
@@ -252,6 +255,8 @@ def test_published_robot_is_swept_without_division_by_zero():
 
 def test_robot_that_cannot_close_is_refused(tmp_path):
     robot = linkage(tmp_path, CRANK_AND_ROCKER)
-    robot.constraint_models[0].joint1_placement = pin.SE3(np.eye(3), np.array((9.0, 0.0, 0.0)))
+    (closure,) = robot.mechanism.closures
+    far = replace(closure, a=replace(closure.a, pose=Pose((9.0, 0.0, 0.0))))
+    robot = build_robot(replace(robot.mechanism, closures=(far,)), geometry=False)
     with pytest.raises(eurdf.NotClosable):
         eurdf.sweep(robot, "crank")

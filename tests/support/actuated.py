@@ -12,6 +12,8 @@ import pytest
 import eurdf
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.position_limit import position_limits
+from eurdf.mechanism.constraint import Closure
+from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.actuation import Actuation
 from eurdf.pinocchio.robot import Robot
 from support.linkage import Linkage
@@ -39,8 +41,9 @@ def actuated(linkage: Linkage, joints: Sequence[str] | None = None) -> Robot:
     idx_q = np.array([joint.idx_q + k for joint in found for k in range(joint.nq)], np.intp)
     idx_v = np.array([joint.idx_v + k for joint in found for k in range(joint.nv)], np.intp)
     actuation = Actuation(names, idx_q, idx_v, model.nv)
-    no_mechanism: Any = None
-    return Robot(no_mechanism, model, linkage.constraint_models, actuation, linkage.configurations)
+    closures = tuple(found for found in linkage.constraints if isinstance(found, Closure))
+    mechanism = Mechanism("linkage", "", "fixed", (), (), closures=closures)  # without bodies and joints
+    return Robot(mechanism, model, linkage.tree, actuation, linkage.configurations)
 
 
 def closed_near(robot: Any, random: np.random.Generator, spread: float = 0.3, limits: bool = False) -> Any:

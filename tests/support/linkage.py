@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 import pinocchio as pin
 
+from eurdf.mechanism.constraint import CLOSURES, Closure, Constraint
+from eurdf.mechanism.frame import Anchor
+from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.actuation import Actuation
+from eurdf.pinocchio.constraint import build_constraint_models
+from eurdf.pinocchio.tree import PinocchioTree, Site
 from support.plain_urdf import inertial, joint_element, link_element
 
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
@@ -20,10 +26,22 @@ class Linkage:
     """A robot as the kinematics sees it."""
 
     model: Any
-    constraint_models: list[Any] = field(default_factory=list)
+    constraints: Sequence[Constraint] = ()
     actuated: Sequence[str] = ()
     configurations: dict[str, Any] = field(default_factory=dict)
     derived: dict[Any, Any] = field(default_factory=dict, init=False)
+
+    @cached_property
+    def tree(self) -> PinocchioTree:
+        """The bodies have the names of the joints that carry them."""
+        model = self.model
+        sites = {name: Site(joint, pin.SE3.Identity()) for joint, name in enumerate(model.names)}
+        first = zip(model.idx_qs, model.nqs, model.idx_vs, model.nvs, strict=True)
+        return PinocchioTree(model, sites, dict(zip(model.names, first, strict=True)))
+
+    @cached_property
+    def constraint_models(self) -> list[Any]:
+        return build_constraint_models(self.constraints, self.tree)
 
     @property
     def actuation(self) -> Actuation:
@@ -46,28 +64,32 @@ def translation(*xyz: float) -> Any:
     return pin.SE3(np.eye(3), np.array(xyz, dtype=float))
 
 
-def closure(model: Any, a: int, aMc: Any, b: int, bMc: Any, kind: str = "6d", name: str = "closure") -> Any:
+def pose_of(placement: Any) -> Pose:
+    x, y, z, qx, qy, qz, qw = map(float, pin.SE3ToXYZQUAT(placement))
+    return Pose((x, y, z), (qx, qy, qz, qw))
+
+
+def anchor(model: Any, joint: int, jMc: Any) -> Anchor:
+    """A frame at jMc in a joint."""
+    return Anchor(model.names[joint], pose_of(jMc))
+
+
+def closure(model: Any, a: int, aMc: Any, b: int, bMc: Any, kind: str = "6d", name: str = "closure") -> Closure:
     """Frame A at aMc in joint a, frame B at bMc in joint b."""
-    contact = {"3d": pin.ContactType.CONTACT_3D, "6d": pin.ContactType.CONTACT_6D}[kind]
-    constraint = pin.RigidConstraintModel(contact, model, a, aMc, b, bMc, pin.ReferenceFrame.LOCAL)
-    constraint.name = name
-    return constraint
+    return CLOSURES[kind](name, anchor(model, a, aMc), anchor(model, b, bMc))
+
+
+def pulled_apart(linkage: Linkage, jMa: Any) -> Linkage:
+    """The same with frame A of its one closure elsewhere in its joint."""
+    (end,) = linkage.constraints
+    assert isinstance(end, Closure)
+    moved = replace(end.a, pose=pose_of(jMa))
+    return Linkage(linkage.model, [replace(end, a=moved)], linkage.actuated, linkage.configurations)
 
 
 def swapped(linkage: Linkage) -> Linkage:
     """The same with frames A and B of every closure exchanged."""
-    constraints = [
-        closure(
-            linkage.model,
-            found.joint2_id,
-            found.joint2_placement,
-            found.joint1_id,
-            found.joint1_placement,
-            {3: "3d", 6: "6d"}[found.residualSize()],
-            found.name,
-        )
-        for found in linkage.constraint_models
-    ]
+    constraints = [replace(found, a=found.b, b=found.a) for found in linkage.constraints if isinstance(found, Closure)]
     return Linkage(linkage.model, constraints, linkage.actuated, linkage.configurations)
 
 
@@ -247,14 +269,12 @@ def described(linkage: Linkage) -> tuple[str, str]:
         else:
             assert kind in types
     yaml = "closures:\n"
-    for found in linkage.constraint_models:
-        ends = (found.joint1_id, found.joint1_placement), (found.joint2_id, found.joint2_placement)
+    for found in linkage.constraints:
         frames = []
-        for joint, placement in ends:
+        for joint, placement in map(linkage.tree.site, found.anchors):
             xyz, rpy = (numbers.replace(" ", ", ") for numbers in _numbers(placement))
             frames.append(f"{{link: b{joint}, xyz: [{xyz}], rpy: [{rpy}]}}")
-        kind = {3: "3d", 6: "6d"}[found.residualSize()]
-        yaml += f"  - {{name: {found.name}, type: {kind}, frames: [{', '.join(frames)}]}}\n"
+        yaml += f"  - {{name: {found.name}, type: {found.type}, frames: [{', '.join(frames)}]}}\n"
     if joints:
         yaml += "joints:\n" + "".join(joints)
     return f'<robot name="linkage">{"".join(parts)}</robot>', yaml + f"actuators: [{', '.join(linkage.actuated)}]\n"

@@ -36,7 +36,7 @@ def canonical_robot(mechanism: Mechanism) -> CanonicalRobot:
         frames=[frame.name for frame in mechanism.frames if frame.kind == "frame"],
         joints=[_joint(joint) for joint in mechanism.joints if joint.type is not JointType.FIXED],
         closures=[
-            CanonicalClosure(name=closure.name, type=closure.type, a=closure.a.body, b=closure.b.body)
+            CanonicalClosure(name=closure.name, type=closure.type, a=closure.a.body, b=closure.b.body)  # type: ignore[arg-type]
             for closure in mechanism.closures
         ],
         actuators=[

@@ -124,7 +124,7 @@ def _dimensions(info: RobotInfo) -> Table:
         smallest = "" if info.residual is None else f"smallest residual found {info.residual:.1e}; "
         verdict = ("loops", "open", f"{smallest}`eurdf assemble` shows how far each closure is")
     types = [closure.type for closure in info.closure_list]
-    kinds = ", ".join(f"{types.count(kind)} of {kind}" for kind in ("3d", "6d") if kind in types)
+    kinds = ", ".join(f"{types.count(kind)} of {kind}" for kind in sorted(set(types)))
     rows: list[tuple[str, int | str | None, str]] = [
         ("joints", info.joints, "moving joints of the spanning tree"),
         ("nq", info.nq, "coordinates"),

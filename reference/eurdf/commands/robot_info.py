@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
 
+from eurdf.mechanism.constraint import CLOSURES
 from eurdf.mechanism.joint_type import JointType
 
 if TYPE_CHECKING:
@@ -48,7 +49,7 @@ class ClosureInfo(_Entry):
 
     name: str
     """Name of the closure."""
-    type: Literal["3d", "6d"]
+    type: Annotated[str, Field(json_schema_extra={"enum": sorted(CLOSURES)})]
     """Whether it holds the position alone or the orientation too."""
     rows: Count
     """Number of its constraint rows."""

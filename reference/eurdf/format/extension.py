@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from eurdf.mechanism.constraint import ClosureType
 from eurdf.mechanism.mechanism import Root
 from eurdf.mechanism.pose import Vector3
 
@@ -151,7 +150,6 @@ class Extension:
 __all__ = [
     "ActuatorEntry",
     "ClosureEntry",
-    "ClosureType",
     "ConfigurationEntry",
     "Extension",
     "FrameEntry",

@@ -168,7 +168,7 @@ def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
     left_out = _left_out(assembler, assembly)
     ranked = assembly.closes and not left_out
     if ranked:
-        closures = [constraint.name for constraint in robot.constraint_models]
+        closures = [constraint.name for constraint in robot.constraints]
         loops = tuple(
             _analyze(evaluation, at, actuated[evaluation.group.velocities], names, closures)
             for evaluation, at in zip(assembler.evaluations, _generic_jacobians(assembler, assembly.q), strict=True)

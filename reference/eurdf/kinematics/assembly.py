@@ -181,11 +181,11 @@ class Assembler:
         """The arguments are those of `assemble`."""
         # No reference to the robot: the cache would keep it alive.
         model = self._model = robot.model
-        self._names = [constraint.name for constraint in robot.constraint_models]
+        self._names = [constraint.name for constraint in robot.constraints]
         loops = find_loops(robot)
         self._nc = loops[-1].rows.stop if loops else 0
         groups = list(independent_groups(robot, _held_velocities(model, hold)))
-        small = model.nv <= _MOST_VELOCITIES_WITH_DATA and model.nv == model.nvExtended
+        small = model.nv <= _MOST_VELOCITIES_WITH_DATA
         merged = [_merged(groups, self._nc)] if small and len(groups) > 1 else []
         length = characteristic_length(robot)
         made = evaluations(
@@ -193,7 +193,7 @@ class Assembler:
             groups + merged,
             row_scale(robot, length),
             velocity_scale(robot, length),
-            model.createData() if small else None,
+            robot.tree.memory() if small else None,
         )
         self.evaluations = made[: len(groups)]
         self._whole = made[len(groups) :] if merged else self.evaluations

@@ -80,11 +80,8 @@ class Branch:
         groups = [group for group in independent_groups(robot, held) if actuator in group.velocities]
         length = characteristic_length(robot)
         rows, unit = row_scale(robot, length), velocity_scale(robot, length)
-        # A mimic joint has its own columns, which only the loops add to those of its leader.
-        mimics = model.nv < model.nvExtended
-        if data is None and not mimics:
-            data = model.createData()
-        self._loops = evaluations(robot, groups, rows, unit, None if mimics else data)[0] if groups else None
+        data = robot.tree.memory() if data is None else data
+        self._loops = evaluations(robot, groups, rows, unit, data)[0] if groups else None
         self._rows = self._loops.row_scale if self._loops else np.empty(0)
         self._velocities = groups[0].velocities if groups else np.array([actuator])
         self._unit = unit[self._velocities]

@@ -20,7 +20,6 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from eurdf.kinematics.acceleration_drift import acceleration_drift
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.derived import derived
@@ -29,9 +28,10 @@ from eurdf.kinematics.frame_index import frame_index
 from eurdf.kinematics.loop import Loop, find_loops
 from eurdf.kinematics.mass_matrix import mass_times
 from eurdf.kinematics.rank import numerical_rank
-from eurdf.kinematics.residual import residual_and_jacobian
+from eurdf.kinematics.residual import acceleration_drift, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.kinematics.velocity_names import velocity_names
+from eurdf.pinocchio.constraint import NoConstraintModel
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -120,7 +120,7 @@ def forward_dynamics(
     force = motion.applied(u, tau, external, dissipation)
     constraint_models, kp, kd = _stabilised(robot, gains)
     target = -motion.drift - kd * (motion.K @ motion.v) - kp * motion.r
-    if len(target) and not len(robot.model.mimicking_joints):
+    if len(target) and constraint_models is not None and not len(robot.model.mimicking_joints):
         solved = _proximal(motion, constraint_models, force, target)
         if solved is not None:
             return solved
@@ -320,7 +320,7 @@ class _Motion:
             if self.differ(change, given, tolerance):
                 opening = self.K @ change
                 least = 1e-3 * np.abs(opening).max()
-                rows = zip(self.robot.constraint_models, _per_closure(self.loops, opening), strict=True)
+                rows = zip(self.robot.constraints, _per_closure(self.loops, opening), strict=True)
                 opened = {
                     constraint.name: tuple(own.tolist()) for constraint, own in rows if (np.abs(own) > least).any()
                 }
@@ -412,16 +412,25 @@ def _refuse_uncontrolled(motion: _Motion, a: Vector, deviation: Vector, missing:
 
 
 def _stabilised(robot: Robot, gains: tuple[float, float] | None) -> tuple[Any, Vector, Vector]:
-    """The constraint models with their Baumgarte gains, and these for each row, kp (nc,) and kd (nc,)."""
-    constraint_models, kp, kd = pin.StdVec_RigidConstraintModel(), [], []
-    for constraint in robot.constraint_models:
+    """The constraint models with their Baumgarte gains, and these for each row, kp (nc,) and kd (nc,).
+
+    Where Pinocchio does not have a kind, there are none, and the gains are those given, or zero.
+    """
+    try:
+        own = robot.constraint_models
+    except NoConstraintModel:
+        kp, kd = gains or (0.0, 0.0)
+        nc = sum(constraint.rows for constraint in robot.constraints)
+        return None, np.full(nc, float(kp)), np.full(nc, float(kd))
+    constraint_models, kps, kds = pin.StdVec_RigidConstraintModel(), [], []
+    for constraint in own:
         if gains is not None:
             constraint = pin.RigidConstraintModel(constraint)
             constraint.m_baumgarte_parameters.Kp, constraint.m_baumgarte_parameters.Kd = map(float, gains)
         constraint_models.append(constraint)
-        kp += [constraint.m_baumgarte_parameters.Kp] * constraint.residualSize()
-        kd += [constraint.m_baumgarte_parameters.Kd] * constraint.residualSize()
-    return constraint_models, np.array(kp), np.array(kd)
+        kps += [constraint.m_baumgarte_parameters.Kp] * constraint.residualSize()
+        kds += [constraint.m_baumgarte_parameters.Kd] * constraint.residualSize()
+    return constraint_models, np.array(kps), np.array(kds)
 
 
 def _at_joints(model: Any, data: Any, q: Vector, external: External) -> Any:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 from eurdf.kinematics.exceptions import CannotLock
-from eurdf.mechanism.constraint import Closure
+from eurdf.mechanism.constraint import Constraint
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_transform import joint_transform
 from eurdf.mechanism.joint_type import JointType
@@ -32,14 +32,14 @@ class LockedMechanism:
     Attributes:
         mechanism: The mechanism, in which locked joints are fixed. Bodies, joints and frames keep names and order.
         joints: Names of the locked joints, including their mimic joints, in the mechanism's order.
-        closures: The removed closures: those whose two frames no longer move relative to each other.
+        constraints: The removed constraints: those that no free joint changes.
         actuators: Names of the removed actuators: those that are locked.
         configurations: Names of the removed configurations: those with a different pose of a locked joint.
     """
 
     mechanism: Mechanism
     joints: tuple[str, ...]
-    closures: tuple[Closure, ...]
+    constraints: tuple[Constraint, ...]
     actuators: tuple[str, ...]
     configurations: tuple[str, ...]
 
@@ -48,7 +48,7 @@ def lock_joints(mechanism: Mechanism, joints: Iterable[str], coordinates: Coordi
     """Fix joints at given coordinates.
 
     The placement of a locked joint becomes ``placement * joint_transform(joint, c) * offset``, so the child link and
-    the joint's frame stay in place. The function does not check that the removed closures were closed.
+    the joint's frame stay in place. The function does not check that the removed constraints were met.
 
     Args:
         mechanism: The mechanism.
@@ -66,10 +66,17 @@ def lock_joints(mechanism: Mechanism, joints: Iterable[str], coordinates: Coordi
     at = {name: joint_transform(by_name[name], _coordinates(by_name, name, coordinates, mimics)) for name in locked}
     ordered = tuple(_fixed(joint, at) for joint in mechanism.joints)
     rigid = rigid_roots(mechanism.bodies[0].name, ordered)
-    movable: list[Closure] = []
-    constant: list[Closure] = []
-    for closure in mechanism.closures:
-        (constant if rigid[closure.a.body] == rigid[closure.b.body] else movable).append(closure)
+    # The coordinate of each locked joint that has one.
+    values = {}
+    for name in locked:
+        own = _coordinates(by_name, name, coordinates, mimics)
+        if len(own) == 1:
+            values[name] = own[0]
+    constant = {
+        constraint.name
+        for constraint in mechanism.constraints
+        if len({rigid[anchor.body] for anchor in constraint.anchors}) < 2 and at.keys() >= set(constraint.joints)
+    }
     kept = {
         name: MappingProxyType({joint: values for joint, values in configuration.items() if joint not in at})
         for name, configuration in mechanism.configurations.items()
@@ -82,12 +89,15 @@ def lock_joints(mechanism: Mechanism, joints: Iterable[str], coordinates: Coordi
         replace(
             mechanism,
             joints=ordered,
-            closures=tuple(movable),
+            closures=tuple(closure for closure in mechanism.closures if closure.name not in constant),
+            couplings=tuple(
+                coupling.with_joints_locked(values) for coupling in mechanism.couplings if coupling.name not in constant
+            ),
             actuators=tuple(name for name in mechanism.actuators if name not in at),
             configurations=MappingProxyType(kept),
         ),
         tuple(at),
-        tuple(constant),
+        tuple(constraint for constraint in mechanism.constraints if constraint.name in constant),
         tuple(name for name in mechanism.actuators if name in at),
         tuple(name for name in mechanism.configurations if name not in kept),
     )

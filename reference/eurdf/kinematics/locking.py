@@ -82,20 +82,20 @@ def lock(
         raise CannotLock(ROOT_JOINT, "it is the floating root; load the robot with root='fixed' instead")
     q = start(robot, q)
     locked = lock_joints(robot.mechanism, names, joint_coordinates(robot.mechanism, robot.model, q))
-    _check_closed(robot, q, {closure.name for closure in locked.closures}, tolerance)
+    _check_closed(robot, q, {constraint.name for constraint in locked.constraints}, tolerance)
     built = build_robot(locked.mechanism, geometry=False)
     idx_q, idx_v = _free_indices(robot, built)
     return LockedRobot(
         built.mechanism,
         built.model,
-        built.constraint_models,
+        built.tree,
         built.actuation,
         built.configurations,
         robot.geometry and Geometry(*(_carried_over(each, robot.model, built.model) for each in robot.geometry)),
         robot.no_geometry,
         robot.diagnostics,
         locked_joints=locked.joints,
-        dropped_closures=tuple(closure.name for closure in locked.closures),
+        dropped_closures=tuple(constraint.name for constraint in locked.constraints),
         dropped_actuators=locked.actuators,
         dropped_configurations=locked.configurations,
         idx_q=idx_q,
@@ -114,7 +114,7 @@ def _check_closed(robot: Robot, q: Vector, names: Collection[str], tolerance: fl
     r = residual(robot, q)
     is_open = [
         constraint.name in names and not np.abs(r[loop.rows]).max() <= tolerance
-        for constraint, loop in zip(robot.constraint_models, find_loops(robot), strict=True)
+        for constraint, loop in zip(robot.constraints, find_loops(robot), strict=True)
     ]
     if any(is_open):
         openings = closure_openings(robot, q)

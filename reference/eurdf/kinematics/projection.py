@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pinocchio as pin
 
-from eurdf.kinematics.acceleration_drift import acceleration_drift
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import Assembler, start
 from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.metric import metric, nearest
-from eurdf.kinematics.residual import residual, residual_and_jacobian
+from eurdf.kinematics.residual import acceleration_drift, residual, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
 
 if TYPE_CHECKING:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import cast
 
 from eurdf.diagnostics import Diagnostics
 from eurdf.format.extension import ClosureEntry
 from eurdf.linking.frame_names import FrameNames
-from eurdf.mechanism.constraint import Closure, ClosureType
+from eurdf.mechanism.constraint import CLOSURES, Closure
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.pose import Pose
 from eurdf.reading.yaml_reader import YamlDocument
@@ -58,14 +57,15 @@ def link_closures(
             )
             continue
         joined[pair] = entry.name
-        if entry.type not in ("3d", "6d"):
+        kind = CLOSURES.get(entry.type)
+        if kind is None:
             diagnostics.report(
                 "closure-type-unknown",
                 f"closure '{entry.name}' has the type '{entry.type}', which is not part of the format; it is left out",
                 document.place((*entry.pointer, "type")),
             )
             continue
-        closures.append(Closure(entry.name, cast(ClosureType, entry.type), a, b))
+        closures.append(kind(entry.name, a, b))
     return tuple(closures)
 
 

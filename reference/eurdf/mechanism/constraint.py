@@ -1,32 +1,142 @@
-"""The constraints between bodies that the spanning tree does not have."""
+"""The constraints that a mechanism has beside its spanning tree, one class a kind.
+
+What a kind means, its residual and the derivatives of that, is in `eurdf.kinematics.constraints`.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import ClassVar, Literal, Self
 
 from eurdf.mechanism.frame import Anchor
+from eurdf.mechanism.pose import Vector3
 
-ClosureType = Literal["3d", "6d"]
+#: Unit of a row of a residual; empty for one whose unit its coefficients decide.
+Unit = Literal["m", "rad", ""]
 
 
 @dataclass(frozen=True, slots=True)
-class Closure:
-    """A loop closure: frame B is held on frame A, in position (3d) or in position and orientation (6d).
+class Constraint:
+    """A relation that holds at every closed configuration.
 
     Attributes:
-        name: Unique among the closures.
-        type: ``3d``, 3 rows: the origin of B, seen from A; or ``6d``, 6 rows: log6 of the pose of B in A.
+        type: Name of the kind, as files write it.
+        units: Unit of each row of the residual.
+        name: Unique among the constraints of a mechanism.
+    """
+
+    type: ClassVar[str]
+    units: ClassVar[tuple[Unit, ...]]
+    name: str
+
+    @property
+    def rows(self) -> int:
+        """Number of rows of the residual."""
+        return len(self.units)
+
+    @property
+    def anchors(self) -> tuple[Anchor, ...]:
+        """Frames A and B that the constraint joins, if it joins frames."""
+        return ()
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """Names of the joints whose coordinates the constraint relates, if it relates any."""
+        return ()
+
+    def with_joints_locked(self, coordinates: Mapping[str, float]) -> Self:
+        """The constraint on the remaining joints, where those given are locked at their coordinates, rad or m."""
+        return self
+
+
+@dataclass(frozen=True, slots=True)
+class Closure(Constraint):
+    """A loop closure: it joins frame B to frame A.
+
+    Attributes:
         a: Frame A.
         b: Frame B.
     """
 
-    name: str
-    type: ClosureType
     a: Anchor
     b: Anchor
 
     @property
-    def rows(self) -> int:
-        """Number of constraint rows."""
-        return 3 if self.type == "3d" else 6
+    def anchors(self) -> tuple[Anchor, ...]:
+        """Frames A and B."""
+        return self.a, self.b
+
+
+@dataclass(frozen=True, slots=True)
+class PointClosure(Closure):
+    """The origin of B is at the origin of A: a ball joint."""
+
+    type: ClassVar[str] = "3d"
+    units: ClassVar[tuple[Unit, ...]] = ("m",) * 3
+
+
+@dataclass(frozen=True, slots=True)
+class FrameClosure(Closure):
+    """B is at A in position and orientation: a weld."""
+
+    type: ClassVar[str] = "6d"
+    units: ClassVar[tuple[Unit, ...]] = ("m",) * 3 + ("rad",) * 3
+
+
+@dataclass(frozen=True, slots=True)
+class HingeClosure(Closure):
+    """The origin of B is at the origin of A, and an axis of B is along an axis of A: a revolute joint.
+
+    Attributes:
+        axes: The axis in A and the axis in B, of any length but zero.
+    """
+
+    type: ClassVar[str] = "hinge"
+    units: ClassVar[tuple[Unit, ...]] = ("m",) * 3 + ("rad",) * 2
+    axes: tuple[Vector3, Vector3] = ((0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
+
+
+@dataclass(frozen=True, slots=True)
+class DistanceClosure(Closure):
+    """The origins of A and B are at a fixed distance: a massless rod between two ball joints.
+
+    Attributes:
+        length: The distance, m; positive.
+    """
+
+    type: ClassVar[str] = "distance"
+    units: ClassVar[tuple[Unit, ...]] = ("m",)
+    length: float
+
+
+@dataclass(frozen=True, slots=True)
+class Coupling(Constraint):
+    """A linear relation of joint coordinates: Σ cᵢ qᵢ = offset.
+
+    Attributes:
+        coefficients: cᵢ by the name of the joint, which has one coordinate, an angle (rad) or a length (m).
+        offset: In the unit of cᵢ qᵢ.
+    """
+
+    type: ClassVar[str] = "coupling"
+    units: ClassVar[tuple[Unit, ...]] = ("",)
+    coefficients: tuple[tuple[str, float], ...]
+    offset: float = 0.0
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """Names of the joints, in the order written."""
+        return tuple(name for name, _ in self.coefficients)
+
+    def with_joints_locked(self, coordinates: Mapping[str, float]) -> Self:
+        """The same relation, with what the locked joints contribute moved into the offset."""
+        return replace(
+            self,
+            coefficients=tuple(each for each in self.coefficients if each[0] not in coordinates),
+            offset=self.offset - sum(c * coordinates[name] for name, c in self.coefficients if name in coordinates),
+        )
+
+
+#: The kinds of closure that files can state, by their type there.
+CLOSURES: Mapping[str, type[Closure]] = {kind.type: kind for kind in (PointClosure, FrameClosure)}

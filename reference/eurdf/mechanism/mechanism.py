@@ -13,7 +13,7 @@ from types import MappingProxyType
 from typing import Literal
 
 from eurdf.mechanism.body import Body
-from eurdf.mechanism.constraint import Closure
+from eurdf.mechanism.constraint import Closure, Constraint, Coupling
 from eurdf.mechanism.frame import Frame
 from eurdf.mechanism.joint import Joint
 
@@ -40,6 +40,7 @@ class Mechanism:
             out stands at its neutral.
         metadata: What the file says of itself.
         own_data: The user's own data in the file, as plain values, by the JSON pointer of their key.
+        couplings: Linear relations of joint coordinates, in file order.
     """
 
     name: str
@@ -53,8 +54,14 @@ class Mechanism:
     configurations: Mapping[str, Mapping[str, tuple[float, ...]]] = field(default_factory=lambda: MappingProxyType({}))
     metadata: Mapping[str, object] = field(default_factory=lambda: MappingProxyType({}))
     own_data: Mapping[str, object] = field(default_factory=lambda: MappingProxyType({}))
+    couplings: tuple[Coupling, ...] = ()
+
+    @property
+    def constraints(self) -> tuple[Constraint, ...]:
+        """Every closure, then every coupling: the order of their rows."""
+        return *self.closures, *self.couplings
 
     @property
     def nc(self) -> int:
-        """Number of constraint rows of all closures."""
-        return sum(closure.rows for closure in self.closures)
+        """Number of rows of all constraints."""
+        return sum(constraint.rows for constraint in self.constraints)

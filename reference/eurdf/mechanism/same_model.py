@@ -7,13 +7,13 @@ from dataclasses import fields, replace
 from typing import TypeVar
 
 from eurdf.mechanism.body import Body
-from eurdf.mechanism.constraint import Closure
+from eurdf.mechanism.constraint import Constraint
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Mechanism
 
-_Named = TypeVar("_Named", Body, Joint, Frame, Closure)
+_Named = TypeVar("_Named", Body, Joint, Frame, Constraint)
 
 
 def differences(one: Mechanism, other: Mechanism) -> list[str]:
@@ -31,10 +31,11 @@ def differences(one: Mechanism, other: Mechanism) -> list[str]:
         ("joint", _by_name(a.joints), _by_name(b.joints)),
         ("frame", _by_name(a.frames), _by_name(b.frames)),
         ("closure", _by_name(a.closures), _by_name(b.closures)),
+        ("coupling", _by_name(a.couplings), _by_name(b.couplings)),
         ("configuration", a.configurations, b.configurations),
     ):
         found += _differing(what, before, after)
-    if not found and a.closures != b.closures:
+    if not found and a.constraints != b.constraints:
         found.append("the closures come in another order")
     if a.actuators != b.actuators:
         found.append("the actuators are others, or in another order")

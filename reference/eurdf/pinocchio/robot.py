@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import pinocchio as pin
 
 from eurdf.diagnostics import Diagnostic
+from eurdf.mechanism.constraint import Constraint
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.actuation import Actuation, build_actuation
 from eurdf.pinocchio.configuration import Vector, configuration_vector, own_coordinates
@@ -17,6 +18,7 @@ from eurdf.pinocchio.constraint import build_constraint_models
 from eurdf.pinocchio.coordinates import slots
 from eurdf.pinocchio.geometry import Meshes, Resolve, build_geometry
 from eurdf.pinocchio.model import build_model
+from eurdf.pinocchio.tree import PinocchioTree, build_tree
 
 
 class Geometry(NamedTuple):
@@ -41,7 +43,7 @@ class Robot:
     Attributes:
         mechanism: What it was built from, as plain data.
         model: The spanning tree.
-        constraint_models: The closures, in file order.
+        tree: The same as kinematics asks for it.
         actuation: The actuated joints, in file order.
         configurations: For each named configuration its q.
         geometry: Its shapes; None without geometry.
@@ -55,13 +57,27 @@ class Robot:
 
     mechanism: Mechanism
     model: pin.Model
-    constraint_models: list[pin.RigidConstraintModel]
+    tree: PinocchioTree
     actuation: Actuation
     configurations: Mapping[str, Vector]
     geometry: Geometry | None = None
     no_geometry: Callable[[], Exception] | None = None
     diagnostics: tuple[Diagnostic, ...] = ()
     derived: dict[Any, Any] = field(default_factory=dict, init=False)
+
+    @property
+    def constraints(self) -> tuple[Constraint, ...]:
+        """Every closure and coupling, in file order."""
+        return self.mechanism.constraints
+
+    @cached_property
+    def constraint_models(self) -> list[pin.RigidConstraintModel]:
+        """One constraint model per constraint, in file order.
+
+        Raises:
+            NoConstraintModel: A constraint has a kind for which Pinocchio has no constraint model.
+        """
+        return build_constraint_models(self.constraints, self.tree)
 
     @cached_property
     def data(self) -> pin.Data:
@@ -119,7 +135,7 @@ class Robot:
     def __repr__(self) -> str:
         return (
             f"<Robot '{self.mechanism.name}': nq {self.model.nq}, nv {self.model.nv}, "
-            f"{len(self.constraint_models)} closures, {len(self.actuation.joints)} actuators>"
+            f"{len(self.mechanism.closures)} closures, {len(self.actuation.joints)} actuators>"
         )
 
 
@@ -153,7 +169,7 @@ def build_robot(
     return Robot(
         mechanism,
         model,
-        build_constraint_models(mechanism, model),
+        build_tree(mechanism, model),
         build_actuation(mechanism, model, at),
         {
             name: configuration_vector(mechanism, model, coordinates, at)

@@ -6,8 +6,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from eurdf.mechanism.constraint import ClosureType
+from eurdf.mechanism.constraint import CLOSURES, Closure
 from eurdf.mechanism.mechanism import Mechanism
+from eurdf.writing.naming_conventions import ClosureType
 
 if TYPE_CHECKING:
     from eurdf.kinematics.analysis import Analysis
@@ -132,7 +133,7 @@ def _candidate(mechanism: Mechanism, types: Mapping[str, ClosureType]) -> _Candi
     from eurdf.kinematics.analysis import analyze
     from eurdf.pinocchio.robot import build_robot
 
-    closures = tuple(replace(closure, type=types.get(closure.name, closure.type)) for closure in mechanism.closures)
+    closures = tuple(_with_type(closure, types.get(closure.name)) for closure in mechanism.closures)
     analysis: Analysis = analyze(build_robot(replace(mechanism, closures=closures), geometry=False))
     if analysis.left_out or not analysis.closes:
         return _Candidate(types, False, left_out=analysis.left_out)
@@ -144,6 +145,10 @@ def _candidate(mechanism: Mechanism, types: Mapping[str, ClosureType]) -> _Candi
         analysis.dependent_actuators,
         sum(loop.mobility == 0 and not loop.actuated for loop in analysis.loops),
     )
+
+
+def _with_type(closure: Closure, type_: ClosureType | None) -> Closure:
+    return CLOSURES[type_](closure.name, closure.a, closure.b) if type_ else closure
 
 
 def _dependent(together: Sequence[str]) -> str:

@@ -12,10 +12,17 @@ from eurdf.format.urdf import Urdf
 from eurdf.linking.merging import find_chains
 from eurdf.linking.rereading import reread
 from eurdf.linking.urdf_tree import joint_of
-from eurdf.mechanism.constraint import ClosureType
 from eurdf.mechanism.mechanism import Mechanism, Root
 from eurdf.writing.closure_choice import choose_types
-from eurdf.writing.naming_conventions import Conventions, Found, find, version1_text, version2_text, with_type
+from eurdf.writing.naming_conventions import (
+    ClosureType,
+    Conventions,
+    Found,
+    find,
+    version1_text,
+    version2_text,
+    with_type,
+)
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,16 +6,18 @@ import re
 import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import cast
+from typing import Literal, cast
 
 from eurdf.format.field import is_own_key
 from eurdf.format.urdf import Urdf
 from eurdf.format.version2 import VERSION
 from eurdf.format.yaml_text import Entry, Value, item_of_mapping, lines_of, modeline, section, text_of
 from eurdf.linking.merging import MASSLESS
-from eurdf.mechanism.constraint import ClosureType
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Root
+
+#: The types of closure that are chosen between.
+ClosureType = Literal["3d", "6d"]
 
 _ROTARY = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS})
 

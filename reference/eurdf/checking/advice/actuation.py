@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from eurdf.checking.advice.passive import PassiveMotions
 from eurdf.diagnostics import quoted
 from eurdf.kinematics.analysis import Analysis, LoopAnalysis, analyze
+from eurdf.mechanism.constraint import FrameClosure, PointClosure
 from eurdf.pinocchio.robot import build_robot
 
 if TYPE_CHECKING:
@@ -97,7 +98,7 @@ def _locking(robot: Robot, q: Vector, loops: Sequence[LoopAnalysis]) -> list[tup
     mechanism, passive = robot.mechanism, PassiveMotions(robot)
     members = {name for loop in loops for name in loop.closures}
     group = [closure for closure in mechanism.closures if closure.name in members]
-    spatial = {closure.name for closure in group if closure.type == "6d"}
+    spatial = {closure.name for closure in group if isinstance(closure, FrameClosure)}
     uncontrolled = [len(passive.without_spins(loop)) for loop in loops]
     trials = [_trials([name for name in loop.closures if name in spatial]) for loop in loops]
     found: list[tuple[str, ...]] = [()] * len(loops)
@@ -106,7 +107,7 @@ def _locking(robot: Robot, q: Vector, loops: Sequence[LoopAnalysis]) -> list[tup
         if not pending:
             continue
         changed = {name for index in pending for name in tried[index]}
-        closures = tuple(replace(closure, type="3d") if closure.name in changed else closure for closure in group)
+        closures = tuple(PointClosure(each.name, each.a, each.b) if each.name in changed else each for each in group)
         trial = build_robot(replace(mechanism, closures=closures), geometry=False)
         after = {loop.closures: loop for loop in analyze(trial, q).loops}
         passive = PassiveMotions(trial)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eurdf.kinematics.assembly import assemble
-from eurdf.kinematics.loop import find_loops, joints_of_loops
+from eurdf.kinematics.loop import joints_of_loops
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.kinematics.velocity_names import velocity_names
 from eurdf.writing.assembled import BeyondLimit, beyond_limits
@@ -61,7 +61,7 @@ def advise_on_limits(description: Description, robot: Robot, q: Vector, diagnost
 def _beyond(robot: Robot, q: Vector) -> list[BeyondLimit]:
     """The coordinates of joints of the loops that are beyond their limits."""
     names, first = velocity_names(robot.model), robot.model.idx_vs.tolist()
-    joints = joints_of_loops(find_loops(robot), robot.model.parents.tolist())
+    joints = joints_of_loops(robot)
     in_loops = {names[first[joint]] for joint in joints}
     return [found for found in beyond_limits(robot.mechanism, robot.coordinates(q)) if found.joint in in_loops]
 

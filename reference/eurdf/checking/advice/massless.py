@@ -9,7 +9,7 @@ import numpy as np
 import pinocchio as pin
 
 from eurdf.kinematics.array import Matrix, Vector
-from eurdf.kinematics.loop import find_loops, joints_of_loops
+from eurdf.kinematics.loop import joints_of_loops
 from eurdf.kinematics.scale import characteristic_length
 from eurdf.mechanism.mechanism import ROOT_JOINT
 
@@ -43,7 +43,7 @@ def advise_on_massless_links(description: Description, robot: Robot, q: Vector, 
         diagnostics: Gets what is found.
     """
     model = robot.model
-    looped = set(joints_of_loops(find_loops(robot), model.parents.tolist()))
+    looped = set(joints_of_loops(robot))
     massless = {joint for joint in range(1, model.njoints) if _is_massless(model.inertias[joint])}
     if massless.isdisjoint(looped):
         return
@@ -53,9 +53,9 @@ def advise_on_massless_links(description: Description, robot: Robot, q: Vector, 
     for joint in range(1, model.njoints):
         children.setdefault(model.parents[joint], []).append(joint)
     anchors: dict[int, list[Any]] = {}
-    for constraint in robot.constraint_models:
-        anchors.setdefault(constraint.joint1_id, []).append(constraint.joint1_placement)
-        anchors.setdefault(constraint.joint2_id, []).append(constraint.joint2_placement)
+    for constraint in robot.constraints:
+        for joint, placement in map(robot.tree.site, constraint.anchors):
+            anchors.setdefault(joint, []).append(placement)
     child_of = {ROOT_JOINT: robot.mechanism.bodies[0].name}
     child_of |= {joint.name: joint.child for joint in robot.mechanism.joints}
     for top in sorted(massless):

@@ -9,7 +9,7 @@ import pinocchio as pin
 
 from eurdf.kinematics.analysis import LoopAnalysis, Motion
 from eurdf.kinematics.array import Matrix, Vector
-from eurdf.kinematics.residual import jacobian_along
+from eurdf.kinematics.loop import joints_of_loops
 from eurdf.kinematics.scale import characteristic_length
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ class PassiveMotions:
         Bodies further out move as one of these does.
         """
         if self._jacobian is None or self._jacobian[0] is not motion.q:
-            self._jacobian = motion.q, jacobian_along(self._robot, motion.q)[1]
+            self._jacobian = motion.q, self._robot.tree.jacobian_along(joints_of_loops(self._robot), motion.q)
         J = self._jacobian[1]
         velocity = dict(zip(motion.velocities.tolist(), motion.values.tolist(), strict=True))
         twists: dict[int, Vector] = {}

@@ -92,7 +92,7 @@ def _closes(robot: Robot, coordinates: _Coordinates) -> bool:
 
 def _looped(robot: Robot) -> set[str]:
     """Names of the joints of the loops."""
-    from eurdf.kinematics.loop import find_loops, joints_of_loops
+    from eurdf.kinematics.loop import joints_of_loops
 
     model = robot.model
-    return {model.names[joint] for joint in joints_of_loops(find_loops(robot), model.parents.tolist())}
+    return {model.names[joint] for joint in joints_of_loops(robot)}

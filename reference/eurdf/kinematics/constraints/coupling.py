@@ -1,0 +1,62 @@
+"""coupling: a linear relation of joint coordinates."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from eurdf.kinematics.array import Indices, Matrix
+from eurdf.kinematics.constraints.kind import Kind, State
+from eurdf.kinematics.tree_kinematics import RelativeMotions, TreeKinematics
+from eurdf.mechanism.constraint import Coupling
+
+
+class Couplings(Kind[Coupling]):
+    """r = Σ cᵢ qᵢ - offset, in the unit of cᵢ qᵢ."""
+
+    data = Coupling
+
+    def __init__(
+        self, constraints: Sequence[Coupling], pairs: Sequence[int], tree: TreeKinematics, velocities: Indices
+    ) -> None:
+        """See `Kind`."""
+        k = len(constraints)
+        self._offsets = np.array([constraint.offset for constraint in constraints])
+        self._C = np.zeros((k, tree.nq))
+        self._K = np.zeros((k, len(velocities)))
+        self._largest = np.zeros(k)
+        self._translates = np.zeros(k, dtype=bool)
+        column = {velocity: index for index, velocity in enumerate(velocities.tolist())}
+        for row, constraint in enumerate(constraints):
+            for name, coefficient in constraint.coefficients:
+                coordinate = tree.coordinate(name)
+                self._C[row, coordinate.idx_q] += coefficient
+                if coordinate.idx_v in column:
+                    self._K[row, column[coordinate.idx_v]] += coefficient
+                if abs(coefficient) > self._largest[row]:
+                    self._largest[row], self._translates[row] = abs(coefficient), coordinate.translates
+
+    def residual(self, at: State) -> Matrix:
+        """C q - offset."""
+        return np.asarray(self._C @ at.q - self._offsets)[:, None]
+
+    def jacobian(self, at: State) -> Matrix:
+        """C, by the velocities."""
+        return self._K
+
+    def drift(self, motions: RelativeMotions) -> Matrix:
+        """0."""
+        return np.zeros((len(self._K), 1))
+
+    def scale(self, length: float) -> Matrix:
+        """1/max |cᵢ|, and 1/length where the joint with the largest cᵢ translates."""
+        return np.asarray(np.where(self._translates, 1.0 / length, 1.0) / self._largest)[:, None]
+
+    def openings(self, at: State) -> list[tuple[float, float]]:
+        """|r| / max |cᵢ|: what the joint with the largest cᵢ would have to move to close it."""
+        amounts = np.abs(self.residual(at)[:, 0]) / self._largest
+        return [
+            (amount, 0.0) if translates else (0.0, amount)
+            for amount, translates in zip(amounts.tolist(), self._translates.tolist(), strict=True)
+        ]

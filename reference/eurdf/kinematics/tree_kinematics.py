@@ -1,0 +1,141 @@
+"""What kinematics asks of a spanning tree: poses, Jacobians, mass matrix and bias.
+
+`eurdf.pinocchio.tree.PinocchioTree` implements it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple, Protocol
+
+from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.mechanism.frame import Anchor
+
+
+class Coordinate(Protocol):
+    """The coordinate of a joint that has one."""
+
+    @property
+    def joint(self) -> int:
+        """Index of the joint that has it as its own."""
+
+    @property
+    def idx_q(self) -> int:
+        """Its index in q."""
+
+    @property
+    def idx_v(self) -> int:
+        """Index of its velocity in v."""
+
+    @property
+    def translates(self) -> bool:
+        """Whether it is a length, m; else it is an angle, rad."""
+
+
+class RelativeMotions(NamedTuple):
+    """How frames B move against frames A while every joint keeps its velocity; k pairs, all in the axes of A.
+
+    Attributes:
+        rotation: ᴬR_B (k, 3, 3).
+        position: Origin p of B in A (k, 3), m.
+        velocity: ṗ (k, 3), m/s.
+        omega: Angular velocity ω of B against A (k, 3), rad/s.
+        acceleration: p̈ (k, 3), m/s².
+        alpha: ω̇ (k, 3), rad/s².
+    """
+
+    rotation: Matrix
+    position: Matrix
+    velocity: Matrix
+    omega: Matrix
+    acceleration: Matrix
+    alpha: Matrix
+
+
+class FramePairs(Protocol):
+    """Memory in which the relative poses of pairs of frames A, B are computed, at one configuration after the other.
+
+    Different threads take different ones.
+    """
+
+    def placements(self, q: Vector) -> Sequence[Any]:
+        """ᴬM_B of each pair at q (nq,), as `pin.SE3`."""
+
+    def jacobian(self, rows: Matrix, which: Sequence[int]) -> Matrix:
+        """Derivative of rows of some pairs by the velocities, where `placements` last was.
+
+        Args:
+            rows: Of each of these k pairs its rows (k, r, 6) over the twist of B against A, seen from A.
+            which: Indices of these pairs.
+
+        Returns:
+            The derivative (k r, n) of all rows, stacked, by the velocities that the pairs were asked for with.
+        """
+
+
+class TreeKinematics(Protocol):
+    """Kinematics and dynamics of a spanning tree, whose joints are numbered from the root, number 0, to the leaves."""
+
+    @property
+    def nq(self) -> int:
+        """Number of coordinates."""
+
+    @property
+    def nv(self) -> int:
+        """Number of velocities."""
+
+    @property
+    def parents(self) -> Sequence[int]:
+        """Of each joint its parent, which has a lower number."""
+
+    @property
+    def own_coordinates(self) -> Sequence[range]:
+        """Of each joint the indices in q of its own coordinates."""
+
+    @property
+    def own_velocities(self) -> Sequence[range]:
+        """Of each joint the indices in v of its own velocities: none of one that mimics another."""
+
+    @property
+    def moving_velocities(self) -> Sequence[range]:
+        """Of each joint the indices in v of the velocities that move it: its leader's if it mimics."""
+
+    @property
+    def reach(self) -> Sequence[float]:
+        """Of each joint the distance of its origin from that of its parent at zero, m."""
+
+    def joint_of(self, anchor: Anchor) -> int:
+        """The joint that carries an anchor; 0 if nothing moves it."""
+
+    def distance_of(self, anchor: Anchor) -> float:
+        """Distance of an anchor from the joint that carries it, m."""
+
+    def translates(self, joint: int) -> Mask:
+        """Which of the velocities of a joint only translate, m/s; the others turn, rad/s."""
+
+    def coordinate(self, joint: str) -> Coordinate:
+        """The coordinate of a joint that has one of its own.
+
+        Raises:
+            ValueError: The joint has none, or several.
+        """
+
+    def pairs(
+        self, anchors: Sequence[tuple[Anchor, Anchor]], velocities: Indices | None, data: Any = None
+    ) -> FramePairs:
+        """Memory to compute the relative poses of pairs of frames in.
+
+        Args:
+            anchors: The pairs.
+            velocities: Indices in v of the columns of the Jacobian; all if None.
+            data: Memory of the whole tree, as `memory` makes; without it, time and memory are linear in the joints
+                between the frames.
+        """
+
+    def memory(self) -> Any:
+        """Memory of the whole tree, which takes some 8 nv³ numbers, and saves time for small trees."""
+
+    def relative_motions(
+        self, anchors: Sequence[tuple[Anchor, Anchor]], q: Vector, v: Vector, data: Any
+    ) -> tuple[Matrix, Matrix, Matrix, Matrix, Matrix, Matrix]:
+        """How pairs of frames move at q (nq,) while every joint keeps its velocity v (nv,): see `RelativeMotions`."""

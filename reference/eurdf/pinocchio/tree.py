@@ -1,0 +1,212 @@
+"""The spanning tree as a Pinocchio model: what kinematics asks of it (`eurdf.kinematics.tree_kinematics`)."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import pinocchio as pin
+
+from eurdf.mechanism.frame import Anchor
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.pinocchio.coordinates import slots
+from eurdf.pinocchio.frame_pairs import DataPairs, Indices, Matrix, PathPairs, Site, Vector
+from eurdf.pinocchio.frames import body_frame_ids
+from eurdf.pinocchio.placement import placement_of
+
+_AFTER, _BEFORE = [1, 2, 0], [2, 0, 1]
+
+
+class Coordinate(NamedTuple):
+    """See `eurdf.kinematics.tree_kinematics.Coordinate`."""
+
+    joint: int
+    idx_q: int
+    idx_v: int
+    translates: bool
+
+
+class PinocchioTree:
+    """A `TreeKinematics` by Pinocchio; its joints are those of the model.
+
+    Attributes:
+        model: The model.
+        sites: Where the frame of each body is, by name.
+        first: For each joint that has coordinates of its own, the index of the first in q, their number, the index of
+            the first of its velocities in v, and their number.
+    """
+
+    def __init__(
+        self, model: pin.Model, sites: Mapping[str, Site], first: Mapping[str, tuple[int, int, int, int]]
+    ) -> None:
+        self.model = model
+        self._sites = sites
+        self._first = first
+        self.nq: int = model.nq
+        self.nv: int = model.nv
+
+    @cached_property
+    def parents(self) -> list[int]:
+        """Of each joint its parent."""
+        return list(self.model.parents.tolist())
+
+    @cached_property
+    def own_velocities(self) -> list[range]:
+        """Of each joint the indices in v of its own velocities."""
+        return _ranges(self.model.idx_vs, self.model.nvs)
+
+    @cached_property
+    def own_coordinates(self) -> list[range]:
+        """Of each joint the indices in q of its own coordinates."""
+        return _ranges(self.model.idx_qs, self.model.nqs)
+
+    @cached_property
+    def moving_velocities(self) -> list[range]:
+        """Of each joint the indices in v of the velocities that move it."""
+        return _ranges(self.model.idx_vs, self.model.nvExtendeds)
+
+    @cached_property
+    def reach(self) -> list[float]:
+        """Of each joint the distance of its origin from that of its parent at zero, m."""
+        return [math.hypot(*placement.translation) for placement in self.model.jointPlacements]
+
+    def translates(self, joint: int) -> npt.NDArray[np.bool_]:
+        """Which of the velocities of a joint only translate."""
+        moving = self.model.joints[joint]
+        data = moving.createData()
+        moving.calc(data, self._neutral)
+        return np.asarray(~data.S.reshape(6, -1)[3:].any(axis=0))
+
+    @cached_property
+    def _neutral(self) -> Vector:
+        return np.asarray(pin.neutral(self.model))
+
+    def joint_of(self, anchor: Anchor) -> int:
+        """The joint that carries an anchor; 0 if nothing moves it."""
+        return self._sites[anchor.body].joint
+
+    def distance_of(self, anchor: Anchor) -> float:
+        """Distance of an anchor from the joint that carries it, m."""
+        return math.hypot(*self.site(anchor).placement.translation)
+
+    def site(self, anchor: Anchor) -> Site:
+        """Where an anchor is."""
+        joint, placement = self._sites[anchor.body]
+        return Site(joint, placement * placement_of(anchor.pose))
+
+    def coordinate(self, joint: str) -> Coordinate:
+        """The coordinate of a joint that has one of its own.
+
+        Raises:
+            ValueError: The joint has none, or several.
+        """
+        idx_q, nq, idx_v, nv = self._first.get(joint, (0, 0, 0, 0))
+        if (nq, nv) != (1, 1):
+            raise ValueError(f"joint '{joint}' does not have one coordinate of its own")
+        owner = next(index for index, own in enumerate(self.own_velocities) if idx_v in own)
+        return Coordinate(owner, idx_q, idx_v, bool(self.translates(owner)[0]))
+
+    def memory(self) -> pin.Data:
+        """A `pin.Data`."""
+        return self.model.createData()
+
+    def pairs(
+        self, anchors: Sequence[tuple[Anchor, Anchor]], velocities: Indices | None, data: pin.Data | None = None
+    ) -> DataPairs | PathPairs:
+        """See `eurdf.kinematics.tree_kinematics.TreeKinematics`."""
+        pairs = self._located(anchors)
+        # Joints that mimic have columns of their own in Pinocchio's Jacobians, which only the paths add up.
+        if data is None or self.model.nv < self.model.nvExtended:
+            return PathPairs(self.model, pairs, velocities)
+        return DataPairs(self.model, pairs, velocities, data)
+
+    def jacobian_along(self, joints: Sequence[int], q: Vector) -> Matrix:
+        """The world Jacobian (6, nvExtended) at q (nq,), zero but in the columns of the joints and of their ancestors.
+
+        Rows are linear, of the point at the origin of the world, and angular. A joint that mimics another has columns
+        of its own, those from ``model.idx_vExtendeds[joint]``.
+        """
+        model, needed = self.model, {0}
+        for joint in joints:
+            while joint not in needed:
+                needed.add(joint)
+                joint = self.parents[joint]
+        placements, J = {0: pin.SE3.Identity()}, np.zeros((6, model.nvExtended))
+        for joint in sorted(needed - {0}):  # a parent has a lower index than its child
+            moving = model.joints[joint]
+            data = moving.createData()
+            moving.calc(data, q)
+            oMi = placements[joint] = placements[self.parents[joint]] * model.jointPlacements[joint] * data.M
+            first = model.idx_vExtendeds[joint]
+            J[:, first : first + moving.nvExtended] = oMi.toActionMatrix() @ data.S.reshape(6, -1)
+        return J
+
+    def relative_motions(
+        self, anchors: Sequence[tuple[Anchor, Anchor]], q: Vector, v: Vector, data: pin.Data
+    ) -> tuple[Matrix, Matrix, Matrix, Matrix, Matrix, Matrix]:
+        """See `eurdf.kinematics.tree_kinematics.TreeKinematics`.
+
+        Source: the classical formulae of relative motion, in a frame A that turns and accelerates.
+        """
+        pin.forwardKinematics(self.model, data, q, v, np.zeros(self.model.nv))
+        pairs = self._located(anchors)
+        R, p_a, v_a, omega_a, a_a, alpha_a = _motions(data, [a for a, _ in pairs])
+        R_b, p_b, v_b, omega_b, a_b, alpha_b = _motions(data, [b for _, b in pairs])
+        p, omega = p_b - p_a, omega_b - omega_a
+        turning = _cross(omega_a, p)
+        velocity = v_b - v_a - turning
+        acceleration = a_b - a_a - _cross(alpha_a, p) - _cross(omega_a, turning) - 2.0 * _cross(omega_a, velocity)
+        alpha = alpha_b - alpha_a - _cross(omega_a, omega)
+        inward = np.swapaxes(R, 1, 2)
+        p, velocity, omega, acceleration, alpha = (
+            (inward @ each[:, :, None])[:, :, 0] for each in (p, velocity, omega, acceleration, alpha)
+        )
+        return inward @ R_b, p, velocity, omega, acceleration, alpha
+
+    def _located(self, anchors: Sequence[tuple[Anchor, Anchor]]) -> list[tuple[Site, Site]]:
+        return [(self.site(a), self.site(b)) for a, b in anchors]
+
+
+def build_tree(mechanism: Mechanism, model: pin.Model) -> PinocchioTree:
+    """The tree of a mechanism; ``model`` is what `build_model` made of it."""
+    frames = model.frames
+    sites = {
+        name: Site(frames[index].parentJoint, pin.SE3(frames[index].placement))
+        for name, index in body_frame_ids(mechanism).items()
+    }
+    first = {name: (slot.idx_q, slot.nq, slot.idx_v, slot.nv) for name, slot in slots(mechanism, model).items()}
+    return PinocchioTree(model, sites, first)
+
+
+def _ranges(first: Sequence[int], count: Sequence[int]) -> list[range]:
+    return [range(start, start + number) for start, number in zip(first, count, strict=True)]
+
+
+def _motions(data: pin.Data, sites: Sequence[Site]) -> tuple[Matrix, Matrix, Matrix, Matrix, Matrix, Matrix]:
+    """Of frames in the world, k: orientation, origin, its velocity, angular velocity, acceleration, angular one."""
+    k = len(sites)
+    R, numbers = np.empty((k, 3, 3)), np.empty((k, 6, 3))
+    for index, (joint, placement) in enumerate(sites):
+        oMi, twist, acceleration = data.oMi[joint], data.v[joint], data.a[joint]
+        R[index] = oMi.rotation
+        numbers[index, :3] = placement.translation, twist.linear, twist.angular
+        numbers[index, 3:] = acceleration.linear, acceleration.angular, oMi.translation
+    c, v, omega, a, alpha, origin = (numbers[:, index] for index in range(6))
+    outward = (
+        c,
+        v + _cross(omega, c),
+        omega,
+        a + _cross(omega, v) + _cross(alpha, c) + _cross(omega, _cross(omega, c)),
+        alpha,
+    )
+    turned = np.array([placement.rotation for _, placement in sites]).reshape(k, 3, 3)
+    c, v, omega, a, alpha = ((R @ each[:, :, None])[:, :, 0] for each in outward)
+    return R @ turned, origin + c, v, omega, a, alpha
+
+
+def _cross(a: Matrix, b: Matrix) -> Matrix:
+    return np.asarray(a[:, _AFTER] * b[:, _BEFORE] - a[:, _BEFORE] * b[:, _AFTER])
