@@ -17,7 +17,7 @@ from spec.site.blocks import Directive
 from spec.site.clause import ROOT, without_code
 from spec.site.domain import NAME, SpecificationDomain, reference_to
 from spec.site.example import EXAMPLES, Edit, NotAnEdit, Outcome, ShownDiagnostic, diagnostic_of, example_of
-from spec.site.registry import current_registry
+from spec.site.registry import clauses_with_references
 from spec.site.schema_page import property_anchors, schema_sections
 
 _KEYWORD = re.compile(r"\b(?:MUST NOT|MUST|SHOULD NOT|SHOULD|MAY)\b")
@@ -259,10 +259,10 @@ class SchemaDirective(SpecificationDirective):
 
 
 def _registry(directive: SpecificationDirective) -> dict[str, dict[str, Any]]:
-    """The registry of clauses by id, drawn once a build."""
+    """The clauses by id, with what refers to them; read once a build."""
     app = directive.env.app
     if not hasattr(app, "eurdf_clauses"):
-        app.eurdf_clauses = {entry["id"]: entry for entry in current_registry()["clauses"]}  # type: ignore[attr-defined]
+        app.eurdf_clauses = clauses_with_references()  # type: ignore[attr-defined]
     clauses: dict[str, dict[str, Any]] = app.eurdf_clauses  # type: ignore[attr-defined]
     return clauses
 

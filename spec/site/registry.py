@@ -1,15 +1,20 @@
-"""The registry of clauses: ``python -m spec.site.registry`` draws it from the text into ``spec/clauses.json``."""
+"""The registry: ``python -m spec.site.registry`` writes the clauses and the codes of the text to ``spec/clauses.json``.
+
+What refers to a clause is not in it: `clauses_with_references` computes that.
+"""
 
 from __future__ import annotations
 
 import json
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
+from eurdf.diagnostics import REGISTRY, Rule
 from spec.site.citation import Citation, function_citations, suite_citations
-from spec.site.clause import SPEC, Clause, Withdrawn, read_chapters, read_clauses, read_withdrawn
+from spec.site.clause import SPEC, Chapter, read_chapters, read_clauses, read_withdrawn
+from spec.site.example import read_diagnostics
 
 CLAUSES = SPEC / "clauses.json"
 
@@ -20,21 +25,14 @@ IDS = SPEC / "ids.txt"
 SCHEMA = "clauses.schema.json"
 
 
-def registry(
-    clauses: Iterable[Clause],
-    withdrawn: Iterable[Withdrawn],
-    functions: Iterable[Citation],
-    cases: Iterable[Citation] | None,
-) -> dict[str, Any]:
+def registry(chapters: Sequence[Chapter], rules: Iterable[Rule] = REGISTRY.values()) -> dict[str, Any]:
     """The registry as it is written.
 
     Args:
-        clauses: The clauses of the text.
-        withdrawn: The ids that were withdrawn.
-        functions: What the functions of the reference cite.
-        cases: What the cases of the suite cite; None where there is no suite.
+        chapters: The text of the specification.
+        rules: The diagnostics; advice of the reference parser is left out, for no clause asks for it.
     """
-    enforcing, testing = _sources(functions), _sources(cases or ())
+    places = {shown.code: shown.place for shown in read_diagnostics(chapters)}
     return {
         "$schema": SCHEMA,
         "clauses": [
@@ -45,30 +43,61 @@ def registry(
                 "text": clause.text,
                 "level": clause.level,
                 "versions": list(clause.versions),
-                "codes": list(clause.codes),
-                "functions": enforcing[clause.id],
-                "cases": testing[clause.id],
                 "untested": clause.untested,
                 "unenforced": clause.unenforced,
             }
-            for clause in sorted(clauses, key=lambda clause: clause.id)
+            for clause in sorted(read_clauses(chapters), key=lambda clause: clause.id)
+        ],
+        "diagnostics": [
+            {
+                "code": rule.code,
+                "clause": rule.clause,
+                "phase": rule.phase,
+                "severity": rule.severity,
+                "title": rule.title,
+                "place": places[rule.code],
+            }
+            for rule in rules
+            if rule.clause is not None
         ],
         "withdrawn": [
             {"id": gone.id, "chapter": gone.chapter, "text": gone.text}
-            for gone in sorted(withdrawn, key=lambda gone: gone.id)
+            for gone in sorted(read_withdrawn(chapters), key=lambda gone: gone.id)
         ],
     }
 
 
 def current_registry(folder: Path = SPEC) -> dict[str, Any]:
-    """The registry as the text and the code now stand."""
-    chapters = read_chapters(folder)
-    return registry(read_clauses(chapters), read_withdrawn(chapters), function_citations(), suite_citations())
+    """The registry of the current text."""
+    return registry(read_chapters(folder))
+
+
+def clauses_with_references() -> dict[str, dict[str, Any]]:
+    """The clauses of the current text by id, each with what refers to it.
+
+    ``codes``: the diagnostics that report it; ``functions``: what enforces it; ``cases``: what tests it.
+    """
+    content = current_registry()
+    codes, functions, cases = defaultdict(list), _sources(function_citations()), _sources(suite_citations() or ())
+    for diagnostic in content["diagnostics"]:
+        codes[diagnostic["clause"]].append(diagnostic["code"])
+    return {
+        id_: {**entry, "codes": codes[id_], "functions": functions[id_], "cases": cases[id_]}
+        for id_, entry in ((entry["id"], entry) for entry in content["clauses"])
+    }
 
 
 def registry_text(content: dict[str, Any]) -> str:
-    """A registry as its file holds it."""
-    return json.dumps(content, indent=2, ensure_ascii=False) + "\n"
+    """A registry as its file holds it: one entry a line."""
+    lists = ",\n".join(
+        f'  "{name}": [\n' + ",\n".join(f"    {_line(entry)}" for entry in content[name]) + "\n  ]"
+        for name in ("clauses", "diagnostics", "withdrawn")
+    )
+    return f'{{\n  "$schema": {_line(content["$schema"])},\n{lists}\n}}\n'
+
+
+def _line(value: Any) -> str:
+    return json.dumps(value, ensure_ascii=False)
 
 
 def read_ids(path: Path = IDS) -> list[str]:

@@ -326,7 +326,15 @@ def test_the_archive_holds_every_file_and_has_the_same_bytes_whenever_it_is_writ
                 assert whole.read(name) == path.read_bytes()
                 names.remove(name)
         assert names == {"README.txt", "LICENSE", "clauses.json", "case.schema.json"}
-        assert json.loads(whole.read("clauses.json")) == {id_: each.text for id_, each in read_clauses().items()}
+        registry = json.loads(whole.read("clauses.json"))
+        assert {entry["id"]: entry["text"] for entry in registry["clauses"]} == {
+            id_: each.text for id_, each in read_clauses().items()
+        }
+        tested = {(entry["id"], case) for entry in registry["clauses"] for case in entry["cases"]}
+        assert tested == {(clause, case.path) for case in CASES for clause in case.case.clauses}
+        assert {entry["code"] for entry in registry["diagnostics"]} >= {
+            case.case.code for case in CASES if isinstance(case.case, InvalidCase)
+        }
         assert whole.read("LICENSE") == (ROOT / "LICENSE").read_bytes()
 
 
@@ -339,8 +347,8 @@ def test_in_the_zip_a_case_leads_to_its_schema_and_the_readme_to_what_it_names(t
             schema = posixpath.normpath(posixpath.join(posixpath.dirname(name), link))
             assert whole.read(schema) == SCHEMA_FILE.read_bytes()
         readme = whole.read("README.txt").decode()
-        clauses = json.loads(whole.read("clauses.json"))
-        assert set(re.findall(r"EU-[A-Z]{3}-[0-9]{3}", readme)) <= clauses.keys()
+        clauses = {entry["id"] for entry in json.loads(whole.read("clauses.json"))["clauses"]}
+        assert set(re.findall(r"EU-[A-Z]{3}-[0-9]{3}", readme)) <= clauses
         assert set(re.findall(r"[\w.]+\.(?:json|yaml|urdf)", readme)) <= {Path(name).name for name in whole.namelist()}
     assert all(re.search(rf"^  {level} ", readme, re.MULTILINE) for level in Level)
 

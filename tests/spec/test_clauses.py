@@ -9,6 +9,7 @@ from pathlib import Path
 import jsonschema
 import pytest
 
+from eurdf.diagnostics import REGISTRY
 from spec.site.clause import SPEC, Chapter, Clause, Withdrawn, keywords, read_chapters, read_clauses, read_withdrawn
 from spec.site.registry import CLAUSES, IDS, SCHEMA, current_registry, read_ids, registry_text
 
@@ -107,11 +108,20 @@ def test_the_registry_fits_its_schema_and_nothing_less_does() -> None:
     validator.check_schema(schema)
     registry = json.loads(CLAUSES.read_text(encoding="utf-8"))
     validator.validate(registry)
-    entry = registry["clauses"][0]
-    for name in entry:
-        lacking = {key: value for key, value in entry.items() if key != name}
-        assert not validator.is_valid({**registry, "clauses": [lacking]}), name
-    assert not validator.is_valid({**registry, "clauses": [{**entry, "other": 1}]})
+    for kind in ("clauses", "diagnostics"):
+        entry = registry[kind][0]
+        for name in entry:
+            lacking = {key: value for key, value in entry.items() if key != name}
+            assert not validator.is_valid({**registry, kind: [lacking]}), name
+        assert not validator.is_valid({**registry, kind: [{**entry, "other": 1}]})
+
+
+def test_the_registry_has_every_code_with_its_phase_severity_and_place() -> None:
+    diagnostics = {entry["code"]: entry for entry in json.loads(CLAUSES.read_text(encoding="utf-8"))["diagnostics"]}
+    assert set(diagnostics) == {rule.code for rule in REGISTRY.values() if rule.clause}
+    frame = diagnostics["unknown-frame"]
+    assert (frame["clause"], frame["phase"], frame["severity"]) == ("EU-FRM-001", "link", "error")
+    assert frame["place"] == "the name"
 
 
 def test_the_ids_that_were_given_are_listed_once_in_their_order() -> None:

@@ -19,13 +19,14 @@ import io
 import json
 import sys
 import zipfile
+from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 from eurdf_conformance.carried import carried
 from eurdf_conformance.corpus.case import SCHEMA_FILE, ValidCase
-from eurdf_conformance.corpus.clause import read_clauses
+from eurdf_conformance.corpus.clause import read_clauses, read_registry
 from eurdf_conformance.corpus.expected import EXPECTED_FILE
 from eurdf_conformance.corpus.read import CASE_FILE, CorpusCase, NotACase, read_cases
 from eurdf_conformance.protocol.message import PROTOCOL
@@ -64,7 +65,8 @@ def archive_paths(folder: Path) -> tuple[Path, Path]:
 
 
 def _zipped(cases: Iterable[CorpusCase]) -> bytes:
-    entries = {name: path.read_bytes() for case in cases for name, path in case_files(case)} | _beside()
+    cases = list(cases)
+    entries = {name: path.read_bytes() for case in cases for name, path in case_files(case)} | _beside(cases)
     written = io.BytesIO()
     # Stored, since what deflate makes of the same bytes depends on the library that does it.
     with zipfile.ZipFile(written, "w", zipfile.ZIP_STORED) as archive:
@@ -75,9 +77,17 @@ def _zipped(cases: Iterable[CorpusCase]) -> bytes:
     return written.getvalue()
 
 
-def _beside() -> dict[str, bytes]:
+def _beside(cases: Iterable[CorpusCase]) -> dict[str, bytes]:
     """What stands beside the cases, so that the zip is whole without this project."""
-    clauses = {name: clause.text for name, clause in sorted(read_clauses().items())}
+    citing = defaultdict(list)
+    for case in cases:
+        for clause in case.case.clauses:
+            citing[clause].append(case.path)
+    registry = read_registry()
+    clauses = {
+        "clauses": [{**entry, "cases": sorted(citing[entry["id"]])} for entry in registry["clauses"]],
+        "diagnostics": registry["diagnostics"],
+    }
     return {
         "README.txt": _README.read_bytes(),
         "clauses.json": (json.dumps(clauses, ensure_ascii=False, indent=1) + "\n").encode("utf-8"),

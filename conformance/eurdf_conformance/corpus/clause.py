@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from types import MappingProxyType
+from typing import Any
 
 from eurdf_conformance.carried import carried
 from eurdf_conformance.level import VERSIONS, Version
@@ -40,9 +42,19 @@ class Clause:
         return self.keyword.startswith("MUST")
 
 
+def read_registry() -> dict[str, Any]:
+    """The registry of clauses and diagnostics, as ``spec/clauses.schema.json`` describes it."""
+    registry: dict[str, Any] = json.loads(carried("spec/clauses.json").read_text(encoding="utf-8"))
+    return registry
+
+
 @cache
 def read_clauses() -> Mapping[str, Clause]:
     """The clauses of this edition by id, read once a process."""
+    registry = read_registry()
+    codes: defaultdict[str, set[str]] = defaultdict(set)
+    for diagnostic in registry["diagnostics"]:
+        codes[diagnostic["clause"]].add(diagnostic["code"])
     clauses = {
         entry["id"]: Clause(
             entry["id"],
@@ -50,9 +62,9 @@ def read_clauses() -> Mapping[str, Clause]:
             entry["text"],
             entry["level"],
             tuple(version for version in VERSIONS if int(version) in entry["versions"]),
-            frozenset(entry["codes"]),
+            frozenset(codes[entry["id"]]),
             entry["untested"] is None and entry["level"] != "parser",
         )
-        for entry in json.loads(carried("spec/clauses.json").read_text(encoding="utf-8"))["clauses"]
+        for entry in registry["clauses"]
     }
     return MappingProxyType(clauses)
