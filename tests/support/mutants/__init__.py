@@ -8,7 +8,12 @@ parser reads other files than it is given (`reads_…`), gives them another mean
 
 from support.mutants import (  # noqa: F401  each adds its own
     answering,
-    meaning,
+    closures,
+    frames,
+    inertias,
+    joint_properties,
+    joints,
+    merging,
     missing_rules,
     reading_descriptions,
     reading_urdf,

@@ -6,7 +6,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from eurdf_conformance.oracle import joint_property, tree, version1
+import numpy as np
+
+from eurdf_conformance.oracle import canonical, configuration, joint_property, tree, version1
 from eurdf_conformance.oracle.version2 import KEYS
 from eurdf_conformance.protocol.message import CanonicalRobot
 from eurdf_conformance.protocol.reply import accepted
@@ -173,8 +175,8 @@ def own_closure_types_are_6d(data: Members) -> None:
 @reads_description("EU-CFG-003")
 def quaternions_are_normalised(data: Members) -> None:
     """A quaternion may have any length but 0."""
-    for configuration in (data.get("configurations") or {}).values() if VERSION in data else ():
-        for q in configuration.values() if isinstance(configuration, dict) else ():
+    for stated in (data.get("configurations") or {}).values() if VERSION in data else ():
+        for q in stated.values() if isinstance(stated, dict) else ():
             if isinstance(q, list) and len(q) == 4 and all(isinstance(each, int | float) for each in q):
                 length = sum(each * each for each in q) ** 0.5
                 q[:] = [each / (length or 1) for each in q]
@@ -313,3 +315,27 @@ def pointers_are_not_escaped(robot: CanonicalRobot) -> Members:
 def pointers_without_x(robot: CanonicalRobot) -> Members:
     """Own data is kept under its key without the x-."""
     return {"own": {pointer.replace("/x-", "/"): value for pointer, value in robot.own.items()}}
+
+
+# -- Configurations ---------------------------------------------------------------------------------------------------
+
+
+@means("EU-CFG-006")
+def quaternions_as_written() -> Deviation:
+    """A quaternion is kept as it is written."""
+    return instead(configuration, "normalised", lambda right, joint, q: np.array(q, dtype=float))
+
+
+@means("EU-CFG-005")
+def left_out_joints_are_in_the_middle() -> Deviation:
+    """A joint that a configuration leaves out is in the middle of its range."""
+
+    def stated(right: Any, of: Any, q: Any) -> Any:
+        middle = {
+            joint.name: [(joint.source[0].lower + joint.source[0].upper) / 2]
+            for joint in of.joints
+            if joint.type in ("revolute", "prismatic") and joint.source and not joint.mimic
+        }
+        return right(of, middle | dict(q))
+
+    return instead(canonical, "stated", stated)

@@ -8,13 +8,9 @@ import unicodedata
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
+from support.mutants.mutant import reads_urdf, reads_xml, refuses
 
-from eurdf_conformance.oracle import tree, urdf
-from eurdf_conformance.oracle.transform import transform
-from support.mutants.mutant import Deviation, instead, means, reads_urdf, reads_xml, refuses
-
-# -- XML ------------------------------------------------------------------------------------------------------------
+# -- XML --------------------------------------------------------------------------------------------------------------
 
 
 @reads_xml("EU-URD-001")
@@ -60,7 +56,7 @@ def decimal_commas(text: str) -> str:
     return re.sub(r"(?<=[0-9]),(?=[0-9])", ".", text)
 
 
-# -- Elements and attributes ----------------------------------------------------------------------------------------
+# -- Elements and attributes ------------------------------------------------------------------------------------------
 
 
 def _attributes(robot: Any, change: Callable[[str], str], *names: str) -> None:
@@ -167,7 +163,7 @@ def safety_controllers_limit(robot: Any) -> None:
                 limit.set(side, soft.get(f"soft_{side}_limit", limit.get(side, "0")))
 
 
-# -- Rules too many -------------------------------------------------------------------------------------------------
+# -- Rules too many ---------------------------------------------------------------------------------------------------
 
 
 @refuses("EU-URD-004")
@@ -269,167 +265,3 @@ def slashes_in_names_are_refused(data: Any, robot: Any) -> bool:
 def thousand_links_at_most(data: Any, robot: Any) -> bool:
     """A robot of more than 1000 links is refused."""
     return len(robot.findall("link")) > 1000
-
-
-# -- Poses and axes -------------------------------------------------------------------------------------------------
-
-
-@means("EU-URD-035")
-def axis_left_out_is_z() -> Deviation:
-    """An axis that is left out is z, as in SDF and MJCF."""
-
-    def joint(right: Any, element: Any) -> Any:
-        if not element.all("axis"):
-            element.children.append(urdf.Element("axis", {"xyz": "0 0 1"}, []))
-        return right(element)
-
-    return instead(urdf, "joint", joint)
-
-
-@means("EU-URD-035")
-def axes_keep_their_length() -> Deviation:
-    """A joint moves by the vector of its axis, whatever its length."""
-    return instead(urdf, "unit", lambda unit, axis: axis)
-
-
-@means("EU-URD-035")
-def axes_are_one_of_three() -> Deviation:
-    """An axis is the nearest of x, y and z."""
-
-    def nearest(unit: Any, axis: Any) -> Any:
-        largest = int(np.argmax(np.abs(axis)))
-        return np.eye(3)[largest] * np.sign(axis[largest])
-
-    return instead(urdf, "unit", nearest)
-
-
-@means("EU-URD-035")
-def axes_in_the_parents_frame() -> Deviation:
-    """An axis is a direction in the frame of the parent link."""
-
-    def joint(right: Any, element: Any) -> Any:
-        found = right(element)
-        object.__setattr__(found, "axis", found.origin[:3, :3].T @ found.axis)
-        return found
-
-    return instead(urdf, "joint", joint)
-
-
-@means("EU-FRM-006")
-def rpy_about_moving_axes() -> Deviation:
-    """Roll, pitch and yaw are about x, y, z as each has been turned by those before."""
-    return _rpy(lambda from_rpy, rpy: from_rpy([rpy[0], 0, 0]) @ from_rpy([0, rpy[1], 0]) @ from_rpy([0, 0, rpy[2]]))
-
-
-@means("EU-FRM-006")
-def rpy_in_degrees() -> Deviation:
-    """Roll, pitch and yaw are in degrees."""
-    return _rpy(lambda from_rpy, rpy: from_rpy([math.radians(angle) for angle in rpy]))
-
-
-@means("EU-FRM-006")
-def rpy_is_yaw_pitch_roll() -> Deviation:
-    """The three angles are yaw, pitch and roll."""
-    return _rpy(lambda from_rpy, rpy: from_rpy(rpy[::-1]))
-
-
-@means("EU-FRM-006")
-def rpy_is_ignored() -> Deviation:
-    """The orientation of a pose is ignored."""
-    return _rpy(lambda from_rpy, rpy: np.eye(3))
-
-
-def _rpy(other: Callable[..., Any]) -> Deviation:
-    return instead(urdf, "from_rpy", other)
-
-
-@means("EU-FRM-006")
-def xyz_is_along_the_turned_axes() -> Deviation:
-    """The position of a pose is along the axes that its orientation has turned."""
-    return instead(urdf, "pose", lambda right, R, p: right(R) @ right(None, p))
-
-
-# -- Mimic joints ---------------------------------------------------------------------------------------------------
-
-
-def _mimic(change: Callable[[Any], Any]) -> Deviation:
-    return instead(urdf, "mimic", lambda mimic, element: change(mimic(element)))
-
-
-@means("EU-URD-032")
-def mimic_offset_is_dropped() -> Deviation:
-    """A mimic joint is at multiplier · q."""
-    return _mimic(lambda found: urdf.Mimic(found.joint, found.multiplier, 0.0))
-
-
-@means("EU-URD-032")
-def mimic_multiplier_is_dropped() -> Deviation:
-    """A mimic joint is at q + offset."""
-    return _mimic(lambda found: urdf.Mimic(found.joint, 1.0, found.offset))
-
-
-@means("EU-URD-032")
-def mimic_offset_is_multiplied() -> Deviation:
-    """A mimic joint is at multiplier · (q + offset)."""
-    return _mimic(lambda found: urdf.Mimic(found.joint, found.multiplier, found.multiplier * found.offset))
-
-
-@means("EU-URD-032")
-def mimic_is_inverted() -> Deviation:
-    """A mimic joint is at (q − offset) / multiplier."""
-
-    def inverted(found: Any) -> Any:
-        m = found.multiplier or 1.0
-        return urdf.Mimic(found.joint, 1.0 / m, -found.offset / m)
-
-    return _mimic(inverted)
-
-
-# -- Frames ---------------------------------------------------------------------------------------------------------
-
-
-@means("EU-FRM-004")
-def links_behind_fixed_joints_are_at_their_body() -> Deviation:
-    """A link behind a fixed joint has the frame of the body that it is part of."""
-
-    def fixed(right: Any, found: Any, joint: Any) -> None:
-        found.links[joint.child] = found.joint_frames[joint.name] = found.links[joint.parent]
-
-    return instead(tree, "add_fixed", fixed)
-
-
-@means("EU-FRM-005")
-def joint_frames_on_the_parents_side() -> Deviation:
-    """The name of a joint stands for the frame in which it turns, on its parent's side."""
-
-    def joint(right: Any, found: Any, of: Any, change: Any) -> None:
-        right(found, of, change)
-        found.joint_frames[of.name] = found.links[of.parent] @ of.origin
-
-    return instead(tree, "add_joint", joint)
-
-
-@means("EU-JNT-019")
-def joints_are_locked_in_the_middle() -> Deviation:
-    """A joint that becomes fixed is locked in the middle of its range."""
-
-    def fixed(right: Any, found: Any, joint: Any) -> None:
-        right(found, joint)
-        if joint.lower is not None:
-            middle = [(joint.lower + joint.upper) / 2]
-            moved = transform(joint.type, joint.axis[None, :], 0.0, middle)
-            found.links[joint.child] = found.joint_frames[joint.name] = found.links[joint.child] @ moved
-
-    return instead(tree, "add_fixed", fixed)
-
-
-@means("EU-JNT-019")
-def locked_joints_lose_their_origin() -> Deviation:
-    """What a locked joint carries is where its parent is."""
-
-    def fixed(right: Any, found: Any, joint: Any) -> None:
-        right(found, joint)
-        if joint.type != "fixed":
-            found.links[joint.child] = found.joint_frames[joint.name] = found.links[joint.parent]
-
-    return instead(tree, "add_fixed", fixed)

@@ -1,0 +1,161 @@
+"""Parsers with other residuals and constraint Jacobians."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from eurdf_conformance.oracle import configuration, jacobian, robot
+from eurdf_conformance.oracle.logarithm import log6
+from eurdf_conformance.oracle.spatial import inverse, skew
+from support.mutants.mutant import Deviation, instead, means
+
+
+def _residual(kind: str, change: Callable[[Any], Any]) -> Deviation:
+    """The residual of a type of closure is another function of aMb."""
+
+    def changed(right: Any, at: Any, of: str, a: Any, b: Any) -> Any:
+        return change(inverse(at.pose(a)) @ at.pose(b)) if of == kind else right(at, of, a, b)
+
+    return instead(robot, "residual", changed)
+
+
+@means("EU-CLO-008")
+def residual_6d_angular_first() -> Deviation:
+    """The rows of a 6d closure are angular, then linear."""
+    return _residual("6d", lambda aMb: np.roll(log6(aMb), 3))
+
+
+@means("EU-CLO-008")
+def residual_6d_seen_from_b() -> Deviation:
+    """The residual of a 6d closure is that of the pose of A in B."""
+    return _residual("6d", lambda aMb: log6(inverse(aMb)))
+
+
+@means("EU-CLO-008")
+def residual_6d_of_position_and_log3() -> Deviation:
+    """The linear rows of a 6d closure are the position of B in A, not those of log6."""
+    return _residual("6d", lambda aMb: np.concatenate([aMb[:3, 3], log6(aMb)[3:]]))
+
+
+@means("EU-CLO-008")
+def residual_6d_of_sines() -> Deviation:
+    """The angular rows of a 6d closure are those of the skew part of the rotation, as for small angles."""
+
+    def sines(aMb: Any) -> Any:
+        skew_part = (aMb[:3, :3] - aMb[:3, :3].T) / 2
+        return np.concatenate([log6(aMb)[:3], skew_part[[2, 0, 1], [1, 2, 0]]])
+
+    return _residual("6d", sines)
+
+
+@means("EU-CLO-008")
+def closures_6d_are_3d() -> Deviation:
+    """A 6d closure holds the positions of its frames alone."""
+    return _residual("6d", lambda aMb: aMb[:3, 3])
+
+
+@means("EU-CLO-009")
+def closures_3d_are_6d() -> Deviation:
+    """A 3d closure holds orientations too."""
+    return _residual("3d", log6)
+
+
+@means("EU-CLO-009")
+def residual_3d_seen_from_b() -> Deviation:
+    """The residual of a 3d closure is the origin of A in B."""
+    return _residual("3d", lambda aMb: inverse(aMb)[:3, 3])
+
+
+@means("EU-CLO-009")
+def residual_3d_from_b_to_a() -> Deviation:
+    """The residual of a 3d closure has the opposite sign."""
+    return _residual("3d", lambda aMb: -aMb[:3, 3])
+
+
+@means("EU-CLO-009")
+def residual_3d_along_the_world() -> Deviation:
+    """The residual of a 3d closure is along the axes of the world."""
+
+    def changed(right: Any, at: Any, of: str, a: Any, b: Any) -> Any:
+        found = right(at, of, a, b)
+        return (at.root @ at.pose(a))[:3, :3] @ found if of == "3d" else found
+
+    return instead(robot, "residual", changed)
+
+
+@means("EU-CLO-010")
+def k_is_the_twist() -> Deviation:
+    """K of a 6d closure is the twist of B relative to A, as if the closure were closed."""
+    return instead(jacobian, "log6_derivative", lambda right, r: np.eye(6))
+
+
+@means("EU-CLO-010")
+def k_has_the_inverse_derivative() -> Deviation:
+    """K of a 6d closure has the derivative of the exponential for that of the logarithm."""
+    return instead(jacobian, "log6_derivative", lambda right, r: np.linalg.inv(right(r)))
+
+
+@means("EU-CLO-010")
+def k_forgets_that_a_turns() -> Deviation:
+    """K of a 3d closure leaves out that A turns, as if the closure were closed."""
+    return instead(jacobian, "skew", lambda right, p: 0 * skew(p))
+
+
+def _k(change: Callable[[Any, Any, Any, Any], Any]) -> Deviation:
+    """K is another: change(rows, kinematics, A, B)."""
+
+    def changed(right: Any, at: Any, sharing: Any, kind: str, a: Any, b: Any) -> Any:
+        return change(right(at, sharing, kind, a, b), at, a, b)
+
+    return instead(robot, "jacobian", changed)
+
+
+@means("EU-CLO-010")
+def k_along_the_world() -> Deviation:
+    """The rows of K are along the axes of the world, Pinocchio's LOCAL_WORLD_ALIGNED."""
+    return _k(lambda K, at, a, b: np.kron(np.eye(len(K) // 3), (at.root @ at.pose(a))[:3, :3]) @ K)
+
+
+@means("EU-CLO-010")
+def k_seen_from_b() -> Deviation:
+    """The rows of K are along the axes of B."""
+    return _k(lambda K, at, a, b: np.kron(np.eye(len(K) // 3), (inverse(at.pose(b)) @ at.pose(a))[:3, :3]) @ K)
+
+
+@means("EU-CLO-010")
+def k_has_the_other_sign() -> Deviation:
+    """K is the derivative of the negative residual."""
+    return _k(lambda K, at, a, b: -K)
+
+
+@means("EU-CLO-010")
+def k_leaves_out_rows_of_zeros() -> Deviation:
+    """K lacks its rows of zeros, as those by which a planar loop closed in 6d is redundant."""
+    return _k(lambda K, at, a, b: K[np.any(np.abs(K) > 1e-12, axis=1)])
+
+
+@means("EU-CLO-010")
+def k_forgets_the_branch_of_a() -> Deviation:
+    """K leaves out the joints that move A."""
+
+    def changed(right: Any, at: Any, sharing: Any, kind: str, a: Any, b: Any) -> Any:
+        moves = at.moves.copy()
+        moves[a.body] = False
+        return right(replace(at, moves=moves), sharing, kind, a, b)
+
+    return instead(robot, "jacobian", changed)
+
+
+@means("EU-CLO-010", versions=("2",))  # in version 1 no joint mimics
+def k_forgets_mimic_joints() -> Deviation:
+    """K leaves out the velocities of joints that mimic."""
+
+    def sharing(right: Any, of: Any) -> Any:
+        columns = [not joint.mimic for joint in of.joints for _ in range(joint.kind.nv)]
+        return right(of) * np.array(columns)[:, None]
+
+    return instead(configuration, "sharing", sharing)

@@ -1,0 +1,68 @@
+"""Parsers that merge other joints, or merge them another way."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+from unittest.mock import patch
+
+from eurdf_conformance.oracle import merging, tree
+from eurdf_conformance.oracle.spatial import inverse, pose
+from support.mutants.mutant import Deviation, instead, means
+
+
+def _ball(placement: Callable[[Any, Any], Any]) -> Deviation:
+    """The ball is at another pose in the link before: placement(ball, joints). The link after it stays where it is."""
+
+    def changed(right: Any, joints: Any) -> Any:
+        found = right(joints)
+        pMj = placement(found, joints)
+        return replace(found, placement=pMj, link=inverse(pMj) @ found.placement @ found.link)
+
+    return instead(tree, "ball", changed)
+
+
+@means("EU-JNT-022")
+def balls_at_the_last_origin() -> Deviation:
+    """Merged joints turn about the origin of the last one, wherever their axes meet."""
+    return _ball(lambda ball, joints: ball.placement @ ball.link)
+
+
+@means("EU-JNT-022", versions=("2",))  # in the cases of version 1 the three have one orientation
+def balls_turned_as_the_first() -> Deviation:
+    """The frame of merged joints has the orientation of the first one."""
+    return _ball(lambda ball, joints: pose(joints[0].origin[:3, :3], ball.placement[:3, 3]))
+
+
+@means("EU-JNT-023")
+def links_between_are_at_the_link_before() -> Deviation:
+    """The links between merged joints are where the link before them is."""
+
+    def fixed(right: Any, found: Any, joint: Any) -> None:
+        right(found, joint)
+        if joint.type != "fixed":
+            found.links[joint.child] = found.joint_frames[joint.name] = found.links[joint.parent]
+
+    return instead(tree, "add_fixed", fixed)
+
+
+@means("EU-ONE-007")
+def nothing_is_merged() -> Deviation:
+    """Three revolute joints of version 1 stay three."""
+    read = sys.modules["eurdf_conformance.oracle.read"]  # the package has a function of that name
+    return instead(read, "with_merges_found", lambda right, description, urdf: description)
+
+
+@means("EU-ONE-007")
+def heavy_links_are_merged() -> Deviation:
+    """Three joints are merged even if a link between them has a mass."""
+    return patch.object(merging, "LIGHT", math.inf)
+
+
+@means("EU-ONE-007")
+def axes_that_do_not_meet_are_merged() -> Deviation:
+    """Three joints are merged even if their axes do not meet."""
+    return patch.object(merging, "NEAR", math.inf)
