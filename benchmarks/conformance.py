@@ -10,10 +10,10 @@ from collections import defaultdict
 from pathlib import Path
 
 from eurdf_conformance.corpus.read import read_cases
+from eurdf_conformance.judging.conversation import Conversation
+from eurdf_conformance.judging.judge import judge
 from eurdf_conformance.runner.session import Session
-from eurdf_conformance.suite.conversation import Conversation
 from eurdf_conformance.suite.item import case_items
-from eurdf_conformance.suite.judge import judge
 from eurdf_conformance.suite.options import REFERENCE
 
 ROOT = Path(__file__).parents[1]
@@ -39,9 +39,9 @@ def _cases() -> None:
         _ = session.started
         conversation = Conversation(session)
         for item in items:
-            begin, before = time.perf_counter(), session.seconds_in_reader
+            begin, before = time.perf_counter(), session.seconds_in_parser
             judge(item.case, item.item.level, conversation)
-            in_reader = session.seconds_in_reader - before
+            in_reader = session.seconds_in_parser - before
             levels[item.item.level].append((in_reader, time.perf_counter() - begin - in_reader))
     levels["all"] = [each for times in list(levels.values()) for each in times]
     print(f"{'level':12} {'items':>6} {'reader':>8} {'runner':>8}  ms an item, mean")

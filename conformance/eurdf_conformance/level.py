@@ -1,4 +1,4 @@
-"""What a reader can claim, for each version of the format."""
+"""What a parser can claim, for each version of the format."""
 
 from __future__ import annotations
 

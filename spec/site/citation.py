@@ -18,7 +18,7 @@ from spec.site.clause import ROOT
 PACKAGES = (ROOT / "reference", ROOT / "conformance")
 
 #: Parts of the suite whose functions cite what they test or state again, and enforce nothing.
-NOT_ENFORCING = frozenset({"corpus", "oracle", "properties", "suite"})
+NOT_ENFORCING = frozenset({"corpus", "judging", "oracle", "properties", "suite"})
 
 #: Where the cases of the conformance suite are.
 CORPUS = ROOT / "conformance" / "eurdf_conformance" / "corpus" / "cases"

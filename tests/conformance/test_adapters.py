@@ -38,7 +38,7 @@ from support.plain_urdf import robot as urdf_of
 
 ROOT = Path(__file__).parents[2]
 ROBOTS = ROOT / "robots"
-REFERENCE = "eurdf_conformance.adapters.reference:READER"
+REFERENCE = "eurdf_conformance.adapters.reference:PARSER"
 EXAMPLE = "eurdf_conformance.adapters.example:Example"
 JAVASCRIPT = Path(example.__file__).with_name("example.mjs")
 MODULES = Path(__file__).parents[1] / "support" / "javascript" / "node_modules"
@@ -70,7 +70,7 @@ def answer_of(outcome: Outcome) -> AnyAnswer:
 
 
 def load(
-    folder: Path, description: str, urdf: str | None = None, reader: Reference | None = None
+    folder: Path, description: str, urdf: str | None = None, parser: Reference | None = None
 ) -> Accepted | Rejected:
     """What the reference makes of two files; by default the URDF is a plain arm of two links."""
     if urdf is None:
@@ -83,7 +83,7 @@ def load(
         urdf = urdf_of(*links, *joints)
     (folder / "robot.yaml").write_text(description, encoding="utf-8")
     (folder / "robot.urdf").write_text(urdf, encoding="utf-8")
-    return (reader or Reference()).load(folder / "robot.yaml", folder / "robot.urdf")
+    return (parser or Reference()).load(folder / "robot.yaml", folder / "robot.urdf")
 
 
 def canonical(answer: Any) -> CanonicalRobot:
@@ -102,7 +102,7 @@ def joint_named(robot: CanonicalRobot, name: str) -> CanonicalJoint:
 def test_the_reference_claims_all_levels_of_both_versions_and_says_who_it_is() -> None:
     with Session(REFERENCE) as session:
         assert session.started.claims == {"1": list(Level), "2": list(Level)}
-        assert session.started.reader.name == "eurdf"
+        assert session.started.parser.name == "eurdf"
 
 
 def test_what_was_read_is_told_without_style(tmp_path: Path) -> None:
@@ -225,10 +225,10 @@ def test_the_urdf_may_have_another_name_than_the_description_says(tmp_path: Path
 
 @cache
 def every_joint() -> Reference:
-    reader = Reference()
+    parser = Reference()
     with TemporaryDirectory() as folder:
-        assert isinstance(reader.load(*write_every_joint(Path(folder))), Accepted)
-    return reader
+        assert isinstance(parser.load(*write_every_joint(Path(folder))), Accepted)
+    return parser
 
 
 def value_at(configuration: Any, quantities: Sequence[Quantity], frames: Sequence[str] = ()) -> Values:
@@ -339,10 +339,10 @@ def test_a_joint_that_mimics_has_no_column_and_moves_with_its_leader(tmp_path: P
         joint_element("z_leader", "revolute", "base", "z", LIMITED, '<origin xyz="0.3 0 0"/>'),
     ]
     closure = "closures:\n  - {name: c, type: 3d, frames: [{link: a, xyz: [0.2, 0, 0]}, {link: z, xyz: [0, 0.2, 0]}]}\n"
-    reader = Reference()
-    load(tmp_path, f'extended_urdf: "2.0"\n{closure}', urdf_of(*links, *joints), reader)
+    parser = Reference()
+    load(tmp_path, f'extended_urdf: "2.0"\n{closure}', urdf_of(*links, *joints), parser)
     step = 1e-6
-    here, ahead, back = reader.evaluate(
+    here, ahead, back = parser.evaluate(
         [{"z_leader": [0.4]}, {"z_leader": [0.4 + step]}, {"z_leader": [0.4 - step]}],
         ["a", "z"],
         ["poses", "residuals", "jacobian", "mass_matrix"],
@@ -362,9 +362,9 @@ def test_a_joint_that_mimics_has_no_column_and_moves_with_its_leader(tmp_path: P
 
 
 def test_the_two_joints_of_a_universal_one_of_version_1_are_columns_of_their_own(tmp_path: Path) -> None:
-    reader = Reference()
-    load(tmp_path, "joint_name: [a]\njoint_type: [UJOINT_XZ]\nclosed_loop: [[base, hand]]\n", reader=reader)
-    (values,) = reader.evaluate([{"a_X": [0.1], "a_Z": [0.2]}], ["a"], ["poses", "jacobian"])
+    parser = Reference()
+    load(tmp_path, "joint_name: [a]\njoint_type: [UJOINT_XZ]\nclosed_loop: [[base, hand]]\n", parser=parser)
+    (values,) = parser.evaluate([{"a_X": [0.1], "a_Z": [0.2]}], ["a"], ["poses", "jacobian"])
     assert values.jacobian is not None
     assert sorted(values.jacobian.columns) == [("a_X", 0), ("a_Z", 0), ("b", 0)]
     assert len(values.jacobian.rows["closure_1"]) == 6
@@ -402,9 +402,9 @@ def test_there_is_nothing_to_evaluate_before_a_robot_is_accepted() -> None:
 
 
 def test_what_weighs_nothing_has_no_center_of_mass(tmp_path: Path) -> None:
-    reader = Reference()
-    load(tmp_path, 'extended_urdf: "2.0"\n', urdf_of('<link name="a"/>'), reader)
-    (values,) = reader.evaluate([{}], [], ["mass", "center_of_mass"])
+    parser = Reference()
+    load(tmp_path, 'extended_urdf: "2.0"\n', urdf_of('<link name="a"/>'), parser)
+    (values,) = parser.evaluate([{}], [], ["mass", "center_of_mass"])
     assert (values.mass, values.center_of_mass) == (0.0, None)
 
 

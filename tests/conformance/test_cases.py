@@ -14,7 +14,7 @@ import pytest
 import yaml
 from pydantic import ValidationError
 
-from eurdf_conformance.adapters.reference import READER
+from eurdf_conformance.adapters.reference import PARSER
 from eurdf_conformance.comparison.text import same_text
 from eurdf_conformance.corpus import archive, expect, read
 from eurdf_conformance.corpus.case import CASE, SCHEMA_FILE, InvalidCase, ValidCase, case_schema, schema_text
@@ -25,11 +25,11 @@ from eurdf_conformance.corpus.expected import EXPECTED_FILE, Expected, expected_
 from eurdf_conformance.corpus.lint import lint
 from eurdf_conformance.corpus.protocol_rule import OF_RUNNERS, RULES
 from eurdf_conformance.corpus.read import CASE_FILE, CorpusCase, NotACase, collection_folder, read_case, read_cases
+from eurdf_conformance.judging.conversation import Conversation
+from eurdf_conformance.judging.judge import judge
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level
-from eurdf_conformance.suite.conversation import Conversation
-from eurdf_conformance.suite.in_process import InProcess
-from eurdf_conformance.suite.judge import judge
-from eurdf_conformance.verdict.verdict import Verdict
+from eurdf_conformance.runner.in_process import InProcess
 
 ROOT = Path(__file__).parents[2]
 CASES = read_cases()
@@ -46,7 +46,7 @@ def test_the_lint_finds_nothing_wrong_with_the_cases() -> None:
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.path)
 def test_the_reference_answers_each_case_as_it_says(case: CorpusCase) -> None:
     """An invalid one gives exactly its code at its place, and its twin is accepted."""
-    conversation = Conversation(InProcess(READER))
+    conversation = Conversation(InProcess(PARSER))
     judged = {level: judge(case, level, conversation) for level in case.levels}
     assert {level: found for level, found in judged.items() if found.verdict != Verdict.PASSED} == {}
 

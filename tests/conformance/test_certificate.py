@@ -27,7 +27,7 @@ from eurdf_conformance.certificate.fingerprint import clauses_hash, corpus_hash,
 from eurdf_conformance.certificate.issue import issue
 from eurdf_conformance.certificate.replay import (
     file_differences,
-    own_faults,
+    own_errors,
     replay_differences,
     replay_schema,
     suite_differences,
@@ -36,13 +36,13 @@ from eurdf_conformance.certificate.report import report
 from eurdf_conformance.certificate.write import write_certificate
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.read import read_case, read_cases
+from eurdf_conformance.judging.known_failures import KnownFailure, KnownFailures
+from eurdf_conformance.judging.result import Result
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level
 from eurdf_conformance.suite.item import case_items
 from eurdf_conformance.suite.options import Options
 from eurdf_conformance.suite.reproduce import PACKAGE
-from eurdf_conformance.verdict.known_failures import KnownFailure, KnownFailures
-from eurdf_conformance.verdict.result import Result
-from eurdf_conformance.verdict.verdict import Verdict
 from eurdf_conformance.write_together import write_together
 from support.suite_runs import INVALID, PLANNED, VALID, result, run, started
 
@@ -51,7 +51,7 @@ HOSTILE = "<script>alert(1)</script> & \x1b[31m\0\u202e"
 
 
 def text_of(page: str) -> str:
-    """What a reader of a page sees, on one line."""
+    """What a parser of a page sees, on one line."""
     return " ".join(" ".join(html.document_fromstring(page).find("body").itertext()).split())
 
 
@@ -198,7 +198,7 @@ def test_a_certificate_with_a_word_too_many_is_refused(failed: Certificate, tmp_
 
 def test_the_report_says_what_is_certified_what_failed_by_which_clause_and_why(failed: Certificate) -> None:
     page = text_of(report(failed))
-    assert "my_reader 0.3" in page
+    assert "my_parser 0.3" in page
     assert "Certified for version 2: structure. Not for version 2: accept" in page
     assert "✗ not certified: 1 failed, 1 of 2 passed" in page
     assert "/outcome: expected" in page
@@ -220,7 +220,7 @@ def test_the_report_and_the_comparison_load_nothing_from_elsewhere(failed: Certi
         assert "<script" not in page
 
 
-def test_what_a_reader_says_of_itself_cannot_become_part_of_a_page_or_a_badge(failed: Certificate) -> None:
+def test_what_a_parser_says_of_itself_cannot_become_part_of_a_page_or_a_badge(failed: Certificate) -> None:
     said = started({"2": [Level.ACCEPT]}, name=HOSTILE)
     given = issue(run({(INVALID, Level.ACCEPT): Verdict.FAILED}, started=said, parser=f"cmd:{HOSTILE}"))
     for page in (report(given), comparison_page([given, failed])):
@@ -230,7 +230,7 @@ def test_what_a_reader_says_of_itself_cannot_become_part_of_a_page_or_a_badge(fa
     etree.fromstring(badge(given))
 
 
-def test_the_report_of_a_reader_that_did_not_start_says_why_and_no_more() -> None:
+def test_the_report_of_a_parser_that_did_not_start_says_why_and_no_more() -> None:
     lost = tuple(result(each, Verdict.NOT_STARTED, "there is no such program") for each in PLANNED)
     page = text_of(report(issue(run(started=None, results=lost))))
     assert "could not be started" in page
@@ -283,11 +283,11 @@ def test_the_badge_is_a_picture_with_a_name_in_which_no_text_leaves_its_box(fail
 # --- several ---------------------------------------------------------------------------------------------------------
 
 
-def test_a_comparison_shows_levels_and_only_the_clauses_on_which_readers_differ(failed: Certificate) -> None:
-    other = issue(run(started=started({"2": [Level.ACCEPT, Level.STRUCTURE]}, name="your_reader")))
+def test_a_comparison_shows_levels_and_only_the_clauses_on_which_parsers_differ(failed: Certificate) -> None:
+    other = issue(run(started=started({"2": [Level.ACCEPT, Level.STRUCTURE]}, name="your_parser")))
     page = text_of(comparison_page([failed, other]))
-    assert "my_reader 0.3" in page
-    assert "your_reader 0.3" in page
+    assert "my_parser 0.3" in page
+    assert "your_parser 0.3" in page
     assert "Clauses on which they differ (1 of 2)" in page
     assert "✗ 0 of 1 ✓ 1 of 1" in page
     assert "EU-CLO-008" not in page
@@ -303,16 +303,16 @@ def test_a_comparison_says_that_its_certificates_are_of_different_suites(failed:
 
 
 def test_a_second_run_that_came_to_the_same_differs_in_nothing(failed: Certificate) -> None:
-    again = issue(run({(INVALID, Level.ACCEPT): Verdict.FAILED}, parser="cmd:elsewhere/my_reader"))
+    again = issue(run({(INVALID, Level.ACCEPT): Verdict.FAILED}, parser="cmd:elsewhere/my_parser"))
     assert replay_differences(failed, again) == []
     assert suite_differences(failed) == []
 
 
 def test_a_second_run_that_came_to_something_else_is_told_line_by_line(failed: Certificate) -> None:
-    changed = started({"2": [Level.ACCEPT]}, name="my_other_reader")
+    changed = started({"2": [Level.ACCEPT]}, name="my_other_parser")
     again = issue(run({(VALID, Level.ACCEPT): Verdict.CRASHED}, claims={"2": [Level.ACCEPT]}, started=changed))
     assert replay_differences(failed, again) == [
-        "reader, name: 'my_reader' then, 'my_other_reader' now",
+        "parser, name: 'my_parser' then, 'my_other_parser' now",
         "version 2, accept: not certified: 1 failed, 1 of 2 passed then, not certified: 1 crashed, 1 of 2 passed now",
         "version 2, structure: certified: 1 passed then, not claimed now",
         "closures/aaaaa1/accept: no failure then, crashed now",
@@ -384,14 +384,14 @@ def test_a_certificate_is_the_very_text_that_the_suite_writes(failed: Certificat
     assert file_differences(file, failed) == ["certificate.json: it is not written as the suite writes it"]
 
 
-#: A case of the suite, and what became of it in a run whose reader was expected to fail otherwise, or to pass.
+#: A case of the suite, and what became of it in a run whose parser was expected to fail otherwise, or to pass.
 REAL = next(found.item for found in case_items(read_cases()) if found.item.level == Level.ACCEPT)
 
 
 def with_known(verdict: Verdict, *known: tuple[str, Verdict], **options: Any) -> Certificate:
     """A certificate of a run of one case of the suite that came to a verdict, and of known failures."""
     failures = [KnownFailure(id=id_, level=Level.ACCEPT, verdict=of, reason="An issue.") for id_, of in known]
-    given = Options("cmd:./my_reader", **options)
+    given = Options("cmd:./my_parser", **options)
     of_case = Result(REAL, verdict, ("/outcome: expected",), given.reproduce(REAL))
     claims = started({REAL.version: [Level.ACCEPT]})
     return issue(
@@ -420,7 +420,7 @@ SOUND = [
 
 @pytest.mark.parametrize("certificate", SOUND)
 def test_what_the_suite_writes_agrees_with_itself(certificate: Certificate) -> None:
-    assert own_faults(certificate) == []
+    assert own_errors(certificate) == []
 
 
 def forged_failure(certificate: Certificate, **changes: object) -> Certificate:
@@ -438,7 +438,7 @@ def forged_failure(certificate: Certificate, **changes: object) -> Certificate:
             for before, after in (
                 ("pytest ", "pytest  "),
                 ("pytest ", "pytest --parser-timeout=$(reboot) "),
-                ("./my_reader", "./their_reader"),
+                ("./my_parser", "./their_parser"),
                 ("conformance/", "conformance/ ; reboot"),
                 ("-k ", "--explore=5 -k "),
                 ("/accept", "/structure"),
@@ -449,20 +449,20 @@ def forged_failure(certificate: Certificate, **changes: object) -> Certificate:
 def test_a_command_that_does_not_run_the_case_again_is_found_out(command: str) -> None:
     name = f"{REAL.id}/accept"
     told = [f"{name}: the command that is to run it again is none of the suite: {command}"]
-    assert own_faults(forged_failure(SOUND[0], reproduce=command)) == told
+    assert own_errors(forged_failure(SOUND[0], reproduce=command)) == told
 
 
 def test_known_failures_that_are_not_those_of_the_failures_are_found_out() -> None:
     version = f"version {REAL.version}, accept"
-    assert own_faults(forged_failure(SOUND[0], known=True)) == [
+    assert own_errors(forged_failure(SOUND[0], known=True)) == [
         f"{version}: known failures: 0 by its count, 1 by its failures"
     ]
-    assert own_faults(forged_failure(SOUND[1], known=False)) == [
+    assert own_errors(forged_failure(SOUND[1], known=False)) == [
         f"{version}: known failures: 1 by its count, 0 by its failures"
     ]
     levels = [each.model_dump() | {"known_failures": 3} for each in SOUND[0].levels if each.known_failures == 0]
-    assert own_faults(forged(SOUND[0], levels=levels))
-    not_run = own_faults(forged_failure(SOUND[1], verdict="not run"))
+    assert own_errors(forged(SOUND[0], levels=levels))
+    not_run = own_errors(forged_failure(SOUND[1], verdict="not run"))
     assert not_run == [f"{REAL.id}/accept: known, but what was not run is not known to fail"]
 
 
@@ -481,7 +481,7 @@ def test_known_failures_that_are_not_those_of_the_failures_are_found_out() -> No
 )
 def test_what_is_said_of_known_failures_and_does_not_follow_is_found_out(index: int, sentence: str) -> None:
     told = f"unexpected: of these failures no file of known ones makes it say: {sentence}"
-    assert own_faults(forged(SOUND[index], unexpected=[sentence])) == [told]
+    assert own_errors(forged(SOUND[index], unexpected=[sentence])) == [told]
 
 
 def test_a_certificate_of_another_corpus_is_told_apart(failed: Certificate) -> None:
@@ -495,7 +495,7 @@ def test_the_schema_of_a_replay_is_current() -> None:
     assert json.loads(file.read_text(encoding="utf-8")) == replay_schema()
 
 
-def test_a_certificate_claims_nothing_for_a_reader_that_claims_everything_and_answers_nothing() -> None:
+def test_a_certificate_claims_nothing_for_a_parser_that_claims_everything_and_answers_nothing() -> None:
     given = issue(run(claims=ALL, results=()))
     assert not any(each.certified for each in given.levels)
     assert {failure.verdict for failure in given.failures} == {Verdict.NOT_RUN}

@@ -22,14 +22,14 @@ from eurdf_conformance.certificate.replay import replay_schema
 from eurdf_conformance.command.output import show
 from eurdf_conformance.corpus.case import InvalidCase
 from eurdf_conformance.corpus.read import read_cases
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level
 from eurdf_conformance.suite.smoke import smoke_lines
-from eurdf_conformance.verdict.verdict import Verdict
 from support.suite_runs import INVALID, PLANNED, VALID, item, result, run
 from support.terminal import on_a_terminal
 from support.warm import run_module
 
-REFERENCE = "eurdf_conformance.adapters.reference:READER"
+REFERENCE = "eurdf_conformance.adapters.reference:PARSER"
 
 #: Failures that are shown, so many at most.
 MOST_SHOWN = 20
@@ -40,8 +40,8 @@ SOME = ("--level", "accept", "--format-version", "1", "--jobs", "0")
 
 def one_answer(word: str, *options: str) -> str:
     """The parser that says the same of every description."""
-    reader = Path(__file__).parents[1] / "support" / "fakes" / "one_answer.py"
-    return "cmd:" + shlex.join([sys.executable, "-I", "-S", str(reader), word, *options])
+    parser = Path(__file__).parents[1] / "support" / "fakes" / "one_answer.py"
+    return "cmd:" + shlex.join([sys.executable, "-I", "-S", str(parser), word, *options])
 
 
 ACCEPTS, REJECTS = one_answer("accepted"), one_answer("rejected")
@@ -295,9 +295,9 @@ def test_no_certificate_is_written_over_what_is_none(
 def test_an_earlier_certificate_is_replaced(folder: Path) -> None:
     for parser in (REJECTS, ACCEPTS):
         assert certify("--parser", parser, "--smoke", "--certificate", "mine").returncode == 1
-    reader = read_certificate(folder / "mine").reader
-    assert reader is not None
-    assert reader.name == "always_accepted"
+    parser = read_certificate(folder / "mine").parser
+    assert parser is not None
+    assert parser.name == "always_accepted"
 
 
 def test_a_file_in_the_place_of_the_folder_is_told_before_the_run(
@@ -339,7 +339,7 @@ def test_a_replay_by_another_parser_is_told_line_by_line(folder: Path) -> None:
     assert certify("--parser", REJECTS, *SOME, "--certificate", "mine").returncode == 1
     again = certify("--verify", "mine/certificate.json", "--parser", ACCEPTS, "--jobs", "0")
     assert again.returncode == 1
-    assert again.stdout.startswith("reader, name: 'always_rejected' then, 'always_accepted' now\n")
+    assert again.stdout.startswith("parser, name: 'always_rejected' then, 'always_accepted' now\n")
     assert "version1/n8t4uq/accept: no failure then, failed now\n" in again.stdout
     assert again.stdout.endswith("mine/certificate.json: differs\n")
     as_json = certify("--verify", "mine", "--parser", ACCEPTS, "--jobs", "0", "--json")
@@ -372,7 +372,7 @@ def test_a_replay_tells_what_somebody_has_changed_in_the_file(folder: Path) -> N
     ]
 
 
-def test_what_a_reader_writes_that_does_not_start_steers_no_terminal(folder: Path) -> None:
+def test_what_a_parser_writes_that_does_not_start_steers_no_terminal(folder: Path) -> None:
     program = r"import sys; sys.stderr.write('\x1b[2J\u202e no licence\n'); sys.exit(3)"
     done = certify("--parser", "cmd:" + shlex.join([sys.executable, "-c", program]))
     assert done.returncode == 2
@@ -399,7 +399,7 @@ def test_a_comparison_replaces_nothing_unasked(folder: Path, capsys: pytest.Capt
     assert "always_rejected 1" in Path("page.html").read_text(encoding="utf-8")
 
 
-def test_readers_of_one_name_are_told_apart_on_the_page(folder: Path) -> None:
+def test_parsers_of_one_name_are_told_apart_on_the_page(folder: Path) -> None:
     certify("--parser", REJECTS, "--smoke", "--certificate", "a")
     (Path("a") / "certificate.json").rename("one.json")
     text = Path("one.json").read_text(encoding="utf-8")

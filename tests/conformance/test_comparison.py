@@ -12,7 +12,7 @@ from eurdf_conformance.comparison.canonical import canonical_differences
 from eurdf_conformance.comparison.coordinates import COORDINATES, neutral, same_coordinates
 from eurdf_conformance.comparison.difference import ABSENT, Difference
 from eurdf_conformance.comparison.half_turn import twin_residual, twin_rows
-from eurdf_conformance.comparison.issues import fault_differences, warning_differences
+from eurdf_conformance.comparison.issues import error_differences, warning_differences
 from eurdf_conformance.comparison.text import same_text
 from eurdf_conformance.comparison.values import values_differences
 from eurdf_conformance.corpus.case import CasePlace, ExpectedWarning
@@ -103,7 +103,7 @@ def test_two_revolutes_about_a_body_of_no_link_are_one_universal_joint() -> None
     other_names = [pair[0] | {"name": "j"}, pair[1] | {"name": "other"}]
     for halves in (pair, pair[::-1], other_names):
         assert canonical_differences(robot([universal]), robot(halves), BODIES) == []
-    # A body that is a link of the URDF is no body in between, whatever the reader lists.
+    # A body that is a link of the URDF is no body in between, whatever the parser lists.
     real = [joint("j_X", child="b"), joint("j_Y", parent="b", child="c")]
     assert canonical_differences(robot([universal]), robot(real), [["a"], ["b"], ["c"]])
     # Neither is one that carries a third joint.
@@ -127,7 +127,7 @@ def test_what_was_said_of_two_halves_of_a_universal_joint_is_said_of_it() -> Non
     ]
 
 
-def test_joints_of_a_reader_that_make_no_sense_are_differences_and_no_crash() -> None:
+def test_joints_of_a_parser_that_make_no_sense_are_differences_and_no_crash() -> None:
     ring = robot([joint("j_1", child="x", parent="x"), joint("j_2", parent="x", child="x")])
     chain = robot([joint("j", child="x"), joint("k", parent="x", child="y"), joint("l", parent="y", child="x")])
     for nonsense in (ring, chain, robot([joint("j", lower=[]), joint("j")])):
@@ -363,7 +363,7 @@ def test_a_half_turn_is_compared_with_the_k_that_goes_with_it() -> None:
 # Issues
 
 PLACE = CasePlace(file="robot.yaml", line=3, column=5)
-FAULT = ExpectedWarning(code="unknown-frame", place=PLACE)
+ERROR = ExpectedWarning(code="unknown-frame", place=PLACE)
 
 
 def issue(code: str | None = "unknown-frame", **more: Any) -> Issue:
@@ -390,28 +390,28 @@ def issue(code: str | None = "unknown-frame", **more: Any) -> Issue:
     ],
 )
 def test_one_fault_is_one_error_with_its_code_at_its_place(issues: list[Issue], pointers: list[str]) -> None:
-    assert [found.pointer for found in fault_differences(FAULT, issues)] == pointers
+    assert [found.pointer for found in error_differences(ERROR, issues)] == pointers
 
 
 def test_a_fault_of_a_file_as_a_whole_has_no_line() -> None:
     whole = ExpectedWarning(code="file-not-utf8", place=CasePlace(file="robot.yaml"))
-    assert fault_differences(whole, [issue("file-not-utf8", line=None, column=None)]) == []
-    assert fault_differences(whole, [issue("file-not-utf8", line=1, column=1)])
+    assert error_differences(whole, [issue("file-not-utf8", line=None, column=None)]) == []
+    assert error_differences(whole, [issue("file-not-utf8", line=1, column=1)])
 
 
 def test_where_a_text_stops_being_yaml_is_for_each_parser_to_say() -> None:
     fault = ExpectedWarning(code="yaml-syntax", place=PLACE)
-    assert fault_differences(fault, [issue("yaml-syntax", line=9, column=1)]) == []
-    assert fault_differences(fault, [issue("yaml-syntax", file=None, line=None, column=None)]) == []
-    assert fault_differences(fault, [issue("yaml-syntax", file="robot.urdf")])
+    assert error_differences(fault, [issue("yaml-syntax", line=9, column=1)]) == []
+    assert error_differences(fault, [issue("yaml-syntax", file=None, line=None, column=None)]) == []
+    assert error_differences(fault, [issue("yaml-syntax", file="robot.urdf")])
 
 
 def test_the_warnings_of_a_valid_case_are_told_and_no_others() -> None:
-    two = [FAULT, ExpectedWarning(code="unknown-frame", place=CasePlace(file="robot.yaml", line=7, column=1))]
+    two = [ERROR, ExpectedWarning(code="unknown-frame", place=CasePlace(file="robot.yaml", line=7, column=1))]
     told = [issue(line=7, column=1, severity="warning"), issue(severity="warning")]
     assert warning_differences(two, told) == []
     assert warning_differences([], []) == []
-    assert [found.pointer for found in warning_differences([FAULT], told)] == ["/issues/0"]
+    assert [found.pointer for found in warning_differences([ERROR], told)] == ["/issues/0"]
     assert [found.pointer for found in warning_differences([], [issue()])] == ["/issues/0"]
 
 

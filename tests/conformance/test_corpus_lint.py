@@ -11,7 +11,7 @@ from eurdf_conformance.corpus.case import CASE, Case
 from eurdf_conformance.corpus.clause import Clause, read_clauses
 from eurdf_conformance.corpus.coverage import UNSAID, missing, said_in
 from eurdf_conformance.corpus.lines import lines_of
-from eurdf_conformance.corpus.one_edit import edit_faults, lines_edited
+from eurdf_conformance.corpus.one_edit import edit_errors, lines_edited
 from eurdf_conformance.corpus.read import read_cases
 from eurdf_conformance.level import VERSIONS, Version
 
@@ -98,7 +98,7 @@ def test_a_file_that_is_not_there_is_no_edit(tmp_path: Path) -> None:
         (tmp_path / "robot.yaml", tmp_path / "nowhere.urdf"),
         (tmp_path / "twin.yaml", tmp_path / "robot.urdf"),
     )
-    assert edit_faults(files, twin) == []
+    assert edit_errors(files, twin) == []
 
 
 def test_lines_end_at_any_line_end_and_a_byte_order_mark_is_none_of_them(tmp_path: Path) -> None:

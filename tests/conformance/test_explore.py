@@ -11,28 +11,27 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eurdf_conformance.adapters.reference import READER
+from eurdf_conformance.adapters.reference import PARSER
 from eurdf_conformance.corpus.lint import lint
 from eurdf_conformance.corpus.read import CASES, CorpusCase, read_cases
+from eurdf_conformance.judging.conversation import Conversation
+from eurdf_conformance.judging.judge import Judgement, judge
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import VERSIONS, Level, Version
-from eurdf_conformance.properties.bench import Bench
-from eurdf_conformance.properties.catalogue import law_of
+from eurdf_conformance.properties.catalogue import property_of
 from eurdf_conformance.properties.culprit import culprit
 from eurdf_conformance.properties.document import configuration
 from eurdf_conformance.properties.example import frozen_examples
 from eurdf_conformance.properties.explore import explore, search
+from eurdf_conformance.properties.harness import Harness
 from eurdf_conformance.properties.mechanism import Mechanism
 from eurdf_conformance.properties.smaller import smaller
 from eurdf_conformance.properties.strategies.mechanisms import mechanisms
 from eurdf_conformance.properties.truth import truth
-from eurdf_conformance.properties.trying import try_example, try_law
+from eurdf_conformance.properties.trying import Trial, try_example, try_property
+from eurdf_conformance.runner.in_process import InProcess
 from eurdf_conformance.runner.outcome import Crashed, Outcome
-from eurdf_conformance.suite.conversation import Conversation
-from eurdf_conformance.suite.in_process import InProcess
-from eurdf_conformance.suite.judge import Judgement, judge
-from eurdf_conformance.suite.property import Trial
-from eurdf_conformance.verdict.verdict import Verdict
-from support.oracle_parser import OracleReader
+from support.oracle_parser import OracleParser
 from support.wrong_parsers import ForgetsInlineAngles, UniversalBackwards
 
 #: What is drawn from a seed depends on the version of Hypothesis too: as many are drawn as find it from any.
@@ -48,11 +47,11 @@ def _small() -> Iterator[None]:
         yield
 
 
-def explored(name: str, reader: OracleReader, folder: Path, count: int = COUNT) -> Judgement:
+def explored(name: str, parser: OracleParser, folder: Path, count: int = COUNT) -> Judgement:
     (folder / "files").mkdir()
-    trial = Trial(InProcess(reader), "2", count, folder / "files", SEED)
-    bench = Bench(trial.reader, trial.folder)
-    return explore(law_of(name), Level.KINEMATICS, trial, bench, folder / "explored")
+    trial = Trial(InProcess(parser), "2", count, folder / "files", SEED)
+    harness = Harness(trial.parser, trial.folder)
+    return explore(property_of(name), Level.KINEMATICS, trial, harness, folder / "explored")
 
 
 def the_case(folder: Path) -> CorpusCase:
@@ -62,7 +61,7 @@ def the_case(folder: Path) -> CorpusCase:
 
 @pytest.fixture(scope="module")
 def found(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Judgement]:
-    """What is found of a reader that turns a universal joint about its second axis first."""
+    """What is found of a parser that turns a universal joint about its second axis first."""
     folder = tmp_path_factory.mktemp("found")
     return folder, explored("agreement", UniversalBackwards(), folder)
 
@@ -95,16 +94,16 @@ def test_whoever_finds_a_case_is_told_how_to_keep_it_and_to_run_it_alone(found: 
     assert f"-k {case.id}" in judgement.log.splitlines()[-1]
 
 
-def test_the_case_is_one_that_the_wrong_reader_fails_and_the_reference_passes(found: tuple[Path, Judgement]) -> None:
+def test_the_case_is_one_that_the_wrong_parser_fails_and_the_reference_passes(found: tuple[Path, Judgement]) -> None:
     case = the_case(found[0])
     assert judge(case, Level.KINEMATICS, Conversation(InProcess(UniversalBackwards()))).verdict == Verdict.FAILED
     for level in case.levels:
-        assert judge(case, level, Conversation(InProcess(READER))).verdict == Verdict.PASSED, level
+        assert judge(case, level, Conversation(InProcess(PARSER))).verdict == Verdict.PASSED, level
 
 
 @pytest.mark.slow
 def test_of_two_robots_that_do_not_agree_the_one_that_is_read_wrong_is_written(tmp_path: Path) -> None:
-    # The law compares frames that are said in place, which this reader gets wrong, with others.
+    # The property compares frames that are said in place, which this parser gets wrong, with others.
     explored("frames", ForgetsInlineAngles(), tmp_path)
     case = the_case(tmp_path)
     assert "rpy" in case.description.read_text("utf-8")
@@ -114,7 +113,7 @@ def test_of_two_robots_that_do_not_agree_the_one_that_is_read_wrong_is_written(t
 
 def test_where_there_is_nothing_to_find_nothing_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    judgement = explored("moving-base", OracleReader(), tmp_path, 60)
+    judgement = explored("moving-base", OracleParser(), tmp_path, 60)
     assert judgement.verdict == Verdict.PASSED
     assert (
         judgement.log
@@ -124,15 +123,15 @@ def test_where_there_is_nothing_to_find_nothing_is_written(tmp_path: Path, monke
 
 
 def test_a_family_is_explored_by_its_size(tmp_path: Path) -> None:
-    class LosesLarge(OracleReader):
+    class LosesLarge(OracleParser):
         def evaluate(self, *asked: object) -> list:  # type: ignore[override, type-arg]
             found = super().evaluate(*asked)  # type: ignore[arg-type]
             assert self.robot is not None
             large = len(self.robot.urdf.joints) > 9
             return [values.model_copy(update={"jacobian": None}) if large else values for values in found]
 
-    law = law_of("spherical-polygon")
-    found = search(law, Level.KINEMATICS, "2", Bench(InProcess(LosesLarge()), tmp_path), COUNT, SEED)
+    prop = property_of("spherical-polygon")
+    found = search(prop, Level.KINEMATICS, "2", Harness(InProcess(LosesLarge()), tmp_path), COUNT, SEED)
     assert found is not None
     assert len(found[0].mechanism.joints) == 10
 
@@ -144,8 +143,8 @@ def test_a_crash_is_made_small_as_a_crash(tmp_path: Path) -> None:
                 return Crashed(None, "SIGSEGV", "")
             return super().load(description, urdf)
 
-    bench = Bench(CrashesOnBalls(OracleReader()), tmp_path)
-    found = search(law_of("accepted"), Level.ACCEPT, "2", bench, COUNT, SEED)
+    harness = Harness(CrashesOnBalls(OracleParser()), tmp_path)
+    found = search(property_of("accepted"), Level.ACCEPT, "2", harness, COUNT, SEED)
     assert found is not None
     example, judgement = found
     assert judgement.verdict == Verdict.CRASHED
@@ -177,22 +176,22 @@ def kinds(mechanism: Mechanism) -> Iterator[str]:
 
 
 def test_the_culprit_is_the_robot_that_is_read_wrong_not_the_one_asked_last(tmp_path: Path) -> None:
-    bench = Bench(InProcess(ForgetsInlineAngles()), tmp_path)
-    law = law_of("frames")
+    harness = Harness(InProcess(ForgetsInlineAngles()), tmp_path)
+    prop = property_of("frames")
     example = next(
         each
-        for each in law.frozen("2")
-        if try_example(law, Level.KINEMATICS, "2", bench, each).verdict == Verdict.FAILED
+        for each in prop.frozen("2")
+        if try_example(prop, Level.KINEMATICS, "2", harness, each).verdict == Verdict.FAILED
     )
-    try_example(law, Level.KINEMATICS, "2", bench, example)
-    assert culprit(bench, Level.KINEMATICS) == bench.asked[0][0]
+    try_example(prop, Level.KINEMATICS, "2", harness, example)
+    assert culprit(harness, Level.KINEMATICS) == harness.queries[0][0]
 
 
 def test_exploring_goes_on_after_a_frozen_example_has_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "files").mkdir()
     trial = Trial(InProcess(UniversalBackwards()), "2", COUNT, tmp_path / "files", SEED)
-    judgement = try_law(law_of("agreement"), Level.KINEMATICS, trial)
+    judgement = try_property(property_of("agreement"), Level.KINEMATICS, trial)
     assert judgement.reason.startswith("example ")
     assert "written as a case: explored/joints/" in judgement.log
 
@@ -203,8 +202,10 @@ def test_where_only_a_frozen_example_fails_it_is_said_that_exploring_has_found_n
     monkeypatch.chdir(tmp_path)
     (tmp_path / "files").mkdir()
     # A single mechanism, the plainest, which has no universal joint.
-    judgement = try_law(
-        law_of("agreement"), Level.KINEMATICS, Trial(InProcess(UniversalBackwards()), "2", 1, tmp_path / "files", SEED)
+    judgement = try_property(
+        property_of("agreement"),
+        Level.KINEMATICS,
+        Trial(InProcess(UniversalBackwards()), "2", 1, tmp_path / "files", SEED),
     )
     assert judgement.reason.startswith("example ")
     assert judgement.verdict == Verdict.FAILED

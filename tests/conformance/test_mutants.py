@@ -7,14 +7,14 @@ from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.coverage import said_in
 from eurdf_conformance.corpus.protocol_rule import RULES
 from eurdf_conformance.corpus.read import all_cases
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import VERSIONS, Level, Version
 from eurdf_conformance.runner.session import Session
-from eurdf_conformance.suite.protocol_check import Asked, check
+from eurdf_conformance.suite.protocol_check import Setup, check
 from eurdf_conformance.suite.smoke import SMOKE, smoke_case
-from eurdf_conformance.verdict.verdict import Verdict
 from support.mutants import MUTANTS, SPEAKERS, UNBROKEN, Mutant
 from support.mutants.catching import catching
-from support.oracle_parser import OracleReader
+from support.oracle_parser import OracleParser
 
 
 @pytest.mark.parametrize("name", MUTANTS)
@@ -24,7 +24,7 @@ def test_a_case_that_cites_its_clause_catches_the_mutant(name: str) -> None:
     assert caught == mutant.versions, f"{mutant.clause}, {mutant.level}: {mutant.breaks}"
 
 
-@pytest.mark.parametrize("parser", [Reference, OracleReader])
+@pytest.mark.parametrize("parser", [Reference, OracleParser])
 @pytest.mark.parametrize("version", VERSIONS)
 def test_a_correct_parser_is_not_caught(parser: type, version: Version) -> None:
     every = frozenset(Verdict) - {Verdict.PASSED}
@@ -38,7 +38,7 @@ def test_a_rule_of_the_protocol_catches_the_speaker(name: str) -> None:
     three = SMOKE[VERSIONS[-1]]
     valid, invalid = (smoke_case(all_cases(), case_id) for case_id in (three.valid, three.invalid))
     with Session(speaker.parser) as session:
-        asked = Asked(session, lambda: Session(speaker.parser), valid, invalid)
+        asked = Setup(session, lambda: Session(speaker.parser), valid, invalid)
         found = {check(rule, asked).verdict for rule in RULES if speaker.clause in rule.clauses}
     assert found & speaker.verdicts, found
 

@@ -12,9 +12,9 @@ from hypothesis import HealthCheck, given, settings
 from eurdf_conformance.level import VERSIONS, Version
 from eurdf_conformance.oracle import OracleRobot, read
 from eurdf_conformance.oracle.joint_kind import KINDS
-from eurdf_conformance.properties.asked import all_frames
 from eurdf_conformance.properties.example import frozen_examples
 from eurdf_conformance.properties.mechanism import Configuration, Mechanism
+from eurdf_conformance.properties.query import all_frames
 from eurdf_conformance.properties.strategies.mechanisms import mechanisms
 from eurdf_conformance.properties.truth import truth
 from support.mujoco_witness import Witness, mass_matrix, read_urdf

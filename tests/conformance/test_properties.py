@@ -1,4 +1,4 @@
-"""Laws on any reader: the oracle keeps each of them, and each is broken by a reader that is wrong in one way."""
+"""Properties on any parser: the oracle keeps each of them, and each is broken by a parser that is wrong in one way."""
 
 from __future__ import annotations
 
@@ -11,36 +11,35 @@ import pytest
 
 from eurdf_conformance.comparison.coordinates import COORDINATES
 from eurdf_conformance.corpus.clause import read_clauses
+from eurdf_conformance.judging.judge import Judgement
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import VERSIONS, Level, Version
-from eurdf_conformance.properties.bench import Bench
-from eurdf_conformance.properties.catalogue import LAWS, PROPERTIES, law_of
+from eurdf_conformance.properties.catalogue import PROPERTIES, property_of
 from eurdf_conformance.properties.conditioning import has_clear_ranks, is_well_conditioned
 from eurdf_conformance.properties.counts import Counts, counts_of
 from eurdf_conformance.properties.document import configuration
 from eurdf_conformance.properties.example import FROZEN, frozen_examples, frozen_text
 from eurdf_conformance.properties.features import features
-from eurdf_conformance.properties.law import LARGEST, Law
+from eurdf_conformance.properties.harness import Harness
 from eurdf_conformance.properties.mechanism import Mechanism
+from eurdf_conformance.properties.property import LARGEST, Property
 from eurdf_conformance.properties.truth import truth
-from eurdf_conformance.properties.trying import try_example, try_frozen
+from eurdf_conformance.properties.trying import Trial, try_example, try_frozen, try_property
 from eurdf_conformance.protocol.message import Accepted, Evaluated, Unsupported
 from eurdf_conformance.protocol.reply import unsupported
+from eurdf_conformance.runner.in_process import InProcess
 from eurdf_conformance.runner.outcome import Crashed, Outcome
-from eurdf_conformance.suite.in_process import InProcess
-from eurdf_conformance.suite.item import property_items
-from eurdf_conformance.suite.judge import Judgement
-from eurdf_conformance.suite.property import Property, Trial
-from eurdf_conformance.verdict.verdict import Verdict
+from eurdf_conformance.suite.item import PropertyItem, property_items
 from support import wrong_parsers as wrong
-from support.oracle_parser import OracleReader
+from support.oracle_parser import OracleParser
 from support.spoiled import Remembering, Spoiling, spoils
 
 KINEMATICS, DYNAMICS, STRUCTURE = Level.KINEMATICS, Level.DYNAMICS, Level.STRUCTURE
 
-FAMILIES = [law for law in LAWS if law.family is not None]
+FAMILIES = [prop for prop in PROPERTIES if prop.family is not None]
 
-#: For each law and level a reader that departs from it.
-BROKEN: list[tuple[str, Level, type[wrong.WrongReader]]] = [
+#: For each property and level a parser that departs from it.
+BROKEN: list[tuple[str, Level, type[wrong.WrongParser]]] = [
     ("accepted", Level.ACCEPT, wrong.RejectsFloating),
     ("redundant-rows", Level.ACCEPT, wrong.RejectsRedundancy),
     ("structure-agreement", STRUCTURE, wrong.ForgetsDamping),
@@ -104,41 +103,45 @@ BROKEN: list[tuple[str, Level, type[wrong.WrongReader]]] = [
 ]
 
 
-def tried(law: Law, level: Level, version: Version, reader: OracleReader, folder: Path) -> Judgement:
-    return try_frozen(law, level, version, Bench(InProcess(reader), folder))
+def tried(prop: Property, level: Level, version: Version, parser: OracleParser, folder: Path) -> Judgement:
+    return try_frozen(prop, level, version, Harness(InProcess(parser), folder))
 
 
-@pytest.mark.parametrize("found", PROPERTIES, ids=lambda found: f"{found.name}-{found.versions[0]}-{found.level}")
-def test_the_oracle_keeps_every_law(found: Property, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("eurdf_conformance.properties.law.MOST", 8)
-    (version,) = found.versions
-    judgement = found.check(Trial(InProcess(OracleReader()), version, 0, tmp_path))
+@pytest.mark.parametrize("item", property_items(), ids=lambda item: f"{item.item.id}-{item.item.level}")
+def test_every_property_holds_of_the_oracle(
+    item: PropertyItem, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("eurdf_conformance.properties.property.MOST", 8)
+    trial = Trial(InProcess(OracleParser()), item.item.version, 0, tmp_path)
+    judgement = try_property(item.property, item.item.level, trial)
     assert (judgement.verdict, judgement.differences) == (Verdict.PASSED, ())
 
 
 @pytest.mark.parametrize(
-    ("name", "level", "reader"), BROKEN, ids=lambda value: value if isinstance(value, str) else value.__name__
+    ("name", "level", "parser"), BROKEN, ids=lambda value: value if isinstance(value, str) else value.__name__
 )
-def test_a_law_is_broken_by_a_reader_that_is_wrong_in_one_way(
-    name: str, level: Level, reader: type[wrong.WrongReader], tmp_path: Path
+def test_each_property_is_broken_by_a_wrong_parser(
+    name: str, level: Level, parser: type[wrong.WrongParser], tmp_path: Path
 ) -> None:
-    law = law_of(name)
-    judgement = tried(law, level, law.versions[-1], reader(), tmp_path)
+    prop = property_of(name)
+    judgement = tried(prop, level, prop.versions[-1], parser(), tmp_path)
     # One that cannot read what it should is no better than one that reads it wrong.
     assert judgement.verdict in (Verdict.FAILED, Verdict.ERRORED)
     assert judgement.differences or judgement.issues or judgement.verdict == Verdict.ERRORED
 
 
-def test_every_law_is_broken_by_one_at_each_level() -> None:
-    assert {(name, level) for name, level, _ in BROKEN} == {(law.name, level) for law in LAWS for level in law.levels}
+def test_every_property_and_level_has_a_wrong_parser() -> None:
+    assert {(name, level) for name, level, _ in BROKEN} == {
+        (prop.name, level) for prop in PROPERTIES for level in prop.levels
+    }
 
 
-def test_laws_that_compare_a_reader_with_itself_ask_it_about_two_robots(tmp_path: Path) -> None:
-    bench = Bench(InProcess(OracleReader()), tmp_path)
-    law = law_of("renaming")
-    (example,) = law.frozen("2")[:1]
-    law.check(bench, example, "2", KINEMATICS)
-    assert len({asked.files for asked, _ in bench.asked}) == 2
+def test_a_relation_asks_about_two_robots(tmp_path: Path) -> None:
+    harness = Harness(InProcess(OracleParser()), tmp_path)
+    prop = property_of("renaming")
+    (example,) = prop.frozen("2")[:1]
+    prop.check(harness, example, "2", KINEMATICS)
+    assert len({asked.files for asked, _ in harness.queries}) == 2
 
 
 def test_every_property_cites_clauses_of_its_version_and_no_two_items_are_the_same() -> None:
@@ -148,11 +151,11 @@ def test_every_property_cites_clauses_of_its_version_and_no_two_items_are_the_sa
     for item in items:
         assert item.clauses, item.id
         assert all(item.version in clauses[name].versions for name in item.clauses), item.id
-    assert len({law.title for law in LAWS}) == len(LAWS)
+    assert len({prop.title for prop in PROPERTIES}) == len(PROPERTIES)
 
 
-def test_a_reader_that_does_not_read_version_2_can_keep_what_both_versions_say(tmp_path: Path) -> None:
-    class Old(OracleReader):
+def test_a_parser_that_does_not_read_version_2_can_keep_what_both_versions_say(tmp_path: Path) -> None:
+    class Old(OracleParser):
         def load(self, description: Path, urdf: Path) -> Unsupported:  # type: ignore[override]
             if "extended_urdf" in description.read_text():
                 return unsupported("version 2")
@@ -160,26 +163,26 @@ def test_a_reader_that_does_not_read_version_2_can_keep_what_both_versions_say(t
 
     for level in (STRUCTURE, KINEMATICS, DYNAMICS):
         (tmp_path / level).mkdir()
-        assert tried(law_of("versions"), level, "1", Old(), tmp_path / level).verdict == Verdict.PASSED
+        assert tried(property_of("versions"), level, "1", Old(), tmp_path / level).verdict == Verdict.PASSED
 
 
 def test_an_answer_of_another_kind_stands_among_the_differences(tmp_path: Path) -> None:
-    (wrong_answer,) = tried(law_of("accepted"), Level.ACCEPT, "2", wrong.RejectsFloating(), tmp_path).differences
+    (wrong_answer,) = tried(property_of("accepted"), Level.ACCEPT, "2", wrong.RejectsFloating(), tmp_path).differences
     assert (wrong_answer.pointer, wrong_answer.expected, wrong_answer.given) == ("/outcome", "accepted", "rejected")
 
 
-def test_a_crash_is_no_departure_from_a_law_but_a_crash(tmp_path: Path) -> None:
+def test_a_crash_is_reported_as_a_crash(tmp_path: Path) -> None:
     class Crashing(InProcess):
         def evaluate(self, *_: object) -> Outcome:  # type: ignore[override]
             return Crashed(None, "SIGSEGV", "")
 
-    judgement = try_frozen(law_of("agreement"), KINEMATICS, "2", Bench(Crashing(OracleReader()), tmp_path))
+    judgement = try_frozen(property_of("agreement"), KINEMATICS, "2", Harness(Crashing(OracleParser()), tmp_path))
     assert judgement.verdict == Verdict.CRASHED
     assert judgement.reason.startswith("example 1: ")
 
 
-def test_where_a_law_is_broken_the_files_are_told(tmp_path: Path) -> None:
-    judgement = tried(law_of("frames"), KINEMATICS, "2", wrong.ForgetsInlineAngles(), tmp_path)
+def test_a_broken_property_names_the_files(tmp_path: Path) -> None:
+    judgement = tried(property_of("frames"), KINEMATICS, "2", wrong.ForgetsInlineAngles(), tmp_path)
     lines = judgement.log.splitlines()
     paths = [Path(line) for line in lines if not line.startswith("  ")]
     assert all(line.startswith("  at configuration 0: {") for line in lines if line.startswith("  "))
@@ -192,11 +195,11 @@ def has_both_kinds_of_closure(mechanism: Mechanism) -> bool:
 
 
 def test_where_a_3d_closure_is_open_the_k_of_a_6d_one_is_looked_at_all_the_same(tmp_path: Path) -> None:
-    law = replace(law_of("swapping"), applies=has_both_kinds_of_closure)
-    assert len(law.frozen("2")) >= 3
-    assert tried(law, KINEMATICS, "2", OracleReader(), tmp_path).verdict == Verdict.PASSED
+    prop = replace(property_of("swapping"), applies=has_both_kinds_of_closure)
+    assert len(prop.frozen("2")) >= 3
+    assert tried(prop, KINEMATICS, "2", OracleParser(), tmp_path).verdict == Verdict.PASSED
     (tmp_path / "twist").mkdir()
-    judgement = tried(law, KINEMATICS, "2", wrong.TwistOf6d(), tmp_path / "twist")
+    judgement = tried(prop, KINEMATICS, "2", wrong.TwistOf6d(), tmp_path / "twist")
     assert judgement.verdict == Verdict.FAILED
     assert {each.pointer.split("/")[3] for each in judgement.differences} == {"jacobian"}
 
@@ -205,31 +208,26 @@ def test_where_a_3d_closure_is_open_the_k_of_a_6d_one_is_looked_at_all_the_same(
 
 
 @pytest.mark.parametrize(
-    "found",
-    # Where a law is of both versions, answers to the second have more to spoil.
-    [
-        found
-        for found in PROPERTIES
-        if found.level is not Level.ACCEPT and found.versions[0] == law_of(found.name).versions[-1]
-    ],
-    ids=lambda found: f"{found.name}-{found.versions[0]}-{found.level}",
+    ("prop", "level"),
+    [(prop, level) for prop in PROPERTIES for level in prop.levels if level is not Level.ACCEPT],
+    ids=lambda value: value.name if isinstance(value, Property) else value,
 )
-def test_whatever_the_schema_lets_a_reader_answer_a_law_holds_or_is_broken(found: Property, tmp_path: Path) -> None:
-    law, (version,) = law_of(found.name), found.versions
-    kind = Accepted if found.level is STRUCTURE else Evaluated
-    examples = law.frozen(version)
+def test_any_answer_that_fits_the_schema_passes_or_fails(prop: Property, level: Level, tmp_path: Path) -> None:
+    version = prop.versions[-1]  # answers to version 2 have more to spoil
+    kind = Accepted if level is STRUCTURE else Evaluated
+    examples = prop.frozen(version)
     example = max(examples, key=lambda each: len(features(each.mechanism))) if kind is Accepted else examples[0]
     right = Remembering()
-    assert try_example(law, found.level, version, Bench(right, tmp_path), example).verdict == Verdict.PASSED
+    assert try_example(prop, level, version, Harness(right, tmp_path), example).verdict == Verdict.PASSED
     verdicts = []
     ways = spoils([answer for answer in right.said if isinstance(answer, kind)])
-    # Every fourth, another one for each law: to try all takes a minute.
-    for spoil in ways[len(found.name) % 4 :: 4]:
+    # Every fourth, another one for each property: to try all takes a minute.
+    for spoil in ways[len(prop.name) % 4 :: 4]:
         for which in (None, 1):  # all of its answers, or the second, so that it does not fit the first
             folder = tmp_path / f"spoiled {len(verdicts)}"
             folder.mkdir()
-            reader = Spoiling(right, kind, spoil, which)
-            judgement = try_example(law, found.level, version, Bench(reader, folder), example)
+            parser = Spoiling(right, kind, spoil, which)
+            judgement = try_example(prop, level, version, Harness(parser, folder), example)
             assert judgement.verdict in (Verdict.PASSED, Verdict.FAILED), judgement
             assert all(str(each) for each in judgement.differences)
             verdicts.append(judgement.verdict)
@@ -239,11 +237,11 @@ def test_whatever_the_schema_lets_a_reader_answer_a_law_holds_or_is_broken(found
 # -- families ---------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("law", FAMILIES, ids=lambda law: law.name)
-def test_a_family_has_the_counts_that_are_known_at_any_size(law: Law) -> None:
-    assert law.family is not None
-    for size in range(law.smallest, LARGEST + 1):
-        example = law.family(size)
+@pytest.mark.parametrize("property", FAMILIES, ids=lambda prop: prop.name)
+def test_a_family_has_the_counts_that_are_known_at_any_size(prop: Property) -> None:
+    assert prop.family is not None
+    for size in range(prop.smallest, LARGEST + 1):
+        example = prop.family(size)
         robot, q = truth(example.mechanism), example.mechanism.configurations["assembled"]
         assert example.known is not None
         assert counts_of(robot.jacobian(q), robot, q) == Counts(*example.known), size
@@ -252,8 +250,8 @@ def test_a_family_has_the_counts_that_are_known_at_any_size(law: Law) -> None:
 
 
 def test_the_counts_are_the_words_of_dimension_that_the_oracle_finds() -> None:
-    for law in FAMILIES:
-        for example in law.frozen("2"):
+    for prop in FAMILIES:
+        for example in prop.frozen("2"):
             robot, q = truth(example.mechanism), example.mechanism.configurations["assembled"]
             counts, found = counts_of(robot.jacobian(q), robot, q), robot.dimensions(q)
             assert vars(counts) == {**vars(found), "redundant": found.nc - found.rank}
@@ -291,6 +289,8 @@ def test_the_frozen_examples_use_what_the_format_has() -> None:
 
 
 @pytest.mark.parametrize("version", VERSIONS)
-def test_every_law_has_examples_to_be_tried_on(version: Version) -> None:
-    few = {law.name: len(law.frozen(version)) for law in LAWS if version in law.versions and law.family is None}
+def test_every_property_has_examples(version: Version) -> None:
+    few = {
+        prop.name: len(prop.frozen(version)) for prop in PROPERTIES if version in prop.versions and prop.family is None
+    }
     assert min(few.values()) >= 3, few

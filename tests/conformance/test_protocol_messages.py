@@ -44,7 +44,7 @@ ROBOT = {
     "configurations": {"home": {"j": [0.5]}}, "own": {"/x-a": {"deep": [1, "two", None, True]}},
 }  # fmt: skip
 ISSUE = {"code": "unknown-frame", "severity": "error", "file": "robot.yaml", "line": 1, "column": 2, "message": "m"}
-READER = {"name": "n", "version": "", "language": "C++"}
+PARSER = {"name": "n", "version": "", "language": "C++"}
 POSE = {"rotation": [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "translation": [0, 0, 0.5]}
 VALUES = {
     "poses": {"tool": POSE},
@@ -63,7 +63,7 @@ REQUESTS: dict[str, AnyRequest] = {
     "stop": Stop(id=1),
 }
 SOUND: list[tuple[str, dict[str, Any]]] = [
-    ("start", {"outcome": "started", "protocol": "1.0", "reader": READER, "claims": {"1": ["accept"], "2": []}}),
+    ("start", {"outcome": "started", "protocol": "1.0", "parser": PARSER, "claims": {"1": ["accept"], "2": []}}),
     ("load", {"outcome": "accepted", "robot": ROBOT, "issues": [ISSUE, {"message": "m"}]}),
     ("load", {"outcome": "accepted", "robot": None}),
     ("load", {"outcome": "rejected", "issues": []}),
@@ -96,9 +96,9 @@ def changed(value: Any, pointer: str, new: Any) -> Any:
 BROKEN: list[tuple[int, str, Any]] = [
     (0, "/protocol", "1.1"),
     (0, "/protocol", ...),
-    (0, "/reader", None),
-    (0, "/reader/name", ""),
-    (0, "/reader/language", ...),
+    (0, "/parser", None),
+    (0, "/parser/name", ""),
+    (0, "/parser/language", ...),
     (0, "/claims", []),
     (0, "/claims/3", ["accept"]),
     (0, "/claims/1", ["all"]),
@@ -313,7 +313,7 @@ def test_a_constant_that_json_lacks_is_no_value_but_a_text_may_say_it(text: str)
 
 
 class Named:
-    """A reader in Python that accepts whatever it is to load."""
+    """A parser in Python that accepts whatever it is to load."""
 
     name, version, language = "named", "1", "Python"
     claims: ClassVar[dict[Version, list[Level]]] = {"2": [Level.ACCEPT]}

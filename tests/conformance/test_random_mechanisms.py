@@ -9,17 +9,17 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 
-from eurdf_conformance.adapters.reference import READER
+from eurdf_conformance.adapters.reference import PARSER
 from eurdf_conformance.comparison.canonical import canonical_differences
 from eurdf_conformance.corpus.expect import DYNAMICS, KINEMATICS
 from eurdf_conformance.level import Version
-from eurdf_conformance.properties.asked import ask
-from eurdf_conformance.properties.bench import Bench
+from eurdf_conformance.properties.harness import Harness
 from eurdf_conformance.properties.mechanism import Mechanism
+from eurdf_conformance.properties.query import query_of
 from eurdf_conformance.properties.strategies.mechanisms import mechanisms
 from eurdf_conformance.properties.truth import truth
 from eurdf_conformance.protocol.message import Values
-from eurdf_conformance.suite.in_process import InProcess
+from eurdf_conformance.runner.in_process import InProcess
 
 #: Relative to the size of the robot; of M, of the mass and of its centre, to the largest there is.
 NEAR = 1e-9
@@ -36,7 +36,7 @@ NEAR = 1e-9
     ],
 )
 def test_they_agree_to_a_billionth_of_its_size(version: Version, closures: int, count: int, tmp_path: Path) -> None:
-    bench = Bench(InProcess(READER), tmp_path)
+    harness = Harness(InProcess(PARSER), tmp_path)
     tried = []
 
     @settings(
@@ -50,13 +50,13 @@ def test_they_agree_to_a_billionth_of_its_size(version: Version, closures: int, 
     @given(mechanisms(version, closures))
     def agree(mechanism: Mechanism) -> None:
         tried.append(mechanism)
-        asked, robot = ask(mechanism, version), truth(mechanism, version)
-        bench.begin()
-        read = bench.read(asked)
+        asked, robot = query_of(mechanism, version), truth(mechanism, version)
+        harness.begin()
+        read = harness.read(asked)
         assert read is not None
         assert canonical_differences(robot.canonical(), read, robot.bodies) == []
         quantities = (*KINEMATICS, *DYNAMICS)
-        for q, given_values in zip(asked.configurations, bench.evaluate(asked, quantities), strict=True):
+        for q, given_values in zip(asked.configurations, harness.evaluate(asked, quantities), strict=True):
             expected = robot.evaluate(q, asked.frames, quantities)
             assert_close(expected, given_values, max(1.0, robot.size(q)))
 

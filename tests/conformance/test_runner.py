@@ -1,4 +1,4 @@
-"""The runner tells the truth about readers that hang, crash, lie, are late, or talk too much; and goes on."""
+"""The runner tells the truth about parsers that hang, crash, lie, are late, or talk too much; and goes on."""
 
 from __future__ import annotations
 
@@ -14,6 +14,8 @@ import pytest
 
 from eurdf_conformance.corpus.protocol_rule import START, STOP
 from eurdf_conformance.corpus.read import read_cases
+from eurdf_conformance.judging.judge import Judgement, judge_outcome
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.protocol.message import Errored, Evaluated, Rejected, Started, Stopped
 from eurdf_conformance.runner.outcome import (
     Answered,
@@ -26,9 +28,7 @@ from eurdf_conformance.runner.outcome import (
     TimedOut,
 )
 from eurdf_conformance.runner.session import NotStarted, Session
-from eurdf_conformance.suite.judge import Judgement, judge_outcome
-from eurdf_conformance.suite.protocol_check import Asked, check
-from eurdf_conformance.verdict.verdict import Verdict
+from eurdf_conformance.suite.protocol_check import Setup, check
 from support.fake_parsers import FAKES, accepts, fake, has_ended, load, runs
 
 #: For each way to go wrong: what comes of it, words that tell it, and whether the process can be asked on.
@@ -153,14 +153,14 @@ def test_a_line_after_an_answer_is_told_at_the_next_request() -> None:
         assert accepts(load(session, "next"), "next")
 
 
-def test_a_reader_that_no_longer_listens_still_answers_and_is_restarted_when_it_does_not() -> None:
+def test_a_parser_that_no_longer_listens_still_answers_and_is_restarted_when_it_does_not() -> None:
     with Session(fake("closes_stdin"), timeout=0.5) as session:
         assert accepts(load(session, "fault"), "fault")
         assert isinstance(load(session, "next"), TimedOut)
         assert accepts(load(session, "next"), "next")
 
 
-def test_a_request_larger_than_the_pipe_does_not_hang_up_on_a_reader_that_does_not_read() -> None:
+def test_a_request_larger_than_the_pipe_does_not_hang_up_on_a_parser_that_does_not_read() -> None:
     configurations = [{f"joint_{index}": [0.123456789] for index in range(20_000)}]
     with Session(fake("hangs"), timeout=0.5) as session:
         assert isinstance(load(session, "fault"), TimedOut)
@@ -234,7 +234,7 @@ def test_an_endless_line_takes_no_more_memory_than_is_allowed() -> None:
         ("banner", Chatter, "Welcome to Fake 1.0!"),
     ],
 )
-def test_a_reader_that_does_not_start_is_told_why_and_given_up(way: str, kind: type[Outcome], words: str) -> None:
+def test_a_parser_that_does_not_start_is_told_why_and_given_up(way: str, kind: type[Outcome], words: str) -> None:
     with Session(fake(way), start_timeout=0.5 if way == "hangs_at_start" else 30.0) as session:
         assert isinstance(session.start(), kind)
         with pytest.raises(NotStarted) as caught:
@@ -249,7 +249,7 @@ def test_a_reader_that_does_not_start_is_told_why_and_given_up(way: str, kind: t
 
 def test_who_answers_to_start_that_it_failed_does_not_keep_the_rule_of_starting() -> None:
     with Session(fake("refuses_to_start")) as session:
-        asked = Asked(session, lambda: Session(fake("refuses_to_start")), *read_cases()[:2])
+        asked = Setup(session, lambda: Session(fake("refuses_to_start")), *read_cases()[:2])
         for rule in (START, STOP):
             judgement = check(rule, asked)
             assert (judgement.verdict, judgement.reason) == (Verdict.ERRORED, "no licence")
@@ -262,8 +262,8 @@ def test_who_answers_to_start_that_it_failed_does_not_keep_the_rule_of_starting(
         ("cmd:no-such-program", "there is no program 'no-such-program' where programs are (PATH)"),
         ("cmd:", "there is no command"),
         ("cmd:'unclosed", "closing quotation"),
-        ("reader.py", "neither 'package.module:object' nor 'cmd:'"),
-        ("my-package:reader", "neither"),
+        ("parser.py", "neither 'package.module:object' nor 'cmd:'"),
+        ("my-package:parser", "neither"),
     ],
 )
 def test_what_cannot_be_started_is_said_so(parser: str, words: str) -> None:
@@ -300,14 +300,14 @@ def test_of_a_file_that_does_not_run_it_is_said_what_may_help(
         assert words in str(session.start())
 
 
-def test_a_sound_reader_says_who_it_is() -> None:
+def test_a_sound_parser_says_who_it_is() -> None:
     with Session(fake("sound")) as session:
         assert isinstance(session.started, Started)
-        assert session.started.reader.name == "fake"
+        assert session.started.parser.name == "fake"
         assert session.started.claims == {"2": ["accept"]}
 
 
-def test_a_reader_that_starts_is_restarted_for_every_request_that_breaks_it() -> None:
+def test_a_parser_that_starts_is_restarted_for_every_request_that_breaks_it() -> None:
     with Session(fake("exits")) as session:
         assert [load(session, "fault").word for _ in range(30)] == ["crashed"] * 30
         assert accepts(load(session, "next"), "next")
@@ -315,7 +315,7 @@ def test_a_reader_that_starts_is_restarted_for_every_request_that_breaks_it() ->
 
 
 @pytest.mark.parametrize("names", [["fault"], ["fault_1", "sound_1", "fault_2"]], ids=["all", "some"])
-def test_what_a_reader_comes_to_that_crashes_is_the_same_however_it_is_spread(names: list[str]) -> None:
+def test_what_a_parser_comes_to_that_crashes_is_the_same_however_it_is_spread(names: list[str]) -> None:
     asked = [f"{name}_{number}" for number in range(8) for name in names]
 
     def judged(sessions: int) -> dict[str, Judgement]:
@@ -331,7 +331,7 @@ def test_what_a_reader_comes_to_that_crashes_is_the_same_however_it_is_spread(na
     assert crashed == {name for name in asked if name.startswith("fault")}
 
 
-def test_a_reader_that_does_not_start_again_is_no_crash_of_the_next_request_and_at_last_given_up(
+def test_a_parser_that_does_not_start_again_is_no_crash_of_the_next_request_and_at_last_given_up(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("FAKE_STARTED", str(tmp_path / "started"))
@@ -376,7 +376,7 @@ def test_a_robot_is_loaded_again_before_it_is_evaluated_by_another_process() -> 
 @pytest.mark.parametrize(
     ("way", "kind"), [("ignores_stop", TimedOut), ("does_not_end", TimedOut), ("crashes_at_the_end", Crashed)]
 )
-def test_a_reader_that_does_not_stop_in_order_is_ended_and_told(way: str, kind: type[Outcome]) -> None:
+def test_a_parser_that_does_not_stop_in_order_is_ended_and_told(way: str, kind: type[Outcome]) -> None:
     with Session(fake(way), stop_timeout=0.3) as session:
         assert accepts(load(session, "fault"), "fault")
         process = session._process
@@ -385,14 +385,14 @@ def test_a_reader_that_does_not_stop_in_order_is_ended_and_told(way: str, kind: 
     assert not process.alive
 
 
-def test_a_reader_that_waits_for_more_after_stop_sees_the_end_of_its_input() -> None:
+def test_a_parser_that_waits_for_more_after_stop_sees_the_end_of_its_input() -> None:
     with Session(fake("ends_with_its_input"), stop_timeout=30.0) as session:
         assert accepts(load(session, "robot"), "robot")
     assert isinstance(session.ended, Answered)
     assert isinstance(session.ended.answer, Stopped)
 
 
-def test_what_a_reader_started_ends_with_it() -> None:
+def test_what_a_parser_started_ends_with_it() -> None:
     with Session(fake("has_a_child")) as session:
         outcome = load(session, "fault")
         assert isinstance(outcome, Answered)
@@ -403,14 +403,14 @@ def test_what_a_reader_started_ends_with_it() -> None:
     assert has_ended(child)
 
 
-def test_a_child_that_holds_the_pipes_of_a_dead_reader_does_not_keep_anybody_waiting() -> None:
+def test_a_child_that_holds_the_pipes_of_a_dead_parser_does_not_keep_anybody_waiting() -> None:
     with Session(fake("dies_before_its_child"), timeout=300.0) as session:
         outcome = load(session, "fault")
         assert isinstance(outcome, Crashed)  # and not that it timed out
         assert has_ended(int(outcome.log))
 
 
-def test_an_error_on_this_side_ends_the_reader_at_once() -> None:
+def test_an_error_on_this_side_ends_the_parser_at_once() -> None:
     session = Session(fake("ignores_stop"), stop_timeout=60.0)
 
     def interrupted() -> None:
@@ -434,7 +434,7 @@ with Session(fake("spins"), timeout=60.0) as session:
 
 
 @pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
-def test_a_reader_ends_with_a_runner_that_is_killed(end: signal.Signals, tmp_path: Path) -> None:
+def test_a_parser_ends_with_a_runner_that_is_killed(end: signal.Signals, tmp_path: Path) -> None:
     pids = tmp_path / "pids"
     environment = os.environ | {"FAKE_PIDS": str(pids), "PYTHONPATH": str(FAKES.parents[1])}
     with subprocess.Popen(
@@ -449,9 +449,9 @@ def test_a_reader_ends_with_a_runner_that_is_killed(end: signal.Signals, tmp_pat
             if pids.exists():
                 break
             time.sleep(0.05)
-        reader, child = map(int, pids.read_text().split())
-        assert runs(reader)
+        parser, child = map(int, pids.read_text().split())
+        assert runs(parser)
         assert runs(child)
         os.killpg(runner.pid, end)  # as Ctrl-C does, all of the group
-    assert has_ended(reader)
+    assert has_ended(parser)
     assert has_ended(child)

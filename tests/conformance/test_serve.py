@@ -1,4 +1,4 @@
-"""A Python object is served as a reader: over a pipe of its own, and whatever it prints or raises."""
+"""A Python object is served as a parser: over a pipe of its own, and whatever it prints or raises."""
 
 from __future__ import annotations
 
@@ -11,21 +11,21 @@ from typing import Any
 
 import pytest
 
+from eurdf_conformance.judging.judge import judge_outcome
+from eurdf_conformance.judging.verdict import OF_THE_ADAPTER
 from eurdf_conformance.protocol.message import Accepted, AnyAnswer, Errored, Evaluated, Rejected, Skipped, Unsupported
 from eurdf_conformance.protocol.serve import find_object, serve
 from eurdf_conformance.runner.outcome import Answered, Crashed, Malformed, Outcome
 from eurdf_conformance.runner.session import Session
-from eurdf_conformance.suite.judge import judge_outcome
-from eurdf_conformance.verdict.verdict import OF_THE_ADAPTER
 from support.fake_parsers import FAKES, load
 
 
 @pytest.fixture(autouse=True)
-def _where_the_readers_are(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+def _where_the_parsers_are(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     monkeypatch.chdir(FAKES)
     monkeypatch.syspath_prepend(str(FAKES))
     yield
-    sys.modules.pop("python_readers", None)
+    sys.modules.pop("python_parsers", None)
 
 
 def answer_of(outcome: Outcome) -> AnyAnswer:
@@ -34,10 +34,10 @@ def answer_of(outcome: Outcome) -> AnyAnswer:
 
 
 def served(name: str, *requests: dict[str, Any] | bytes) -> list[dict[str, Any]]:
-    """The answers of a reader to requests, served in this process."""
+    """The answers of a parser to requests, served in this process."""
     lines = [each if isinstance(each, bytes) else json.dumps(each).encode() for each in requests]
     answers = io.BytesIO()
-    serve(find_object(f"python_readers:{name}"), lines, answers)
+    serve(find_object(f"python_parsers:{name}"), lines, answers)
     return [json.loads(line) for line in answers.getvalue().splitlines()]
 
 
@@ -45,10 +45,10 @@ def load_request(name: str, number: int = 1) -> dict[str, Any]:
     return {"id": number, "command": "load", "description": f"/{name}.yaml", "urdf": "/robot.urdf"}
 
 
-@pytest.mark.parametrize("path", ["python_readers:Plain", "python_readers:PLAIN", "python_readers:holder.inner"])
+@pytest.mark.parametrize("path", ["python_parsers:Plain", "python_parsers:PLAIN", "python_parsers:holder.inner"])
 def test_an_object_or_a_class_is_served_by_its_import_path(path: str) -> None:
     with Session(path) as session:
-        assert session.started.reader.name == "plain"
+        assert session.started.parser.name == "plain"
         answer = answer_of(load(session, "robot"))
         assert isinstance(answer, Accepted)
         assert answer.robot is None
@@ -59,25 +59,25 @@ def test_an_object_or_a_class_is_served_by_its_import_path(path: str) -> None:
 @pytest.mark.parametrize(
     ("path", "words"),
     [
-        ("no_such_module:READER", f"there is no module 'no_such_module': neither in the working folder, {FAKES}, nor "),
-        ("python_readers.inner:READER", "there is no module 'python_readers.inner': "),
-        ("python_readers:Nil", "python_readers has no 'Nil'"),
-        ("python_readers:holder.outer", "python_readers has no 'holder.outer'"),
-        ("python_readers:TakesArguments", "the class python_readers:TakesArguments is not made without arguments"),
-        ("python_readers:NoName", "is no reader: an object of the class NoName has no name"),
-        ("python_readers:NoLoad", "is no reader: an object of the class NoLoad has no load"),
-        ("python_readers:number", "is no reader: 3 has no name and no version and no language and no claims"),
-        ("python_readers:function", "is no reader: the function function has no name"),
-        ("python_readers:NumberForVersion", "its version is 1, and should be a text"),
-        ("python_readers:OnePath", "its method load(description) cannot be called as load(description, urdf)"),
-        ("python_readers:OneArgument", "cannot be called as evaluate(configurations, frames, quantities)"),
-        ("python_readers:number_for_version", "it claims version 2; versions are '1' and '2', texts"),
-        ("python_readers:no_mapping", "should say for each version the levels, as in {'2': ['accept']}"),
-        ("python_readers:no_level", "it claims level 'acept'; levels are accept, structure"),
-        ("python_readers:no_list", "what it claims for version 2 should be a list of levels"),
+        ("no_such_module:PARSER", f"there is no module 'no_such_module': neither in the working folder, {FAKES}, nor "),
+        ("python_parsers.inner:PARSER", "there is no module 'python_parsers.inner': "),
+        ("python_parsers:Nil", "python_parsers has no 'Nil'"),
+        ("python_parsers:holder.outer", "python_parsers has no 'holder.outer'"),
+        ("python_parsers:TakesArguments", "the class python_parsers:TakesArguments is not made without arguments"),
+        ("python_parsers:NoName", "is no parser: an object of the class NoName has no name"),
+        ("python_parsers:NoLoad", "is no parser: an object of the class NoLoad has no load"),
+        ("python_parsers:number", "is no parser: 3 has no name and no version and no language and no claims"),
+        ("python_parsers:function", "is no parser: the function function has no name"),
+        ("python_parsers:NumberForVersion", "its version is 1, and should be a text"),
+        ("python_parsers:OnePath", "its method load(description) cannot be called as load(description, urdf)"),
+        ("python_parsers:OneArgument", "cannot be called as evaluate(configurations, frames, quantities)"),
+        ("python_parsers:number_for_version", "it claims version 2; versions are '1' and '2', texts"),
+        ("python_parsers:no_mapping", "should say for each version the levels, as in {'2': ['accept']}"),
+        ("python_parsers:no_level", "it claims level 'acept'; levels are accept, structure"),
+        ("python_parsers:no_list", "what it claims for version 2 should be a list of levels"),
     ],
 )
-def test_what_is_no_reader_ends_the_process_with_the_reason_in_a_line(path: str, words: str) -> None:
+def test_what_is_no_parser_ends_the_process_with_the_reason_in_a_line(path: str, words: str) -> None:
     with Session(path) as session:
         outcome = session.start()
         assert isinstance(outcome, Crashed)
@@ -89,11 +89,11 @@ def test_what_is_no_reader_ends_the_process_with_the_reason_in_a_line(path: str,
 @pytest.mark.parametrize(
     ("path", "first", "last"),
     [
-        ("python_readers:Raises", "python_readers.py", "RuntimeError: no licence"),
+        ("python_parsers:Raises", "python_parsers.py", "RuntimeError: no licence"),
         ("imports_what_is_missing:X", "imports_what_is_missing.py", "No module named 'no_such_package'"),
     ],
 )
-def test_what_the_module_of_a_reader_raises_is_told_with_its_own_lines_alone(path: str, first: str, last: str) -> None:
+def test_what_the_module_of_a_parser_raises_is_told_with_its_own_lines_alone(path: str, first: str, last: str) -> None:
     with Session(path) as session:
         outcome = session.start()
     assert isinstance(outcome, Crashed)
@@ -105,8 +105,8 @@ def test_what_the_module_of_a_reader_raises_is_told_with_its_own_lines_alone(pat
     assert "importlib" not in outcome.log
 
 
-def test_what_a_reader_prints_is_log_and_what_it_reads_is_nothing() -> None:
-    with Session("python_readers:Talkative") as session:
+def test_what_a_parser_prints_is_log_and_what_it_reads_is_nothing() -> None:
+    with Session("python_parsers:Talkative") as session:
         for _ in range(2):
             answer = answer_of(load(session, "robot"))
             assert isinstance(answer, Accepted)
@@ -116,8 +116,8 @@ def test_what_a_reader_prints_is_log_and_what_it_reads_is_nothing() -> None:
     assert {"from Python", "from below", "from a child"} <= set(log.split("\n"))
 
 
-def test_an_exception_is_the_readers_word_that_it_failed() -> None:
-    with Session("python_readers:Failing") as session:
+def test_an_exception_is_the_parsers_word_that_it_failed() -> None:
+    with Session("python_parsers:Failing") as session:
         for name, error in (("key", "KeyError"), ("recursion", "RecursionError"), ("memory", "MemoryError")):
             answer = answer_of(load(session, name))
             assert isinstance(answer, Errored)
@@ -130,7 +130,7 @@ def test_an_exception_is_the_readers_word_that_it_failed() -> None:
 
 
 def test_every_kind_of_answer_gets_the_id_of_its_request() -> None:
-    with Session("python_readers:Answers") as session:
+    with Session("python_parsers:Answers") as session:
         kinds = {"rejected": Rejected, "unsupported": Unsupported, "skipped": Skipped, "robot": Accepted}
         for name, kind in kinds.items():
             assert isinstance(answer_of(load(session, name)), kind)
@@ -171,7 +171,7 @@ RETURNS = "use accepted, rejected, unsupported or skipped of eurdf_conformance.p
     ],
 )
 def test_what_is_no_answer_is_the_fault_of_the_adapter_and_no_rejection(name: str, why: str) -> None:
-    with Session("python_readers:Answers") as session:
+    with Session("python_parsers:Answers") as session:
         outcome = load(session, name)
         assert isinstance(outcome, Malformed)
         assert outcome.why.startswith(why)
@@ -184,13 +184,13 @@ def test_what_is_no_answer_is_the_fault_of_the_adapter_and_no_rejection(name: st
 
 
 def test_values_that_are_none_are_the_fault_of_the_adapter() -> None:
-    with Session("python_readers:Answers") as session:
+    with Session("python_parsers:Answers") as session:
         outcome = session.evaluate([{}], ["nothing"], ["mass"])
         assert isinstance(outcome, Malformed)
         assert outcome.why.startswith("evaluate returned None; give a list of Values, one a configuration, or use ")
 
 
-def test_a_reader_that_does_not_evaluate_says_so() -> None:
+def test_a_parser_that_does_not_evaluate_says_so() -> None:
     request = {"id": 1, "command": "evaluate", "quantities": ["mass"], "frames": [], "configurations": [{}]}
     assert served("Plain", request) == [{"id": 1, "outcome": "unsupported", "feature": "evaluate", "reason": ""}]
 
@@ -220,8 +220,8 @@ def test_the_end_of_the_requests_is_the_end() -> None:
     assert served("Plain") == []
 
 
-def test_paths_reach_the_reader_as_they_are() -> None:
-    with Session("python_readers:Plain") as session:
+def test_paths_reach_the_parser_as_they_are() -> None:
+    with Session("python_parsers:Plain") as session:
         answer = answer_of(session.load(Path("Ω/robot 関節.yaml"), Path("../robot.urdf")))
         assert isinstance(answer, Accepted)
         assert [issue.message for issue in answer.issues] == [

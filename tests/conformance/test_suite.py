@@ -15,15 +15,21 @@ from eurdf_conformance.corpus.case import TOPICS, ValidCase
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.protocol_rule import GOES_ON
 from eurdf_conformance.corpus.read import CorpusCase, read_cases
+from eurdf_conformance.judging.conversation import Conversation
+from eurdf_conformance.judging.failure_text import failure_text
+from eurdf_conformance.judging.judge import Judgement, judge
+from eurdf_conformance.judging.result import RESULT
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level, Version
+from eurdf_conformance.properties import PROPERTIES
 from eurdf_conformance.protocol.message import (
     Accepted,
     AnyAnswer,
     Errored,
     Evaluated,
     Issue,
+    Parser,
     Quantity,
-    Reader,
     Rejected,
     Skipped,
     Started,
@@ -40,19 +46,13 @@ from eurdf_conformance.runner.outcome import (
     TimedOut,
 )
 from eurdf_conformance.runner.session import Session
-from eurdf_conformance.suite.asking import Asking
-from eurdf_conformance.suite.conversation import Conversation
-from eurdf_conformance.suite.failure_text import failure_text
 from eurdf_conformance.suite.item import case_items, planned_items
-from eurdf_conformance.suite.judge import Judgement, judge
+from eurdf_conformance.suite.item_runner import ItemRunner
 from eurdf_conformance.suite.options import OPTIONS, Options
 from eurdf_conformance.suite.plugin import Collector
-from eurdf_conformance.suite.property import all_properties
-from eurdf_conformance.suite.protocol_check import Asked, check
+from eurdf_conformance.suite.protocol_check import Setup, check
 from eurdf_conformance.suite.smoke import SMOKE
 from eurdf_conformance.suite.summary import summary_lines
-from eurdf_conformance.verdict.result import RESULT
-from eurdf_conformance.verdict.verdict import Verdict
 from support.suite_runs import result, run, started
 from support.warm import run_module
 
@@ -62,7 +62,7 @@ VALID, INVALID, EITHER = CASES["tq4m8z"], CASES["k9b2yf"], CASES["m7k3ta"]
 
 
 class Scripted:
-    """A reader that answers as it is told, and keeps what it was asked."""
+    """A parser that answers as it is told, and keeps what it was asked."""
 
     def __init__(self, load: Outcome, evaluate: Outcome | None = None) -> None:
         self.answers = {"load": load, "evaluate": evaluate}
@@ -148,8 +148,8 @@ def test_one_value_a_configuration_is_asked_for() -> None:
     values = VALID.expected.values
     for level in (Level.KINEMATICS, Level.DYNAMICS):
         for given, verdict in ((values, Verdict.PASSED), (values[:1], Verdict.FAILED), (values[::-1], Verdict.FAILED)):
-            reader = Scripted(accepts(), Answered(Evaluated(id=1, values=given), 0.0))
-            assert judge(VALID, level, Conversation(reader)).verdict == verdict
+            parser = Scripted(accepts(), Answered(Evaluated(id=1, values=given), 0.0))
+            assert judge(VALID, level, Conversation(parser)).verdict == verdict
 
 
 @pytest.mark.parametrize(
@@ -177,10 +177,10 @@ def test_another_answer_than_the_one_asked_for_is_told_with_both(
 
 
 def test_of_who_accepts_and_does_not_evaluate_it_is_told_that_values_were_asked_for() -> None:
-    reader = Scripted(accepts(VALID), Answered(Unsupported(id=1, feature="evaluate"), 0.0))
-    (found,) = judge(VALID, Level.KINEMATICS, Conversation(reader)).differences
+    parser = Scripted(accepts(VALID), Answered(Unsupported(id=1, feature="evaluate"), 0.0))
+    (found,) = judge(VALID, Level.KINEMATICS, Conversation(parser)).differences
     assert (found.expected, found.given) == ("evaluated", "unsupported")
-    assert reader.asked == ["load", "evaluate"]
+    assert parser.asked == ["load", "evaluate"]
 
 
 def fault(case: CorpusCase, **changes: object) -> Issue:
@@ -202,19 +202,19 @@ def test_a_fault_that_may_be_accepted_is_told_of_all_the_same() -> None:
 
 
 def test_a_case_is_loaded_once_for_all_its_levels_and_again_where_it_may_be_gone() -> None:
-    reader = Scripted(accepts(VALID), Answered(Evaluated(id=1, values=VALID.expected.values), 0.0))
-    conversation = Conversation(reader)
+    parser = Scripted(accepts(VALID), Answered(Evaluated(id=1, values=VALID.expected.values), 0.0))
+    conversation = Conversation(parser)
     for level in VALID.levels:
         assert judge(VALID, level, conversation).verdict == Verdict.PASSED
-    assert reader.asked == ["load", "evaluate", "evaluate"]
-    reader.answers["evaluate"] = TimedOut(1.0)
+    assert parser.asked == ["load", "evaluate", "evaluate"]
+    parser.answers["evaluate"] = TimedOut(1.0)
     judge(VALID, Level.KINEMATICS, conversation)
     judge(VALID, Level.KINEMATICS, conversation)
-    assert reader.asked[3:] == ["evaluate", "load", "evaluate"]
+    assert parser.asked[3:] == ["evaluate", "load", "evaluate"]
     judge(CASES["d7rv3n"], Level.ACCEPT, conversation)
     conversation.forget()
     judge(CASES["d7rv3n"], Level.ACCEPT, conversation)
-    assert reader.asked[6:] == ["load", "load"]
+    assert parser.asked[6:] == ["load", "load"]
 
 
 def test_no_two_items_have_the_same_id_and_level() -> None:
@@ -231,7 +231,7 @@ def test_the_first_cases_to_try_are_of_their_version_and_can_be_evaluated() -> N
         assert Level.KINEMATICS in evaluated.levels
 
 
-def test_of_a_failure_everything_is_printed_that_it_takes_to_mend_the_reader() -> None:
+def test_of_a_failure_everything_is_printed_that_it_takes_to_mend_the_parser() -> None:
     item = next(each.item for each in case_items([INVALID]) if each.item.level == Level.DIAGNOSE)
     judgement = judge(INVALID, Level.DIAGNOSE, Conversation(Scripted(rejects(fault(INVALID, column=6)))))
     line = Options(parser="cmd:./my parser").reproduce(item)
@@ -243,7 +243,7 @@ def test_of_a_failure_everything_is_printed_that_it_takes_to_mend_the_reader() -
         f"  EU-FRM-001: {read_clauses()['EU-FRM-001'].text}",
         f"  EU-DIA-001: {read_clauses()['EU-DIA-001'].text}",
         "  /issues/0/column: unknown-frame, column: expected 27, given 6",
-        "  the reader tells of:",
+        "  the parser tells of:",
         "    error unknown-frame robot.yaml:5:6: ?",
         f"  {INVALID.description}:5:6",
         "        5 |     frames: [coupler_tip, folower_end]",
@@ -259,7 +259,7 @@ def test_of_a_failure_everything_is_printed_that_it_takes_to_mend_the_reader() -
 STEERING, PLAIN = "\x1b[2J\x9b31m \u202e \u2066 \r", "관절 Ω é e\u0301 \u00a0 می\u200cخوریم 👩\u200d🔧"
 
 
-def test_a_reader_steers_no_terminal_and_its_own_script_is_left_to_it() -> None:
+def test_a_parser_steers_no_terminal_and_its_own_script_is_left_to_it() -> None:
     item = next(each.item for each in case_items([INVALID]) if each.item.level == Level.DIAGNOSE)
     said = f"{STEERING}{PLAIN}"
     answers = (
@@ -280,7 +280,7 @@ def test_a_reader_steers_no_terminal_and_its_own_script_is_left_to_it() -> None:
     )
 
 
-def test_who_a_reader_is_stands_on_one_line_at_the_end_of_a_run() -> None:
+def test_who_a_parser_is_stands_on_one_line_at_the_end_of_a_run() -> None:
     name = f"{STEERING}\nversion 2, accept: 9 of 9 passed: certified"
     wrong = result(next(case_items([INVALID])).item, Verdict.ERRORED, STEERING)
     for smoke in (False, True):
@@ -324,37 +324,37 @@ def test_an_item_tests_what_can_be_seen_at_its_level_and_no_more() -> None:
 
 def test_every_clause_that_a_case_or_a_property_cites_is_tested_by_an_item() -> None:
     cited = {clause for case in CASES.values() for clause in case.case.clauses}
-    cited |= {clause for found in all_properties() for clause in found.clauses}
+    cited |= {clause for found in PROPERTIES for clause in found.clauses}
     assert cited <= {clause for item in planned_items(CASES.values()) for clause in item.clauses}
 
 
-class NoReader(Session):
+class NoParser(Session):
     """Started by its own word, and nothing else."""
 
     @property
     def started(self) -> Started:
         claims: dict[Version, list[Level]] = {"2": list(Level)}
-        return Started(id=1, protocol="1.0", reader=Reader(name="r", version="1", language="Python"), claims=claims)
+        return Started(id=1, protocol="1.0", parser=Parser(name="r", version="1", language="Python"), claims=claims)
 
 
 def test_an_answer_that_breaks_the_suite_is_no_pass_and_is_kept() -> None:
-    asking, item = Asking(Options(), NoReader("cmd:nothing")), next(case_items([VALID])).item
-    asking.node = SimpleNamespace(user_properties=[])  # type: ignore[assignment]
+    item_runner, item = ItemRunner(Options(), NoParser("cmd:nothing")), next(case_items([VALID])).item
+    item_runner.node = SimpleNamespace(user_properties=[])  # type: ignore[assignment]
 
     def broken() -> Judgement:
         raise KeyError("elbow")
 
     with pytest.raises(pytest.fail.Exception, match="the suite itself broke on this answer, please tell us: KeyError"):
-        asking.settle(item, broken)
-    assert asking.node is not None
-    kept = dict(asking.node.user_properties)[RESULT]
+        item_runner.run(item, broken)
+    assert item_runner.node is not None
+    kept = dict(item_runner.node.user_properties)[RESULT]
     assert isinstance(kept, dict)
     assert kept["verdict"] == "failed"
 
 
 def test_of_the_protocol_the_files_are_named() -> None:
     with Session("cmd:" + shlex.join([sys.executable, "-c", "print(1)"])) as session:
-        found = check(GOES_ON, Asked(session, lambda: session, VALID, INVALID))
+        found = check(GOES_ON, Setup(session, lambda: session, VALID, INVALID))
     assert found.verdict != Verdict.PASSED
     assert {str(VALID.description), str(INVALID.urdf)} <= set(found.log.splitlines())
 
@@ -363,7 +363,7 @@ def test_of_the_protocol_the_files_are_named() -> None:
 def test_a_run_that_is_broken_off_leaves_the_certificate_that_is_there(code: pytest.ExitCode, tmp_path: Path) -> None:
     config = SimpleNamespace(stash={OPTIONS: Options(certificate=tmp_path)})
     collector = Collector(config)  # type: ignore[arg-type]
-    collector._started = NoReader("cmd:nothing").started
+    collector._started = NoParser("cmd:nothing").started
     session = SimpleNamespace(exitstatus=pytest.ExitCode.OK)
     collector.pytest_sessionfinish(session, code)  # type: ignore[arg-type]
     assert list(tmp_path.iterdir()) == []
@@ -375,10 +375,10 @@ def test_a_run_that_is_broken_off_leaves_the_certificate_that_is_there(code: pyt
 
 
 def suite(
-    *arguments: str, reader: str | None = None, command: Sequence[str] = ("conformance/",), cwd: Path = ROOT
+    *arguments: str, parser: str | None = None, command: Sequence[str] = ("conformance/",), cwd: Path = ROOT
 ) -> tuple[int, str]:
     """Run the suite, in one process: exit code, and what it writes."""
-    parser = [f"--parser=case_reader:{reader}"] if reader else []
+    parser = [f"--parser=case_parser:{parser}"] if parser else []
     argv = [*command, "-n0", "-p", "no:cacheprovider", *parser, *arguments]
     environment = os.environ | {"PYTHONPATH": str(ROOT / "tests" / "support" / "fakes"), "COLUMNS": "200"}
     done = run_module("pytest", argv, cwd=cwd, environment=environment)
@@ -386,15 +386,15 @@ def suite(
     return done.returncode, done.stdout + done.stderr
 
 
-#: The two cases at which wrong readers go wrong, and what asks of the protocol with them.
+#: The two cases at which wrong parsers go wrong, and what asks of the protocol with them.
 FEW = "tq4m8z or k9b2yf"
 
 
 @pytest.mark.parametrize("topics", ["protocol or closures or names", pytest.param("", marks=pytest.mark.slow)])
-def test_a_reader_that_is_right_passes_every_case_and_is_written_a_certificate(topics: str, tmp_path: Path) -> None:
+def test_a_parser_that_is_right_passes_every_case_and_is_written_a_certificate(topics: str, tmp_path: Path) -> None:
     # Of the older version, which has fewer cases.
     asked = ["--format-version=1", "-k", f"({topics or 'test'}) and not properties", f"--certificate={tmp_path}"]
-    code, out = suite("-n2", *asked, reader="Right")
+    code, out = suite("-n2", *asked, parser="Right")
     assert code == 0, out
     items = [
         item
@@ -403,11 +403,11 @@ def test_a_reader_that_is_right_passes_every_case_and_is_written_a_certificate(t
     ]
     assert f"{len(items)} passed" in out
     assert "by_heart 1 (Python)" in out
-    assert json.loads((tmp_path / "certificate.json").read_text(encoding="utf-8"))["reader"]["name"] == "by_heart"
+    assert json.loads((tmp_path / "certificate.json").read_text(encoding="utf-8"))["parser"]["name"] == "by_heart"
 
 
-def test_a_reader_that_is_wrong_is_told_where_and_the_line_that_is_printed_shows_it_again() -> None:
-    code, out = suite("-k", FEW, reader="Misread")
+def test_a_parser_that_is_wrong_is_told_where_and_the_line_that_is_printed_shows_it_again() -> None:
+    code, out = suite("-k", FEW, parser="Misread")
     assert code == 1
     assert "3 failed, 4 passed" in out
     assert "/robot/joints/0/upper/0: joint 'motor', upper: expected 1.5, given 9.0" in out
@@ -423,8 +423,8 @@ def test_a_reader_that_is_wrong_is_told_where_and_the_line_that_is_printed_shows
     assert "passed" not in out.splitlines()[-1]
 
 
-def test_a_reader_that_accepts_what_is_wrong_fails_at_accept_and_at_diagnose() -> None:
-    code, out = suite("-k", FEW, reader="Lenient")
+def test_a_parser_that_accepts_what_is_wrong_fails_at_accept_and_at_diagnose() -> None:
+    code, out = suite("-k", FEW, parser="Lenient")
     assert code == 1
     assert "2 failed, 5 passed" in out
     assert "it accepts what is wrong: unknown-frame" in out
@@ -432,18 +432,18 @@ def test_a_reader_that_accepts_what_is_wrong_fails_at_accept_and_at_diagnose() -
 
 
 def test_a_crash_is_survived_and_no_rejection() -> None:
-    code, out = suite("-k", FEW, reader="Crashing")
+    code, out = suite("-k", FEW, parser="Crashing")
     assert code == 1
     assert "5 failed, 2 passed" in out
     assert "closures/tq4m8z/accept: crashed: the process ended with exit code 3, without an answer" in out
 
 
 def test_a_level_that_is_not_claimed_is_skipped_and_what_is_claimed_and_unsupported_fails() -> None:
-    code, out = suite("-k", FEW, reader="Modest")
+    code, out = suite("-k", FEW, parser="Modest")
     assert code == 0
     assert "2 passed, 5 skipped" in out
     assert "not claimed: accept of version 1" in out
-    code, out = suite("-k", FEW, "-rs", reader="Shy")
+    code, out = suite("-k", FEW, "-rs", parser="Shy")
     assert code == 1
     assert "7 failed" in out
     assert "closures/tq4m8z/accept: unsupported: closures: not written yet" in out
@@ -454,7 +454,7 @@ def test_levels_and_a_version_can_be_chosen() -> None:
     few = [item for item in planned_items(CASES.values()) if "properties" not in item.id]
     chosen = [item for item in few if item.version == "1" and item.level in ("structure", "diagnose")]
     arguments = ["--level=structure", "--level=diagnose", "--format-version=1", "-k", "not properties"]
-    code, out = suite(*arguments, reader="Right")
+    code, out = suite(*arguments, parser="Right")
     assert code == 0
     assert f"{len(chosen)} passed" in out
 
@@ -468,20 +468,20 @@ KNOWN = """
 def test_known_failures_are_expected_and_whoever_mends_them_is_told(tmp_path: Path) -> None:
     path = tmp_path / "known.yaml"
     path.write_text(KNOWN, encoding="utf-8")
-    code, out = suite("-k", FEW, f"--known-failures={path}", reader="Lenient")
+    code, out = suite("-k", FEW, f"--known-failures={path}", parser="Lenient")
     assert code == 0
     assert re.search("5 passed.* 2 xfailed", out)
     assert re.search(r"accept: 1 of \d+ passed \(.*1 failed, of which 1 known\): not certified", out)
-    code, out = suite("-k", FEW, f"--known-failures={path}", reader="Right")
+    code, out = suite("-k", FEW, f"--known-failures={path}", parser="Right")
     assert code == 1
     assert "known as 'failed', but it passes now: take it out of the file" in out
     path.write_text(KNOWN.replace("failed", "crashed"), encoding="utf-8")
-    code, out = suite("-k", FEW, f"--known-failures={path}", reader="Lenient")
+    code, out = suite("-k", FEW, f"--known-failures={path}", parser="Lenient")
     assert code == 1
     assert "2 failed, 5 passed" in out
     assert "known as 'crashed', but it is 'failed'" in out
     path.write_text(KNOWN.replace("k9b2yf", "nobody"), encoding="utf-8")
-    code, out = suite("-k", FEW, f"--known-failures={path}", reader="Right")
+    code, out = suite("-k", FEW, f"--known-failures={path}", parser="Right")
     assert code == 1
     assert "frames/nobody/accept: the suite has no such item" in out
 
@@ -499,18 +499,18 @@ def test_what_the_user_asks_for_and_cannot_be_is_said(tmp_path: Path) -> None:
         (["--parser="], "--parser names no parser"),
         (["--parser=cmd:no-such-program-anywhere"], "'cmd:no-such-program-anywhere' could not be started: "),
     ):
-        code, out = suite(*arguments, reader="Right")
+        code, out = suite(*arguments, parser="Right")
         assert code == pytest.ExitCode.USAGE_ERROR
         assert why in out
 
 
 def test_smoke_tells_a_wrong_adapter_from_a_wrong_parser() -> None:
-    code, out = suite("--smoke", reader="Right")
+    code, out = suite("--smoke", parser="Right")
     assert code == 0
     assert "your adapter is right so far" in out
     assert "your parser is right so far" in out
     assert "14 passed" in out
-    code, out = suite("--smoke", reader="Lenient")
+    code, out = suite("--smoke", parser="Lenient")
     assert code == 1
     assert "your adapter is right so far" in out
     assert "your parser is wrong:\n  protocol/goes-on-2/accept: failed: it accepts what is wrong" in out
@@ -522,25 +522,25 @@ def test_smoke_tells_a_wrong_adapter_from_a_wrong_parser() -> None:
 
 
 @pytest.mark.parametrize(
-    ("reader", "asked"),
+    ("parser", "asked"),
     [
         ("Right", ["bqswnu/kinematics", "k9b2yf/accept", "tq4m8z/accept"]),
         ("Moving", ["bqswnu/dynamics"]),
         ("Telling", ["k9b2yf/diagnose", "tq4m8z/structure"]),
     ],
 )
-def test_smoke_asks_three_cases_each_at_the_first_level_that_the_reader_claims(reader: str, asked: list[str]) -> None:
-    code, out = suite("--smoke", "-vv", "--format-version=2", reader=reader)
+def test_smoke_asks_three_cases_each_at_the_first_level_that_the_parser_claims(parser: str, asked: list[str]) -> None:
+    code, out = suite("--smoke", "-vv", "--format-version=2", parser=parser)
     assert code == 0
     assert "nothing was asked" not in out
     assert sorted(re.findall(r"test_case\[\w+/(\w+/\w+)\] PASSED", out)) == asked
 
 
 def test_where_nothing_is_claimed_of_what_is_asked_for_all_is_not_well() -> None:
-    code, out = suite("--smoke", reader="Silent")
+    code, out = suite("--smoke", parser="Silent")
     assert code == 1
     assert "nothing was asked: your parser claims nothing of what you asked for" in out
-    code, out = suite("--level=dynamics", reader="Modest")
+    code, out = suite("--level=dynamics", parser="Modest")
     assert code == 1
     assert "not claimed: dynamics of version 1, dynamics of version 2" in out
 
@@ -553,16 +553,16 @@ def test_without_a_parser_it_is_the_reference_that_is_tested() -> None:
 
 def test_the_suite_runs_as_an_installed_package_too() -> None:
     command = ["--pyargs", "eurdf_conformance.suite", "-p", "eurdf_conformance.suite.plugin"]
-    code, out = suite("--noconftest", "-k", FEW, reader="Right", command=command)
+    code, out = suite("--noconftest", "-k", FEW, parser="Right", command=command)
     assert code == 0
     assert "7 passed" in out
-    code, out = suite("-k", FEW, reader="Lenient", command=command)
-    assert f"pytest {' '.join(command)} --parser=case_reader:Lenient -k k9b2yf/accept" in out
-    code, out = suite("-k", FEW, reader="Right", command=command)
+    code, out = suite("-k", FEW, parser="Lenient", command=command)
+    assert f"pytest {' '.join(command)} --parser=case_parser:Lenient -k k9b2yf/accept" in out
+    code, out = suite("-k", FEW, parser="Right", command=command)
     assert code == 0
 
 
 def test_from_another_folder_the_line_that_is_printed_names_the_package(tmp_path: Path) -> None:
-    code, out = suite("-k", "k9b2yf/accept", reader="Lenient", command=[str(ROOT / "conformance")], cwd=tmp_path)
+    code, out = suite("-k", "k9b2yf/accept", parser="Lenient", command=[str(ROOT / "conformance")], cwd=tmp_path)
     assert code == 1
     assert "  pytest --pyargs eurdf_conformance.suite -p eurdf_conformance.suite.plugin --parser=" in out

@@ -1,4 +1,4 @@
-"""What the answers of a reader come to: verdicts, standings, known failures."""
+"""What the answers of a parser come to: verdicts, level_results, known failures."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ import jsonschema
 import pytest
 import yaml
 
-from eurdf_conformance.level import Level
-from eurdf_conformance.verdict import known_failures
-from eurdf_conformance.verdict.known_failures import (
+from eurdf_conformance.judging import known_failures
+from eurdf_conformance.judging.known_failures import (
     KnownFailures,
     WrongKnownFailures,
     known_failures_schema,
     read_known_failures,
 )
-from eurdf_conformance.verdict.result import Result
-from eurdf_conformance.verdict.run import Run
-from eurdf_conformance.verdict.standing import Standing, is_certified, standings
-from eurdf_conformance.verdict.verdict import Verdict
+from eurdf_conformance.judging.level_result import LevelResult, is_certified, level_results
+from eurdf_conformance.judging.result import Result
+from eurdf_conformance.judging.run import Run
+from eurdf_conformance.judging.verdict import Verdict
+from eurdf_conformance.level import Level
 from support.suite_runs import INVALID, PLANNED, VALID, item, result, run
 
 KNOWN = """\
@@ -32,8 +32,8 @@ KNOWN = """\
 """
 
 
-def standing(of: Run, level: Level = Level.ACCEPT) -> Standing:
-    return next(each for each in standings(of) if (each.version, each.level) == ("2", level))
+def level_result(of: Run, level: Level = Level.ACCEPT) -> LevelResult:
+    return next(each for each in level_results(of) if (each.version, each.level) == ("2", level))
 
 
 def known(text: str, folder: Path) -> KnownFailures:
@@ -46,39 +46,39 @@ def known(text: str, folder: Path) -> KnownFailures:
 
 
 def test_a_level_of_which_every_item_passed_is_certified() -> None:
-    assert standing(run()).certified
+    assert level_result(run()).certified
     assert is_certified(run())
 
 
 @pytest.mark.parametrize("verdict", [verdict for verdict in Verdict if verdict != Verdict.PASSED])
 def test_one_item_that_did_not_pass_for_whatever_reason_costs_the_level_and_no_other(verdict: Verdict) -> None:
     done = run({(INVALID, Level.ACCEPT): verdict})
-    assert not standing(done).certified
-    assert standing(done, Level.STRUCTURE).certified
+    assert not level_result(done).certified
+    assert level_result(done, Level.STRUCTURE).certified
     assert not is_certified(done)
 
 
 def test_a_level_that_is_not_claimed_is_not_certified_and_does_not_stand_in_the_way() -> None:
     done = run()
-    assert not standing(done, Level.DIAGNOSE).claimed
-    assert not standing(done, Level.DIAGNOSE).certified
+    assert not level_result(done, Level.DIAGNOSE).claimed
+    assert not level_result(done, Level.DIAGNOSE).certified
     assert is_certified(done)
 
 
 def test_a_level_without_an_item_is_not_certified() -> None:
     done = run(claims={"2": [Level.ACCEPT, Level.DYNAMICS]})
-    assert standing(done, Level.DYNAMICS).items == 0
-    assert not standing(done, Level.DYNAMICS).certified
+    assert level_result(done, Level.DYNAMICS).items == 0
+    assert not level_result(done, Level.DYNAMICS).certified
     assert not is_certified(done)
 
 
 def test_an_item_that_was_never_asked_counts_as_not_run() -> None:
     done = run(results=tuple(each for each in run().results if each.item.id != INVALID))
-    assert standing(done).counts == {Verdict.PASSED: 1, Verdict.NOT_RUN: 1}
-    assert not standing(done).certified
+    assert level_result(done).counts == {Verdict.PASSED: 1, Verdict.NOT_RUN: 1}
+    assert not level_result(done).certified
 
 
-def test_a_reader_that_claims_nothing_is_not_certified() -> None:
+def test_a_parser_that_claims_nothing_is_not_certified() -> None:
     assert not is_certified(run(claims={}))
     assert not is_certified(run(started=None, results=()))
 
@@ -87,7 +87,7 @@ def test_the_same_level_of_the_other_version_is_certified_apart() -> None:
     old = item("version1/ccccc3", Level.ACCEPT, "1")
     claims = {"1": [Level.ACCEPT], "2": [Level.ACCEPT]}
     done = run(claims=claims, planned=(*PLANNED, old), results=(*run().results, result(old, Verdict.CRASHED)))
-    assert [each.certified for each in standings(done) if each.claimed] == [False, True]
+    assert [each.certified for each in level_results(done) if each.claimed] == [False, True]
 
 
 def test_levels_asked_for_can_be_certified_alone_if_they_are_claimed() -> None:
@@ -98,14 +98,14 @@ def test_levels_asked_for_can_be_certified_alone_if_they_are_claimed() -> None:
 
 def test_three_cases_tried_out_certify_nothing() -> None:
     assert not is_certified(run(smoke=True))
-    assert not any(each.certified for each in standings(run(smoke=True)))
+    assert not any(each.certified for each in level_results(run(smoke=True)))
 
 
-def test_a_reader_that_accepts_everything_and_one_that_rejects_everything_are_not_certified() -> None:
+def test_a_parser_that_accepts_everything_and_one_that_rejects_everything_are_not_certified() -> None:
     accepts = run({(INVALID, Level.ACCEPT): Verdict.FAILED}, claims={"2": [Level.ACCEPT]})
     rejects = run({(VALID, Level.ACCEPT): Verdict.FAILED}, claims={"2": [Level.ACCEPT]})
     for done in (accepts, rejects):
-        assert standing(done).counts == {Verdict.PASSED: 1, Verdict.FAILED: 1}
+        assert level_result(done).counts == {Verdict.PASSED: 1, Verdict.FAILED: 1}
         assert not is_certified(done)
 
 
@@ -117,7 +117,7 @@ def test_a_result_comes_through_json_as_it_was() -> None:
     assert Result.from_json(json.loads(json.dumps(given.to_json()))) == given
 
 
-def test_half_a_character_of_a_broken_reader_can_be_written_to_a_file() -> None:
+def test_half_a_character_of_a_broken_parser_can_be_written_to_a_file() -> None:
     given = result(PLANNED[0], Verdict.MALFORMED, "it wrote \ud83e")
     assert given.differences == ("it wrote \\ud83e",)
     assert json.dumps(given.to_json(), ensure_ascii=False).encode()
@@ -129,8 +129,8 @@ def test_half_a_character_of_a_broken_reader_can_be_written_to_a_file() -> None:
 def test_a_known_failure_is_counted_and_the_level_is_not_certified(tmp_path: Path) -> None:
     file = known(KNOWN, tmp_path)
     done = run({(INVALID, Level.ACCEPT): Verdict.FAILED}, known_failures=file)
-    assert standing(done).known_failures == 1
-    assert not standing(done).certified
+    assert level_result(done).known_failures == 1
+    assert not level_result(done).certified
     assert not is_certified(done)
     assert file.unexpected(done.results, done.planned) == []
 

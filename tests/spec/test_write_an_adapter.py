@@ -13,8 +13,8 @@ import pytest
 from eurdf.commands.main import main
 from eurdf_conformance.corpus import archive
 from eurdf_conformance.corpus.read import read_cases
+from eurdf_conformance.judging.known_failures import read_known_failures
 from eurdf_conformance.suite.item import planned_items
-from eurdf_conformance.verdict.known_failures import read_known_failures
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "write_an_adapter.md"

@@ -111,7 +111,7 @@ def _joint(draw: st.DrawFn, name: str, bodies: list[list[str]], index: int) -> d
 
 @st.composite
 def restyled(draw: st.DrawFn, read: Read) -> CanonicalRobot:
-    """The same description as another reader may write it."""
+    """The same description as another parser may write it."""
     robot = read.robot.model_dump(mode="json")
     body = {link: links for links in read.bodies for link in links}
     for joint in robot["joints"]:

@@ -1,4 +1,4 @@
-"""Sessions with fake readers, and what came of them."""
+"""Sessions with fake parsers, and what came of them."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ FAKES = Path(__file__).parent / "fakes"
 
 
 def fake(way: str) -> str:
-    """The parser that goes wrong in that way; see `fakes/reader.py`."""
-    return "cmd:" + shlex.join([sys.executable, "-I", "-S", str(FAKES / "reader.py"), way])
+    """The parser that goes wrong in that way; see `fakes/parser.py`."""
+    return "cmd:" + shlex.join([sys.executable, "-I", "-S", str(FAKES / "parser.py"), way])
 
 
 def load(session: Session, name: str, **options: float) -> Outcome:

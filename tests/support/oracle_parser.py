@@ -1,4 +1,4 @@
-"""The oracle as a reader like any other: laws that hold of it are laws that can be met."""
+"""The oracle as a parser like any other: properties that hold of it are properties that can be met."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from eurdf_conformance.protocol.message import Accepted, Quantity, Values
 from eurdf_conformance.protocol.reply import accepted
 
 
-class OracleReader:
+class OracleParser:
     """The oracle behind the protocol."""
 
     name = "oracle"

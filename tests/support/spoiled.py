@@ -10,9 +10,9 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from eurdf_conformance.protocol.message import Accepted, Evaluated, Quantity
+from eurdf_conformance.runner.in_process import InProcess
 from eurdf_conformance.runner.outcome import Answered, Outcome
-from eurdf_conformance.suite.in_process import InProcess
-from support.oracle_parser import OracleReader
+from support.oracle_parser import OracleParser
 
 #: Where a value stands in an answer; None is any index of a list, or any name of a mapping from names.
 Place = tuple[str | None, ...]
@@ -111,7 +111,7 @@ class Remembering:
     """The oracle, which is asked each question once."""
 
     def __init__(self) -> None:
-        self._reader = InProcess(OracleReader())
+        self._parser = InProcess(OracleParser())
         self._answers: dict[object, Outcome] = {}
         self._loaded: tuple[Path, Path] | None = None
         self._files: object = None
@@ -119,7 +119,7 @@ class Remembering:
     def load(self, description: Path, urdf: Path) -> Outcome:
         self._files, self._loaded = (description.read_bytes(), urdf.read_bytes()), (description, urdf)
         if self._files not in self._answers:
-            self._answers[self._files] = self._reader.load(description, urdf)
+            self._answers[self._files] = self._parser.load(description, urdf)
         return self._answers[self._files]
 
     def evaluate(
@@ -131,8 +131,8 @@ class Remembering:
         asked = (self._files, repr(configurations), tuple(frames), tuple(quantities))
         if asked not in self._answers:
             assert self._loaded is not None
-            self._reader.load(*self._loaded)
-            self._answers[asked] = self._reader.evaluate(configurations, frames, quantities)
+            self._parser.load(*self._loaded)
+            self._answers[asked] = self._parser.evaluate(configurations, frames, quantities)
         return self._answers[asked]
 
     @property

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from typing import Any
 
+from eurdf_conformance.judging.result import Item, Result
+from eurdf_conformance.judging.run import Run
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.protocol.message import Reader, Started
-from eurdf_conformance.verdict.result import Item, Result
-from eurdf_conformance.verdict.run import Run
-from eurdf_conformance.verdict.verdict import Verdict
+from eurdf_conformance.protocol.message import ParserInfo, Started
 
 VALID, INVALID = "closures/aaaaa1", "closures/bbbbb2"
 
 
-def started(claims: dict[Version, list[Level]], name: str = "my_reader") -> Started:
-    """A reader that claims these levels."""
-    return Started(id=1, protocol="1.0", reader=Reader(name=name, version="0.3", language="C++"), claims=claims)
+def started(claims: dict[Version, list[Level]], name: str = "my_parser") -> Started:
+    """A parser that claims these levels."""
+    return Started(id=1, protocol="1.0", parser=ParserInfo(name=name, version="0.3", language="C++"), claims=claims)
 
 
 def item(id_: str, level: Level, version: Version = "2", *clauses: str) -> Item:
@@ -36,7 +36,7 @@ PLANNED = (
 
 
 def run(verdicts: dict[tuple[str, Level], Verdict] | None = None, **changes: Any) -> Run:
-    """A run in which a reader of version 2, that claims accept and structure, passes everything but what is said."""
+    """A run in which a parser of version 2, that claims accept and structure, passes everything but what is said."""
     claims: dict[Version, list[Level]] = changes.pop("claims", {"2": [Level.ACCEPT, Level.STRUCTURE]})
     of = verdicts or {}
     results = tuple(
@@ -45,7 +45,7 @@ def run(verdicts: dict[tuple[str, Level], Verdict] | None = None, **changes: Any
         if each.level in claims.get(each.version, [])
     )
     given: dict[str, Any] = {
-        "parser": "cmd:./my_reader",
+        "parser": "cmd:./my_parser",
         "started": started(claims),
         "planned": PLANNED,
         "results": results,

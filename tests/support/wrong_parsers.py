@@ -1,4 +1,4 @@
-"""Readers that are wrong in one way each, made of the oracle: a law that none of them breaks says nothing."""
+"""Parsers that are wrong in one way each, made of the oracle: a property that none of them breaks says nothing."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from eurdf_conformance.oracle import OracleRobot
 from eurdf_conformance.oracle.logarithm import log6_derivative
 from eurdf_conformance.protocol.message import Accepted, Jacobian, MassMatrix, Quantity, Rejected, Values
 from eurdf_conformance.protocol.reply import accepted, rejected
-from support.oracle_parser import OracleReader
+from support.oracle_parser import OracleParser
 
 Configuration = Mapping[str, Sequence[float]]
 
 
-class WrongReader(OracleReader):
+class WrongParser(OracleParser):
     """The oracle, until a method says otherwise."""
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
@@ -76,7 +76,7 @@ def off(values: Values) -> Values:
     return with_m(found, lambda M: M * 1.01)
 
 
-class RejectsSlashes(WrongReader):
+class RejectsSlashes(WrongParser):
     """Takes a slash in a name for a path."""
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
@@ -85,7 +85,7 @@ class RejectsSlashes(WrongReader):
         return super().load(description, urdf)
 
 
-class RejectsFloating(WrongReader):
+class RejectsFloating(WrongParser):
     """Says that a joint of six freedoms is none."""
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
@@ -94,7 +94,7 @@ class RejectsFloating(WrongReader):
         return super().load(description, urdf)
 
 
-class RejectsMimics(WrongReader):
+class RejectsMimics(WrongParser):
     """Says that a joint must not mimic."""
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
@@ -103,7 +103,7 @@ class RejectsMimics(WrongReader):
         return super().load(description, urdf)
 
 
-class RejectsRedundancy(WrongReader):
+class RejectsRedundancy(WrongParser):
     """Takes a redundant row for a fault."""
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
@@ -113,7 +113,7 @@ class RejectsRedundancy(WrongReader):
         return rejected("redundant rows") if found.nc > found.rank else read
 
 
-class ForgetsDamping(WrongReader):
+class ForgetsDamping(WrongParser):
     """Reads no damping."""
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
@@ -124,7 +124,7 @@ class ForgetsDamping(WrongReader):
         return accepted(robot.model_copy(update={"joints": joints}))
 
 
-class OldYaml(WrongReader):
+class OldYaml(WrongParser):
     """Reads YAML 1.1."""
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
@@ -134,7 +134,7 @@ class OldYaml(WrongReader):
         return super().load(old, urdf)
 
 
-class Type3dByDefault(WrongReader):
+class Type3dByDefault(WrongParser):
     """Takes `type` left out for 3d."""
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
@@ -146,7 +146,7 @@ class Type3dByDefault(WrongReader):
         return super().load(other, urdf)
 
 
-class ForgetsInlineAngles(WrongReader):
+class ForgetsInlineAngles(WrongParser):
     """Reads no `rpy` of a frame that is said in place."""
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
@@ -160,7 +160,7 @@ class ForgetsInlineAngles(WrongReader):
         return super().load(other, urdf)
 
 
-class OrderOfNames(WrongReader):
+class OrderOfNames(WrongParser):
     """Names the columns in the order of the alphabet, whatever they stand for."""
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
@@ -171,7 +171,7 @@ class OrderOfNames(WrongReader):
         return values.model_copy(update=found)
 
 
-class OrderOfFile(WrongReader):
+class OrderOfFile(WrongParser):
     """Minds where links stand in the URDF."""
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
@@ -186,7 +186,7 @@ class OrderOfFile(WrongReader):
         return with_m(found, lambda M: M * (2 + order.index(min(order))))
 
 
-class ForgetsAColumn(WrongReader):
+class ForgetsAColumn(WrongParser):
     """Has one velocity too few."""
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
@@ -199,7 +199,7 @@ class ForgetsAColumn(WrongReader):
         return values
 
 
-class ForgetsTheRoot(WrongReader):
+class ForgetsTheRoot(WrongParser):
     """Weighs no root."""
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
@@ -209,14 +209,14 @@ class ForgetsTheRoot(WrongReader):
         return values.model_copy(update={"mass": values.mass - root.mass})
 
 
-class Weightless(WrongReader):
+class Weightless(WrongParser):
     """Moves with no effort."""
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
         return with_m(values, lambda M: 0.0 * M)
 
 
-class OffByAMillionth(WrongReader):
+class OffByAMillionth(WrongParser):
     """Computes in single precision."""
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
@@ -224,7 +224,7 @@ class OffByAMillionth(WrongReader):
         return with_m(found, lambda M: M.astype(np.float32).astype(float) * (1 + 1e-7))
 
 
-class TwistForDerivative(WrongReader):
+class TwistForDerivative(WrongParser):
     """Takes the relative velocity of B for the derivative of the residual, also where the closure is open."""
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
@@ -235,7 +235,7 @@ class TwistForDerivative(WrongReader):
         return with_k(values, change)
 
 
-class TwistOf6d(WrongReader):
+class TwistOf6d(WrongParser):
     """Takes the relative velocity of B, seen from A, for the derivative of the residual of 6d closures."""
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
@@ -243,21 +243,21 @@ class TwistOf6d(WrongReader):
         return with_k(values, lambda name, K: np.linalg.solve(log6_derivative(r[name]), K) if len(K) == 6 else K)
 
 
-class LosesARow(WrongReader):
+class LosesARow(WrongParser):
     """Holds a closure in one direction less."""
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
         return with_k(values, lambda name, K: np.vstack([0.0 * K[:1], K[1:]]) if name == "closure_1" else K)
 
 
-class LosesARowOf3d(WrongReader):
+class LosesARowOf3d(WrongParser):
     """Holds 3d closures in one direction less."""
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
         return with_k(values, lambda name, K: np.vstack([0.0 * K[:1], K[1:]]) if len(K) == 3 else K)
 
 
-class Noisy(WrongReader):
+class Noisy(WrongParser):
     """Holds a closure in every direction, whether it does or not."""
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
@@ -265,7 +265,7 @@ class Noisy(WrongReader):
         return with_k(values, lambda name, K: K + 0.1 * noise.normal(size=K.shape))
 
 
-class SeenFromB(WrongReader):
+class SeenFromB(WrongParser):
     """Sees the residual of a 3d closure from B."""
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
@@ -278,7 +278,7 @@ class SeenFromB(WrongReader):
         return values.model_copy(update={"residuals": found})
 
 
-class SeenFromTheWorld(WrongReader):
+class SeenFromTheWorld(WrongParser):
     """Sees residuals from the world, and weighs by the height."""
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
@@ -293,7 +293,7 @@ class SeenFromTheWorld(WrongReader):
         return values.model_copy(update={"residuals": found}) if values.residuals is not None else values
 
 
-class HoldsTheRoot(WrongReader):
+class HoldsTheRoot(WrongParser):
     """Lets a closure hold a root that floats."""
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
@@ -302,7 +302,7 @@ class HoldsTheRoot(WrongReader):
         return with_m(values, lambda M: M + 0.1 * afloat.any())
 
 
-class InMillimetres(WrongReader):
+class InMillimetres(WrongParser):
     """Adds a length, and a mass, that does not scale."""
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
@@ -311,7 +311,7 @@ class InMillimetres(WrongReader):
         return with_m(values, lambda M: M + 0.001 * np.eye(len(M)))
 
 
-class Where(WrongReader):
+class Where(WrongParser):
     """Is a little off where the files say some words."""
 
     words = ""
@@ -338,7 +338,7 @@ class OffWhereLocked1(OffWhereLocked):
     words = "FIXED"
 
 
-class UniversalBackwards(WrongReader):
+class UniversalBackwards(WrongParser):
     """Turns about the second axis first."""
 
     def place(self, q: Configuration) -> Configuration:
@@ -359,7 +359,7 @@ class OffWhereMimicking(Where):
     words = "<mimic"
 
 
-class OffByInertials(WrongReader):
+class OffByInertials(WrongParser):
     """Weighs what is fixed twice."""
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
@@ -367,21 +367,21 @@ class OffByInertials(WrongReader):
         return with_m(values, lambda M: M * (1.0 + 0.01 * fixed))
 
 
-class OffByLinks(WrongReader):
+class OffByLinks(WrongParser):
     """Weighs the names of links."""
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
         return with_m(values, lambda M: M * (1.0 + 0.01 * len(robot.urdf.links)))
 
 
-class OffWhereLeftOut(WrongReader):
+class OffWhereLeftOut(WrongParser):
     """Places what is left out a little off its neutral."""
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
         return off(values) if len(q) < len(robot.neutral()) else values
 
 
-class MindsTheSign(WrongReader):
+class MindsTheSign(WrongParser):
     """Takes −q for another rotation than q, and a turn for more than none."""
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:

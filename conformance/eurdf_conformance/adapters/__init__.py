@@ -1,1 +1,1 @@
-"""Readers behind the protocol: the reference, and two small examples to begin an adapter from."""
+"""Parsers behind the protocol: the reference, and two small examples to begin an adapter from."""

@@ -1,4 +1,4 @@
-// A complete adapter in JavaScript, of a toy reader of version 1: --parser="cmd:node example.mjs"
+// A complete adapter in JavaScript, of a toy parser of version 1: --parser="cmd:node example.mjs"
 // Two libraries read the files: npm install yaml @xmldom/xmldom
 
 import { readFileSync } from "node:fs";
@@ -6,13 +6,13 @@ import { createInterface } from "node:readline";
 import { DOMParser, onErrorStopParsing as onError } from "@xmldom/xmldom";
 import { parse as parseYaml } from "yaml";
 
-class Wrong extends Error {} // what the reader throws for wrong files, ...
+class Wrong extends Error {} // what the parser throws for wrong files, ...
 class Lacking extends Error {} // ... and for a feature that it lacks
 
 // The adapter: what it answers to each command.
-const reader = { name: "example", version: "0.1", language: "JavaScript" };
+const parser = { name: "example", version: "0.1", language: "JavaScript" };
 const answers = {
-  start: () => ({ outcome: "started", protocol: "1.0", reader, claims: { 1: ["accept", "structure"] } }),
+  start: () => ({ outcome: "started", protocol: "1.0", parser, claims: { 1: ["accept", "structure"] } }),
   load: (request) => ({ outcome: "accepted", robot: read(request.description, request.urdf), issues: [] }),
   evaluate: () => ({ outcome: "unsupported", feature: "evaluate" }),
   stop: () => ({ outcome: "stopped" }),
@@ -34,7 +34,7 @@ for await (const line of createInterface({ input: process.stdin })) {
   if (request.command === "stop") process.exit();
 }
 
-// The reader: the robot as a canonical description.
+// The parser: the robot as a canonical description.
 function read(description, urdf) {
   const { closed_loop = [], type, name_mot = [], ...rest } = parsed(description, parseYaml) ?? {};
   if ("extended_urdf" in rest || "joint_name" in rest) throw new Lacking("version 2, and joints that URDF lacks");

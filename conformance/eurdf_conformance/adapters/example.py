@@ -1,4 +1,4 @@
-"""A complete adapter, of a toy reader of version 1: ``--parser=eurdf_conformance.adapters.example:Example``."""
+"""A complete adapter, of a toy parser of version 1: ``--parser=eurdf_conformance.adapters.example:Example``."""
 
 from pathlib import Path
 from typing import Any, ClassVar
@@ -14,13 +14,13 @@ WRONG = (OSError, yaml.YAMLError, ElementTree.ParseError, KeyError, ValueError) 
 
 
 class Example:
-    """The adapter: who the reader is, what it claims, and its word on two files."""
+    """The adapter: who the parser is, what it claims, and its word on two files."""
 
     name, version, language = "example", "0.1", "Python"
     claims: ClassVar = {"1": [Level.ACCEPT, Level.STRUCTURE]}
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported:
-        """Let the reader read, and say what came of it."""
+        """Let the parser read, and say what came of it."""
         try:
             robot = read(yaml.safe_load(description.read_bytes()), ElementTree.parse(urdf).getroot())
         except NotImplementedError as feature:
@@ -31,7 +31,7 @@ class Example:
 
 
 def read(said: Any, robot: ElementTree.Element) -> dict[str, Any]:
-    """The reader: the robot as a canonical description."""
+    """The parser: the robot as a canonical description."""
     if not isinstance(said, dict):
         raise ValueError("the description is no mapping")
     if said.keys() & {"extended_urdf", "joint_name"}:

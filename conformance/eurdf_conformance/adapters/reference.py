@@ -1,4 +1,4 @@
-"""The reference reader, `eurdf`, behind the protocol: ``--parser=eurdf_conformance.adapters.reference:READER``."""
+"""The reference parser, `eurdf`, behind the protocol: ``--parser=eurdf_conformance.adapters.reference:PARSER``."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from eurdf_conformance.protocol.reply import accepted, rejected
 
 
 class Reference:
-    """`eurdf` as a reader. What it makes of a robot can be changed one method at a time."""
+    """`eurdf` as a parser. What it makes of a robot can be changed one method at a time."""
 
     name = "eurdf"
     version = eurdf.__version__
@@ -63,7 +63,7 @@ class Reference:
         return [self.values(self._robot, each, frames, quantities) for each in configurations]
 
     def describe(self, description: Path, urdf: Path) -> Description:
-        """The robot as read; that the URDF exists which the description names is for the reader to see."""
+        """The robot as read; that the URDF exists which the description names is for the parser to see."""
         return describe(description, urdf if os.path.lexists(urdf) else None)
 
     def issues(self, found: Iterable[Diagnostic]) -> list[Issue]:
@@ -95,4 +95,4 @@ class Reference:
         return Quantities(robot, configuration, frames).values(quantities)
 
 
-READER = Reference()
+PARSER = Reference()

@@ -1,4 +1,4 @@
-"""The badge: a small picture that says what a reader is certified for."""
+"""The badge: a small picture that says what a parser is certified for."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""The certificate: what a reader has come to, as one JSON value, which has a JSON Schema.
+"""The certificate: what a parser has come to, as one JSON value, which has a JSON Schema.
 
-Two runs of one suite on one reader give the same bytes: it holds no time but the date, and that only where it is given.
+Two runs of one suite on one parser give the same bytes: it holds no time but the date, and that only where it is given.
 This is so however a run is spread over processes.
 """
 
@@ -14,13 +14,14 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from eurdf_conformance.json_schema import published, schema_text
+from eurdf_conformance.judging.level_result import Count, LevelResult
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.verdict.verdict import Verdict
+from eurdf_conformance.protocol.message import ParserInfo
 
 #: Name of its file in a folder.
 FILE = "certificate.json"
 
-Count = Annotated[int, Field(ge=0)]
 Hash = Annotated[str, Field(pattern="^sha256:[0-9a-f]{64}$")]
 
 
@@ -43,14 +44,6 @@ class Suite(_Part):
     """Hash of the properties, and of the mechanisms that they are tried on."""
 
 
-class ReaderInfo(_Part):
-    """What a reader says of itself."""
-
-    name: str
-    version: str
-    language: str
-
-
 class Scope(_Part):
     """What the user asked to be tested."""
 
@@ -62,25 +55,6 @@ class Scope(_Part):
     """Number of further random mechanisms for each property."""
     explore_seed: int
     """What these are drawn from; 0 where there are none."""
-
-
-class LevelResult(_Part):
-    """What a reader has come to at one level for one version."""
-
-    version: Version
-    level: Level
-    claimed: bool
-    """Whether the reader claims it. If not, nothing was tested."""
-    asked: bool
-    """Whether the user asked for it. If not, nothing was tested."""
-    items: Count
-    """Number of cases and properties that the suite has there."""
-    counts: dict[Verdict, Count]
-    """How many of them came to which verdict."""
-    known_failures: Count
-    """How many of those that did not pass were expected not to."""
-    certified: bool
-    """Whether it is claimed and every item has passed."""
 
 
 class ClauseResult(_Part):
@@ -110,15 +84,15 @@ class Failure(_Part):
 
 
 class Certificate(_Part):
-    """What a reader of Extended URDF has come to in the conformance suite."""
+    """What a parser of Extended URDF has come to in the conformance suite."""
 
     certificate: Literal["1.0"] = "1.0"
     """Version of this form."""
     suite: Suite
-    parser: str
-    """How the suite reached the reader: 'package.module:object', or 'cmd:' and a command line."""
-    reader: ReaderInfo | None
-    """null where it could not be started."""
+    parser_option: str
+    """The value of `--parser`: 'package.module:object', or 'cmd:' and a command line."""
+    parser: ParserInfo | None
+    """What the parser says of itself; null if it could not be started."""
     scope: Scope
     date: Annotated[str, Field(pattern=r"^\d{4}-\d{2}-\d{2}$")] | None
     """Day of the run, where it is given: the word of whoever wrote the certificate, which no second run can verify."""

@@ -1,4 +1,4 @@
-"""Several certificates on one page: levels by reader, then the clauses on which the readers differ."""
+"""Several certificates on one page: levels by parser, then the clauses on which the parsers differ."""
 
 from __future__ import annotations
 
@@ -8,35 +8,35 @@ from collections.abc import Iterator, Sequence
 from eurdf_conformance.certificate.certificate import Certificate, ClauseResult
 from eurdf_conformance.certificate.page import Element, element, marked_up, page, table
 from eurdf_conformance.certificate.report import level_cell
-from eurdf_conformance.certificate.summary import level_count, reader_title
+from eurdf_conformance.certificate.summary import level_count, parser_title
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.level import VERSIONS, Level
 
 
 def comparison_page(certificates: Sequence[Certificate]) -> str:
-    """The page as the text of its file; readers stand in the order given."""
-    title = "Readers of Extended URDF compared"
-    parts = _readers, _levels, _clauses
+    """The page as the text of its file; parsers stand in the order given."""
+    title = "Parsers of Extended URDF compared"
+    parts = _parsers, _levels, _clauses
     content = [content for part in parts for content in part(certificates)]
     return page(title, [element("h1", title), *content], "comparison")
 
 
-def _readers(certificates: Sequence[Certificate]) -> Iterator[Element]:
+def _parsers(certificates: Sequence[Certificate]) -> Iterator[Element]:
     yield element(
         "p", "Items passed, of those that the suite has. ✓ certified, ✗ claimed and not certified.", class_="soft"
     )
-    yield element("h2", "Readers")
+    yield element("h2", "Parsers")
     dated = any(each.date for each in certificates)
     rows = (
         (
             element("th", title, scope="row"),
-            element("td", each.reader.language if each.reader else "could not be started"),
+            element("td", each.parser.language if each.parser else "could not be started"),
             element("td", each.suite.version),
             *([element("td", each.date or "not said")] if dated else []),
         )
         for title, each in zip(_titles(certificates), certificates, strict=True)
     )
-    yield table("Readers", ("reader", "language", "suite", *(["date"] if dated else [])), rows)
+    yield table("Parsers", ("parser", "language", "suite", *(["date"] if dated else [])), rows)
     if len({(each.suite.clauses, each.suite.corpus) for each in certificates}) > 1:
         said = "These certificates are of different suites: what one of them tests, another may not."
         yield element("p", said, class_="headline bad")
@@ -44,8 +44,8 @@ def _readers(certificates: Sequence[Certificate]) -> Iterator[Element]:
 
 def _titles(certificates: Sequence[Certificate]) -> list[str]:
     """A title for each that no other has: with the language, and at last a number, where name and version are alike."""
-    titles = [reader_title(each) for each in certificates]
-    languages = [each.reader.language if each.reader else "" for each in certificates]
+    titles = [parser_title(each) for each in certificates]
+    languages = [each.parser.language if each.parser else "" for each in certificates]
     said = Counter(titles)
     titles = [
         f"{title} ({language})" if said[title] > 1 and language else title

@@ -9,8 +9,8 @@ from collections.abc import Iterable, Mapping
 from eurdf_conformance.corpus.archive import case_files
 from eurdf_conformance.corpus.clause import Clause, read_clauses
 from eurdf_conformance.corpus.read import CorpusCase, all_cases
+from eurdf_conformance.properties import PROPERTIES
 from eurdf_conformance.properties.example import FROZEN
-from eurdf_conformance.suite.property import all_properties
 
 
 def clauses_hash(clauses: Iterable[Clause] | None = None) -> str:
@@ -32,8 +32,8 @@ def corpus_hash(cases: Iterable[CorpusCase] | None = None) -> str:
 
 def properties_hash() -> str:
     """Hash of what the properties hold, and of the mechanisms that they are tried on in every certification."""
-    values = [[each.name, each.title, each.clauses, each.level, each.versions] for each in all_properties()]
-    return files_hash({"laws": json.dumps(values, ensure_ascii=False).encode(), FROZEN.name: FROZEN.read_bytes()})
+    values = [[each.name, each.title, each.clauses, each.levels, each.versions] for each in PROPERTIES]
+    return files_hash({"properties": json.dumps(values, ensure_ascii=False).encode(), FROZEN.name: FROZEN.read_bytes()})
 
 
 def files_hash(files: Mapping[str, bytes]) -> str:

@@ -13,23 +13,21 @@ from eurdf_conformance.certificate.certificate import (
     Certificate,
     ClauseResult,
     Failure,
-    LevelResult,
-    ReaderInfo,
     Scope,
     Suite,
 )
 from eurdf_conformance.certificate.fingerprint import clauses_hash, corpus_hash, properties_hash
+from eurdf_conformance.judging.level_result import is_certified, level_results
+from eurdf_conformance.judging.result import Result
+from eurdf_conformance.judging.run import Run
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.protocol.message import PROTOCOL
-from eurdf_conformance.verdict.result import Result
-from eurdf_conformance.verdict.run import Run
-from eurdf_conformance.verdict.standing import Standing, is_certified, standings
-from eurdf_conformance.verdict.verdict import Verdict
 
 #: The distribution that the suite is installed with.
 _DISTRIBUTION = "eurdf"
 
 # Which number a request has depends on what the process was asked before it, and that on how a run is spread over
-# processes. So does when a reader is given up that no longer starts.
+# processes. So does when a parser is given up that no longer starts.
 _ID = re.compile(r'("id"\s*:\s*)-?\d+')
 _UNSTABLE = (Verdict.MISPLACED, Verdict.NOT_STARTED)
 
@@ -50,8 +48,8 @@ def issue(run: Run) -> Certificate:
     results = list(run.accounted())
     return Certificate(
         suite=installed_suite(),
-        parser=run.parser,
-        reader=ReaderInfo(**run.started.reader.model_dump()) if run.started else None,
+        parser_option=run.parser,
+        parser=run.started.parser if run.started else None,
         scope=Scope(
             levels=run.levels,
             versions=run.versions,
@@ -61,7 +59,7 @@ def issue(run: Run) -> Certificate:
         ),
         date=_date(os.environ.get("SOURCE_DATE_EPOCH")),
         certified=is_certified(run),
-        levels=tuple(map(_level_result, standings(run))),
+        levels=level_results(run),
         clauses=tuple(_clause_results(results)),
         failures=tuple(_failure(result, run) for result in results if result.verdict != Verdict.PASSED),
         unexpected=tuple(run.known_failures.unexpected(results, run.planned)),
@@ -72,19 +70,6 @@ def _date(epoch: str | None) -> str | None:
     if epoch is None or not epoch.isdecimal():
         return None
     return datetime.fromtimestamp(int(epoch), UTC).date().isoformat()
-
-
-def _level_result(standing: Standing) -> LevelResult:
-    return LevelResult(
-        version=standing.version,
-        level=standing.level,
-        claimed=standing.claimed,
-        asked=standing.asked,
-        items=standing.items,
-        counts={verdict: standing.counts[verdict] for verdict in Verdict if standing.counts.get(verdict)},
-        known_failures=standing.known_failures,
-        certified=standing.certified,
-    )
 
 
 def _clause_results(results: Iterable[Result]) -> Iterable[ClauseResult]:

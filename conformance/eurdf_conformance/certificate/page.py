@@ -14,11 +14,11 @@ from eurdf_conformance.visible import visible
 Element = _Element
 Content = str | Element
 
-# Roles of the specification's text, {code}`x`, of which a reader sees the argument.
+# Roles of the specification's text, {code}`x`, of which a parser sees the argument.
 _ROLE = re.compile(r"\{[a-z:]+\}(?=`)")
 _LINK = re.compile(r"\[([^]]+)\]\([^)]*\)")
 
-# Nothing is loaded and nothing runs, whatever text of a reader stands in the page.
+# Nothing is loaded and nothing runs, whatever text of a parser stands in the page.
 _POLICY = "default-src 'none'; style-src 'unsafe-inline'"
 
 

@@ -11,20 +11,21 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from eurdf_conformance.certificate.certificate import FILE, Certificate, Failure, LevelResult
+from eurdf_conformance.certificate.certificate import FILE, Certificate, Failure
 from eurdf_conformance.certificate.issue import installed_suite
 from eurdf_conformance.certificate.summary import level_words
 from eurdf_conformance.certificate.write import certificate_files
 from eurdf_conformance.comparison.text import same_text
 from eurdf_conformance.corpus.read import all_cases
 from eurdf_conformance.json_schema import published, schema_text
+from eurdf_conformance.judging.known_failures import KnownFailure, KnownFailures
+from eurdf_conformance.judging.level_result import LevelResult
+from eurdf_conformance.judging.result import Key, Result
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import VERSIONS, Level
 from eurdf_conformance.protocol.json_text import read_json
 from eurdf_conformance.suite.item import planned_items
 from eurdf_conformance.suite.reproduce import Setting, is_command_line
-from eurdf_conformance.verdict.known_failures import KnownFailure, KnownFailures
-from eurdf_conformance.verdict.result import Key, Result
-from eurdf_conformance.verdict.verdict import Verdict
 
 # How far apart numbers in the description of a failure may be, relative and absolute: those of answers may have been
 # computed on another processor. What they are compared with has tolerances of 1e-9 and more.
@@ -58,17 +59,17 @@ def suite_differences(certificate: Certificate) -> list[str]:
 def replay_differences(certificate: Certificate, again: Certificate) -> list[str]:
     """In what a second run is not what a certificate says, one line each.
 
-    Neither the date nor the command that reached the reader matters, nor which failures were expected (`own_faults`),
-    nor the last digits of numbers that a reader has computed: all else that a certificate says is to be the same.
+    Neither the date nor the command that reached the parser matters, nor which failures were expected (`own_errors`),
+    nor the last digits of numbers that a parser has computed: all else that a certificate says is to be the same.
     """
-    found = [*_reader(certificate, again), *_levels(certificate, again), *_failures(certificate, again)]
+    found = [*_parser_info(certificate, again), *_levels(certificate, again), *_failures(certificate, again)]
     found = found or list(_clauses(certificate, again))
     if found or _essence(certificate) == _essence(again):
         return found
     return ["what it says does not follow from what became of the cases"]
 
 
-def own_faults(certificate: Certificate) -> list[str]:
+def own_errors(certificate: Certificate) -> list[str]:
     """In what a certificate is none that the suite writes, whatever came of the cases, one line each.
 
     A second run cannot tell which failures were expected, nor how the first was started. But what the certificate says
@@ -103,7 +104,7 @@ def _otherwise(file: Path) -> str:
 def _commands(certificate: Certificate) -> Iterator[str]:
     """Command lines that people may copy, and that do not run the item."""
     scope = certificate.scope
-    setting = Setting(certificate.parser, explore=scope.explore, explore_seed=scope.explore_seed)
+    setting = Setting(certificate.parser_option, explore=scope.explore, explore_seed=scope.explore_seed)
     for failure in certificate.failures:
         if failure.verdict == Verdict.NOT_RUN and not failure.reproduce:
             continue
@@ -164,7 +165,7 @@ def _name(failure: Failure) -> str:
 
 def _essence(certificate: Certificate) -> dict[str, Any]:
     """All that a second run is to come to again."""
-    value = certificate.model_dump(exclude={"suite", "parser", "date", "unexpected"})
+    value = certificate.model_dump(exclude={"suite", "parser_option", "date", "unexpected"})
     for failure in value["failures"]:
         del failure["known"], failure["reproduce"], failure["difference"]
     for level in value["levels"]:
@@ -172,14 +173,14 @@ def _essence(certificate: Certificate) -> dict[str, Any]:
     return value
 
 
-def _reader(before: Certificate, now: Certificate) -> Iterator[str]:
-    if before.reader is None or now.reader is None:
-        if before.reader != now.reader:
-            yield "reader: started then, not now" if before.reader else "reader: started now, not then"
+def _parser_info(before: Certificate, now: Certificate) -> Iterator[str]:
+    if before.parser is None or now.parser is None:
+        if before.parser != now.parser:
+            yield "parser: started then, not now" if before.parser else "parser: started now, not then"
         return
-    for part, was in before.reader.model_dump().items():
-        if (given := getattr(now.reader, part)) != was:
-            yield f"reader, {part}: '{was}' then, '{given}' now"
+    for part, was in before.parser.model_dump().items():
+        if (given := getattr(now.parser, part)) != was:
+            yield f"parser, {part}: '{was}' then, '{given}' now"
 
 
 def _levels(before: Certificate, now: Certificate) -> Iterator[str]:

@@ -6,21 +6,22 @@ import re
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
 
-from eurdf_conformance.certificate.certificate import Certificate, Failure, LevelResult
+from eurdf_conformance.certificate.certificate import Certificate, Failure
 from eurdf_conformance.certificate.page import Element, element, facts, marked_up, page, table
-from eurdf_conformance.certificate.summary import headline, level_words, reader_title
+from eurdf_conformance.certificate.summary import headline, level_words, parser_title
 from eurdf_conformance.corpus.clause import read_clauses
+from eurdf_conformance.judging.level_result import LevelResult
 from eurdf_conformance.level import VERSIONS, Level
 
-# A reader that fails everything fails hundreds of items. So many are open to begin with.
+# A parser that fails everything fails hundreds of items. So many are open to begin with.
 _OPEN = 10
 
 
 def report(certificate: Certificate) -> str:
     """The page as the text of its file."""
     texts = {id_: clause.text for id_, clause in read_clauses().items()}
-    title = f"{reader_title(certificate)}: conformance to Extended URDF"
-    if certificate.reader is None:
+    title = f"{parser_title(certificate)}: conformance to Extended URDF"
+    if certificate.parser is None:
         return page(title, [*_head(certificate), *_no_start(certificate), *_run(certificate)])
     parts = _levels, _unexpected, _failures
     content = [content for part in parts for content in part(certificate)]
@@ -46,9 +47,9 @@ def level_cell(
 
 
 def _head(certificate: Certificate) -> Iterator[Element]:
-    reader = certificate.reader
-    yield element("h1", reader_title(certificate))
-    language = f", a reader in {reader.language}" if reader else ""
+    parser = certificate.parser
+    yield element("h1", parser_title(certificate))
+    language = f", a parser in {parser.language}" if parser else ""
     date = f", {certificate.date}" if certificate.date else ""
     yield element("p", f"Conformance to Extended URDF{language}{date}", class_="soft")
     some = any(each.certified for each in certificate.levels)
@@ -150,7 +151,7 @@ def _run(certificate: Certificate) -> Iterator[Element]:
     yield element("h2", "The run")
     yield facts(
         [
-            ("parser", certificate.parser),
+            ("--parser", certificate.parser_option),
             ("levels asked", ", ".join(scope.levels)),
             ("versions asked", ", ".join(scope.versions)),
             *([("further mechanisms", f"{scope.explore}, from seed {scope.explore_seed}")] if scope.explore else []),

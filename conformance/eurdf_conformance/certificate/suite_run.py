@@ -35,7 +35,7 @@ class CannotRunSuite(Exception):  # noqa: N818 - said to the user as it stands
     """The suite has come to no result; its text says why.
 
     Attributes:
-        log: What pytest wrote, or the reader, where that may help.
+        log: What pytest wrote, or the parser, where that may help.
     """
 
     def __init__(self, why: str, log: str = "") -> None:
@@ -73,7 +73,7 @@ def run_suite(run: SuiteRun, progress: Progress | None = None) -> Certificate:
         progress: Called after each item.
 
     Raises:
-        CannotRunSuite: A package is not installed, the reader does not start, or the suite broke off.
+        CannotRunSuite: A package is not installed, the parser does not start, or the suite broke off.
         KeyboardInterrupt: The user ended it.
     """
     if lacking := missing():
@@ -95,7 +95,7 @@ def run_suite(run: SuiteRun, progress: Progress | None = None) -> Certificate:
 
 
 def _greet(run: SuiteRun) -> None:
-    """See whether the reader starts, before everything is asked of what does not."""
+    """See whether the parser starts, before everything is asked of what does not."""
     session = Session(run.parser) if run.start_timeout is None else Session(run.parser, start_timeout=run.start_timeout)
     with session:
         try:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from eurdf_conformance.certificate.certificate import Certificate, LevelResult
+from eurdf_conformance.certificate.certificate import Certificate
+from eurdf_conformance.judging.level_result import LevelResult
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import VERSIONS, Level, Version
-from eurdf_conformance.verdict.verdict import Verdict
 
 
 def certified_levels(certificate: Certificate, version: Version) -> tuple[Level, ...]:
@@ -14,16 +15,16 @@ def certified_levels(certificate: Certificate, version: Version) -> tuple[Level,
     return tuple(each.level for each in certificate.levels if each.version == version and each.certified)
 
 
-def reader_title(certificate: Certificate) -> str:
-    """Name and version of the reader, or the parser where it could not be started."""
-    reader = certificate.reader
-    return certificate.parser if reader is None else f"{reader.name} {reader.version}".strip()
+def parser_title(certificate: Certificate) -> str:
+    """Name and version of the parser, or the parser where it could not be started."""
+    parser = certificate.parser
+    return certificate.parser_option if parser is None else f"{parser.name} {parser.version}".strip()
 
 
 def headline(certificate: Certificate) -> str:
-    """What the reader is certified for, and what it claims beside that, in a sentence or two."""
-    if certificate.reader is None:
-        return "The reader could not be started"
+    """What the parser is certified for, and what it claims beside that, in a sentence or two."""
+    if certificate.parser is None:
+        return "The parser could not be started"
     if certificate.scope.smoke:
         return "A first try on three cases, which certifies nothing"
     certified = _by_version(certificate, True)

@@ -103,7 +103,7 @@ def run(args: argparse.Namespace) -> int:
     """Do what was asked, and return the exit code."""
     from eurdf_conformance.certificate.certificate import NoCertificate
     from eurdf_conformance.certificate.suite_run import CannotRunSuite
-    from eurdf_conformance.verdict.known_failures import WrongKnownFailures
+    from eurdf_conformance.judging.known_failures import WrongKnownFailures
 
     try:
         if args.compare is not None:
@@ -131,7 +131,7 @@ def _certify(args: argparse.Namespace) -> int:
     from eurdf_conformance.command.output import show
 
     if args.known_failures is not None:
-        from eurdf_conformance.verdict.known_failures import read_known_failures
+        from eurdf_conformance.judging.known_failures import read_known_failures
 
         read_known_failures(args.known_failures)
     if args.certificate is not None:
@@ -161,18 +161,18 @@ def _verify(args: argparse.Namespace) -> int:
     from eurdf_conformance.certificate.replay import (
         Replay,
         file_differences,
-        own_faults,
+        own_errors,
         replay_differences,
         suite_differences,
     )
 
     certificate = read_certificate(args.verify)
-    parser = args.parser or certificate.parser
+    parser = args.parser or certificate.parser_option
     # Whoever wrote the certificate wrote the command: let it be seen.
     write_lines([[("running ", ""), (visible(parser), "bold")]], sys.stderr)
     again = _run_suite(_suite_run(args, parser, certificate))
     found = [*suite_differences(certificate), *replay_differences(certificate, again)]
-    found += [*own_faults(certificate), *file_differences(args.verify, certificate)]
+    found += [*own_errors(certificate), *file_differences(args.verify, certificate)]
     if args.json:
         write_json(Replay(same=not found, differences=tuple(found)).model_dump(mode="json"))
     else:

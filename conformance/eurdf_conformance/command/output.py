@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from rich.text import Text
 
     from eurdf.diagnostics.text import Line
-    from eurdf_conformance.certificate.certificate import Certificate, Failure, LevelResult
+    from eurdf_conformance.certificate.certificate import Certificate, Failure
+    from eurdf_conformance.judging.level_result import LevelResult
 
 # How many of the items that did not pass are shown; the certificate has all.
 _SHOWN = 20
@@ -21,7 +22,7 @@ _SHOWN = 20
 
 def show(certificate: Certificate) -> None:
     """Write what a certificate says to the standard output: what did not pass, then the levels, then the verdict."""
-    from eurdf_conformance.certificate.summary import headline, reader_title
+    from eurdf_conformance.certificate.summary import headline, parser_title
     from eurdf_conformance.level import VERSIONS, Level
 
     if certificate.scope.smoke:
@@ -47,12 +48,12 @@ def show(certificate: Certificate) -> None:
     write_rendered(table)
     write_lines([[]], sys.stdout)
     style = "bold green" if certificate.certified else "bold red"
-    write_lines([[(f"{visible(reader_title(certificate))}: ", "bold"), (headline(certificate), style)]], sys.stdout)
+    write_lines([[(f"{visible(parser_title(certificate))}: ", "bold"), (headline(certificate), style)]], sys.stdout)
 
 
 def _smoke_lines(certificate: Certificate) -> Iterator[str]:
+    from eurdf_conformance.judging.result import Item, Result
     from eurdf_conformance.suite.smoke import smoke_lines
-    from eurdf_conformance.verdict.result import Item, Result
 
     wrong = [
         Result(

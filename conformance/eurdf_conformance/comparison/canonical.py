@@ -27,7 +27,7 @@ def canonical_differences(
         return []
     bodies = [list(body) for body in bodies]
     one = plain_robot(expected, bodies, expected.links)
-    # What is a link of the URDF is not for the reader to say.
+    # What is a link of the URDF is not for the parser to say.
     other = plain_robot(given, bodies, expected.links)
     return [
         *value_differences(expected.name, given.name, "/name", "name of the robot"),

@@ -1,4 +1,4 @@
-"""The issues that a reader tells, against the one fault of a case, or its warnings: the level diagnose."""
+"""The issues that a parser tells, against the one fault of a case, or its warnings: the level diagnose."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Finding(Protocol):
         """Where it is."""
 
 
-def fault_differences(fault: Finding, issues: Sequence[Issue]) -> list[Difference]:
+def error_differences(fault: Finding, issues: Sequence[Issue]) -> list[Difference]:
     """EU-DIA-001, EU-DIA-002: where issues are not the one error of a case, at its place, and nothing else."""
     return _differences([fault], issues, "error")
 
@@ -72,7 +72,7 @@ def _differences(expected: Sequence[Finding], issues: Sequence[Issue], severity:
 
 
 def _is_own(issue: Issue) -> bool:
-    """EU-DIA-006: a reader may warn of what is its own matter."""
+    """EU-DIA-006: a parser may warn of what is its own matter."""
     return issue.severity == "warning" and issue.code is not None and issue.code.startswith("x-")
 
 

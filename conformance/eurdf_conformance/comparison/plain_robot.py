@@ -68,7 +68,7 @@ def plain_robot(robot: CanonicalRobot, bodies: Iterable[Iterable[str]], links: I
     """EU-CAN-005, steps 1 to 4, and 6.
 
     Args:
-        robot: As a reader gave it.
+        robot: As a parser gave it.
         bodies: For each body of the robot its links.
         links: The links of the URDF.
     """

@@ -1,4 +1,4 @@
-"""What a reader says of a robot at one configuration, against what is expected, within EU-PRO-008 and EU-PRO-009."""
+"""What a parser says of a robot at one configuration, against what is expected, within EU-PRO-008 and EU-PRO-009."""
 
 from __future__ import annotations
 

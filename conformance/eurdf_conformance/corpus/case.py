@@ -66,7 +66,7 @@ class ExpectedWarning(Part):
 
 
 class Provenance(Part):
-    """Where the expectation comes from; never from a reader."""
+    """Where the expectation comes from; never from a parser."""
 
     expectation: Literal["hand", "oracle"] = Field(
         description="hand: follows from the clauses, or is computed as the note says; oracle: written by the oracle."
@@ -81,7 +81,7 @@ class BaseCase(Part):
     title: Sentence = Field(description="What the case is about, as a sentence.")
     version: Version = Field(description="Version of the format.")
     clauses: list[ClauseId] = Field(min_length=1, description="The clauses that it tests, the main one first.")
-    features: list[str] = Field([], description="What of the format it uses that readers often lack.")
+    features: list[str] = Field([], description="What of the format it uses that parsers often lack.")
     provenance: Provenance
     robot: str | None = Field(None, description="A robot of the collection, in place of files beside this one.")
     description: FileName = Field("robot.yaml", description="Name of the YAML file.")
@@ -110,7 +110,7 @@ class InvalidCase(BaseCase):
     repair: Sentence = Field(description="What to do about it, as a sentence.")
     either: bool = Field(
         False,
-        description="Whether the fault, of inertia or closure, leaves a robot that a reader may accept or reject.",
+        description="Whether the fault, of inertia or closure, leaves a robot that a parser may accept or reject.",
     )
 
 

@@ -51,7 +51,7 @@ def expect(case: CorpusCase) -> Expected:
 
 
 def stale(case: CorpusCase) -> Iterator[str]:
-    """Why an `expected.json` is not what the oracle expects: numbers may differ by as much as two readers may."""
+    """Why an `expected.json` is not what the oracle expects: numbers may differ by as much as two parsers may."""
     assert isinstance(case.case, ValidCase)
     try:
         found, now = case.expected, expect(case)

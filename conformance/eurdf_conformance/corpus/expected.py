@@ -1,4 +1,4 @@
-"""What is expected of a reader of a valid case: `expected.json`."""
+"""What is expected of a parser of a valid case: `expected.json`."""
 
 from __future__ import annotations
 

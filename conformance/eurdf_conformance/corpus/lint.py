@@ -1,7 +1,7 @@
 """The rules that cases keep. ``python -m eurdf_conformance.corpus.lint`` says which do not, and what is not tested.
 
-Nothing here asks a reader: that a reader gives exactly the code of each invalid case, and accepts its twin, is for the
-tests of that reader to show.
+Nothing here asks a parser: that a parser gives exactly the code of each invalid case, and accepts its twin, is for the
+tests of that parser to show.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from eurdf_conformance.corpus.coverage import missing
 from eurdf_conformance.corpus.expect import stale
 from eurdf_conformance.corpus.expected import EXPECTED_FILE
 from eurdf_conformance.corpus.lines import lines_of
-from eurdf_conformance.corpus.one_edit import edit_faults
+from eurdf_conformance.corpus.one_edit import edit_errors
 from eurdf_conformance.corpus.protocol_rule import OF_RUNNERS, RULES
 from eurdf_conformance.corpus.read import CASE_FILE, CASES, CorpusCase, NotACase, case_folders, read_case
 
@@ -142,7 +142,7 @@ def _twin(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
     elif twin.case.warnings:  # which the fault might hide, or not
         yield f"the twin {twin.id} has warnings"
     else:
-        yield from edit_faults((case.description, case.urdf), (twin.description, twin.urdf))
+        yield from edit_errors((case.description, case.urdf), (twin.description, twin.urdf))
 
 
 def _named_files(urdf: Path) -> list[str]:
@@ -162,7 +162,7 @@ def _files(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
         for path in sorted(case.folder.iterdir()):
             if path.name not in known:
                 yield f"no one reads '{path.name}'"
-        # A file that is missing is a fault of its own, which a reader tells beside that of the case.
+        # A file that is missing is a fault of its own, which a parser tells beside that of the case.
         told = {case.case.code} if isinstance(case.case, InvalidCase) else {each.code for each in case.case.warnings}
         if not told & {"urdf-mesh-missing", "urdf-texture-missing"}:
             yield from (f"there is no file {name}" for name in named if not _is_there(case.urdf.parent, name))

@@ -9,7 +9,7 @@ from pathlib import Path
 LINES = 6
 
 
-def edit_faults(files: tuple[Path, Path], twin: tuple[Path, Path]) -> list[str]:
+def edit_errors(files: tuple[Path, Path], twin: tuple[Path, Path]) -> list[str]:
     """Why the files are not one edit away: empty where they are.
 
     One edit is one contiguous run of lines of one of the two files. A file that an invalid case lacks, since its

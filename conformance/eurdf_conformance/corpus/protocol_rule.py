@@ -1,4 +1,4 @@
-"""What is asked of a reader beside the cases: that it keeps the protocol."""
+"""What is asked of a parser beside the cases: that it keeps the protocol."""
 
 from __future__ import annotations
 
@@ -22,21 +22,21 @@ class ProtocolRule:
 
 START = ProtocolRule(
     "start",
-    "To `start`, a reader says who it is, and for this version of the format the levels that it claims.",
+    "To `start`, a parser says who it is, and for this version of the format the levels that it claims.",
     ("EU-PRO-001", "EU-PRO-003"),
 )
 QUIET = ProtocolRule(
     "quiet",
-    "A reader answers each request by one line, that repeats its id, and writes nothing else to its standard output.",
+    "A parser answers each request by one line, that repeats its id, and writes nothing else to its standard output.",
     ("EU-PRO-002", "EU-PRO-001", "EU-PRO-003"),
 )
 GOES_ON = ProtocolRule(
     "goes-on",
-    "A reader goes on after it has rejected a description, and then reads a robot as it did before.",
+    "A parser goes on after it has rejected a description, and then reads a robot as it did before.",
     ("EU-PRO-005", "EU-PRO-004"),
 )
 
-STOP = ProtocolRule("stop", "To `stop`, a reader answers, and its process then ends by itself.", ("EU-PRO-001",))
+STOP = ProtocolRule("stop", "To `stop`, a parser answers, and its process then ends by itself.", ("EU-PRO-001",))
 
 RULES = (START, QUIET, GOES_ON, STOP)
 

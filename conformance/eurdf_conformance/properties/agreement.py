@@ -9,51 +9,51 @@ from eurdf_conformance.comparison.canonical import canonical_differences
 from eurdf_conformance.comparison.difference import ABSENT, Difference
 from eurdf_conformance.comparison.values import values_differences
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.properties.asked import ask
-from eurdf_conformance.properties.bench import QUANTITIES, Bench
 from eurdf_conformance.properties.example import Example
-from eurdf_conformance.properties.law import Law
+from eurdf_conformance.properties.harness import QUANTITIES, Harness
+from eurdf_conformance.properties.property import Property
+from eurdf_conformance.properties.query import query_of
 from eurdf_conformance.properties.truth import truth
 from eurdf_conformance.protocol.message import Quantity
 
 
-def accepted(bench: Bench, example: Example, version: Version, level: Level) -> list[Difference]:
+def accepted(harness: Harness, example: Example, version: Version, level: Level) -> list[Difference]:
     """EU-CNF-002, EU-CLO-011: what is right is accepted, redundant rows or not."""
-    bench.load(ask(example.mechanism, version))
+    harness.load(query_of(example.mechanism, version))
     return []
 
 
-def agreement(bench: Bench, example: Example, version: Version, level: Level) -> list[Difference]:
-    """What the oracle says is what the reader says."""
-    asked, robot = ask(example.mechanism, version), truth(example.mechanism, version)
+def agreement(harness: Harness, example: Example, version: Version, level: Level) -> list[Difference]:
+    """What the oracle says is what the parser says."""
+    query, robot = query_of(example.mechanism, version), truth(example.mechanism, version)
     if level is Level.STRUCTURE:
-        read = bench.read(asked)
+        read = harness.read(query)
         if read is None:
             return [Difference("/robot", "what it has read", ABSENT, "the level structure asks for it")]
         return [each.within("/robot") for each in canonical_differences(robot.canonical(), read, robot.bodies)]
     quantities, found = QUANTITIES[level], []
-    for index, (q, given) in enumerate(zip(asked.configurations, bench.evaluate(asked, quantities), strict=True)):
-        expected = robot.evaluate(q, asked.frames, quantities)
+    for index, (q, given) in enumerate(zip(query.configurations, harness.evaluate(query, quantities), strict=True)):
+        expected = robot.evaluate(q, query.frames, quantities)
         found += [each.within(f"/values/{index}") for each in values_differences(expected, given, robot.size(q))]
     return found
 
 
-def columns(bench: Bench, example: Example, version: Version, level: Level) -> list[Difference]:
+def columns(harness: Harness, example: Example, version: Version, level: Level) -> list[Difference]:
     """EU-PRO-007. That every velocity is named once is seen as the answer is read."""
     quantity: Quantity = "jacobian" if level is Level.KINEMATICS else "mass_matrix"
-    bench.evaluate(ask(example.mechanism, version), (quantity,))
+    harness.evaluate(query_of(example.mechanism, version), (quantity,))
     return []
 
 
-def inertia(bench: Bench, example: Example, version: Version, level: Level) -> list[Difference]:
+def inertia(harness: Harness, example: Example, version: Version, level: Level) -> list[Difference]:
     """EU-INR-005, EU-INR-006: the mass is that of all links, and no motion is without kinetic energy.
 
     The examples are such that rounding cannot decide.
     """
-    asked = ask(example.mechanism, version)
+    query = query_of(example.mechanism, version)
     found: list[Difference] = []
     mass = sum(link.inertia.mass for link in example.mechanism.links if link.inertia)
-    for index, values in enumerate(bench.evaluate(asked, ("mass_matrix", "mass"))):
+    for index, values in enumerate(harness.evaluate(query, ("mass_matrix", "mass"))):
         pointer = f"/values/{index}"
         why = "mass of all links of the file, kg"
         found += array_differences(mass, values.mass, TOLERANCE * mass, f"{pointer}/mass", why)
@@ -69,15 +69,15 @@ def inertia(bench: Bench, example: Example, version: Version, level: Level) -> l
     return found
 
 
-LAWS = (
-    Law(
+PROPERTIES = (
+    Property(
         "accepted",
         "A mechanism that is right is accepted.",
         ("EU-CNF-002", "EU-PRO-004"),
         (Level.ACCEPT,),
         accepted,
     ),
-    Law(
+    Property(
         "structure-agreement",
         "What is read of a mechanism is what it was written from.",
         (
@@ -89,7 +89,7 @@ LAWS = (
         (Level.STRUCTURE,),
         agreement,
     ),
-    Law(
+    Property(
         "agreement",
         "Poses, residuals and K are those that a second implementation of the specification finds.",
         (
@@ -100,21 +100,21 @@ LAWS = (
         (Level.KINEMATICS,),
         agreement,
     ),
-    Law(
+    Property(
         "inertia-agreement",
         "M, mass and centre of mass are those that a second implementation of the specification finds.",
         ("EU-INR-006", "EU-INR-005", "EU-PRO-009", "EU-JNT-026"),
         (Level.DYNAMICS,),
         agreement,
     ),
-    Law(
+    Property(
         "columns",
         "Every velocity of the mechanism is a column, once.",
         ("EU-PRO-007",),
         (Level.KINEMATICS, Level.DYNAMICS),
         columns,
     ),
-    Law(
+    Property(
         "inertia",
         "The mass is that of all links, and M is symmetric and positive definite.",
         ("EU-INR-005", "EU-INR-006"),

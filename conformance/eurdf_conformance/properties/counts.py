@@ -1,4 +1,4 @@
-"""nv, nc, rank and what follows from them, of what a reader says of K: chapter Scope and terms."""
+"""nv, nc, rank and what follows from them, of what a parser says of K: chapter Scope and terms."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""K against finite differences of the reader's own residuals."""
+"""K against finite differences of the parser's own residuals."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from eurdf_conformance.comparison.array import TOLERANCE, array_differences
 from eurdf_conformance.comparison.difference import Difference
 from eurdf_conformance.json_pointer import step
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.properties.asked import ask
-from eurdf_conformance.properties.bench import Bench
 from eurdf_conformance.properties.example import Example
-from eurdf_conformance.properties.law import Law, closed
+from eurdf_conformance.properties.harness import Harness
+from eurdf_conformance.properties.property import Property, closed
+from eurdf_conformance.properties.query import query_of
 from eurdf_conformance.properties.truth import truth
 
 #: rad or m.
@@ -23,15 +23,15 @@ _STEP = 1e-2
 _WEIGHTS = {-3: -1 / 60, -2: 9 / 60, -1: -45 / 60, 1: 45 / 60, 2: -9 / 60, 3: 1 / 60}
 
 
-def derivative(bench: Bench, example: Example, version: Version, level: Level) -> list[Difference]:
+def derivative(harness: Harness, example: Example, version: Version, level: Level) -> list[Difference]:
     """EU-CLO-010: K v = d/dt r(q ⊕ t v) at t = 0, for each velocity, at each configuration."""
-    asked, robot = ask(example.mechanism, version, frames=[]), truth(example.mechanism, version)
+    query, robot = query_of(example.mechanism, version, frames=[]), truth(example.mechanism, version)
     found: list[Difference] = []
-    for index, values in enumerate(bench.evaluate(asked, ("jacobian",))):
-        q = asked.configurations[index]
+    for index, values in enumerate(harness.evaluate(query, ("jacobian",))):
+        q = query.configurations[index]
         nv = len(robot.velocities)
         moved = [robot.moved(q, steps * _STEP * v) for v in np.eye(nv) for steps in _WEIGHTS]
-        around = bench.evaluate(replace(asked, configurations=moved), ("residuals",))
+        around = harness.evaluate(replace(query, configurations=moved), ("residuals",))
         size = max(1.0, robot.size(q))
         # The residuals may each be off by EU-PRO-008; the weights of all come to less than 2.
         near = size * (2.0 * TOLERANCE / _STEP + 1e-7)
@@ -46,8 +46,8 @@ def derivative(bench: Bench, example: Example, version: Version, level: Level) -
     return found
 
 
-LAWS = (
-    Law(
+PROPERTIES = (
+    Property(
         "derivative",
         "K is the derivative of the residuals along each velocity.",
         ("EU-CLO-010", "EU-JNT-026"),

@@ -13,19 +13,18 @@ from hypothesis.configuration import set_hypothesis_home_dir
 from hypothesis.errors import Flaky, FlakyFailure, Unsatisfiable
 from hypothesis.strategies import SearchStrategy
 
+from eurdf_conformance.judging.judge import PASSED, Judgement
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.properties.bench import Bench
 from eurdf_conformance.properties.conditioning import is_well_conditioned
 from eurdf_conformance.properties.culprit import culprit
 from eurdf_conformance.properties.example import Example
-from eurdf_conformance.properties.found_case import how_to_keep, write_case
-from eurdf_conformance.properties.law import LARGEST, Law
+from eurdf_conformance.properties.harness import Harness
+from eurdf_conformance.properties.property import LARGEST, Property
 from eurdf_conformance.properties.smaller import smaller
 from eurdf_conformance.properties.strategies.mechanisms import mechanisms
-from eurdf_conformance.properties.trying import try_example, with_log
-from eurdf_conformance.suite.judge import PASSED, Judgement
-from eurdf_conformance.suite.property import Trial
-from eurdf_conformance.verdict.verdict import Verdict
+from eurdf_conformance.properties.trying import Trial, try_example, with_log
+from eurdf_conformance.properties.write_case import how_to_keep, write_case
 
 #: Where cases are written that were found, from where the suite is run.
 EXPLORED = Path("explored")
@@ -34,50 +33,50 @@ EXPLORED = Path("explored")
 SHRINKING = 30.0
 
 
-class _Wrong(Exception):  # noqa: N818 - it says what the reader is
-    """The reader departs from the law."""
+class _Wrong(Exception):  # noqa: N818 - it says what the parser is
+    """The parser departs from the property."""
 
 
-def explore(law: Law, level: Level, trial: Trial, bench: Bench, folder: Path = EXPLORED) -> Judgement:
-    """Try a law on mechanisms that are drawn at random.
+def explore(prop: Property, level: Level, trial: Trial, harness: Harness, folder: Path = EXPLORED) -> Judgement:
+    """Try a property on mechanisms that are drawn at random.
 
     What it fails on is made as small as it can be while it fails in the same way, and written as a case.
 
     Args:
-        law: The law.
+        prop: The property.
         level: The level at which it is asked.
         trial: How many mechanisms, and for which version.
-        bench: The reader.
+        harness: The parser.
         folder: Where to write the case.
     """
-    found = search(law, level, trial.version, bench, trial.explore, trial.seed)
+    found = search(prop, level, trial.version, harness, trial.explore, trial.seed)
     if found is None:
         drawn_from = f"{trial.explore} more mechanisms, drawn from seed {trial.seed}"
         return with_log(PASSED, f"exploring has found nothing wrong on {drawn_from}, and no case is written")
     example, judgement = found
-    # Once more, since the bench was asked about others meanwhile.
-    again = try_example(law, level, trial.version, bench, example)
-    case = write_case(law, culprit(bench, level), folder)
+    # Once more, since the harness was asked about others meanwhile.
+    again = try_example(prop, level, trial.version, harness, example)
+    case = write_case(prop, culprit(harness, level), folder)
     told = replace(judgement, reason=f"on a mechanism found by exploring: {judgement.reason}")
     log = [
         f"found by exploring from seed {trial.seed}: {judgement.verdict}: {judgement.reason}",
         f"made small, and written as a case: {case}",
         *how_to_keep(case),
     ]
-    log += ["asked again, the reader answers otherwise"] * (again != judgement)
+    log += ["asked again, the parser answers otherwise"] * (again != judgement)
     return with_log(told, *log)
 
 
 def search(
-    law: Law, level: Level, version: Version, bench: Bench, count: int, seed: int
+    prop: Property, level: Level, version: Version, harness: Harness, count: int, seed: int
 ) -> tuple[Example, Judgement] | None:
-    """The smallest example found on which a reader departs from a law, and how; None where it does not.
+    """The smallest example found on which a parser departs from a property, and how; None where it does not.
 
     Args:
-        law: The law.
+        prop: The property.
         level: The level at which it is asked.
         version: Version of the format.
-        bench: The reader.
+        harness: The parser.
         count: So many examples are drawn.
         seed: What they are drawn from.
     """
@@ -95,12 +94,12 @@ def search(
         phases=[Phase.generate, Phase.shrink],
         suppress_health_check=list(HealthCheck),
     )
-    @given(drawn(law, version))
+    @given(drawn(prop, version))
     def attempt(example: Example) -> None:
         nonlocal since
         if best and example != best[-1][0] and time.monotonic() - since > SHRINKING:
             return
-        judgement = try_example(law, level, version, bench, example)
+        judgement = try_example(prop, level, version, harness, example)
         if judgement.verdict == Verdict.PASSED or (best and judgement.verdict != best[0][1].verdict):
             return
         since = since or time.monotonic()
@@ -108,12 +107,12 @@ def search(
         raise _Wrong
 
     # What it keeps would otherwise lie about where the suite is run.
-    set_hypothesis_home_dir(bench.folder / "hypothesis")
+    set_hypothesis_home_dir(harness.folder / "hypothesis")
     try:
         attempt()
     except (_Wrong, Flaky, FlakyFailure):
-        # Flaky: the time for making it smaller was over, or the reader does not answer alike when asked again.
-        return _reduced(law, level, version, bench, *best[-1]) if best else None
+        # Flaky: the time for making it smaller was over, or the parser does not answer alike when asked again.
+        return _reduced(prop, level, version, harness, *best[-1]) if best else None
     except Unsatisfiable:
         return None
     finally:
@@ -122,26 +121,26 @@ def search(
 
 
 def _reduced(
-    law: Law, level: Level, version: Version, bench: Bench, example: Example, judgement: Judgement
+    prop: Property, level: Level, version: Version, harness: Harness, example: Example, judgement: Judgement
 ) -> tuple[Example, Judgement]:
-    """Without the parts that are not needed for the reader to depart from the law in the same way."""
+    """Without the parts that are not needed for the parser to depart from the property in the same way."""
     until = time.monotonic() + SHRINKING
     # A family is of certain mechanisms, of which more is known than they say.
-    candidates = iter(() if law.family else smaller(example.mechanism))
+    candidates = iter(() if prop.family else smaller(example.mechanism))
     while (mechanism := next(candidates, None)) is not None and time.monotonic() < until:
-        few = len(mechanism.closures) < law.closures
-        if few or not law.applies(mechanism) or not is_well_conditioned(mechanism, version):
+        few = len(mechanism.closures) < prop.closures
+        if few or not prop.applies(mechanism) or not is_well_conditioned(mechanism, version):
             continue
         tried = example.model_copy(update={"mechanism": mechanism})
-        found = try_example(law, level, version, bench, tried)
+        found = try_example(prop, level, version, harness, tried)
         if found.verdict == judgement.verdict:
             example, judgement, candidates = tried, found, smaller(mechanism)
     return example, judgement
 
 
-def drawn(law: Law, version: Version) -> SearchStrategy[Example]:
-    """What a law is tried with."""
-    if law.family is not None:
-        return st.integers(law.smallest, LARGEST).map(law.family)
-    examples = st.builds(Example, mechanism=mechanisms(version, law.closures), seed=st.integers(0, 10**6))
-    return examples.filter(lambda example: law.applies(example.mechanism))
+def drawn(prop: Property, version: Version) -> SearchStrategy[Example]:
+    """What a property is tried with."""
+    if prop.family is not None:
+        return st.integers(prop.smallest, LARGEST).map(prop.family)
+    examples = st.builds(Example, mechanism=mechanisms(version, prop.closures), seed=st.integers(0, 10**6))
+    return examples.filter(lambda example: prop.applies(example.mechanism))

@@ -1,4 +1,4 @@
-"""Laws on counts: nv, nc, rank and mobility, of random mechanisms and of families where they are known beforehand."""
+"""Properties on counts: nv, nc, rank and mobility, of random mechanisms and of families where they are known."""
 
 from __future__ import annotations
 
@@ -9,24 +9,26 @@ import numpy as np
 from eurdf_conformance.comparison.difference import Difference
 from eurdf_conformance.level import Level, Version
 from eurdf_conformance.properties.agreement import accepted
-from eurdf_conformance.properties.asked import ask
-from eurdf_conformance.properties.bench import Bench
 from eurdf_conformance.properties.counts import Counts, count_differences, counts_of
 from eurdf_conformance.properties.document import configuration
 from eurdf_conformance.properties.example import Example
 from eurdf_conformance.properties.families import paradoxical, planar, platforms, spherical
-from eurdf_conformance.properties.law import Law
+from eurdf_conformance.properties.harness import Harness
+from eurdf_conformance.properties.property import Property
+from eurdf_conformance.properties.query import query_of
 from eurdf_conformance.properties.truth import truth
 
 _CLAUSES = ("EU-CLO-010", "EU-CLO-011", "EU-PRO-007", "EU-CLO-008", "EU-CLO-009")
 
 
-def mobility(bench: Bench, example: Example, version: Version, level: Level) -> list[Difference]:
+def mobility(harness: Harness, example: Example, version: Version, level: Level) -> list[Difference]:
     """The counts at the closed configuration, of which the examples leave no doubt."""
     robot = truth(example.mechanism, version)
     assembled = example.mechanism.configurations["assembled"]
     q = configuration(example.mechanism, assembled, version)
-    (values,) = bench.evaluate(ask(example.mechanism, version, at={"assembled": assembled}, frames=[]), ("jacobian",))
+    (values,) = harness.evaluate(
+        query_of(example.mechanism, version, at={"assembled": assembled}, frames=[]), ("jacobian",)
+    )
     assert values.jacobian is not None
     rows = [np.array(rows).reshape(-1, len(robot.velocities)) for rows in values.jacobian.rows.values()]
     given = counts_of(np.vstack([np.zeros((0, len(robot.velocities))), *rows]), robot, q)
@@ -34,9 +36,9 @@ def mobility(bench: Bench, example: Example, version: Version, level: Level) -> 
     return count_differences(expected, given, "/values/0/jacobian")
 
 
-def family(name: str, title: str, member: Callable[[int], Example], sizes: Sequence[int]) -> Law:
-    """The law on one family."""
-    return Law(
+def family(name: str, title: str, member: Callable[[int], Example], sizes: Sequence[int]) -> Property:
+    """The property on one family."""
+    return Property(
         name,
         title,
         _CLAUSES,
@@ -55,8 +57,8 @@ def redundant() -> list[Example]:
     return [*members, paradoxical.sarrus(2), paradoxical.bennett(8)]
 
 
-LAWS = (
-    Law(
+PROPERTIES = (
+    Property(
         "redundant-rows",
         "A mechanism whose closures have redundant rows is accepted.",
         ("EU-CLO-011", "EU-CNF-002"),
@@ -67,7 +69,7 @@ LAWS = (
         family=planar.spatial_polygon,
         smallest=4,
     ),
-    Law(
+    Property(
         "mobility",
         "nv, nc, rank, mobility, redundant rows and uncontrolled mobility are those of the mechanism.",
         _CLAUSES,

@@ -1,4 +1,4 @@
-"""A relation: two robots of which what a reader says of one follows from what it says of the other."""
+"""A relation: two robots of which what a parser says of one follows from what it says of the other."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from eurdf_conformance.comparison.canonical import canonical_differences
 from eurdf_conformance.comparison.difference import ABSENT, Difference
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.properties.asked import Asked
-from eurdf_conformance.properties.bench import QUANTITIES, Bench
 from eurdf_conformance.properties.example import Example
-from eurdf_conformance.properties.law import Check
+from eurdf_conformance.properties.harness import QUANTITIES, Harness
+from eurdf_conformance.properties.property import Check
+from eurdf_conformance.properties.query import Query
 from eurdf_conformance.properties.same_values import same_values
 from eurdf_conformance.properties.truth import truth
 from eurdf_conformance.protocol.message import CanonicalRobot, Values
@@ -39,8 +39,8 @@ class Pair:
         carry_robot: From what was read of the first to what is to be read of the second.
     """
 
-    one: Asked
-    other: Asked
+    one: Query
+    other: Query
     carry: Callable[[Values, int], Values] = unchanged
     seen: Callable[[Values, int], Values] = unchanged
     carry_robot: Callable[[CanonicalRobot], CanonicalRobot] = unchanged_robot
@@ -49,26 +49,26 @@ class Pair:
 def related(pair_of: Callable[[Example, Version], Pair]) -> Check:
     """The check of a relation."""
 
-    def check(bench: Bench, example: Example, version: Version, level: Level) -> list[Difference]:
+    def check(harness: Harness, example: Example, version: Version, level: Level) -> list[Difference]:
         pair = pair_of(example, version)
         if level is Level.STRUCTURE:
-            return _read_differences(bench, pair)
-        return _value_differences(bench, pair, level)
+            return _read_differences(harness, pair)
+        return _value_differences(harness, pair, level)
 
     return check
 
 
-def _read_differences(bench: Bench, pair: Pair) -> list[Difference]:
-    one, other = bench.read(pair.one), bench.read(pair.other)
+def _read_differences(harness: Harness, pair: Pair) -> list[Difference]:
+    one, other = harness.read(pair.one), harness.read(pair.other)
     if one is None or other is None:
         return [Difference("/robot", "what it has read", ABSENT, "the level structure asks for it")]
     bodies = truth(pair.other.mechanism, pair.other.version).bodies
     return [each.within("/robot") for each in canonical_differences(pair.carry_robot(one), other, bodies)]
 
 
-def _value_differences(bench: Bench, pair: Pair, level: Level) -> list[Difference]:
-    before = bench.evaluate(pair.one, QUANTITIES[level])
-    after = bench.evaluate(pair.other, QUANTITIES[level])
+def _value_differences(harness: Harness, pair: Pair, level: Level) -> list[Difference]:
+    before = harness.evaluate(pair.one, QUANTITIES[level])
+    after = harness.evaluate(pair.other, QUANTITIES[level])
     robot = truth(pair.one.mechanism, pair.one.version)
     found = []
     for index, (one, other, q) in enumerate(zip(before, after, pair.one.configurations, strict=True)):

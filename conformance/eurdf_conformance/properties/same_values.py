@@ -1,4 +1,4 @@
-"""Values of a reader against other values of the same reader: both may be off by what is allowed."""
+"""Values of a parser against other values of the same parser: both may be off by what is allowed."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ def shaped(
     """The quantities that were asked for, their columns in the order of the oracle's.
 
     Args:
-        values: As a reader gave them.
+        values: As a parser gave them.
         robot: The robot.
         frames: The frames that were asked for.
         quantities: What was asked for.

@@ -1,63 +1,83 @@
-"""A law, tried on a reader: on the frozen examples, and then on as many more as are asked for."""
+"""A property, tried on a parser: on the frozen examples, and then on as many more as are asked for."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from pathlib import Path
 
+from eurdf_conformance.judging.conversation import Parser
+from eurdf_conformance.judging.failure_text import where_it_stood
+from eurdf_conformance.judging.judge import PASSED, Judgement, judge_outcome
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.properties.bench import Bench, NotAnswered
 from eurdf_conformance.properties.example import Example
-from eurdf_conformance.properties.law import Law
+from eurdf_conformance.properties.harness import Harness, NotAnswered
+from eurdf_conformance.properties.property import Property
 from eurdf_conformance.properties.shape import WrongShape
-from eurdf_conformance.suite.failure_text import where_it_stood
-from eurdf_conformance.suite.judge import PASSED, Judgement, judge_outcome
-from eurdf_conformance.suite.property import Trial
-from eurdf_conformance.verdict.verdict import Verdict
 
 
-def try_law(law: Law, level: Level, trial: Trial) -> Judgement:
-    """Whether a law holds of a reader; where exploring is asked for, also whether it fails on a smaller mechanism."""
-    bench = Bench(trial.reader, trial.folder)
-    judgement = try_frozen(law, level, trial.version, bench)
+@dataclass(frozen=True)
+class Trial:
+    """What a property is tried with.
+
+    Attributes:
+        parser: The parser that answers.
+        version: Version of the format that the files are of.
+        explore: Number of further random mechanisms to try; 0 for the frozen ones alone.
+        folder: Empty, to write files into.
+        seed: What further mechanisms are drawn from.
+    """
+
+    parser: Parser
+    version: Version
+    explore: int
+    folder: Path
+    seed: int = 0
+
+
+def try_property(prop: Property, level: Level, trial: Trial) -> Judgement:
+    """Whether a property holds of a parser; if the user explores, also whether it fails on a smaller mechanism."""
+    harness = Harness(trial.parser, trial.folder)
+    judgement = try_frozen(prop, level, trial.version, harness)
     if not trial.explore:
         return judgement
     # Hypothesis is needed only here.
     from eurdf_conformance.properties.explore import explore
 
-    further = explore(law, level, trial, bench)
+    further = explore(prop, level, trial, harness)
     if judgement.verdict == Verdict.PASSED:
         return further
     return with_log(judgement, further.log)
 
 
-def try_frozen(law: Law, level: Level, version: Version, bench: Bench) -> Judgement:
-    """Whether a law holds of a reader on the examples of every certification, up to the first on which it does not."""
-    for number, example in enumerate(law.frozen(version), 1):
-        judgement = try_example(law, level, version, bench, example)
+def try_frozen(prop: Property, level: Level, version: Version, harness: Harness) -> Judgement:
+    """Whether a property holds on the examples of every certification, up to the first on which it does not."""
+    for number, example in enumerate(prop.frozen(version), 1):
+        judgement = try_example(prop, level, version, harness, example)
         if judgement.verdict != Verdict.PASSED:
             told = replace(judgement, reason=f"example {number}: {judgement.reason}")
-            return with_log(told, *dict.fromkeys(_files(bench, judgement)))
+            return with_log(told, *dict.fromkeys(_files(harness, judgement)))
     return PASSED
 
 
-def _files(bench: Bench, judgement: Judgement) -> Iterator[str]:
-    """The files that a reader was asked about, and where the robot of each stood at the first difference."""
-    for asked, paths in bench.asked:
+def _files(harness: Harness, judgement: Judgement) -> Iterator[str]:
+    """The files that a parser was asked about, and where the robot of each stood at the first difference."""
+    for query, paths in harness.queries:
         yield from map(str, paths)
-        yield from where_it_stood(judgement, asked.configurations)
+        yield from where_it_stood(judgement, query.configurations)
 
 
-def try_example(law: Law, level: Level, version: Version, bench: Bench, example: Example) -> Judgement:
-    """Whether a law holds of a reader on one example."""
-    bench.begin()
+def try_example(prop: Property, level: Level, version: Version, harness: Harness, example: Example) -> Judgement:
+    """Whether a property holds of a parser on one example."""
+    harness.begin()
     try:
-        found = law.check(bench, example, version, level)
+        found = prop.check(harness, example, version, level)
     except NotAnswered as failure:
         return judge_outcome(failure.outcome, failure.expected)
     except WrongShape as wrong:
         return Judgement(Verdict.FAILED, "its values are not those asked for", wrong.differences)
-    return Judgement(Verdict.FAILED, f"it is not so: {law.title}", tuple(found)) if found else PASSED
+    return Judgement(Verdict.FAILED, f"it is not so: {prop.title}", tuple(found)) if found else PASSED
 
 
 def with_log(judgement: Judgement, *lines: str) -> Judgement:

@@ -75,8 +75,8 @@ class _Writer:
             for key, item in value.items():
                 name = self._string(key, flow=False)
                 # A key that is asked for in so many words stands on a line of its own.
-                asked = f"{pad}? {name}\n{pad}:" if self._is_so(0.05) else f"{pad}{name}:"
-                lines.append(self._remark(pad) + asked + self.block(item, inner))
+                query = f"{pad}? {name}\n{pad}:" if self._is_so(0.05) else f"{pad}{name}:"
+                lines.append(self._remark(pad) + query + self.block(item, inner))
         else:
             lines = [f"{self._remark(pad)}{pad}-{self.block(item, inner)}" for item in value]
         return (f" {mark.rstrip()}" if mark else "") + "\n" + "".join(lines)

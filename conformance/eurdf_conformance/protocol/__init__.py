@@ -1,1 +1,1 @@
-"""The messages between the runner and a reader, and their JSON Schemas: chapter The parser protocol."""
+"""The messages between the runner and a parser, and their JSON Schemas: chapter The parser protocol."""

@@ -12,7 +12,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from eurdf_conformance.json_pointer import step
-from eurdf_conformance.protocol.fault import not_finite
+from eurdf_conformance.protocol.error_text import not_finite
 
 #: What a number beyond the range of a double has: an exponent of three digits, or hundreds of digits before it.
 _MAY_BE_HUGE = re.compile(rb"[eE][+]?[0-9]{3}|[0-9]{200}")
@@ -74,7 +74,7 @@ def read_json(text: bytes) -> tuple[Any, list[str]]:
     return value, found
 
 
-def may_be_faulty(text: bytes, read: BaseModel) -> bool:
+def may_have_errors(text: bytes, read: BaseModel) -> bool:
     """Whether `read_json` may find anything wrong with a text that was read as a message: a quick test.
 
     A colon stands behind each key, and of a key that stands twice the message has one: it is written with fewer colons

@@ -16,7 +16,7 @@ PROTOCOL: Literal["1.0"] = "1.0"
 
 #: What `serve` says of an adapter that gives no answer: a line ``{"id": 1, "fault": "…"}``. It fits no schema, so it is
 #: malformed, as the adapter is; its words are those that the runner tells.
-FAULT = "fault"
+ERROR = "fault"
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Numbers = list[Number]
@@ -82,12 +82,12 @@ class Stop(Request):
 
 
 class Answer(Value):
-    """What a reader answers."""
+    """What a parser answers."""
 
     id: int = Field(description="That of the request.")
 
 
-class Reader(Value):
+class ParserInfo(Value):
     """Who answers."""
 
     name: Annotated[str, Field(min_length=1)]
@@ -100,7 +100,7 @@ class Started(Answer):
 
     outcome: Literal["started"] = "started"
     protocol: Literal["1.0"]
-    reader: Reader
+    parser: ParserInfo
     claims: dict[Version, list[Level]] = Field(description="For each version of the format, the levels claimed.")
 
 
@@ -168,7 +168,7 @@ class CanonicalActuator(Value):
 
 
 class CanonicalRobot(Value):
-    """What a reader has read, without style: chapter The canonical description."""
+    """What a parser has read, without style: chapter The canonical description."""
 
     name: str
     version: Version
@@ -246,7 +246,7 @@ class Stopped(Answer):
 
 
 class Unsupported(Answer):
-    """To any request but `stop`: the reader lacks a feature."""
+    """To any request but `stop`: the parser lacks a feature."""
 
     outcome: Literal["unsupported"] = "unsupported"
     feature: str
@@ -254,14 +254,14 @@ class Unsupported(Answer):
 
 
 class Skipped(Answer):
-    """To any request but `stop`: the reader would rather not, for a reason."""
+    """To any request but `stop`: the parser would rather not, for a reason."""
 
     outcome: Literal["skipped"] = "skipped"
     reason: str
 
 
 class Errored(Answer):
-    """To any request but `stop`: the reader failed, by its own word."""
+    """To any request but `stop`: the parser failed, by its own word."""
 
     outcome: Literal["errored"] = "errored"
     message: str

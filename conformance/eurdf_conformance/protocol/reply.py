@@ -1,4 +1,4 @@
-"""What a Python reader replies to `load`: answers without the id of their request, which `serve` fills in."""
+"""What a Python parser replies to `load`: answers without the id of their request, which `serve` fills in."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
-from eurdf_conformance.protocol.fault import faults, not_finite
+from eurdf_conformance.protocol.error_text import error_text, not_finite
 from eurdf_conformance.protocol.message import Accepted, Answer, CanonicalRobot, Issue, Rejected, Skipped, Unsupported
 
 NO_ID = 0
@@ -19,7 +19,7 @@ _Reply = TypeVar("_Reply", bound=Answer)
 class WrongReply(Exception):  # noqa: N818 - it says what the reply is
     """What an adapter gives is no answer: its own fault, of which its text tells.
 
-    It is no ValueError, which is what many readers raise for wrong files, and adapters take for a rejection.
+    It is no ValueError, which is what many parsers raise for wrong files, and adapters take for a rejection.
     """
 
 
@@ -54,7 +54,7 @@ def rejected(*issues: Issue | str) -> Rejected:
 
 
 def unsupported(feature: str, reason: str = "") -> Unsupported:
-    """The reader lacks a feature that the description uses.
+    """The parser lacks a feature that the description uses.
 
     Args:
         feature: The feature, in a word or two.
@@ -67,7 +67,7 @@ def unsupported(feature: str, reason: str = "") -> Unsupported:
 
 
 def skipped(reason: str) -> Skipped:
-    """The reader would rather not.
+    """The parser would rather not.
 
     Args:
         reason: Why.
@@ -82,7 +82,7 @@ def _canonical(robot: Mapping[str, Any]) -> CanonicalRobot:
     try:
         return CanonicalRobot.model_validate_json(json.dumps(robot))
     except ValidationError as error:
-        raise WrongReply(f"given to accepted(): {faults(error, '/robot')}") from None
+        raise WrongReply(f"given to accepted(): {error_text(error, '/robot')}") from None
     except (TypeError, ValueError, RecursionError) as error:  # a set, an array of numpy, what contains itself
         raise WrongReply(f"given to accepted(): /robot is no plain data: {error}") from None
 
@@ -95,4 +95,4 @@ def _reply(kind: type[_Reply], **members: Any) -> _Reply:
     try:
         return kind(id=NO_ID, **members)
     except ValidationError as error:
-        raise WrongReply(f"given to {kind.model_fields['outcome'].default}(): {faults(error)}") from None
+        raise WrongReply(f"given to {kind.model_fields['outcome'].default}(): {error_text(error)}") from None

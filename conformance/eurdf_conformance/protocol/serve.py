@@ -1,4 +1,4 @@
-"""A Python reader as a process: ``python -m eurdf_conformance.protocol.serve package.module:object``."""
+"""A Python parser as a process: ``python -m eurdf_conformance.protocol.serve package.module:object``."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from pydantic import ValidationError
 
 from eurdf_conformance.level import Level, Version
 from eurdf_conformance.protocol import message
-from eurdf_conformance.protocol.fault import faults
-from eurdf_conformance.protocol.json_text import may_be_faulty, read_json
+from eurdf_conformance.protocol.error_text import error_text
+from eurdf_conformance.protocol.json_text import may_have_errors, read_json
 from eurdf_conformance.protocol.message import (
-    FAULT,
+    ERROR,
     PROTOCOL,
     REQUEST,
     Accepted,
@@ -31,8 +31,8 @@ from eurdf_conformance.protocol.message import (
     Evaluate,
     Evaluated,
     Load,
+    ParserInfo,
     Quantity,
-    Reader,
     Rejected,
     Skipped,
     Start,
@@ -43,14 +43,14 @@ from eurdf_conformance.protocol.message import (
     Value,
     Values,
 )
-from eurdf_conformance.protocol.reader_fault import described, reader_fault
+from eurdf_conformance.protocol.python_parser import described, parser_error
 from eurdf_conformance.protocol.reply import WrongReply
 
 Configuration = Mapping[str, Sequence[float]]
 
 
-class ReaderObject(Protocol):
-    """A reader in Python; an `Evaluator` too, where it claims kinematics or dynamics."""
+class PythonParser(Protocol):
+    """A parser in Python; an `Evaluator` too, where it claims kinematics or dynamics."""
 
     @property
     def name(self) -> str:
@@ -69,12 +69,12 @@ class ReaderObject(Protocol):
         """For each version of the format, the levels claimed."""
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported | Skipped:
-        """Read a robot; `protocol.reply` makes what it returns. An exception says that the reader failed."""
+        """Read a robot; `protocol.reply` makes what it returns. An exception says that the parser failed."""
 
 
 @runtime_checkable
 class Evaluator(Protocol):
-    """A reader that says where things are."""
+    """A parser that says where things are."""
 
     def evaluate(
         self, configurations: Sequence[Configuration], frames: Sequence[str], quantities: Sequence[Quantity]
@@ -82,31 +82,31 @@ class Evaluator(Protocol):
         """Of the robot accepted last: what is asked for, at each configuration."""
 
 
-def serve(reader: ReaderObject, requests: Iterable[bytes], answers: IO[bytes]) -> None:
+def serve(parser: PythonParser, requests: Iterable[bytes], answers: IO[bytes]) -> None:
     """EU-PRO-001, EU-PRO-005: answer each request by one line, up to and with `stop`.
 
     Args:
-        reader: Who answers.
+        parser: Who answers.
         requests: Lines.
         answers: Where to write the lines that answer.
     """
     for line in requests:
-        answer = _answer_to(reader, line)
+        answer = _answer_to(parser, line)
         answers.write(_written(answer) + b"\n")
         answers.flush()
         if isinstance(answer, Stopped):
             return
 
 
-class NoReader(Exception):  # noqa: N818 - it says what there is not
-    """There is no such reader; its text says why."""
+class NoParser(Exception):  # noqa: N818 - it says what there is not
+    """There is no such parser; its text says why."""
 
 
 def find_object(path: str) -> Any:
     """The object that ``package.module:object`` names; where it is a class, one of it.
 
     Raises:
-        NoReader: There is no such module, it has no such object, or one cannot be made of the class without arguments.
+        NoParser: There is no such module, it has no such object, or one cannot be made of the class without arguments.
     """
     module, _, name = path.partition(":")
     try:
@@ -116,17 +116,17 @@ def find_object(path: str) -> Any:
         if not f"{module}.".startswith(f"{missing}."):
             raise  # what the module imports is missing
         where = f"neither in the working folder, {Path.cwd()}, nor in PYTHONPATH, nor installed for {sys.executable}"
-        raise NoReader(f"there is no module '{missing}': {where}") from None
+        raise NoParser(f"there is no module '{missing}': {where}") from None
     for part in name.split("."):
         if not hasattr(found, part):
-            raise NoReader(f"{module} has no '{name}'")
+            raise NoParser(f"{module} has no '{name}'")
         found = getattr(found, part)
     if not isinstance(found, type):
         return found
     try:
         inspect.signature(found).bind()
     except TypeError:
-        raise NoReader(f"the class {path} is not made without arguments: name an object that is made of it") from None
+        raise NoParser(f"the class {path} is not made without arguments: name an object that is made of it") from None
     except ValueError:  # nobody knows
         pass
     return found()
@@ -136,7 +136,7 @@ def main(path: str) -> None:
     """Serve an object over standard input and output, of which it gets neither.
 
     EU-PRO-002: what it, or a library below it, prints to standard output goes to standard error. Where the object is no
-    reader, the process ends at once and says so there.
+    parser, the process ends at once and says so there.
     """
     requests, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     nothing = os.open(os.devnull, os.O_RDONLY)
@@ -145,16 +145,16 @@ def main(path: str) -> None:
     os.dup2(2, 1)
     sys.stdout = sys.stderr
     try:
-        reader = find_object(path)
-        fault = reader_fault(reader)
-    except NoReader as why:
+        parser = find_object(path)
+        fault = parser_error(parser)
+    except NoParser as why:
         sys.exit(str(why))
     except Exception as error:
         _print_traceback(error)
         sys.exit(1)
     if fault:
-        sys.exit(f"{path} is no reader: {fault}")
-    serve(reader, requests, answers)
+        sys.exit(f"{path} is no parser: {fault}")
+    serve(parser, requests, answers)
 
 
 @dataclass(frozen=True)
@@ -165,29 +165,29 @@ class _NoAnswer:
     why: str
 
 
-def _answer_to(reader: ReaderObject, line: bytes) -> AnyAnswer | _NoAnswer:
+def _answer_to(parser: PythonParser, line: bytes) -> AnyAnswer | _NoAnswer:
     try:
         request = REQUEST.validate_json(line)
     except ValidationError as error:
-        return Errored(id=_id_in(line), message=f"no request of protocol {PROTOCOL}: {faults(error)}")
-    if may_be_faulty(line, request) and (found := read_json(line)[1]):
+        return Errored(id=_id_in(line), message=f"no request of protocol {PROTOCOL}: {error_text(error)}")
+    if may_have_errors(line, request) and (found := read_json(line)[1]):
         return Errored(id=request.id, message=f"no request of protocol {PROTOCOL}: {found[0]}")
-    return _answer(reader, request)
+    return _answer(parser, request)
 
 
-def _answer(reader: ReaderObject, request: AnyRequest) -> AnyAnswer | _NoAnswer:
-    """The reader's answer; an exception is its word that it failed, unless it says that the adapter is wrong."""
+def _answer(parser: PythonParser, request: AnyRequest) -> AnyAnswer | _NoAnswer:
+    """The parser's answer; an exception is its word that it failed, unless it says that the adapter is wrong."""
     try:
         match request:
             case Start():
-                who = Reader(name=reader.name, version=reader.version, language=reader.language)
-                claims = {version: [Level(level) for level in levels] for version, levels in reader.claims.items()}
-                return Started(id=request.id, protocol=PROTOCOL, reader=who, claims=claims)
+                who = ParserInfo(name=parser.name, version=parser.version, language=parser.language)
+                claims = {version: [Level(level) for level in levels] for version, levels in parser.claims.items()}
+                return Started(id=request.id, protocol=PROTOCOL, parser=who, claims=claims)
             case Load():
-                reply = reader.load(Path(request.description), Path(request.urdf))
+                reply = parser.load(Path(request.description), Path(request.urdf))
                 return _with_id(reply, request, "use accepted, rejected, unsupported or skipped")
             case Evaluate():
-                return _evaluated(reader, request)
+                return _evaluated(parser, request)
             case Stop():
                 return Stopped(id=request.id)
     except Exception as error:
@@ -195,14 +195,14 @@ def _answer(reader: ReaderObject, request: AnyRequest) -> AnyAnswer | _NoAnswer:
         if isinstance(error, WrongReply):
             return _NoAnswer(request.id, str(error))
         if isinstance(error, ValidationError) and error.title in _PARTS:
-            return _NoAnswer(request.id, f"{error.title}: {faults(error)}")
+            return _NoAnswer(request.id, f"{error.title}: {error_text(error)}")
         return Errored(id=request.id, message=f"{type(error).__name__}: {error}")
 
 
-def _evaluated(reader: ReaderObject, request: Evaluate) -> AnyAnswer | _NoAnswer:
-    if not isinstance(reader, Evaluator):
+def _evaluated(parser: PythonParser, request: Evaluate) -> AnyAnswer | _NoAnswer:
+    if not isinstance(parser, Evaluator):
         return Unsupported(id=request.id, feature="evaluate")
-    values = reader.evaluate(request.configurations, request.frames, request.quantities)
+    values = parser.evaluate(request.configurations, request.frames, request.quantities)
     if isinstance(values, list):
         return Evaluated(id=request.id, values=values)
     return _with_id(values, request, "give a list of Values, one a configuration, or use unsupported or skipped")
@@ -219,7 +219,7 @@ def _with_id(reply: Any, request: Load | Evaluate, what_to_do: str) -> AnyAnswer
 
 def _written(answer: AnyAnswer | _NoAnswer) -> bytes:
     if isinstance(answer, _NoAnswer):
-        return json.dumps({"id": answer.id, FAULT: answer.why}).encode()
+        return json.dumps({"id": answer.id, ERROR: answer.why}).encode()
     try:
         return answer.model_dump_json().encode()
     except ValueError as error:  # half a surrogate pair, which UTF-8 cannot say

@@ -1,1 +1,1 @@
-"""How a reader's process is started, asked with a time-out, and ended; and what can happen on the way."""
+"""How a parser's process is started, asked with a time-out, and ended; and what can happen on the way."""

@@ -7,9 +7,9 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from eurdf_conformance.protocol.fault import faults
-from eurdf_conformance.protocol.json_text import Doubled, may_be_faulty, read_json
-from eurdf_conformance.protocol.message import ANSWER, FAULT, AnyAnswer, AnyRequest, Evaluate, Evaluated, Stop
+from eurdf_conformance.protocol.error_text import error_text
+from eurdf_conformance.protocol.json_text import Doubled, may_have_errors, read_json
+from eurdf_conformance.protocol.message import ANSWER, ERROR, AnyAnswer, AnyRequest, Evaluate, Evaluated, Stop
 from eurdf_conformance.runner.outcome import Malformed, Misplaced
 
 #: Characters that are kept of a line that is no answer.
@@ -29,7 +29,7 @@ def read_answer(line: bytes, request: AnyRequest) -> AnyAnswer | Malformed | Mis
         answer = ANSWER.validate_json(line)
     except ValidationError as error:
         return _unfit(line, request, error)
-    if may_be_faulty(line, answer):  # pydantic takes the last of two values, and NaN where any value may stand
+    if may_have_errors(line, answer):  # pydantic takes the last of two values, and NaN where any value may stand
         value, found = read_json(line)
         if found:
             return _elsewhere(value, line, request) or Malformed(shown(line), found[0], placed=True)
@@ -68,14 +68,14 @@ def _unfit(line: bytes, request: AnyRequest, error: ValidationError) -> AnyAnswe
         return elsewhere
     if found:
         return Malformed(shown(line), found[0], placed=True)
-    if isinstance(fault := value.get(FAULT), str):
+    if isinstance(fault := value.get(ERROR), str):
         words = " ".join(fault.split()).encode("utf-8", "backslashreplace")
         return Malformed("", shown(words), placed=True)  # the line says no more
     # 2.0 is a whole number in JSON Schema, and some libraries have no others.
     try:
         return _placed(ANSWER.validate_json(json.dumps(_whole(value))), line, request)
     except (ValidationError, RecursionError):
-        return Malformed(shown(line), f"it breaks the schema: {faults(error, skip=1)}", placed=True)
+        return Malformed(shown(line), f"it breaks the schema: {error_text(error, skip=1)}", placed=True)
 
 
 def _elsewhere(value: dict[str, Any], line: bytes, request: AnyRequest) -> Malformed | Misplaced | None:

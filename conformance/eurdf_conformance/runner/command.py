@@ -1,4 +1,4 @@
-"""From the text of ``--parser`` to the command that starts a reader."""
+"""From the text of ``--parser`` to the command that starts a parser."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """A process and its three pipes: whole lines out of its standard output, with a deadline and a bound on memory.
 
-One selector waits for all of them, and for the end of the process, so that a reader that fills one pipe while another
+One selector waits for all of them, and for the end of the process, so that a parser that fills one pipe while another
 is waited for can neither hang nor hang up. The process leads a group of its own, which ends with it, and with this
 process (`guard`).
 """

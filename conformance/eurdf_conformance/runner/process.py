@@ -1,4 +1,4 @@
-"""One process of a reader: asked one request at a time, and ended when its answers can no longer be told apart."""
+"""One process of a parser: asked one request at a time, and ended when its answers can no longer be told apart."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ _SETTLE = 1.0
 _MOST_LINES = 100
 
 
-class ReaderProcess:
-    """A reader that runs."""
+class ParserProcess:
+    """A parser that runs."""
 
     def __init__(self, command: Sequence[str], line_limit: int = LINE_LIMIT) -> None:
         """Start it; for what this raises see `Pipes`."""

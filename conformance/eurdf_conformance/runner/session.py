@@ -1,4 +1,4 @@
-"""A conversation with a reader, over as many processes as it takes."""
+"""A conversation with a parser, over as many processes as it takes."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from eurdf_conformance.protocol.message import (
 from eurdf_conformance.runner.command import command_of, why_not
 from eurdf_conformance.runner.outcome import Answered, CannotStart, Outcome
 from eurdf_conformance.runner.pipes import LINE_LIMIT
-from eurdf_conformance.runner.process import ReaderProcess
+from eurdf_conformance.runner.process import ParserProcess
 
 
-class NotStarted(Exception):  # noqa: N818 - it says what the reader is
-    """A reader that did not answer `start` with `started`.
+class NotStarted(Exception):  # noqa: N818 - it says what the parser is
+    """A parser that did not answer `start` with `started`.
 
     Attributes:
         outcome: What came of it instead.
@@ -37,17 +37,17 @@ class NotStarted(Exception):  # noqa: N818 - it says what the reader is
 
 
 class Session:
-    """A reader to ask; as a context manager it starts the reader, and ends it whatever happens.
+    """A parser to ask; as a context manager it starts the parser, and ends it whatever happens.
 
-    After an outcome that breaks the process, another one is started when the reader is next asked: one a request at
-    most, so that there are never more starts than requests. A reader that does not start the first time, or fails to
+    After an outcome that breaks the process, another one is started when the parser is next asked: one a request at
+    most, so that there are never more starts than requests. A parser that does not start the first time, or fails to
     start several times in a row later on, is given up: whatever it is asked, the outcome is `CannotStart`.
 
     Restarts as such have no other bound. What becomes of a request would depend on it: on how many others had broken
     the process before, and so on how they are spread over sessions.
 
     Attributes:
-        seconds_in_reader: Time spent waiting for the reader, its starts included, s.
+        seconds_in_parser: Time spent waiting for the parser, its starts included, s.
         restarts: How often it was started again.
         ended: What came of `stop`, once the session is over; None where there was no process to stop.
     """
@@ -69,16 +69,16 @@ class Session:
             timeout: Time allowed for an answer, s.
             start_timeout: Time allowed for starting the process and the answer to `start`, s.
             stop_timeout: Time allowed from `stop` to the end of the process, s.
-            failed_starts: So many restarts that fail, one after the other, are enough to give the reader up.
+            failed_starts: So many restarts that fail, one after the other, are enough to give the parser up.
             line_limit: Bytes that a line may have.
         """
         self.parser = parser
-        self.seconds_in_reader = 0.0
+        self.seconds_in_parser = 0.0
         self.restarts = 0
         self.ended: Outcome | None = None
         self._timeout, self._start_timeout, self._stop_timeout = timeout, start_timeout, stop_timeout
         self._most_failed_starts, self._line_limit = failed_starts, line_limit
-        self._process: ReaderProcess | None = None
+        self._process: ParserProcess | None = None
         self._asked = 0
         self._first: Outcome | None = None  # what came of the first start
         self._failed_starts = 0  # in a row
@@ -99,7 +99,7 @@ class Session:
 
     @property
     def started(self) -> Started:
-        """Who the reader is, and what it claims.
+        """Who the parser is, and what it claims.
 
         Raises:
             NotStarted: It did not say.
@@ -110,7 +110,7 @@ class Session:
         raise NotStarted(outcome)
 
     def start(self) -> Outcome:
-        """Start the reader, if that was not done; what came of the first start."""
+        """Start the parser, if that was not done; what came of the first start."""
         if self._first is None:
             self._first = self._begin()
         return self._first
@@ -203,7 +203,7 @@ class Session:
         except ValueError as why:
             return CannotStart(str(why))
         try:
-            self._process = ReaderProcess(command, self._line_limit)
+            self._process = ParserProcess(command, self._line_limit)
         except (OSError, ValueError) as why:
             return CannotStart(why_not(command[0], why))
         outcome = self._put(Start(id=0, protocol=PROTOCOL), self._start_timeout)
@@ -216,8 +216,8 @@ class Session:
         assert self._process is not None
         begin = time.perf_counter()
         outcome = self._process.ask(request.model_copy(update={"id": self._next_id()}), timeout)
-        # What was answered says itself how long the reader took; the rest is ours.
-        self.seconds_in_reader += outcome.seconds if isinstance(outcome, Answered) else time.perf_counter() - begin
+        # What was answered says itself how long the parser took; the rest is ours.
+        self.seconds_in_parser += outcome.seconds if isinstance(outcome, Answered) else time.perf_counter() - begin
         return outcome
 
     def _next_id(self) -> int:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import product
 
 from eurdf_conformance.corpus.case import InvalidCase
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.protocol_rule import RULES, ProtocolRule
 from eurdf_conformance.corpus.read import CorpusCase
+from eurdf_conformance.judging.result import Item
 from eurdf_conformance.level import VERSIONS, Level, Version
-from eurdf_conformance.suite.property import Property, all_properties
-from eurdf_conformance.verdict.result import Item
+from eurdf_conformance.properties import PROPERTIES
+from eurdf_conformance.properties.property import Property
 
 #: The levels of clauses that can be seen at a level.
 _SEEN: Mapping[Level, Collection[str]] = {
@@ -68,7 +70,7 @@ def case_items(cases: Iterable[CorpusCase]) -> Iterator[CaseItem]:
 def clauses_at(level: Level, version: Version, cited: Iterable[str], general: str) -> tuple[str, ...]:
     """What an item at a level tests: of the clauses cited those that can be seen there, and one of the level itself.
 
-    A reader that has only said whether it accepts a description has shown nothing of what it makes of it.
+    A parser that has only said whether it accepts a description has shown nothing of what it makes of it.
     """
     clauses = read_clauses()
     seen = (name for name in cited if clauses[name].level in _SEEN[level] and version in clauses[name].versions)
@@ -101,8 +103,7 @@ def protocol_items() -> Iterator[ProtocolItem]:
 
 def property_items() -> Iterator[PropertyItem]:
     """What there is to ask on random mechanisms."""
-    for found in all_properties():
-        for version in found.versions:
-            clauses = clauses_at(found.level, version, found.clauses, _GENERAL[found.level])
-            item = Item(f"properties/{found.name}-{version}", found.level, version, clauses, found.title)
-            yield PropertyItem(item, found)
+    for each in PROPERTIES:
+        for level, version in product(each.levels, each.versions):
+            clauses = clauses_at(level, version, each.clauses, _GENERAL[level])
+            yield PropertyItem(Item(f"properties/{each.name}-{version}", level, version, clauses, each.title), each)

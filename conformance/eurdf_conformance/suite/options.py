@@ -11,22 +11,22 @@ from typing import Any
 
 import pytest
 
-from eurdf_conformance.level import VERSIONS, Level, Version
-from eurdf_conformance.named_folder import named_folder
-from eurdf_conformance.suite.reproduce import FOLDER, PACKAGE, START_TIMEOUT, TIMEOUT, Setting, command_line
-from eurdf_conformance.verdict.known_failures import (
+from eurdf_conformance.judging.known_failures import (
     NONE_KNOWN,
     KnownFailures,
     WrongKnownFailures,
     read_known_failures,
 )
-from eurdf_conformance.verdict.result import Item
+from eurdf_conformance.judging.result import Item
+from eurdf_conformance.level import VERSIONS, Level, Version
+from eurdf_conformance.named_folder import named_folder
+from eurdf_conformance.suite.reproduce import FOLDER, PACKAGE, START_TIMEOUT, TIMEOUT, Setting, command_line
 
 #: Where the options of a run of pytest are kept.
 OPTIONS: pytest.StashKey[Options] = pytest.StashKey()
 
 #: The parser that is tested where none is named.
-REFERENCE = "eurdf_conformance.adapters.reference:READER"
+REFERENCE = "eurdf_conformance.adapters.reference:PARSER"
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ def add_options(parser: pytest.Parser) -> None:
     group.addoption(
         "--explore-seed", type=int, metavar="SEED", help="what they are drawn from (default: another each time)"
     )
-    # For a program that has seen already that the reader starts.
+    # For a program that has seen already that the parser starts.
     group.addoption("--parser-starts", action="store_true", help=argparse.SUPPRESS)
     group.addoption(
         "--smoke", action="store_true", help="three cases a version, to see whether the parser is plugged in"

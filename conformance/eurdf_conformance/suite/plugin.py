@@ -1,6 +1,6 @@
-"""The plug-in of pytest: its options, one reader a worker, and at the end the certificate and a summary.
+"""The plug-in of pytest: its options, one parser a worker, and at the end the certificate and a summary.
 
-A worker of pytest-xdist asks its own process of the reader. What becomes of an item travels in its report; the one who
+A worker of pytest-xdist asks its own process of the parser. What becomes of an item travels in its report; the one who
 collects the reports, a worker or not, makes of them a `Run`.
 """
 
@@ -17,18 +17,18 @@ import pytest
 from eurdf_conformance.certificate.issue import issue
 from eurdf_conformance.certificate.write import NoRoom, make_room, write_certificate
 from eurdf_conformance.corpus.read import all_cases
+from eurdf_conformance.judging.level_result import unclaimed
+from eurdf_conformance.judging.result import RESULT, Result
+from eurdf_conformance.judging.run import Run
 from eurdf_conformance.protocol.message import Started
 from eurdf_conformance.runner.session import NotStarted, Session
-from eurdf_conformance.suite.asking import STARTED, Asking, new_session
 from eurdf_conformance.suite.item import planned_items
+from eurdf_conformance.suite.item_runner import STARTED, ItemRunner, new_session
 from eurdf_conformance.suite.options import OPTIONS, add_options, options_of, read_options
 from eurdf_conformance.suite.summary import summary_lines
-from eurdf_conformance.verdict.result import RESULT, Result
-from eurdf_conformance.verdict.run import Run
-from eurdf_conformance.verdict.standing import unclaimed
 from eurdf_conformance.visible import visible
 
-#: The session whose reader has started before anything is asked of it.
+#: The session whose parser has started before anything is asked of it.
 GREETED: pytest.StashKey[Session] = pytest.StashKey()
 
 
@@ -106,23 +106,23 @@ def pytest_collection_finish() -> None:
 
 
 @pytest.fixture(scope="session")
-def _reader(pytestconfig: pytest.Config) -> Iterator[Asking]:
+def _session_item_runner(pytestconfig: pytest.Config) -> Iterator[ItemRunner]:
     options = options_of(pytestconfig)
     with pytestconfig.stash.get(GREETED, None) or new_session(options) as session:
-        yield Asking(options, session)
+        yield ItemRunner(options, session)
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:
-    """End the reader that was started, where nothing was asked of it."""
+    """End the parser that was started, where nothing was asked of it."""
     if (session := config.stash.get(GREETED, None)) is not None:
         session.stop()
 
 
 @pytest.fixture
-def asking(_reader: Asking, request: pytest.FixtureRequest) -> Asking:
-    """The reader, to be asked by the test that runs."""
-    _reader.node = request.node
-    return _reader
+def item_runner(_session_item_runner: ItemRunner, request: pytest.FixtureRequest) -> ItemRunner:
+    """The parser, to be asked by the test that runs."""
+    _session_item_runner.node = request.node
+    return _session_item_runner
 
 
 class Collector:

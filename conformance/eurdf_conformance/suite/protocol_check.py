@@ -1,4 +1,4 @@
-"""The rules of the protocol, put to a reader."""
+"""The rules of the protocol, put to a parser."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from eurdf_conformance.comparison.canonical import canonical_differences
 from eurdf_conformance.comparison.difference import Difference
 from eurdf_conformance.corpus.protocol_rule import GOES_ON, QUIET, START, STOP, ProtocolRule
 from eurdf_conformance.corpus.read import CorpusCase
+from eurdf_conformance.judging.judge import PASSED, Judgement, judge_outcome
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.protocol.message import Accepted, Rejected, Started
 from eurdf_conformance.runner.outcome import Answered, Outcome
 from eurdf_conformance.runner.session import Session
-from eurdf_conformance.suite.judge import PASSED, Judgement, judge_outcome
-from eurdf_conformance.verdict.verdict import Verdict
 
 
 @dataclass(frozen=True, slots=True)
-class Asked:
-    """Who is asked, and with what.
+class Setup:
+    """Who is setup, and with what.
 
     Attributes:
-        session: With the reader.
+        session: With the parser.
         another: Makes a further session with it.
         valid: A case that it should accept.
         invalid: One that it should reject.
@@ -38,36 +38,36 @@ class Asked:
         return self.session.load(case.description, case.urdf)
 
 
-def check(rule: ProtocolRule, asked: Asked) -> Judgement:
-    """Whether a reader keeps a rule; where not, with the files that it was asked about."""
-    judgement = _CHECKS[rule](asked)
+def check(rule: ProtocolRule, setup: Setup) -> Judgement:
+    """Whether a parser keeps a rule; where not, with the files that it was setup about."""
+    judgement = _CHECKS[rule](setup)
     if judgement.verdict == Verdict.PASSED or rule not in (QUIET, GOES_ON):
         return judgement
-    files = [str(path) for case in (asked.valid, asked.invalid) for path in (case.description, case.urdf)]
+    files = [str(path) for case in (setup.valid, setup.invalid) for path in (case.description, case.urdf)]
     return replace(judgement, log="\n".join(filter(None, (judgement.log, *files))))
 
 
-def _start(asked: Asked) -> Judgement:
+def _start(setup: Setup) -> Judgement:
     """EU-PRO-001, EU-PRO-003."""
-    outcome = asked.session.start()
+    outcome = setup.session.start()
     match outcome:
         case Answered(answer=Started()):
             return PASSED
     return judge_outcome(outcome, "started")
 
 
-def _quiet(asked: Asked) -> Judgement:
+def _quiet(setup: Setup) -> Judgement:
     """EU-PRO-002: whatever is answered, it is one line."""
-    for case in (asked.valid, asked.invalid, asked.valid):
-        outcome = asked.load(case)
+    for case in (setup.valid, setup.invalid, setup.valid):
+        outcome = setup.load(case)
         if not isinstance(outcome, Answered):
             return judge_outcome(outcome)
     return PASSED
 
 
-def _goes_on(asked: Asked) -> Judgement:
+def _goes_on(setup: Setup) -> Judgement:
     """EU-PRO-004, EU-PRO-005."""
-    first, rejected, again = [asked.load(case) for case in (asked.valid, asked.invalid, asked.valid)]
+    first, rejected, again = [setup.load(case) for case in (setup.valid, setup.invalid, setup.valid)]
     match rejected:
         case Answered(answer=Rejected()):
             pass
@@ -80,7 +80,7 @@ def _goes_on(asked: Asked) -> Judgement:
         case Answered(answer=Accepted(robot=None)), Answered(answer=Accepted(robot=None)):
             return PASSED
         case Answered(answer=Accepted(robot=one)), Answered(answer=Accepted(robot=other)) if one and other:
-            found = canonical_differences(one, other, asked.valid.expected.bodies)
+            found = canonical_differences(one, other, setup.valid.expected.bodies)
             reason = "after a rejected description it reads another robot from the same files"
             return Judgement(Verdict.FAILED, reason, tuple(found)) if found else PASSED
         case Answered(answer=Accepted()), Answered(answer=Accepted()):
@@ -90,20 +90,20 @@ def _goes_on(asked: Asked) -> Judgement:
     return judge_outcome(first, "accepted")
 
 
-def _stop(asked: Asked) -> Judgement:
+def _stop(setup: Setup) -> Judgement:
     """EU-PRO-001."""
-    with asked.another() as session:
+    with setup.another() as session:
         first = session.start()
         begin = time.perf_counter()
         outcome = session.stop()
         stopping = time.perf_counter() - begin
-    asked.session.seconds_in_reader += session.seconds_in_reader + stopping
+    setup.session.seconds_in_parser += session.seconds_in_parser + stopping
     if outcome is None:
         return judge_outcome(first, "started")
     return PASSED if isinstance(outcome, Answered) else judge_outcome(outcome)
 
 
-_CHECKS: Mapping[ProtocolRule, Callable[[Asked], Judgement]] = {
+_CHECKS: Mapping[ProtocolRule, Callable[[Setup], Judgement]] = {
     START: _start,
     QUIET: _quiet,
     GOES_ON: _goes_on,

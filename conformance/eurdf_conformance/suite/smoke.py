@@ -6,10 +6,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from eurdf_conformance.corpus.read import CorpusCase
+from eurdf_conformance.judging.result import Result
+from eurdf_conformance.judging.verdict import OF_THE_ADAPTER
 from eurdf_conformance.level import Level, Version
 from eurdf_conformance.suite.item import CaseItem
-from eurdf_conformance.verdict.result import Result
-from eurdf_conformance.verdict.verdict import OF_THE_ADAPTER
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +21,7 @@ class Three:
     evaluated: str
 
 
-#: Plain ones, that the smallest of readers can do: a loop that one closure closes; a fault that no reader overlooks,
+#: Plain ones, that the smallest of parsers can do: a loop that one closure closes; a fault that no parser overlooks,
 #: XML that is none or a name of nothing; and a tree.
 SMOKE: dict[Version, Three] = {
     "1": Three(valid="p893ru", invalid="joac77", evaluated="zrarhs"),
@@ -48,7 +48,7 @@ def smoke_case(cases: Iterable[CorpusCase], case_id: str) -> CorpusCase:
 def smoke_levels(item: CaseItem) -> tuple[Level, ...]:
     """The levels at which the case of an item may be asked, where it is among the first to try.
 
-    It is asked at the first of them that the reader claims: who claims anything is asked something.
+    It is asked at the first of them that the parser claims: who claims anything is asked something.
     """
     return _LEVELS.get(item.case.id, ())
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from eurdf_conformance.judging.level_result import LevelResult, level_results
+from eurdf_conformance.judging.run import Run
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.suite.smoke import smoke_lines
-from eurdf_conformance.verdict.run import Run
-from eurdf_conformance.verdict.standing import Standing, standings
-from eurdf_conformance.verdict.verdict import Verdict
 from eurdf_conformance.visible import visible
 
 
@@ -28,43 +28,43 @@ def _lines(run: Run, unexpected: Sequence[str], certificate: Path | None) -> Ite
         why = next((result.differences[0] for result in run.results if result.differences), "")
         yield f"{run.parser} could not be started" + (f": {why}" if why else "")
     else:
-        reader = run.started.reader
-        yield visible(f"{reader.name} {reader.version} ({reader.language})", kept="")
+        parser = run.started.parser
+        yield visible(f"{parser.name} {parser.version} ({parser.language})", kept="")
     if run.smoke:
         wrong = [result for result in run.results if result.verdict != Verdict.PASSED]
         yield from smoke_lines(wrong, asked=bool(run.results))
     else:
-        asked = [standing for standing in standings(run) if standing.asked]
-        yield from (_level(standing) for standing in asked if standing.claimed and _was_run(standing))
-        yield from _others("not run", [standing for standing in asked if standing.claimed and not _was_run(standing)])
+        asked = [result for result in level_results(run) if result.asked]
+        yield from (_level(result) for result in asked if result.claimed and _was_run(result))
+        yield from _others("not run", [result for result in asked if result.claimed and not _was_run(result)])
         if run.started is not None:
-            yield from _others("not claimed", [standing for standing in asked if not standing.claimed])
+            yield from _others("not claimed", [result for result in asked if not result.claimed])
     yield from (f"known failures: {line}" for line in unexpected)
     yield _times(run)
     if certificate is not None:
         yield f"certificate: {certificate}"
 
 
-def _was_run(standing: Standing) -> bool:
-    return any(count for verdict, count in standing.counts.items() if verdict != Verdict.NOT_RUN)
+def _was_run(result: LevelResult) -> bool:
+    return any(count for verdict, count in result.counts.items() if verdict != Verdict.NOT_RUN)
 
 
-def _others(what: str, standings: Sequence[Standing]) -> Iterator[str]:
-    if standings:
-        yield f"{what}: " + ", ".join(f"{each.level} of version {each.version}" for each in standings)
+def _others(what: str, level_results: Sequence[LevelResult]) -> Iterator[str]:
+    if level_results:
+        yield f"{what}: " + ", ".join(f"{each.level} of version {each.version}" for each in level_results)
 
 
-def _level(standing: Standing) -> str:
-    passed = standing.counts.get(Verdict.PASSED, 0)
-    others = [f"{count} {verdict}" for verdict, count in standing.counts.items() if verdict != Verdict.PASSED and count]
-    text = f"version {standing.version}, {standing.level}: {passed} of {sum(standing.counts.values())} passed"
-    known = f", of which {standing.known_failures} known" if standing.known_failures else ""
+def _level(result: LevelResult) -> str:
+    passed = result.counts.get(Verdict.PASSED, 0)
+    others = [f"{count} {verdict}" for verdict, count in result.counts.items() if verdict != Verdict.PASSED and count]
+    text = f"version {result.version}, {result.level}: {passed} of {sum(result.counts.values())} passed"
+    known = f", of which {result.known_failures} known" if result.known_failures else ""
     detail = f" ({', '.join(others)}{known})" if others else ""
-    return text + detail + (": certified" if standing.certified else ": not certified")
+    return text + detail + (": certified" if result.certified else ": not certified")
 
 
 def _times(run: Run) -> str:
     total = sum(result.seconds for result in run.results)
-    reader = sum(result.seconds_in_reader for result in run.results)
-    share = f", {reader / total:.0%} of it in the reader" if total else ""
+    parser = sum(result.seconds_in_parser for result in run.results)
+    share = f", {parser / total:.0%} of it in the parser" if total else ""
     return f"{len(run.results)} items, {total:.1f} s of asking{share}"

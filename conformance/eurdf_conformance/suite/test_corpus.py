@@ -1,14 +1,14 @@
-"""Every case, at every one of its levels that the reader claims."""
+"""Every case, at every one of its levels that the parser claims."""
 
 from __future__ import annotations
 
 import pytest
 
 from eurdf_conformance.corpus.read import all_cases
+from eurdf_conformance.judging.judge import judge
 from eurdf_conformance.level import Level
-from eurdf_conformance.suite.asking import Asking
 from eurdf_conformance.suite.item import CaseItem, case_items
-from eurdf_conformance.suite.judge import judge
+from eurdf_conformance.suite.item_runner import ItemRunner
 from eurdf_conformance.suite.options import Options, options_of
 from eurdf_conformance.suite.smoke import smoke_levels
 
@@ -22,10 +22,12 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     metafunc.parametrize("case_item", [pytest.param(item, id=f"{item.item.id}/{item.item.level}") for item in items])
 
 
-def test_case(case_item: CaseItem, asking: Asking) -> None:
-    """The answers of the reader on the case are the expected ones."""
+def test_case(case_item: CaseItem, item_runner: ItemRunner) -> None:
+    """The answers of the parser on the case are the expected ones."""
     item, case = case_item.item, case_item.case
-    asking.settle(item, lambda: judge(case, item.level, asking.conversation), case, _rather(case_item, asking.options))
+    item_runner.run(
+        item, lambda: judge(case, item.level, item_runner.conversation), case, _rather(case_item, item_runner.options)
+    )
 
 
 def _rather(item: CaseItem, options: Options) -> tuple[Level, ...]:

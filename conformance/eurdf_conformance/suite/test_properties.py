@@ -1,4 +1,4 @@
-"""Every property, for each version at the level that the reader claims."""
+"""Every property, for each version at the level that the parser claims."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from eurdf_conformance.suite.asking import Asking
+from eurdf_conformance.judging.judge import Judgement
+from eurdf_conformance.properties.trying import Trial, try_property
 from eurdf_conformance.suite.item import PropertyItem, property_items
-from eurdf_conformance.suite.judge import Judgement
+from eurdf_conformance.suite.item_runner import ItemRunner
 from eurdf_conformance.suite.options import options_of
-from eurdf_conformance.suite.property import Trial
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
@@ -22,18 +22,19 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     )
 
 
-def test_property(property_item: PropertyItem, asking: Asking, tmp_path: Path) -> None:
-    """The property holds of the reader."""
-    asking.settle(property_item.item, lambda: ask(property_item, asking, tmp_path))
+def test_property(property_item: PropertyItem, item_runner: ItemRunner, tmp_path: Path) -> None:
+    """The property holds of the parser."""
+    item_runner.run(property_item.item, lambda: try_item(property_item, item_runner, tmp_path))
 
 
-def ask(item: PropertyItem, asking: Asking, folder: Path) -> Judgement:
+def try_item(item: PropertyItem, item_runner: ItemRunner, folder: Path) -> Judgement:
     """Try the property on the frozen examples, and on as many more as the user asks for."""
-    version, count = item.item.version, asking.options.explore
+    level, version, count = item.item.level, item.item.version, item_runner.options.explore
     if not count:
-        return item.property.check(Trial(asking.session, version, 0, folder))
-    # What crashes a reader is tried again and again, to make it small: the session of all items has no part in that.
-    with asking.new_session() as session:
-        judgement = item.property.check(Trial(session, version, count, folder, asking.options.explore_seed))
-    asking.session.seconds_in_reader += session.seconds_in_reader
+        return try_property(item.property, level, Trial(item_runner.session, version, 0, folder))
+    # What crashes a parser is tried again and again, to make it small: the session of all items has no part in that.
+    with item_runner.new_session() as session:
+        trial = Trial(session, version, count, folder, item_runner.options.explore_seed)
+        judgement = try_property(item.property, level, trial)
+    item_runner.session.seconds_in_parser += session.seconds_in_parser
     return judgement

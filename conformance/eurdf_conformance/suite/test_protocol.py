@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from eurdf_conformance.corpus.read import all_cases
-from eurdf_conformance.suite.asking import Asking
 from eurdf_conformance.suite.item import ProtocolItem, protocol_items
+from eurdf_conformance.suite.item_runner import ItemRunner
 from eurdf_conformance.suite.options import options_of
-from eurdf_conformance.suite.protocol_check import Asked, check
+from eurdf_conformance.suite.protocol_check import Setup, check
 from eurdf_conformance.suite.smoke import SMOKE, smoke_case
 
 
@@ -21,9 +21,9 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     )
 
 
-def test_protocol(protocol_item: ProtocolItem, asking: Asking) -> None:
-    """The reader keeps the rule."""
+def test_protocol(protocol_item: ProtocolItem, item_runner: ItemRunner) -> None:
+    """The parser keeps the rule."""
     item, three = protocol_item.item, SMOKE[protocol_item.item.version]
     valid, invalid = (smoke_case(all_cases(), case_id) for case_id in (three.valid, three.invalid))
-    asked = Asked(asking.session, asking.new_session, valid, invalid)
-    asking.settle(item, lambda: check(protocol_item.rule, asked))
+    setup = Setup(item_runner.session, item_runner.new_session, valid, invalid)
+    item_runner.run(item, lambda: check(protocol_item.rule, setup))

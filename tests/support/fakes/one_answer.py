@@ -1,4 +1,4 @@
-"""A reader that says the same of every description: ``python one_answer.py accepted|rejected [--chatter]``.
+"""A parser that says the same of every description: ``python one_answer.py accepted|rejected [--chatter]``.
 
 It claims the level accept for both versions. It knows nothing of the package that is tested.
 """
@@ -11,7 +11,7 @@ answers = {
     "start": {
         "outcome": "started",
         "protocol": "1.0",
-        "reader": {"name": f"always_{word}", "version": "1", "language": "Python"},
+        "parser": {"name": f"always_{word}", "version": "1", "language": "Python"},
         "claims": {"1": ["accept"], "2": ["accept"]},
     },
     "load": {"outcome": word, "issues": []} | ({"robot": None} if word == "accepted" else {}),

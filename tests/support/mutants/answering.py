@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from lxml import etree
 
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.oracle.joint_kind import KINDS
 from eurdf_conformance.protocol.message import (
     Accepted,
@@ -20,7 +21,6 @@ from eurdf_conformance.protocol.message import (
     Values,
 )
 from eurdf_conformance.protocol.reply import accepted, rejected, unsupported
-from eurdf_conformance.verdict.verdict import Verdict
 from support.mutants.mutant import Answer, Members, answers, describes, evaluates
 
 # -- The canonical description --------------------------------------------------------------------------------------

@@ -5,10 +5,10 @@ from __future__ import annotations
 from functools import cache
 
 from eurdf_conformance.corpus.read import CorpusCase, all_cases
+from eurdf_conformance.judging.conversation import Conversation
+from eurdf_conformance.judging.judge import judge
 from eurdf_conformance.level import Version
-from eurdf_conformance.suite.conversation import Conversation
-from eurdf_conformance.suite.in_process import InProcess
-from eurdf_conformance.suite.judge import judge
+from eurdf_conformance.runner.in_process import InProcess
 from support.mutants.mutant import Mutant
 
 

@@ -16,12 +16,12 @@ from lxml import etree
 from eurdf_conformance.adapters.reference import Reference
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.coverage import said_in
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level, Version
 from eurdf_conformance.oracle import NotRead, OracleRobot, read
 from eurdf_conformance.oracle.yaml_text import value_of
 from eurdf_conformance.protocol.message import Accepted, CanonicalRobot, Issue, Rejected, Values
 from eurdf_conformance.protocol.reply import rejected
-from eurdf_conformance.verdict.verdict import Verdict
 
 Answer = Accepted | Rejected
 Deviation = AbstractContextManager[Any]

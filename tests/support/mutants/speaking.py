@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import Any
 
 from eurdf_conformance.adapters.reference import Reference
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.protocol import serve
 from eurdf_conformance.protocol.message import Accepted, Rejected
-from eurdf_conformance.verdict.verdict import Verdict
 
 TESTS = str(Path(__file__).parents[2])
 
@@ -122,7 +122,7 @@ def speak(name: str) -> None:
     if isinstance(wrong, type):
         serve.main(f"{__name__}:{name}")
         return
-    command = [sys.executable, "-m", serve.__name__, "eurdf_conformance.adapters.reference:READER"]
+    command = [sys.executable, "-m", serve.__name__, "eurdf_conformance.adapters.reference:PARSER"]
     with subprocess.Popen(command, stdin=sys.stdin, stdout=subprocess.PIPE) as child:
         for line in child.stdout or ():
             if (spoilt := wrong(line)) is None:

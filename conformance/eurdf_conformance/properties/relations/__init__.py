@@ -1,4 +1,4 @@
-"""Relations: what a reader says of one robot follows from what it says of another.
+"""Relations: what a parser says of one robot follows from what it says of another.
 
-No one needs to know what is right: a reader is compared with itself.
+No one needs to know what is right: a parser is compared with itself.
 """

@@ -6,14 +6,14 @@ import numpy as np
 
 from eurdf_conformance.comparison.difference import Difference
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.properties.asked import ask
-from eurdf_conformance.properties.bench import Bench
 from eurdf_conformance.properties.conditioning import scaled
 from eurdf_conformance.properties.document import configuration
 from eurdf_conformance.properties.example import Example
-from eurdf_conformance.properties.law import Law
+from eurdf_conformance.properties.harness import Harness
 from eurdf_conformance.properties.mechanism import Change, Inertia, Joint, Link, Mechanism
 from eurdf_conformance.properties.placement import Matrix, pose_of, quaternion_of
+from eurdf_conformance.properties.property import Property
+from eurdf_conformance.properties.query import query_of
 from eurdf_conformance.properties.relations.saying import with_inline_frames
 from eurdf_conformance.properties.truth import truth
 from eurdf_conformance.protocol.message import Values
@@ -24,10 +24,10 @@ _NEAR = 1e-5
 _BALL = Inertia(mass=0.5, moments=(0.01, 0.0, 0.0, 0.01, 0.0, 0.01))
 
 
-def ball_closure(bench: Bench, example: Example, version: Version, level: Level) -> list[Difference]:
+def ball_closure(harness: Harness, example: Example, version: Version, level: Level) -> list[Difference]:
     """The null space of K, and that of the K of the twin without the balls' own motions, are one space."""
     one, other = example.mechanism, with_balls(example.mechanism)
-    before, after = (motions(bench, mechanism, version) for mechanism in (one, other))
+    before, after = (motions(harness, mechanism, version) for mechanism in (one, other))
     robot = truth(one, version)
     kept = [truth(other, version).velocities.index(column) for column in robot.velocities]
     projected = after[kept]
@@ -44,11 +44,11 @@ def ball_closure(bench: Bench, example: Example, version: Version, level: Level)
     return wrong
 
 
-def motions(bench: Bench, mechanism: Mechanism, version: Version) -> Matrix:
+def motions(harness: Harness, mechanism: Mechanism, version: Version) -> Matrix:
     """An orthonormal basis of the null space of K at the closed configuration, in velocities free of units."""
     at = {"assembled": mechanism.configurations["assembled"]}
     robot, q = truth(mechanism, version), configuration(mechanism, at["assembled"], version)
-    (values,) = bench.evaluate(ask(mechanism, version, at=at, frames=[]), ("jacobian",))
+    (values,) = harness.evaluate(query_of(mechanism, version, at=at, frames=[]), ("jacobian",))
     _, sizes, Vt = np.linalg.svd(scaled(stacked(values), robot, q))
     rank = int(np.sum(sizes > 1e-5 * sizes.max(initial=1.0)))
     return np.asarray(Vt[rank:].T)
@@ -94,8 +94,8 @@ def has_3d(mechanism: Mechanism) -> bool:
     return any(closure.type == "3d" for closure in mechanism.closures)
 
 
-LAWS = (
-    Law(
+PROPERTIES = (
+    Property(
         "ball-closure",
         "A 3d closure lets a mechanism move as a 6d one on a spherical joint does.",
         ("EU-CLO-009", "EU-CLO-008", "EU-CLO-010", "EU-JNT-015"),

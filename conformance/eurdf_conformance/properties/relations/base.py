@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.properties.asked import all_frames, ask
 from eurdf_conformance.properties.chance import Chance
 from eurdf_conformance.properties.example import Example
-from eurdf_conformance.properties.law import Law
 from eurdf_conformance.properties.mechanism import Configuration, Coordinates, Joint, Link, Mechanism, Pose
 from eurdf_conformance.properties.pair import Pair, related
 from eurdf_conformance.properties.placement import Matrix, matrix_of, quaternion_of, rotation_of
+from eurdf_conformance.properties.property import Property
+from eurdf_conformance.properties.query import all_frames, query_of
 from eurdf_conformance.properties.relations.changing import in_velocities, moved
 from eurdf_conformance.protocol.message import MassMatrix, Values
 
@@ -26,15 +26,17 @@ def moving(example: Example, version: Version) -> Pair:
     if mechanism.root == "fixed":
         other = mounted(mechanism, pose)
         return Pair(
-            ask(mechanism, version),
-            ask(other, version, frames=all_frames(mechanism)),
+            query_of(mechanism, version),
+            query_of(other, version, frames=all_frames(mechanism)),
             carry=lambda values, index: moved(values, T),
         )
     at = {
         name: {**q, "root_joint": _afloat(T @ _matrix(q.get("root_joint", _NEUTRAL)))}
         for name, q in mechanism.configurations.items()
     }
-    return Pair(ask(mechanism, version), ask(mechanism, version, at=at), carry=lambda values, index: moved(values, T))
+    return Pair(
+        query_of(mechanism, version), query_of(mechanism, version, at=at), carry=lambda values, index: moved(values, T)
+    )
 
 
 def floating(example: Example, version: Version) -> Pair:
@@ -45,7 +47,7 @@ def floating(example: Example, version: Version) -> Pair:
     at: dict[str, Configuration] = {
         name: {**q, "root_joint": _afloat(T)} for name, q in mechanism.configurations.items()
     }
-    other = ask(mechanism.replace(root="floating"), version, at=at)
+    other = query_of(mechanism.replace(root="floating"), version, at=at)
 
     def carry(values: Values, index: int) -> Values:
         if values.jacobian is None:
@@ -54,7 +56,7 @@ def floating(example: Example, version: Version) -> Pair:
         J = np.hstack([np.zeros((len(values.jacobian.columns), 6)), np.eye(len(values.jacobian.columns))])
         return moved(in_velocities(values, J, [*columns, *values.jacobian.columns]), T)
 
-    return Pair(ask(mechanism, version), other, carry, seen=_without_root)
+    return Pair(query_of(mechanism, version), other, carry, seen=_without_root)
 
 
 def any_pose(chance: Chance) -> Pose:
@@ -91,15 +93,15 @@ def _afloat(M: Matrix) -> Coordinates:
     return (*M[:3, 3].tolist(), *quaternion_of(M[:3, :3]))
 
 
-LAWS = (
-    Law(
+PROPERTIES = (
+    Property(
         "moving-base",
         "A robot that stands elsewhere as a whole has the same residuals, K and M.",
         ("EU-VER-004", "EU-JNT-025", "EU-CLO-008", "EU-CLO-009", "EU-CLO-010", "EU-INR-006"),
         (Level.KINEMATICS, Level.DYNAMICS),
         related(moving),
     ),
-    Law(
+    Property(
         "floating-base",
         "A root that floats moves no closure, and the joints weigh as much as on one that is fixed.",
         ("EU-VER-004", "EU-JNT-025", "EU-JNT-026", "EU-CLO-010", "EU-INR-006"),

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.properties.asked import ask
 from eurdf_conformance.properties.example import Example
-from eurdf_conformance.properties.law import Law
 from eurdf_conformance.properties.mechanism import Configuration, Coordinates, Mechanism
 from eurdf_conformance.properties.pair import Pair, related
+from eurdf_conformance.properties.property import Property
+from eurdf_conformance.properties.query import query_of
 from eurdf_conformance.properties.truth import truth
 
 
@@ -18,7 +18,7 @@ def leaving_out(example: Example, version: Version) -> Pair:
     mechanism = example.mechanism
     neutral = {name: tuple(q) for name, q in truth(mechanism, "2").neutral().items()}
     whole = {name: {**neutral, **q} for name, q in mechanism.configurations.items()}
-    return Pair(ask(mechanism, version, at=whole), ask(mechanism, version))
+    return Pair(query_of(mechanism, version, at=whole), query_of(mechanism, version))
 
 
 def turning(example: Example, version: Version) -> Pair:
@@ -30,7 +30,7 @@ def turning(example: Example, version: Version) -> Pair:
         | {joint: q for joint, q in configuration.items() if _leads(mechanism, joint)}
         for name, configuration in mechanism.configurations.items()
     }
-    return Pair(ask(mechanism, version), ask(mechanism, version, at=at))
+    return Pair(query_of(mechanism, version), query_of(mechanism, version, at=at))
 
 
 def _turned(kind: str, q: Coordinates) -> Coordinates:
@@ -51,15 +51,15 @@ def has_turns(mechanism: Mechanism) -> bool:
     return bool({"continuous", "spherical", "floating"} & set(mechanism.types().values()))
 
 
-LAWS = (
-    Law(
+PROPERTIES = (
+    Property(
         "leaving-out",
         "A joint that a configuration leaves out stands at its neutral.",
         ("EU-JNT-025", "EU-CFG-005"),
         (Level.KINEMATICS, Level.DYNAMICS),
         related(leaving_out),
     ),
-    Law(
+    Property(
         "turning",
         "q and −q are one rotation, and a turn more of a continuous joint is none.",
         ("EU-JNT-025", "EU-JNT-015"),

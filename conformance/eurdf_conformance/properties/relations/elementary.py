@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.properties.asked import all_frames, ask
 from eurdf_conformance.properties.example import Example
-from eurdf_conformance.properties.law import Law
 from eurdf_conformance.properties.mechanism import Configuration, Joint, Limit, Link, Mechanism
 from eurdf_conformance.properties.pair import Pair, related
+from eurdf_conformance.properties.property import Property
+from eurdf_conformance.properties.query import all_frames, query_of
 from eurdf_conformance.properties.relations.changing import in_velocities, with_poses_of
 from eurdf_conformance.properties.relations.joint_row import KINDS, JointRow, row_of
 from eurdf_conformance.properties.truth import truth
@@ -41,7 +41,7 @@ def elementary(example: Example, version: Version) -> Pair:
             J[at, i] = rows[name].velocities(tuple(q[name]))[:, number]
         return with_poses_of(in_velocities(values, J, columns), all_frames(mechanism))
 
-    return Pair(ask(one, version), ask(mechanism, version), carry)
+    return Pair(query_of(one, version), query_of(mechanism, version), carry)
 
 
 def in_rows(mechanism: Mechanism, rows: dict[str, JointRow]) -> Mechanism:
@@ -100,8 +100,8 @@ def _in_rows(configuration: Configuration, rows: dict[str, JointRow]) -> Configu
     return found
 
 
-LAWS = (
-    Law(
+PROPERTIES = (
+    Property(
         "elementary-joints",
         "Universal, cylindrical, helical, planar and floating joints are rows of joints that slide and turn.",
         ("EU-JNT-025", "EU-JNT-026", "EU-JNT-016", "EU-JNT-017", "EU-JNT-018", "EU-URD-032", "EU-JNT-015"),

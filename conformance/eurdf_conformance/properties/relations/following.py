@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.properties.asked import ask
 from eurdf_conformance.properties.example import Example
 from eurdf_conformance.properties.files import Files
-from eurdf_conformance.properties.law import Law
 from eurdf_conformance.properties.mechanism import Configuration, Limit, Mechanism, Mimic
 from eurdf_conformance.properties.pair import Pair, related
+from eurdf_conformance.properties.property import Property
+from eurdf_conformance.properties.query import query_of
 from eurdf_conformance.properties.relations.changing import in_velocities
 from eurdf_conformance.properties.truth import truth
 from eurdf_conformance.properties.urdf import urdf_text
@@ -25,32 +25,34 @@ def following(example: Example, version: Version) -> Pair:
     With q = m q_leader + o, the column of the leader is its own and m times that of who follows it.
     """
     mechanism = example.mechanism
-    laws = {joint.name: law for joint in mechanism.joints if (law := leader(mechanism, joint.name))[0] != joint.name}
+    followers = {
+        joint.name: follows for joint in mechanism.joints if (follows := leader(mechanism, joint.name))[0] != joint.name
+    }
     free = freed(mechanism)
     at: dict[str, Configuration] = {}
     for name, q in mechanism.configurations.items():
         followed = {
             joint: (multiplier * q.get(driver, (0.0,))[0] + offset,)
-            for joint, (driver, multiplier, offset) in laws.items()
+            for joint, (driver, multiplier, offset) in followers.items()
         }
         at[name] = {**q, **followed}
     before, columns = truth(free, version).velocities, truth(mechanism, version).velocities
     J = np.zeros((len(before), len(columns)))
     for i, (name, number) in enumerate(before):
-        driver, multiplier, _ = laws.get(name, (name, 1.0, 0.0))
+        driver, multiplier, _ = followers.get(name, (name, 1.0, 0.0))
         J[i, columns.index((driver, number))] = multiplier
 
     def carry(values: Values, index: int) -> Values:
         return in_velocities(values, J, columns)
 
-    return Pair(ask(free, version, at=at), ask(mechanism, version), carry)
+    return Pair(query_of(free, version, at=at), query_of(mechanism, version), carry)
 
 
 def leader(mechanism: Mechanism, joint: str) -> tuple[str, float, float]:
     """Whom a joint follows in the end, with the multiplier and the offset of the whole chain."""
-    laws = {each.name: each.mimic for each in mechanism.joints}
+    mimics = {each.name: each.mimic for each in mechanism.joints}
     multiplier, offset = 1.0, 0.0
-    while (mimic := laws.get(joint)) is not None:
+    while (mimic := mimics.get(joint)) is not None:
         multiplier, offset, joint = multiplier * mimic.multiplier, multiplier * mimic.offset + offset, mimic.joint
     return joint, multiplier, offset
 
@@ -81,9 +83,9 @@ def ignoring(example: Example, version: Version) -> Pair:
         )
         for joint in mechanism.joints
     )
-    asked = ask(mechanism, version)
-    files = Files(asked.files.description, urdf_text(mechanism.replace(joints=joints)).encode())
-    return Pair(asked, ask(mechanism, version, files=files))
+    query = query_of(mechanism, version)
+    files = Files(query.files.description, urdf_text(mechanism.replace(joints=joints)).encode())
+    return Pair(query, query_of(mechanism, version, files=files))
 
 
 def has_joint(mechanism: Mechanism) -> bool:
@@ -96,8 +98,8 @@ def has_mimic(mechanism: Mechanism) -> bool:
     return any(joint.mimic for joint in mechanism.joints)
 
 
-LAWS = (
-    Law(
+PROPERTIES = (
+    Property(
         "following",
         "A joint that mimics moves as one that does not, held to its law.",
         ("EU-URD-032", "EU-CLO-010", "EU-INR-006"),
@@ -106,7 +108,7 @@ LAWS = (
         versions=("2",),
         applies=has_mimic,
     ),
-    Law(
+    Property(
         "mimics-ignored",
         "In version 1 a `mimic` changes nothing.",
         ("EU-ONE-009",),

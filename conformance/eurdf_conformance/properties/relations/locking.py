@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.properties.asked import ask
 from eurdf_conformance.properties.example import Example
-from eurdf_conformance.properties.law import Law
 from eurdf_conformance.properties.mechanism import Joint, Mechanism
 from eurdf_conformance.properties.pair import Pair, related
+from eurdf_conformance.properties.property import Property
+from eurdf_conformance.properties.query import query_of
 
 
 def locking(example: Example, version: Version) -> Pair:
     """A mechanism whose locked joints are fixed in the URDF, and the same one whose description locks them."""
-    return Pair(ask(fixed_in_urdf(example.mechanism), version), ask(example.mechanism, version))
+    return Pair(query_of(fixed_in_urdf(example.mechanism), version), query_of(example.mechanism, version))
 
 
 def fixed_in_urdf(mechanism: Mechanism) -> Mechanism:
@@ -33,8 +33,8 @@ def has_locked(mechanism: Mechanism) -> bool:
     return any(change.type == "fixed" for change in mechanism.changes.values())
 
 
-LAWS = (
-    Law(
+PROPERTIES = (
+    Property(
         "locking",
         "A joint that the description locks is one that is fixed in the URDF.",
         ("EU-JNT-019", "EU-FRM-004", "EU-INR-005"),

@@ -5,17 +5,17 @@ from __future__ import annotations
 import numpy as np
 
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.properties.asked import ask
 from eurdf_conformance.properties.example import Example
-from eurdf_conformance.properties.law import Law
 from eurdf_conformance.properties.mechanism import Inertia, Link, Mechanism, Pose
 from eurdf_conformance.properties.pair import Pair, related
 from eurdf_conformance.properties.placement import Matrix, matrix_of, vector
+from eurdf_conformance.properties.property import Property
+from eurdf_conformance.properties.query import query_of
 
 
 def lumping(example: Example, version: Version) -> Pair:
     """A mechanism, and one in which links on fixed joints weigh nothing, and what carries them weighs more."""
-    return Pair(ask(example.mechanism, version), ask(lumped(example.mechanism), version))
+    return Pair(query_of(example.mechanism, version), query_of(lumped(example.mechanism), version))
 
 
 def lumped(mechanism: Mechanism) -> Mechanism:
@@ -57,8 +57,8 @@ def has_fixed_mass(mechanism: Mechanism) -> bool:
     return any(mechanism.type_of(joint) == "fixed" and weighs[joint.child] for joint in mechanism.joints)
 
 
-LAWS = (
-    Law(
+PROPERTIES = (
+    Property(
         "lumping",
         "What is fixed to a link weighs as if it were a part of it.",
         ("EU-INR-005", "EU-INR-006", "EU-JNT-019"),

@@ -6,12 +6,12 @@ import numpy as np
 
 from eurdf_conformance.level import Level, Version
 from eurdf_conformance.oracle.spatial import rotation
-from eurdf_conformance.properties.asked import all_frames, ask
 from eurdf_conformance.properties.example import Example
-from eurdf_conformance.properties.law import Law
 from eurdf_conformance.properties.mechanism import Configuration, Mechanism
 from eurdf_conformance.properties.pair import Pair, related
 from eurdf_conformance.properties.placement import Matrix, inverse, matrix_of, quaternion_of
+from eurdf_conformance.properties.property import Property
+from eurdf_conformance.properties.query import all_frames, query_of
 from eurdf_conformance.properties.relations.changing import in_velocities, with_poses_of
 from eurdf_conformance.properties.truth import truth
 from eurdf_conformance.protocol.message import Values
@@ -58,7 +58,9 @@ def merging(example: Example, version: Version) -> Pair:
                 J[at, i] = turns[index][owner][:, balls[owner].index(column[0])]
         return with_poses_of(in_velocities(values, J, columns), frames)
 
-    return Pair(ask(mechanism, version, at=one, frames=frames), ask(apart, version, at=other, frames=frames), carry)
+    return Pair(
+        query_of(mechanism, version, at=one, frames=frames), query_of(apart, version, at=other, frames=frames), carry
+    )
 
 
 def weightless(mechanism: Mechanism) -> Mechanism:
@@ -111,8 +113,8 @@ def has_merged(mechanism: Mechanism) -> bool:
     return any(change.merges for change in mechanism.changes.values())
 
 
-LAWS = (
-    Law(
+PROPERTIES = (
+    Property(
         "merging",
         "Merged joints are a spherical joint that turns as the three of them do.",
         ("EU-JNT-022", "EU-JNT-015", "EU-JNT-026", "EU-INR-005"),

@@ -6,13 +6,13 @@ from collections.abc import Callable
 
 from eurdf_conformance.json_pointer import key_of, step
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.properties.asked import ask
 from eurdf_conformance.properties.document import names1
 from eurdf_conformance.properties.example import Example
-from eurdf_conformance.properties.law import Law
 from eurdf_conformance.properties.mechanism import Mechanism
 from eurdf_conformance.properties.names import Names, keyed, new_names, renamed
 from eurdf_conformance.properties.pair import Pair, related
+from eurdf_conformance.properties.property import Property
+from eurdf_conformance.properties.query import query_of
 from eurdf_conformance.protocol.message import CanonicalRobot, Jacobian, MassMatrix, Values
 
 Name = Callable[[str], str]
@@ -24,8 +24,8 @@ def renaming(example: Example, version: Version) -> Pair:
     names = new_names(mechanism, example.chance, version)
     joint = joint_names(mechanism, names, version)
     return Pair(
-        ask(mechanism, version),
-        ask(renamed(mechanism, names), version),
+        query_of(mechanism, version),
+        query_of(renamed(mechanism, names), version),
         carry=lambda values, index: values_renamed(values, names, joint),
         carry_robot=lambda robot: robot_renamed(robot, names, joint),
     )
@@ -59,7 +59,7 @@ def values_renamed(values: Values, names: Names, joint: Name) -> Values:
 def robot_renamed(robot: CanonicalRobot, names: Names, joint: Name) -> CanonicalRobot:
     """The same canonical description under other names; what the mechanism does not name keeps the name it was given.
 
-    That is a body that is none of links, and whatever a reader makes up.
+    That is a body that is none of links, and whatever a parser makes up.
     """
     link = names.link
     return robot.model_copy(
@@ -99,8 +99,8 @@ def _pointer(pointer: str, joint: Name) -> str:
     return pointer
 
 
-LAWS = (
-    Law(
+PROPERTIES = (
+    Property(
         "renaming",
         "Other names, whatever letters they are of, change nothing but the names.",
         ("EU-URD-011", "EU-FRM-004", "EU-FRM-005", "EU-YML-011", "EU-YML-008"),

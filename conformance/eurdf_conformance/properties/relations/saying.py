@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.properties.asked import all_frames, ask
 from eurdf_conformance.properties.chance import Chance
 from eurdf_conformance.properties.example import Example
-from eurdf_conformance.properties.law import Law, closed
 from eurdf_conformance.properties.mechanism import Frame, Joint, Link, Mechanism, Spot
 from eurdf_conformance.properties.pair import Pair, related
+from eurdf_conformance.properties.property import Property, closed
+from eurdf_conformance.properties.query import all_frames, query_of
 
 
 def saying(example: Example, version: Version) -> Pair:
     """A mechanism whose closures say their frames in place, and the same one that says each in another way."""
     inline = with_inline_frames(example.mechanism)
     other = said_otherwise(inline, example.chance)
-    return Pair(ask(inline, version), ask(other, version, frames=all_frames(inline)))
+    return Pair(query_of(inline, version), query_of(other, version, frames=all_frames(inline)))
 
 
 def with_inline_frames(mechanism: Mechanism) -> Mechanism:
@@ -75,8 +75,8 @@ def _with_frames(mechanism: Mechanism, say: Callable[[str | Spot], str | Spot]) 
     )
 
 
-LAWS = (
-    Law(
+PROPERTIES = (
+    Property(
         "frames",
         "A closure's frame is the same whether it is a name, a pose in place, on a link or its joint, or a link.",
         ("EU-FRM-001", "EU-FRM-004", "EU-FRM-005", "EU-FRM-006", "EU-CLO-008", "EU-CLO-009"),

@@ -44,11 +44,11 @@ def lengthened(mechanism: Mechanism, s: float) -> Mechanism:
         if joint.mimic is not None:
             leader = next(other for other in mechanism.joints if other.name == joint.mimic.joint)
             unit = (s if joint.type == "prismatic" else 1.0, s if leader.type == "prismatic" else 1.0)
-            law = {
+            mimic = {
                 "multiplier": joint.mimic.multiplier * unit[0] / unit[1],
                 "offset": joint.mimic.offset * unit[0],
             }
-            changed["mimic"] = joint.mimic.model_copy(update=law)
+            changed["mimic"] = joint.mimic.model_copy(update=mimic)
         return joint.model_copy(update=changed)
 
     return mechanism.replace(

@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.properties.asked import ask
 from eurdf_conformance.properties.chance import Chance
 from eurdf_conformance.properties.document import document
 from eurdf_conformance.properties.example import Example
 from eurdf_conformance.properties.files import Files
-from eurdf_conformance.properties.law import Law
 from eurdf_conformance.properties.mechanism import Mechanism
 from eurdf_conformance.properties.pair import Pair, related
+from eurdf_conformance.properties.property import Property
+from eurdf_conformance.properties.query import query_of
 from eurdf_conformance.properties.urdf import urdf_text
 from eurdf_conformance.properties.yaml_text import yaml_text
 
@@ -24,14 +24,14 @@ def reordering(example: Example, version: Version) -> Pair:
     keys = shuffled_keys(document(other, version), chance)
     files = Files(yaml_text(keys), urdf_text(other, backwards=True).encode())
     at, frames = mechanism.configurations, None
-    return Pair(ask(mechanism, version, frames=frames), ask(other, version, files=files, at=at))
+    return Pair(query_of(mechanism, version, frames=frames), query_of(other, version, files=files, at=at))
 
 
 def restyling(example: Example, version: Version) -> Pair:
     """A mechanism, and the same files in another spelling."""
-    asked = ask(example.mechanism, version)
+    query = query_of(example.mechanism, version)
     text = yaml_text(document(example.mechanism, version), example.chance)
-    return Pair(asked, ask(example.mechanism, version, files=Files(text, asked.files.urdf)))
+    return Pair(query, query_of(example.mechanism, version, files=Files(text, query.files.urdf)))
 
 
 def reordered(mechanism: Mechanism, chance: Chance, version: Version) -> Mechanism:
@@ -54,15 +54,15 @@ def shuffled_keys(value: Any, chance: Chance) -> Any:
     return [shuffled_keys(item, chance) for item in value] if isinstance(value, list) else value
 
 
-LAWS = (
-    Law(
+PROPERTIES = (
+    Property(
         "reordering",
         "Another order of links, joints, keys and elements changes nothing.",
         ("EU-CAN-005", "EU-JNT-025", "EU-CLO-010", "EU-INR-006"),
         (Level.STRUCTURE, Level.KINEMATICS, Level.DYNAMICS),
         related(reordering),
     ),
-    Law(
+    Property(
         "yaml-style",
         "Another style of YAML, with the same meaning under the core schema, changes nothing.",
         ("EU-YML-011", "EU-YML-001", "EU-YML-005", "EU-YML-006", "EU-YML-010", "EU-FIL-003", "EU-SCH-002"),

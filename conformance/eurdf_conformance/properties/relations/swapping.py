@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.properties.asked import ask
 from eurdf_conformance.properties.example import Example
-from eurdf_conformance.properties.law import Law, closed
 from eurdf_conformance.properties.pair import Pair, related
+from eurdf_conformance.properties.property import Property, closed
+from eurdf_conformance.properties.query import query_of
 from eurdf_conformance.properties.relations.changing import pose_matrix
 from eurdf_conformance.properties.relations.saying import with_named_frames
 from eurdf_conformance.protocol.message import Jacobian, Values
@@ -47,11 +47,11 @@ def swapping(example: Example, version: Version) -> Pair:
         rows = {name: K for name, K in values.jacobian.rows.items() if name not in balls}
         return values.model_copy(update={"jacobian": values.jacobian.model_copy(update={"rows": rows})})
 
-    return Pair(ask(mechanism, version), ask(other, version), carry, seen=compared)
+    return Pair(query_of(mechanism, version), query_of(other, version), carry, seen=compared)
 
 
-LAWS = (
-    Law(
+PROPERTIES = (
+    Property(
         "swapping",
         "Where A and B change places, the residual is that of the inverse pose.",
         ("EU-CLO-008", "EU-CLO-009", "EU-CLO-010"),

@@ -5,32 +5,32 @@ from __future__ import annotations
 from eurdf_conformance.comparison.canonical import canonical_differences
 from eurdf_conformance.comparison.difference import ABSENT, Difference
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.properties.asked import Asked, ask
-from eurdf_conformance.properties.bench import QUANTITIES, Bench, NotAnswered
 from eurdf_conformance.properties.document import names1
 from eurdf_conformance.properties.example import Example
-from eurdf_conformance.properties.law import Law
+from eurdf_conformance.properties.harness import QUANTITIES, Harness, NotAnswered
 from eurdf_conformance.properties.mechanism import Mechanism
+from eurdf_conformance.properties.property import Property
+from eurdf_conformance.properties.query import Query, query_of
 from eurdf_conformance.properties.same_values import same_values
 from eurdf_conformance.properties.truth import truth
 from eurdf_conformance.protocol.message import CanonicalRobot, Jacobian, MassMatrix, Values
 
 
-def twins(bench: Bench, example: Example, version: Version, level: Level) -> list[Difference]:
+def twins(harness: Harness, example: Example, version: Version, level: Level) -> list[Difference]:
     """What is said of a description of version 2 is said of that of version 1.
 
     Who does not read version 2 is compared with the oracle's reading of it.
     """
     mechanism = example.mechanism
-    one, other = ask(mechanism, "2"), ask(mechanism, "1")
+    one, other = query_of(mechanism, "2"), query_of(mechanism, "1")
     robot = truth(mechanism, "2")
     if level is Level.STRUCTURE:
-        expected, given = read2(bench, one), bench.read(other)
+        expected, given = read2(harness, one), harness.read(other)
         if given is None:
             return [Difference("/robot", "what it has read", ABSENT, "the level structure asks for it")]
         differences = canonical_differences(robot_of_version1(expected), given, robot.bodies)
         return [each.within("/robot") for each in differences]
-    before, after = evaluate2(bench, one, level), bench.evaluate(other, QUANTITIES[level])
+    before, after = evaluate2(harness, one, level), harness.evaluate(other, QUANTITIES[level])
     found = []
     for index, (values, given_values, q) in enumerate(zip(before, after, one.configurations, strict=True)):
         carried = values_of_version1(values, mechanism)
@@ -38,22 +38,22 @@ def twins(bench: Bench, example: Example, version: Version, level: Level) -> lis
     return found
 
 
-def read2(bench: Bench, asked: Asked) -> CanonicalRobot:
-    """What the reader reads of the description of version 2."""
+def read2(harness: Harness, query: Query) -> CanonicalRobot:
+    """What the parser reads of the description of version 2."""
     try:
-        read = bench.read(asked)
+        read = harness.read(query)
     except NotAnswered:
         read = None
-    return read or truth(asked.mechanism, "2").canonical()
+    return read or truth(query.mechanism, "2").canonical()
 
 
-def evaluate2(bench: Bench, asked: Asked, level: Level) -> list[Values]:
-    """What the reader says of the description of version 2."""
+def evaluate2(harness: Harness, query: Query, level: Level) -> list[Values]:
+    """What the parser says of the description of version 2."""
     try:
-        return bench.evaluate(asked, QUANTITIES[level])
+        return harness.evaluate(query, QUANTITIES[level])
     except NotAnswered:
-        robot = truth(asked.mechanism, "2")
-        return [robot.evaluate(q, asked.frames, QUANTITIES[level]) for q in asked.configurations]
+        robot = truth(query.mechanism, "2")
+        return [robot.evaluate(q, query.frames, QUANTITIES[level]) for q in query.configurations]
 
 
 def robot_of_version1(robot: CanonicalRobot) -> CanonicalRobot:
@@ -76,8 +76,8 @@ def values_of_version1(values: Values, mechanism: Mechanism) -> Values:
     return values.model_copy(update=changed)
 
 
-LAWS = (
-    Law(
+PROPERTIES = (
+    Property(
         "versions",
         "What both versions can say, they say alike.",
         ("EU-ONE-001", "EU-ONE-004", "EU-ONE-005", "EU-ONE-006", "EU-ONE-007", "EU-VER-002"),

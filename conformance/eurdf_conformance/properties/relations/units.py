@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.properties.asked import ask
 from eurdf_conformance.properties.conditioning import is_length
 from eurdf_conformance.properties.example import Example
-from eurdf_conformance.properties.law import Law
 from eurdf_conformance.properties.pair import Pair, related
+from eurdf_conformance.properties.property import Property
+from eurdf_conformance.properties.query import query_of
 from eurdf_conformance.properties.relations.scaling import lengthened, weighted
 from eurdf_conformance.properties.truth import truth
 from eurdf_conformance.protocol.message import Jacobian, MassMatrix, Values
@@ -46,7 +46,7 @@ def length_unit(example: Example, version: Version) -> Pair:
             changed["center_of_mass"] = [s * x for x in values.center_of_mass]
         return values.model_copy(update=changed)
 
-    return Pair(ask(mechanism, version), ask(lengthened(mechanism, s), version), carry)
+    return Pair(query_of(mechanism, version), query_of(lengthened(mechanism, s), version), carry)
 
 
 def mass_unit(example: Example, version: Version) -> Pair:
@@ -62,18 +62,18 @@ def mass_unit(example: Example, version: Version) -> Pair:
             changed["mass_matrix"] = MassMatrix(columns=M.columns, matrix=matrix)
         return values.model_copy(update=changed)
 
-    return Pair(ask(mechanism, version), ask(weighted(mechanism, s), version), carry)
+    return Pair(query_of(mechanism, version), query_of(weighted(mechanism, s), version), carry)
 
 
-LAWS = (
-    Law(
+PROPERTIES = (
+    Property(
         "length-unit",
         "Another unit of length changes every number as its unit says.",
         ("EU-JNT-018", "EU-JNT-025", "EU-CLO-008", "EU-CLO-009", "EU-CLO-010", "EU-INR-006", "EU-JNT-026"),
         (Level.KINEMATICS, Level.DYNAMICS),
         related(length_unit),
     ),
-    Law(
+    Property(
         "mass-unit",
         "Another unit of mass changes M and the mass alone.",
         ("EU-INR-006", "EU-INR-005", "EU-ACT-006"),

@@ -1,4 +1,4 @@
-"""Readers that are wrong, each in one way: ``python reader.py WAY``.
+"""Parsers that are wrong, each in one way: ``python parser.py WAY``.
 
 Each accepts whatever it is to load, and says which in the message of an issue, so that an answer tells which request it
 is the answer to. It goes wrong where the name of the description begins with ``fault``, or at `start`, or at `stop`,
@@ -21,7 +21,7 @@ def accepted(request):
 
 def started(request):
     who = {"name": "fake", "version": "1", "language": "Python"}
-    return {"id": request["id"], "outcome": "started", "protocol": "1.0", "reader": who, "claims": {"2": ["accept"]}}
+    return {"id": request["id"], "outcome": "started", "protocol": "1.0", "parser": who, "claims": {"2": ["accept"]}}
 
 
 def write(data):

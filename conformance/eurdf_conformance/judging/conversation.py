@@ -1,4 +1,4 @@
-"""A reader asked about cases, each of which it loads once for all levels."""
+"""A parser asked about cases, each of which it loads once for all levels."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from eurdf_conformance.protocol.message import Accepted, Quantity
 from eurdf_conformance.runner.outcome import Answered, Outcome
 
 
-class Reader(Protocol):
-    """Who is asked: a `Session`, or a reader in this process."""
+class Parser(Protocol):
+    """Who is asked: a `Session`, or a parser in this process."""
 
     def load(self, description: Path, urdf: Path) -> Outcome:
         """Ask to read a robot."""
@@ -28,14 +28,14 @@ class Reader(Protocol):
 
 
 class Conversation:
-    """The questions on cases, put to one reader.
+    """The questions on cases, put to one parser.
 
     Attributes:
-        reader: Who is asked.
+        parser: Who is asked.
     """
 
-    def __init__(self, reader: Reader) -> None:
-        self.reader = reader
+    def __init__(self, parser: Parser) -> None:
+        self.parser = parser
         self._files: tuple[Path, Path] | None = None
         self._loaded: Outcome | None = None
 
@@ -43,11 +43,11 @@ class Conversation:
         """What came of loading a case; asked once, where the case before was the same."""
         if self._loaded is None or self._files != (case.description, case.urdf):
             self._files = case.description, case.urdf
-            self._loaded = self.reader.load(*self._files)
+            self._loaded = self.parser.load(*self._files)
         return self._loaded
 
     def forget(self) -> None:
-        """Load the next case whatever it is: the reader was asked for something else meanwhile."""
+        """Load the next case whatever it is: the parser was asked for something else meanwhile."""
         self._loaded = None
 
     def evaluate(self, case: CorpusCase, quantities: Sequence[Quantity]) -> Outcome:
@@ -56,7 +56,7 @@ class Conversation:
         loaded = self.load(case)
         if not (isinstance(loaded, Answered) and isinstance(loaded.answer, Accepted)):
             return loaded
-        outcome = self.reader.evaluate(case.case.configurations, case.case.frames, quantities)
+        outcome = self.parser.evaluate(case.case.configurations, case.case.frames, quantities)
         if not isinstance(outcome, Answered):
             self._loaded = None  # the process that held the robot may be gone
         return outcome

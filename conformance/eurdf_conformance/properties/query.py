@@ -1,4 +1,4 @@
-"""What is asked of a reader about one mechanism."""
+"""What is asked of a parser about one mechanism."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from eurdf_conformance.properties.mechanism import Configuration, Mechanism
 
 
 @dataclass(frozen=True)
-class Asked:
+class Query:
     """Two files, and where the robot that they stand for is evaluated.
 
     Attributes:
@@ -30,14 +30,14 @@ class Asked:
     frames: Sequence[str]
 
 
-def ask(
+def query_of(
     mechanism: Mechanism,
     version: Version,
     *,
     files: Files | None = None,
     at: Mapping[str, Configuration] | None = None,
     frames: Sequence[str] | None = None,
-) -> Asked:
+) -> Query:
     """Ask about a mechanism.
 
     Args:
@@ -48,7 +48,7 @@ def ask(
         frames: Frames in place of all that it has.
     """
     stated = mechanism.configurations if at is None else at
-    return Asked(
+    return Query(
         mechanism,
         version,
         files or files_of(mechanism, version),

@@ -5,20 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from eurdf_conformance.judging.known_failures import NONE_KNOWN, KnownFailures
+from eurdf_conformance.judging.result import Item, Result
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import VERSIONS, Level, Version
 from eurdf_conformance.protocol.message import Started
-from eurdf_conformance.verdict.known_failures import NONE_KNOWN, KnownFailures
-from eurdf_conformance.verdict.result import Item, Result
-from eurdf_conformance.verdict.verdict import Verdict
 
 
 @dataclass(frozen=True)
 class Run:
-    """One run of the suite on one reader."""
+    """One run of the suite on one parser."""
 
     #: The parser as the user named it.
     parser: str
-    #: What the reader said of itself; None where it could not be started.
+    #: What the parser said of itself; None where it could not be started.
     started: Started | None
     #: Every item of the suite, at any level and for any version, whether it was asked or not. What stands here, is
     #: claimed and asked for, and has no result, counts as not run: nobody is certified on half of the suite.
@@ -35,7 +35,7 @@ class Run:
     known_failures: KnownFailures = field(default=NONE_KNOWN)
 
     def claims(self, version: Version, level: Level) -> bool:
-        """Whether the reader claims the level for the version."""
+        """Whether the parser claims the level for the version."""
         return self.started is not None and level in self.started.claims.get(version, ())
 
     def asks(self, version: Version, level: Level) -> bool:

@@ -1,4 +1,4 @@
-"""Known failures: what a reader's author expects to fail, in a strict file, so that nothing changes unnoticed.
+"""Known failures: what a parser's author expects to fail, in a strict file, so that nothing changes unnoticed.
 
 The file is a YAML list of mappings ``{id, level, verdict, reason}``. It excuses nothing: a level with a known failure
 is not certified. But a run in which all known failures fail as stated, and nothing else does, is as expected.
@@ -16,10 +16,10 @@ import yaml
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, TypeAdapter, ValidationError
 
 from eurdf_conformance.json_schema import published, schema_text
+from eurdf_conformance.judging.result import Item, Result
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level
 from eurdf_conformance.strict_yaml import load_strictly
-from eurdf_conformance.verdict.result import Item, Result
-from eurdf_conformance.verdict.verdict import Verdict
 
 
 def _is_failure(verdict: Any) -> Any:
@@ -60,7 +60,7 @@ class WrongKnownFailures(Exception):  # noqa: N818 - said to the user as it stan
 
 @dataclass(frozen=True)
 class KnownFailures:
-    """The known failures of one reader."""
+    """The known failures of one parser."""
 
     failures: tuple[KnownFailure, ...] = ()
 
@@ -138,7 +138,7 @@ def known_failures_schema() -> dict[str, Any]:
     return published(
         "schema:known-failures",
         _FILE.json_schema(),
-        title="Known failures of a reader of Extended URDF",
+        title="Known failures of a parser of Extended URDF",
         description="Items of the conformance suite that are expected to fail, each with its reason.",
     )
 

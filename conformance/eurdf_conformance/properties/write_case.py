@@ -14,38 +14,38 @@ from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.expect import expect
 from eurdf_conformance.corpus.expected import EXPECTED_FILE, expected_text
 from eurdf_conformance.corpus.read import CASE_FILE, CASES, CorpusCase, case_folders
-from eurdf_conformance.properties.asked import Asked
-from eurdf_conformance.properties.law import Law
+from eurdf_conformance.properties.property import Property
+from eurdf_conformance.properties.query import Query
 
 _ALPHABET = "abcdefghijklmnopqrstuvwxyz0123456789"
 
 
-def write_case(law: Law, asked: Asked, folder: Path) -> Path:
+def write_case(prop: Property, query: Query, folder: Path) -> Path:
     """Write a robot into a folder of its own, with what the oracle expects.
 
     Args:
-        law: The law from which a reader was found to depart.
-        asked: What it was asked about the robot.
+        prop: The property that the parser breaks.
+        query: The query on which it breaks it.
         folder: Where; the case goes into the folder of its topic there.
 
     Returns:
         The folder of the case.
     """
-    topic = "closures" if asked.mechanism.closures else "joints"
-    name = fresh_id(asked, {path.name for path in case_folders()})
+    topic = "closures" if query.mechanism.closures else "joints"
+    name = fresh_id(query, {path.name for path in case_folders()})
     home = folder / topic / name
     home.mkdir(parents=True, exist_ok=True)
-    asked.files.write(home)
+    query.files.write(home)
     clauses = read_clauses()
     said = {
         "id": name,
-        "title": f"{law.title.removesuffix('.')}: found by exploring, {name}.",
-        "version": asked.version,
-        "clauses": [clause for clause in law.clauses if asked.version in clauses[clause].versions],
+        "title": f"{prop.title.removesuffix('.')}: found by exploring, {name}.",
+        "version": query.version,
+        "clauses": [clause for clause in prop.clauses if query.version in clauses[clause].versions],
         "valid": True,
-        "provenance": {"expectation": "oracle", "note": f"found on exploring the property {law.name}"},
-        "configurations": [{joint: list(q) for joint, q in each.items()} for each in asked.configurations],
-        "frames": list(asked.frames),
+        "provenance": {"expectation": "oracle", "note": f"found on exploring the property {prop.name}"},
+        "configurations": [{joint: list(q) for joint, q in each.items()} for each in query.configurations],
+        "frames": list(query.frames),
     }
     case = CASE.validate_python(said)
     text = yaml.safe_dump(said, sort_keys=False, allow_unicode=True, width=120, default_flow_style=None)
@@ -65,9 +65,9 @@ def how_to_keep(case: Path) -> Iterator[str]:
     yield f"to run it alone: when it is there, the same command with -k {case.name}"
 
 
-def fresh_id(asked: Asked, taken: set[str]) -> str:
+def fresh_id(query: Query, taken: set[str]) -> str:
     """An id that no case has: made of the files, so that what is found again is written to the same place."""
-    digest = int.from_bytes(hashlib.sha256(asked.files.description + asked.files.urdf).digest(), "big")
+    digest = int.from_bytes(hashlib.sha256(query.files.description + query.files.urdf).digest(), "big")
     while True:
         digest, number = divmod(digest, len(_ALPHABET) ** 6)
         name = "".join(_ALPHABET[number // len(_ALPHABET) ** i % len(_ALPHABET)] for i in range(6))

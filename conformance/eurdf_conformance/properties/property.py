@@ -1,4 +1,4 @@
-"""A law: what holds of any reader, said of one mechanism at a time."""
+"""A property: what holds of any parser, said of one mechanism at a time."""
 
 from __future__ import annotations
 
@@ -7,45 +7,45 @@ from dataclasses import dataclass
 
 from eurdf_conformance.comparison.difference import Difference
 from eurdf_conformance.level import VERSIONS, Level, Version
-from eurdf_conformance.properties.bench import Bench
 from eurdf_conformance.properties.example import Example, frozen_examples
+from eurdf_conformance.properties.harness import Harness
 from eurdf_conformance.properties.mechanism import Mechanism
 
-#: How a reader departs from a law on one example.
-Check = Callable[[Bench, Example, Version, Level], list[Difference]]
+#: How a parser departs from a property on one example.
+Check = Callable[[Harness, Example, Version, Level], list[Difference]]
 
 #: Size of the largest member of a family that is explored.
 LARGEST = 11
 
-#: So many frozen examples are tried, of those that a law says something of.
+#: So many frozen examples are tried, of those that a property says something of.
 MOST = 24
 
 
 def anything(mechanism: Mechanism) -> bool:
-    """A law that says something of every mechanism."""
+    """A property that says something of every mechanism."""
     return True
 
 
 def closed(mechanism: Mechanism) -> bool:
-    """A law on closures."""
+    """A property on closures."""
     return bool(mechanism.closures)
 
 
 @dataclass(frozen=True)
-class Law:
-    """What holds of any reader and any mechanism.
+class Property:
+    """What holds of any parser and any mechanism.
 
     Attributes:
         name: Permanent.
         title: What holds, as a sentence.
         clauses: The clauses that it tests; of a version, those that are of it.
         levels: Levels at which it is asked.
-        check: How a reader departs from it.
+        check: How a parser departs from it.
         versions: Versions of the format for which it is asked.
         applies: Whether it says something of a mechanism.
         examples: The examples of every certification.
         closures: So many closures has a mechanism at least that is drawn for it.
-        family: Of a law on one family of mechanisms, its members by their size, up to `LARGEST`.
+        family: Of a property on one family of mechanisms, its members by their size, up to `LARGEST`.
         smallest: Size of the smallest member.
     """
 

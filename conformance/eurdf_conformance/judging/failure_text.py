@@ -1,4 +1,4 @@
-"""What is printed of an item that did not pass: all that is needed to mend the reader."""
+"""What is printed of an item that did not pass: all that is needed to mend the parser."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from eurdf_conformance.corpus.case import CasePlace, InvalidCase, ValidCase
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.lines import lines_of
 from eurdf_conformance.corpus.read import CorpusCase
+from eurdf_conformance.judging.judge import Judgement
+from eurdf_conformance.judging.result import Item
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level
 from eurdf_conformance.protocol.message import Issue
-from eurdf_conformance.suite.judge import Judgement
-from eurdf_conformance.verdict.result import Item
-from eurdf_conformance.verdict.verdict import Verdict
 from eurdf_conformance.visible import visible
 
 #: So many differences, and issues, of one item are shown.
@@ -38,7 +38,7 @@ _SAYING: Mapping[str, Sequence[str]] = {
 
 
 def failure_text(item: Item, judgement: Judgement, reproduce: str, case: CorpusCase | None) -> str:
-    """What is printed of an item that did not pass; what a reader wrote steers no terminal.
+    """What is printed of an item that did not pass; what a parser wrote steers no terminal.
 
     Args:
         item: The item.
@@ -65,7 +65,7 @@ def _lines(item: Item, judgement: Judgement, reproduce: str, case: CorpusCase | 
     if case is not None and isinstance(case.case, ValidCase):
         yield from where_it_stood(judgement, case.case.configurations)
     if judgement.issues:
-        yield "  the reader tells of:"
+        yield "  the parser tells of:"
         yield from _cut([_issue(issue) for issue in judgement.issues], "issues")
     if case is not None:
         yield from _files(case, item.level, judgement)

@@ -1,4 +1,4 @@
-"""What the answers of a reader on one case come to, at one level."""
+"""What the answers of a parser on one case come to, at one level."""
 
 from __future__ import annotations
 
@@ -7,11 +7,13 @@ from dataclasses import dataclass, replace
 
 from eurdf_conformance.comparison.canonical import canonical_differences
 from eurdf_conformance.comparison.difference import Difference
-from eurdf_conformance.comparison.issues import fault_differences, warning_differences
+from eurdf_conformance.comparison.issues import error_differences, warning_differences
 from eurdf_conformance.comparison.values import values_differences
 from eurdf_conformance.corpus.case import InvalidCase, ValidCase
 from eurdf_conformance.corpus.expect import DYNAMICS, KINEMATICS
 from eurdf_conformance.corpus.read import CorpusCase
+from eurdf_conformance.judging.conversation import Conversation
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level
 from eurdf_conformance.protocol.message import (
     Accepted,
@@ -35,8 +37,6 @@ from eurdf_conformance.runner.outcome import (
     Outcome,
     TimedOut,
 )
-from eurdf_conformance.suite.conversation import Conversation
-from eurdf_conformance.verdict.verdict import Verdict
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ class Judgement:
         verdict: The word for it.
         reason: What is wrong, in a sentence; empty where nothing is.
         differences: Of answers that are not the expected ones.
-        issues: What the reader said that is wrong with the files.
+        issues: What the parser said that is wrong with the files.
         log: What there is to know beside, which may differ from run to run.
     """
 
@@ -65,12 +65,12 @@ _WIDTH = 200
 
 
 def judge(case: CorpusCase, level: Level, conversation: Conversation) -> Judgement:
-    """Ask a reader on a case, and say what its answers come to.
+    """Ask a parser on a case, and say what its answers come to.
 
     Args:
         case: The case.
         level: One of its levels.
-        conversation: With the reader.
+        conversation: With the parser.
     """
     return _LEVELS[level](case, conversation)
 
@@ -193,7 +193,7 @@ def _judge_diagnose(case: CorpusCase, conversation: Conversation) -> Judgement:
         case Answered(answer=Accepted()), InvalidCase(either=False):
             return _judge_accept(case, conversation)
         case Answered(answer=Accepted(issues=issues) | Rejected(issues=issues)), InvalidCase() as fault:
-            return _unless(fault_differences(fault, issues), "it tells of another fault", "", issues)
+            return _unless(error_differences(fault, issues), "it tells of another fault", "", issues)
     return judge_outcome(outcome, _to_load(case))
 
 

@@ -11,11 +11,11 @@ class Verdict(StrEnum):
     PASSED = "passed"
     #: The answer is not the expected one.
     FAILED = "failed"
-    #: The reader says that it lacks a feature.
+    #: The parser says that it lacks a feature.
     UNSUPPORTED = "unsupported"
-    #: The reader would rather not answer.
+    #: The parser would rather not answer.
     SKIPPED = "skipped"
-    #: The reader failed by its own word.
+    #: The parser failed by its own word.
     ERRORED = "errored"
     #: The process ended without an answer.
     CRASHED = "crashed"
@@ -32,7 +32,7 @@ class Verdict(StrEnum):
     NOT_RUN = "not run"
 
 
-#: Verdicts that say something of how a reader is connected rather than of what it reads.
+#: Verdicts that say something of how a parser is connected rather than of what it reads.
 OF_THE_ADAPTER = frozenset(
     {Verdict.CRASHED, Verdict.TIMED_OUT, Verdict.MALFORMED, Verdict.MISPLACED, Verdict.CHATTER, Verdict.NOT_STARTED}
 )

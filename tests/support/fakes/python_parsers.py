@@ -1,4 +1,4 @@
-"""Readers in Python for `protocol.serve`, each with one peculiarity."""
+"""Parsers in Python for `protocol.serve`, each with one peculiarity."""
 
 import os
 import subprocess
@@ -87,7 +87,7 @@ class Answers(Plain):
         return [Values(mass=float(len(each)), center_of_mass=[0.0, 0.0, 1.0]) for each in configurations]
 
 
-# -- No readers ------------------------------------------------------------------------------------------------------
+# -- No parsers ------------------------------------------------------------------------------------------------------
 
 
 def claiming(said):

@@ -18,7 +18,7 @@ _MOST, _WIDTH = 3, 60
 _VALUE_APART = ("missing", "extra_forbidden", "union_tag_invalid", "union_tag_not_found", "json_invalid")
 
 
-def faults(error: ValidationError, within: str = "", skip: int = 0) -> str:
+def error_text(error: ValidationError, within: str = "", skip: int = 0) -> str:
     """What is wrong, at which JSON pointer; the first few.
 
     Args:

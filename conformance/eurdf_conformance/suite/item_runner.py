@@ -1,4 +1,4 @@
-"""One reader, asked on item after item; what becomes of each is told to pytest, and kept for the certificate."""
+"""One parser, asked on item after item; what becomes of each is told to pytest, and kept for the certificate."""
 
 from __future__ import annotations
 
@@ -9,30 +9,30 @@ from collections.abc import Callable, Collection
 import pytest
 
 from eurdf_conformance.corpus.read import CorpusCase
+from eurdf_conformance.judging.conversation import Conversation
+from eurdf_conformance.judging.failure_text import failure_text
+from eurdf_conformance.judging.judge import Judgement
+from eurdf_conformance.judging.result import RESULT, Item, Result
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level
 from eurdf_conformance.protocol.message import Started
 from eurdf_conformance.runner.session import NotStarted, Session
-from eurdf_conformance.suite.conversation import Conversation
-from eurdf_conformance.suite.failure_text import failure_text
-from eurdf_conformance.suite.judge import Judgement
 from eurdf_conformance.suite.options import Options
-from eurdf_conformance.verdict.result import RESULT, Item, Result
-from eurdf_conformance.verdict.verdict import Verdict
 from eurdf_conformance.visible import visible
 
-#: Name under which what the reader said of itself stands among the user properties of a pytest report.
+#: Name under which what the parser said of itself stands among the user properties of a pytest report.
 STARTED = "eurdf_conformance.started"
 
 #: So many differences of one item are kept for the certificate.
 _KEPT = 20
 
 
-class Asking:
-    """One reader, asked on item after item.
+class ItemRunner:
+    """One parser, asked on item after item.
 
     Attributes:
         options: What the user asks for.
-        conversation: With the reader, on cases.
+        conversation: With the parser, on cases.
         node: The test that runs.
     """
 
@@ -44,15 +44,15 @@ class Asking:
 
     @property
     def session(self) -> Session:
-        """The reader, to be asked for something else than cases."""
+        """The parser, to be asked for something else than cases."""
         self.conversation.forget()
         return self._session
 
     def new_session(self) -> Session:
-        """A further session with the reader."""
+        """A further session with the parser."""
         return new_session(self.options)
 
-    def settle(
+    def run(
         self,
         item: Item,
         ask: Callable[[], Judgement],
@@ -61,32 +61,32 @@ class Asking:
     ) -> None:
         """Ask, keep what becomes of it, and fail the test that runs if it is no pass.
 
-        An item of a level that the reader does not claim is skipped.
+        An item of a level that the parser does not claim is skipped.
 
         Args:
             item: What is asked.
             ask: Asks it.
             case: The case that it is about, if it is.
-            rather: Levels at which it is asked rather, where the reader claims one; it is skipped then.
+            rather: Levels at which it is asked rather, where the parser claims one; it is skipped then.
         """
         started = self._started()
         claimed = tuple(Level) if started is None else started.claims.get(item.version, ())
         if started is not None and item.level not in claimed:
-            name = visible(started.reader.name, kept="")
+            name = visible(started.parser.name, kept="")
             pytest.skip(f"{name} does not claim level {item.level} for version {item.version}")
         if asked := next((level for level in rather if level in claimed), None):
             pytest.skip(f"it is asked at level {asked}")
-        begin, before = time.perf_counter(), self._session.seconds_in_reader
+        begin, before = time.perf_counter(), self._session.seconds_in_parser
         try:
             judgement = ask()
         except Exception as error:
             # That an answer breaks the suite is a fault of the suite; it is no pass all the same.
             why = f"the suite itself broke on this answer, please tell us: {type(error).__name__}: {error}"
             judgement = Judgement(Verdict.FAILED, why, log=traceback.format_exc())
-        seconds, in_reader = time.perf_counter() - begin, self._session.seconds_in_reader - before
+        seconds, in_parser = time.perf_counter() - begin, self._session.seconds_in_parser - before
         reproduce = self.options.reproduce(item)
         told = tuple(filter(None, (judgement.reason, *map(str, judgement.differences[:_KEPT]))))
-        result = Result(item, judgement.verdict, told, reproduce, seconds, in_reader)
+        result = Result(item, judgement.verdict, told, reproduce, seconds, in_parser)
         self._keep(RESULT, result.to_json())
         self._tell(result, judgement, case)
 
@@ -101,7 +101,7 @@ class Asking:
             pytest.fail(text + (f"\n  it is known as '{known}'" if known else ""), pytrace=False)
 
     def _started(self) -> Started | None:
-        """What the reader says of itself; None where it does not start, which every item then tells."""
+        """What the parser says of itself; None where it does not start, which every item then tells."""
         try:
             started = self._session.started
         except NotStarted:
@@ -115,5 +115,5 @@ class Asking:
 
 
 def new_session(options: Options) -> Session:
-    """A session with the reader that is tested."""
+    """A session with the parser that is tested."""
     return Session(options.parser, timeout=options.timeout, start_timeout=options.start_timeout)

@@ -1,4 +1,4 @@
-"""Readers that know all answers by heart, from the cases themselves; each but the first is wrong in one way."""
+"""Parsers that know all answers by heart, from the cases themselves; each but the first is wrong in one way."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether a Python object is a reader at all, said before it is asked for anything."""
+"""Whether a Python object is a parser at all, said before it is asked for anything."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from eurdf_conformance.level import VERSIONS, Level
 _LEVELS = ", ".join(Level)
 
 
-def reader_fault(reader: Any) -> str:
-    """What keeps an object from being a `ReaderObject`, in a sentence; empty where nothing does."""
-    missing = [name for name in ("name", "version", "language", "claims", "load") if not hasattr(reader, name)]
+def parser_error(parser: Any) -> str:
+    """What keeps an object from being a `PythonParser`, in a sentence; empty where nothing does."""
+    missing = [name for name in ("name", "version", "language", "claims", "load") if not hasattr(parser, name)]
     if missing:
-        return f"{described(reader)} has no {' and no '.join(missing)}"
+        return f"{described(parser)} has no {' and no '.join(missing)}"
     for name in ("name", "version", "language"):
-        if not isinstance(said := getattr(reader, name), str):
+        if not isinstance(said := getattr(parser, name), str):
             return f"its {name} is {described(said)}, and should be a text"
-    if not reader.name:
+    if not parser.name:
         return "its name is empty"
-    fault = _claims_fault(reader.claims) or _method_fault(reader, "load", ("description", "urdf"))
-    if not fault and hasattr(reader, "evaluate"):
-        fault = _method_fault(reader, "evaluate", ("configurations", "frames", "quantities"))
+    fault = _claims_fault(parser.claims) or _method_fault(parser, "load", ("description", "urdf"))
+    if not fault and hasattr(parser, "evaluate"):
+        fault = _method_fault(parser, "evaluate", ("configurations", "frames", "quantities"))
     return fault
 
 
@@ -54,9 +54,9 @@ def _claims_fault(claims: Any) -> str:
     return ""
 
 
-def _method_fault(reader: Any, name: str, parameters: Sequence[str]) -> str:
+def _method_fault(parser: Any, name: str, parameters: Sequence[str]) -> str:
     """What is wrong with a method."""
-    method, asked = getattr(reader, name), f"{name}({', '.join(parameters)})"
+    method, asked = getattr(parser, name), f"{name}({', '.join(parameters)})"
     if not callable(method):
         return f"its {name} is {described(method)}, and should be a method {asked}"
     try:

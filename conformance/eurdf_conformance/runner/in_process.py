@@ -1,4 +1,4 @@
-"""A Python reader, asked in this process: for tests of a reader, or of the suite, that start none."""
+"""A Python parser, asked in this process: for tests of a parser, or of the suite, that start none."""
 
 from __future__ import annotations
 
@@ -7,21 +7,21 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from eurdf_conformance.protocol.message import AnyAnswer, Errored, Evaluated, Quantity, Unsupported
-from eurdf_conformance.protocol.serve import Evaluator, ReaderObject
+from eurdf_conformance.protocol.serve import Evaluator, PythonParser
 from eurdf_conformance.runner.outcome import Answered, Outcome
 
 
 class InProcess:
-    """A reader that is asked as a `Session` is; a crash of it is one of this process."""
+    """A parser that is asked as a `Session` is; a crash of it is one of this process."""
 
-    def __init__(self, reader: ReaderObject) -> None:
-        self._reader = reader
+    def __init__(self, parser: PythonParser) -> None:
+        self._parser = parser
 
     def load(self, description: Path, urdf: Path) -> Outcome:
         """Let it read a robot."""
         begin = time.perf_counter()
         try:
-            answer: AnyAnswer = self._reader.load(description.absolute(), urdf.absolute())
+            answer: AnyAnswer = self._parser.load(description.absolute(), urdf.absolute())
         except Exception as error:
             answer = _errored(error)
         return Answered(answer, time.perf_counter() - begin)
@@ -35,9 +35,9 @@ class InProcess:
         """Let it say where things are, of the robot accepted last."""
         begin = time.perf_counter()
         answer: AnyAnswer
-        if isinstance(self._reader, Evaluator):
+        if isinstance(self._parser, Evaluator):
             try:
-                found = self._reader.evaluate(configurations, frames, quantities)
+                found = self._parser.evaluate(configurations, frames, quantities)
                 answer = Evaluated(id=0, values=found) if isinstance(found, list) else found
             except Exception as error:
                 answer = _errored(error)

@@ -8,8 +8,8 @@ from typing import Any
 
 from pydantic import TypeAdapter
 
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.verdict.verdict import Verdict
 
 #: Name under which a result stands among the user properties of a pytest report.
 RESULT = "eurdf_conformance.result"
@@ -50,11 +50,11 @@ class Result:
     reproduce: str = ""
     #: Time of the whole item, s.
     seconds: float = 0.0
-    #: Time of it spent waiting for the reader, s.
-    seconds_in_reader: float = 0.0
+    #: Time of it spent waiting for the parser, s.
+    seconds_in_parser: float = 0.0
 
     def __post_init__(self) -> None:
-        # A line of a broken reader may hold half of a surrogate pair, which is no text in any file.
+        # A line of a broken parser may hold half of a surrogate pair, which is no text in any file.
         texts = tuple(text.encode("utf-8", "backslashreplace").decode("utf-8") for text in self.differences)
         object.__setattr__(self, "differences", texts)
 

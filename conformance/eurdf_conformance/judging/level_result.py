@@ -1,0 +1,85 @@
+"""The result of each level: what a run comes to, for each version of the format."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Sequence
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from eurdf_conformance.judging.result import Result
+from eurdf_conformance.judging.run import Run
+from eurdf_conformance.judging.verdict import Verdict
+from eurdf_conformance.level import VERSIONS, Level, Version
+
+Count = Annotated[int, Field(ge=0)]
+
+
+class LevelResult(BaseModel):
+    """Pass or fail of one level for one version."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    version: Version
+    level: Level
+    claimed: bool
+    """Whether the parser claims it. If not, nothing was tested."""
+    asked: bool
+    """Whether the user asked for it. If not, nothing was tested."""
+    items: Count
+    """Number of cases and properties that the suite has there."""
+    counts: dict[Verdict, Count]
+    """How many of them have which verdict."""
+    known_failures: Count
+    """How many of those that did not pass were expected not to."""
+    certified: bool
+    """Whether it is claimed and every item has passed."""
+
+
+def level_results(run: Run) -> tuple[LevelResult, ...]:
+    """The result of every level for every version, also of those that are not claimed."""
+    results: defaultdict[tuple[Version, Level], list[Result]] = defaultdict(list)
+    for result in run.accounted():
+        results[result.item.version, result.item.level].append(result)
+    items = Counter((item.version, item.level) for item in run.planned)
+    return tuple(
+        _level_result(run, version, level, items[version, level], results[version, level])
+        for version in VERSIONS
+        for level in Level
+    )
+
+
+def _level_result(run: Run, version: Version, level: Level, items: int, results: Sequence[Result]) -> LevelResult:
+    claimed, asked = run.claims(version, level), run.asks(version, level)
+    counts = Counter(result.verdict for result in results)
+    # A level without an item proves nothing, and a smoke run certifies nothing.
+    all_passed = 0 < items == counts[Verdict.PASSED] == counts.total()
+    return LevelResult(
+        version=version,
+        level=level,
+        claimed=claimed,
+        asked=asked,
+        items=items,
+        counts={verdict: counts[verdict] for verdict in Verdict if counts[verdict]},
+        known_failures=sum(run.known_failures.expects(result) for result in results),
+        certified=claimed and asked and all_passed and not run.smoke,
+    )
+
+
+def is_certified(run: Run) -> bool:
+    """Whether every level that is claimed and asked for is certified, and there is one.
+
+    Where the user has asked for some levels only, each of them must be claimed, for one version at least.
+    """
+    tested = [result for result in level_results(run) if result.claimed and result.asked]
+    return not unclaimed(run) and all(result.certified for result in tested)
+
+
+def unclaimed(run: Run) -> tuple[Level, ...]:
+    """The levels that the user has asked for and the parser claims for no version asked for.
+
+    Where the user has asked for all of them, one that is claimed will do.
+    """
+    missing = tuple(level for level in run.levels if not any(run.claims(version, level) for version in run.versions))
+    return () if len(missing) < len(run.levels) == len(Level) else missing
