@@ -107,7 +107,7 @@ def tried(prop: Property, level: Level, version: Version, parser: OracleParser, 
     return try_frozen(prop, level, version, Harness(InProcess(parser), folder))
 
 
-@pytest.mark.parametrize("item", property_items(), ids=lambda item: f"{item.item.id}-{item.item.level}")
+@pytest.mark.parametrize("item", list(property_items()), ids=lambda item: f"{item.item.id}-{item.item.level}")
 def test_every_property_holds_of_the_oracle(
     item: PropertyItem, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
