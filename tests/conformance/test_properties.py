@@ -237,7 +237,7 @@ def test_any_answer_that_fits_the_schema_passes_or_fails(prop: Property, level: 
 # -- families ---------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("property", FAMILIES, ids=lambda prop: prop.name)
+@pytest.mark.parametrize("prop", FAMILIES, ids=lambda prop: prop.name)
 def test_a_family_has_the_counts_that_are_known_at_any_size(prop: Property) -> None:
     assert prop.family is not None
     for size in range(prop.smallest, LARGEST + 1):

@@ -58,7 +58,7 @@ def _level(result: LevelResult) -> str:
     passed = result.counts.get(Verdict.PASSED, 0)
     others = [f"{count} {verdict}" for verdict, count in result.counts.items() if verdict != Verdict.PASSED and count]
     text = f"version {result.version}, {result.level}: {passed} of {sum(result.counts.values())} passed"
-    known = f", of which {result.known_failures} known" if result.known_failures else ""
+    known = f"; known failures: {result.known_failures}" if result.known_failures else ""
     detail = f" ({', '.join(others)}{known})" if others else ""
     return text + detail + (": certified" if result.certified else ": not certified")
 
