@@ -423,13 +423,14 @@ def _stabilised(robot: Robot, gains: tuple[float, float] | None) -> tuple[Any, V
         nc = sum(constraint.rows for constraint in robot.constraints)
         return None, np.full(nc, float(kp)), np.full(nc, float(kd))
     constraint_models, kps, kds = pin.StdVec_RigidConstraintModel(), [], []
-    for constraint in own:
+    for constraint_model, constraint in zip(own, robot.constraints, strict=True):
         if gains is not None:
-            constraint = pin.RigidConstraintModel(constraint)
-            constraint.m_baumgarte_parameters.Kp, constraint.m_baumgarte_parameters.Kd = map(float, gains)
-        constraint_models.append(constraint)
-        kps += [constraint.m_baumgarte_parameters.Kp] * constraint.residualSize()
-        kds += [constraint.m_baumgarte_parameters.Kd] * constraint.residualSize()
+            constraint_model = pin.RigidConstraintModel(constraint_model)
+            parameters = constraint_model.m_baumgarte_parameters
+            parameters.Kp, parameters.Kd = map(float, gains)
+        constraint_models.append(constraint_model)
+        kps += [constraint_model.m_baumgarte_parameters.Kp] * constraint.rows
+        kds += [constraint_model.m_baumgarte_parameters.Kd] * constraint.rows
     return constraint_models, np.array(kps), np.array(kds)
 
 

@@ -34,7 +34,7 @@ def following(mechanism: Mechanism) -> Following:
     mimics = {
         joint.name: joint.mimic for joint in mechanism.joints if joint.mimic is not None and joint.type in MIMIC_TYPES
     }
-    if not mimics:
+    if not mimics and not mechanism.couplings:
         return Following()
     laws = drivers(mimics)
     place = {joint.name: index for index, joint in enumerate(mechanism.joints)}
@@ -49,4 +49,5 @@ def _counted(mechanism: Mechanism, laws: Mapping[str, Mimic]) -> frozenset[str]:
     whole = {name for name, law in laws.items() if law.multiplier.is_integer()}
     # One joint with a plain coordinate makes all that lead it, or are led with it, have one.
     plain = {law.joint for name, law in laws.items() if not ({name, law.joint} <= continuous and name in whole)}
+    plain.update(name for coupling in mechanism.couplings for name in coupling.joints)
     return frozenset(continuous & (plain | {name for name, law in laws.items() if law.joint in plain}))
