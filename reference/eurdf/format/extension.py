@@ -12,8 +12,8 @@ from typing import Literal
 
 from eurdf.mechanism.mechanism import Root
 from eurdf.mechanism.pose import Vector3
-
-Pointer = tuple[str | int, ...]
+from eurdf.reading.yaml_node import Pointer
+from eurdf.reading.yaml_reader import YamlDocument
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,6 +118,7 @@ class Extension:
     """The YAML file, of either version.
 
     Attributes:
+        document: The file.
         version: ``1`` or ``2.0``.
         urdf: Path of the URDF, relative to the YAML file.
         root: Whether the root link is fixed or floating.
@@ -128,6 +129,7 @@ class Extension:
             at the top of a version 1 file.
     """
 
+    document: YamlDocument = field(repr=False, compare=False)
     version: Literal["1", "2.0"]
     urdf: str = "robot.urdf"
     root: Root = "fixed"
@@ -155,5 +157,4 @@ __all__ = [
     "FrameEntry",
     "FrameReference",
     "JointEntry",
-    "Pointer",
 ]

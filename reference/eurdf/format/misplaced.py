@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from eurdf.format.extension import Pointer
 from eurdf.format.version2 import JOINT_TYPES, KEYS
 from eurdf.reading.source import BREAK
+from eurdf.reading.yaml_node import Pointer
 
 if TYPE_CHECKING:
     from eurdf.reading.yaml_reader import YamlDocument

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
 
 from eurdf.format import version2
 from eurdf.format.extension import (
@@ -14,17 +13,18 @@ from eurdf.format.extension import (
     FrameEntry,
     FrameReference,
     JointEntry,
-    Pointer,
 )
 from eurdf.format.field import is_own_key
 from eurdf.format.version1 import Version1
 from eurdf.format.version2 import Version2
 from eurdf.mechanism.pose import Vector3
+from eurdf.reading.yaml_node import Pointer
+from eurdf.reading.yaml_reader import YamlDocument
 
 _UNIT = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
-def from_version1(model: Version1) -> Extension:
+def from_version1(model: Version1, document: YamlDocument) -> Extension:
     """The description in a file of version 1, whose parallel lists are of equal length.
 
     Keys other than the five are kept (EU-ONE-008). Closures are named ``closure_1``, ``closure_2``, … in file order
@@ -46,6 +46,7 @@ def from_version1(model: Version1) -> Extension:
         for index, (name, joint_type) in enumerate(zip(model.joint_name, model.joint_type, strict=True))
     )
     return Extension(
+        document,
         version="1",
         closures=closures,
         joints=joints,
@@ -63,14 +64,15 @@ def _version1_joint(pointer: Pointer, name: str, joint_type: str) -> JointEntry:
     return JointEntry(pointer, name, type="universal", split=joint_type.removeprefix("UJOINT_"))
 
 
-def from_version2(model: Version2, data: Mapping[str, Any]) -> Extension:
+def from_version2(model: Version2, document: YamlDocument) -> Extension:
     """The description in a file of version 2.0.
 
     Args:
         model: The file, accepted.
-        data: The same as it was written, in which the user's own keys are sought.
+        document: The same as it was written, in which the user's own keys are sought.
     """
     return Extension(
+        document,
         version="2.0",
         urdf=model.urdf,
         root=model.root,
@@ -90,7 +92,7 @@ def from_version2(model: Version2, data: Mapping[str, Any]) -> Extension:
             for name, joints in model.configurations.items()
         ),
         metadata=model.metadata,
-        own_data=dict(_own_data(data, ())),
+        own_data=dict(_own_data(document.data, ())),
     )
 
 

@@ -14,6 +14,7 @@ from eurdf.format.normal_form import from_version1, from_version2
 from eurdf.format.version1 import Version1
 from eurdf.format.version2 import VERSION, Version2
 from eurdf.format.violation import described, quoted, violations
+from eurdf.reading.reporter import YamlReporter
 
 if TYPE_CHECKING:
     from eurdf.reading.yaml_reader import YamlDocument
@@ -37,15 +38,16 @@ def read_extension(document: YamlDocument, diagnostics: Diagnostics) -> Extensio
         The description, or None if an error was found.
     """
     data = document.data
-    version = _version(document, diagnostics)
+    reporter = YamlReporter(document, diagnostics)
+    version = _version(reporter)
     if version is None:
         return None
     known = True
     try:
         if version == "1":
-            _warn_of_near_misses(document, diagnostics)
+            _warn_of_near_misses(reporter)
             one = Version1.model_validate(data)
-            return from_version1(one) if _lengths_agree(one, document, diagnostics) else None
+            return from_version1(one, document) if _lengths_agree(one, reporter) else None
         if data[VERSION_KEY] != VERSION:  # told already: what else is wrong is told as well
             known, data = False, {**data, VERSION_KEY: VERSION}
         two = Version2.model_validate(data)
@@ -53,57 +55,59 @@ def read_extension(document: YamlDocument, diagnostics: Diagnostics) -> Extensio
         for diagnostic in violations(error, document):
             diagnostics.add(diagnostic)
         return None
-    return from_version2(two, data) if known else None
+    return from_version2(two, document) if known else None
 
 
 def version_of(document: YamlDocument) -> Literal["1", "2.0"] | None:
     """The version whose rules a file is to be read by; None if it has an error that leaves this unknown."""
-    return _version(document, Diagnostics())
+    return _version(YamlReporter(document, Diagnostics()))
 
 
-def _version(document: YamlDocument, diagnostics: Diagnostics) -> Literal["1", "2.0"] | None:
+def _version(reporter: YamlReporter) -> Literal["1", "2.0"] | None:
     """The version whose rules a file is to be read by (EU-VER-002, EU-VER-003); None if unknown."""
-    data = document.data
+    data = reporter.document.data
     if VERSION_KEY in data:
-        return _written_version(document, diagnostics)
+        return _written_version(reporter)
     if any(key in data for key in _VERSION1_KEYS):
         return "1"
     misspelt = next((key for key in data if not is_own_key(key) and near(key, [VERSION_KEY])), None)
     if misspelt is not None:
-        diagnostics.report(
+        reporter.report(
             "missing-key",
             f"the file lacks '{VERSION_KEY}', the key that says its version, but has {quoted(misspelt)}",
-            document.place((misspelt,), key=True),
+            (misspelt,),
             f"did you mean '{VERSION_KEY}'?",
+            key=True,
         )
         return None
     version2_key = next((key for key in data if key in (*_VERSION2_KEYS, "metadata")), None)
     if version2_key is not None:
-        diagnostics.report(
+        reporter.report(
             "missing-key",
             f"the file has '{version2_key}', a key of version {VERSION}, but lacks '{VERSION_KEY}'",
-            document.place((version2_key,), key=True),
+            (version2_key,),
             f'begin the file with {VERSION_KEY}: "{VERSION}"',
+            key=True,
         )
         return None
     return "1"
 
 
-def _written_version(document: YamlDocument, diagnostics: Diagnostics) -> Literal["2.0"] | None:
+def _written_version(reporter: YamlReporter) -> Literal["2.0"] | None:
     """Version 2.0, or None if the file says another (EU-VER-001)."""
-    value = document.data[VERSION_KEY]
-    place = document.place((VERSION_KEY,))
+    value = reporter.document.data[VERSION_KEY]
+    pointer = (VERSION_KEY,)
     quoted = f'write {VERSION_KEY}: "{VERSION}", in quotes'
     if value == VERSION:
         return VERSION
     if value in ("1", "1.0"):
         message = f"'{VERSION_KEY}' cannot be {described(value)}: a file of version 1 does not state its version"
-        diagnostics.report("unsupported-version", message, place, f"leave '{VERSION_KEY}' out")
+        reporter.report("unsupported-version", message, pointer, f"leave '{VERSION_KEY}' out")
         return None
     if isinstance(value, str):
         hint = f"the version known is {VERSION}: {quoted}"
-        diagnostics.report(
-            "unsupported-version", f"version {described(value)} of Extended URDF is not known", place, hint
+        reporter.report(
+            "unsupported-version", f"version {described(value)} of Extended URDF is not known", pointer, hint
         )
         return None
     shown = (
@@ -112,13 +116,13 @@ def _written_version(document: YamlDocument, diagnostics: Diagnostics) -> Litera
     message = f"'{VERSION_KEY}' must be text, not {shown}"
     if shown in ("the number 1", "the number 1.0"):
         quoted = f"leave '{VERSION_KEY}' out: a file of version 1 does not state its version"
-    diagnostics.report("wrong-type", message, place, quoted)
+    reporter.report("wrong-type", message, pointer, quoted)
     return VERSION
 
 
-def _warn_of_near_misses(document: YamlDocument, diagnostics: Diagnostics) -> None:
+def _warn_of_near_misses(reporter: YamlReporter) -> None:
     """Warn of keys that are read as the user's own, but look as if they were meant for the reader (EU-ONE-002)."""
-    for key in document.data:
+    for key in reporter.document.data:
         if key in _VERSION1_KEYS or is_own_key(key):
             continue
         if key in _VERSION2_KEYS:
@@ -129,10 +133,16 @@ def _warn_of_near_misses(document: YamlDocument, diagnostics: Diagnostics) -> No
             hint = f"did you mean '{meant}'?"
         else:
             continue
-        diagnostics.report("near-miss-key", message, document.place((key,), key=True), hint)
+        reporter.report(
+            "near-miss-key",
+            message,
+            (key,),
+            hint,
+            key=True,
+        )
 
 
-def _lengths_agree(model: Version1, document: YamlDocument, diagnostics: Diagnostics) -> bool:
+def _lengths_agree(model: Version1, reporter: YamlReporter) -> bool:
     """Whether the lists of version 1 that go together are of one length (EU-ONE-003)."""
     agree = True
     for first, second in (("closed_loop", "type"), ("joint_name", "joint_type")):
@@ -144,5 +154,9 @@ def _lengths_agree(model: Version1, document: YamlDocument, diagnostics: Diagnos
             shorter = min((key for key in lengths if key in model.model_fields_set), key=lambda key: lengths[key])
             counts = f"'{first}' has {lengths[first]} and '{second}' {lengths[second]} items"
             message = f"{counts}, but they go together one by one"
-            diagnostics.report("length-mismatch", message, document.place((shorter,)))
+            reporter.report(
+                "length-mismatch",
+                message,
+                (shorter,),
+            )
     return agree

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from eurdf.diagnostics import Diagnostic, did_you_mean
-from eurdf.format.extension import Pointer
 from eurdf.format.misplaced import Indentation, another_entry_hint, key_of_the_file_hint, key_outside_hint
 from eurdf.format.near import near
 from eurdf.format.version2 import EXCLUDED, FROM_VERSION1, JOINT_TYPES, KEYS, TAGS
+from eurdf.reading.yaml_node import Pointer
 
 if TYPE_CHECKING:
     from pydantic import ValidationError

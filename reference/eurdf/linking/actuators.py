@@ -7,11 +7,13 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from eurdf.diagnostics import Diagnostics, Hint, Place, did_you_mean
+from eurdf.diagnostics import Hint, did_you_mean
 from eurdf.format.extension import ActuatorEntry
 from eurdf.format.urdf import Urdf
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
+from eurdf.reading.reporter import YamlReporter
+from eurdf.reading.yaml_node import Pointer
 from eurdf.reading.yaml_reader import YamlDocument
 
 
@@ -21,8 +23,7 @@ def link_actuators(
     joints: Mapping[str, Joint],
     merged: Mapping[str, str],
     split: Mapping[str, tuple[str, str]],
-    document: YamlDocument,
-    diagnostics: Diagnostics,
+    reporter: YamlReporter,
 ) -> tuple[str, ...]:
     """Check every actuator against the joints as the description makes them; returns the names, in file order.
 
@@ -32,27 +33,26 @@ def link_actuators(
         joints: Joints of the mechanism.
         merged: For each joint that was merged away, the joint it became part of.
         split: For each joint that was split, the two that it became.
-        document: To point into.
-        diagnostics: Gets what is found.
+        reporter: Gets what is found.
     """
     listed: dict[str, None] = {}
     for entry in entries:
         name = entry.joint
-        place = partial(_place_of_name, entry, document)
+        pointer = _pointer_of_name(entry, reporter.document)
         joint = joints.get(name)
         if name in merged:
-            diagnostics.report(
+            reporter.report(
                 "actuator-merged",
                 f"joint '{name}' cannot be actuated: it was merged into the spherical joint '{merged[name]}'",
-                place,
+                pointer,
                 f"actuate '{merged[name]}', or keep the three joints apart",
             )
         elif name in split:
             first, second = split[name]
-            diagnostics.report(
+            reporter.report(
                 "unknown-actuator",
                 f"joint '{name}' was split in two",
-                place,
+                pointer,
                 f"actuate '{first}' or '{second}'",
             )
         elif joint is None:
@@ -60,17 +60,17 @@ def link_actuators(
             hint: Hint = partial(did_you_mean, name, movable)
             if name in urdf.links:
                 hint = f"'{name}' is a link; name the joint that moves it"
-            diagnostics.report("unknown-actuator", f"actuator '{name}' is no joint of the robot", place, hint)
+            reporter.report("unknown-actuator", f"actuator '{name}' is no joint of the robot", pointer, hint)
         elif name in listed:
-            diagnostics.report("actuator-duplicate", f"joint '{name}' is actuated twice", place, "remove one")
+            reporter.report("actuator-duplicate", f"joint '{name}' is actuated twice", pointer, "remove one")
         elif joint.type is JointType.FIXED:
             hint = "actuate a joint that moves, or take it out"
-            diagnostics.report("actuator-immobile", f"joint '{name}' is fixed and cannot be actuated", place, hint)
+            reporter.report("actuator-immobile", f"joint '{name}' is fixed and cannot be actuated", pointer, hint)
         elif joint.mimic is not None:
-            diagnostics.report(
+            reporter.report(
                 "actuator-mimic",
                 f"joint '{name}' mimics '{joint.mimic.joint}' and cannot be actuated by itself",
-                place,
+                pointer,
                 f"actuate '{joint.mimic.joint}'",
             )
         else:
@@ -94,8 +94,8 @@ def with_motor(joint: Joint, entry: ActuatorEntry, *, armature_given: bool) -> J
     return replace(joint, properties=motor)
 
 
-def _place_of_name(entry: ActuatorEntry, document: YamlDocument) -> Place:
+def _pointer_of_name(entry: ActuatorEntry, document: YamlDocument) -> Pointer:
     value: Any = document.data
     for key in entry.pointer:
         value = value[key]
-    return document.place((*entry.pointer, "joint") if isinstance(value, dict) else entry.pointer)
+    return (*entry.pointer, "joint") if isinstance(value, dict) else entry.pointer

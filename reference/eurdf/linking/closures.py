@@ -4,21 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from eurdf.diagnostics import Diagnostics
 from eurdf.format.extension import ClosureEntry
 from eurdf.linking.frame_names import FrameNames
 from eurdf.mechanism.constraint import CLOSURES, Closure
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.pose import Pose
-from eurdf.reading.yaml_reader import YamlDocument
+from eurdf.reading.reporter import YamlReporter
 
 
 def link_closures(
     entries: Iterable[ClosureEntry],
     names: FrameNames,
     rigid: Mapping[str, str],
-    document: YamlDocument,
-    diagnostics: Diagnostics,
+    reporter: YamlReporter,
 ) -> tuple[Closure, ...]:
     """Look the frames of every closure up and check what two frames can have wrong together.
 
@@ -28,41 +26,40 @@ def link_closures(
         entries: As written.
         names: Finds frames.
         rigid: For each body, the body it is rigidly fixed to.
-        document: To point into.
-        diagnostics: Gets what is found.
+        reporter: Gets what is found.
     """
     closures: list[Closure] = []
     taken: dict[str, ClosureEntry] = {}
     joined: dict[frozenset[tuple[str, Pose]], str] = {}
     for entry in entries:
         if entry.name in taken:
-            diagnostics.report(
+            reporter.report(
                 "duplicate-closure-name",
                 f"there is already a closure '{entry.name}'",
-                document.place((*entry.pointer, "name")),
+                (*entry.pointer, "name"),
                 "give every closure a name of its own",
             )
             continue
         taken[entry.name] = entry
         a, b = names.find(entry.a), names.find(entry.b)
-        if a is None or b is None or not _movable(entry, a, b, rigid, document, diagnostics):
+        if a is None or b is None or not _movable(entry, a, b, rigid, reporter):
             continue
         pair = frozenset({(a.body, a.pose), (b.body, b.pose)})
         if pair in joined:
-            diagnostics.report(
+            reporter.report(
                 "closure-duplicate",
                 f"closure '{entry.name}' joins the same two frames as '{joined[pair]}'",
-                document.place(entry.pointer),
+                entry.pointer,
                 "remove one of them",
             )
             continue
         joined[pair] = entry.name
         kind = CLOSURES.get(entry.type)
         if kind is None:
-            diagnostics.report(
+            reporter.report(
                 "closure-type-unknown",
                 f"closure '{entry.name}' has the type '{entry.type}', which is not part of the format; it is left out",
-                document.place((*entry.pointer, "type")),
+                (*entry.pointer, "type"),
             )
             continue
         closures.append(kind(entry.name, a, b))
@@ -74,27 +71,26 @@ def _movable(
     a: Anchor,
     b: Anchor,
     rigid: Mapping[str, str],
-    document: YamlDocument,
-    diagnostics: Diagnostics,
+    reporter: YamlReporter,
 ) -> bool:
     """EU-CLO-002, EU-CLO-003: the two frames are not one, and not fixed to one another."""
     if a.body == b.body and a.pose == b.pose:
         same = not a.frame or not b.frame or a.frame == b.frame
         what = f"a frame on '{a.body}'" if not a.frame else f"'{a.frame}'"
         message = f"{what} to itself" if same else f"'{a.frame}' to '{b.frame}', which are one and the same frame"
-        diagnostics.report(
+        reporter.report(
             "closure-same-frame",
             f"closure '{entry.name}' joins {message}",
-            document.place(entry.b.pointer),
+            entry.b.pointer,
             "name the frame on the other side of the loop",
         )
         return False
     if rigid[a.body] == rigid[b.body]:
         which = f"'{a.body}'" if a.body == b.body else f"'{a.body}' and '{b.body}', which are fixed to each other"
-        diagnostics.report(
+        reporter.report(
             "closure-same-body",
             f"closure '{entry.name}' joins two frames of one rigid body, {which}",
-            document.place(entry.pointer),
+            entry.pointer,
             "a closure must join frames that a joint can move against each other",
         )
         return False

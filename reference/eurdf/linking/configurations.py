@@ -6,11 +6,12 @@ import math
 from collections.abc import Collection, Iterable, Mapping
 from functools import partial
 
-from eurdf.diagnostics import Diagnostics, Hint, did_you_mean
-from eurdf.format.extension import ConfigurationEntry, Pointer
+from eurdf.diagnostics import Hint, did_you_mean
+from eurdf.format.extension import ConfigurationEntry
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
-from eurdf.reading.yaml_reader import YamlDocument
+from eurdf.reading.reporter import YamlReporter
+from eurdf.reading.yaml_node import Pointer
 
 #: A quaternion in a file may be off unit length by this much; it is normalised when read (EU-CFG-003).
 QUATERNION_TOLERANCE = 1e-6
@@ -24,8 +25,7 @@ def link_configurations(
     joints: Mapping[str, Joint],
     merged: Mapping[str, str],
     skip: Collection[str],
-    document: YamlDocument,
-    diagnostics: Diagnostics,
+    reporter: YamlReporter,
 ) -> dict[str, dict[str, tuple[float, ...]]]:
     """Check every configuration against the joints of the mechanism; EU-CFG-006: quaternions come back of unit length.
 
@@ -34,8 +34,7 @@ def link_configurations(
         joints: Joints of the mechanism, and that of a floating root.
         merged: For each joint that was merged away, the joint it became part of.
         skip: Joints that are not looked at, since their own entry is at fault.
-        document: To point into.
-        diagnostics: Gets what is found.
+        reporter: Gets what is found.
     """
     configurations = {}
     for entry in entries:
@@ -44,9 +43,9 @@ def link_configurations(
             if name in skip:
                 continue
             pointer = (*entry.pointer, name)
-            joint = _joint(name, joints, merged, pointer, entry, document, diagnostics)
+            joint = _joint(name, joints, merged, pointer, entry, reporter)
             if joint is not None:
-                checked = _coordinates(joint, values, pointer, entry, document, diagnostics)
+                checked = _coordinates(joint, values, pointer, entry, reporter)
                 if checked is not None:
                     configuration[name] = checked
         configurations[entry.name] = configuration
@@ -59,8 +58,7 @@ def _joint(
     merged: Mapping[str, str],
     pointer: Pointer,
     entry: ConfigurationEntry,
-    document: YamlDocument,
-    diagnostics: Diagnostics,
+    reporter: YamlReporter,
 ) -> Joint | None:
     """EU-CFG-001: a configuration speaks of joints that have coordinates of their own."""
     joint = joints.get(name)
@@ -78,8 +76,12 @@ def _joint(
         why = f"mimics '{joint.mimic.joint}' and has no coordinate of its own"
     else:
         why = "is fixed and has no coordinate"
-    diagnostics.report(
-        "configuration-joint", f"'{name}' in configuration '{entry.name}' {why}", document.place(pointer, True), hint
+    reporter.report(
+        "configuration-joint",
+        f"'{name}' in configuration '{entry.name}' {why}",
+        pointer,
+        hint,
+        key=True,
     )
     return None
 
@@ -94,16 +96,15 @@ def _coordinates(
     values: tuple[float, ...],
     pointer: Pointer,
     entry: ConfigurationEntry,
-    document: YamlDocument,
-    diagnostics: Diagnostics,
+    reporter: YamlReporter,
 ) -> tuple[float, ...] | None:
     coordinates = joint.coordinates
     if len(values) != len(coordinates.names):
-        diagnostics.report(
+        reporter.report(
             "configuration-length",
             f"{joint.type} joint '{joint.name}' has {len(values)} coordinates in configuration '{entry.name}'; "
             f"it must have {len(coordinates.names)}: {', '.join(coordinates.names)}",
-            document.place(pointer),
+            pointer,
         )
         return None
     start = coordinates.quaternion
@@ -111,10 +112,10 @@ def _coordinates(
         norm = math.sqrt(sum(value * value for value in values[start : start + 4]))
         if abs(norm - 1.0) > QUATERNION_TOLERANCE:
             unit = [round(value / norm, 6) for value in values[start : start + 4]] if norm > 1e-9 else [0, 0, 0, 1]
-            diagnostics.report(
+            reporter.report(
                 "configuration-quaternion",
                 f"the quaternion of joint '{joint.name}' in configuration '{entry.name}' has length {norm:.6g}, not 1",
-                document.place(pointer),
+                pointer,
                 f"x, y, z, w of unit length: {unit}",
             )
             return None
@@ -123,11 +124,11 @@ def _coordinates(
         values, joint.properties.lower, joint.properties.upper, coordinates.names, strict=True
     ):
         if not within_limits(value, lower, upper):
-            diagnostics.report(
+            reporter.report(
                 "configuration-limits",
                 f"{name} {value:g} of joint '{joint.name}' in configuration '{entry.name}' is outside its limits "
                 f"{lower:g} to {upper:g}",
-                document.place(pointer),
+                pointer,
             )
             return None
     return values

@@ -6,13 +6,13 @@ from collections.abc import Collection, Iterable, Mapping
 from functools import partial
 from itertools import chain
 
-from eurdf.diagnostics import Diagnostics, did_you_mean
+from eurdf.diagnostics import did_you_mean
 from eurdf.format.extension import FrameEntry, FrameReference
 from eurdf.format.urdf import Urdf
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.pose import Pose
-from eurdf.reading.yaml_reader import YamlDocument
+from eurdf.reading.reporter import YamlReporter
 
 
 class FrameNames:
@@ -23,8 +23,7 @@ class FrameNames:
         urdf: Urdf,
         joints: Mapping[str, Joint],
         faulty: Collection[str],
-        document: YamlDocument,
-        diagnostics: Diagnostics,
+        reporter: YamlReporter,
     ) -> None:
         self._urdf = urdf
         self._joints = joints
@@ -32,8 +31,7 @@ class FrameNames:
         self._faulty = faulty
         # None for a frame that is at fault itself: what uses it is not told so again.
         self._frames: dict[str, Anchor | None] = {}
-        self._document = document
-        self._diagnostics = diagnostics
+        self._reporter = reporter
 
     def add(self, entries: Iterable[FrameEntry]) -> tuple[Frame, ...]:
         """EU-FRM-003: take in the frames that the description adds; a name is given once."""
@@ -41,10 +39,10 @@ class FrameNames:
         for entry in entries:
             if entry.name in self._frames or self._known(entry.name):
                 what = "frame" if entry.name in self._frames else "link" if entry.name in self._urdf.links else "joint"
-                self._diagnostics.report(
+                self._reporter.report(
                     "duplicate-frame",
                     f"there is already a {what} '{entry.name}'",
-                    self._document.place((*entry.pointer, "name")),
+                    (*entry.pointer, "name"),
                     "give the frame another name",
                 )
                 continue
@@ -87,10 +85,10 @@ class FrameNames:
         child = self._joint_child(name)
         if name in self._urdf.links:
             if child is not None and child != name:
-                self._diagnostics.report(
+                self._reporter.report(
                     "ambiguous-frame",
                     f"'{name}' is both a link and a joint, and the joint carries another link, '{child}'",
-                    self._document.place(reference.pointer),
+                    reference.pointer,
                     f"write {{link: {name}}} or {{joint: {name}}}",
                 )
                 return None
@@ -100,10 +98,10 @@ class FrameNames:
         if name in self._faulty:
             return None
         candidates = chain(self._frames, self._urdf.links, self._urdf.joints, self._joints)
-        self._diagnostics.report(
+        self._reporter.report(
             "unknown-frame",
             f"'{name}' is no link, joint or frame of the robot",
-            self._document.place(reference.pointer),
+            reference.pointer,
             partial(did_you_mean, name, candidates),
         )
         return None
@@ -121,10 +119,10 @@ class FrameNames:
             if reference.joint in self._faulty:
                 return None
             kind, name, candidates = "joint", reference.joint, chain(self._urdf.joints, self._joints)
-        self._diagnostics.report(
+        self._reporter.report(
             "unknown-frame",
             f"'{name}' is no {kind} of the robot",
-            self._document.place((*reference.pointer, kind)),
+            (*reference.pointer, kind),
             partial(did_you_mean, name, candidates),
         )
         return None

@@ -22,8 +22,8 @@ from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, Root
 from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic, drivers
 from eurdf.mechanism.spanning_tree import depth_first, rigid_roots
+from eurdf.reading.reporter import YamlReporter
 from eurdf.reading.yaml_node import json_pointer
-from eurdf.reading.yaml_reader import YamlDocument
 
 #: Joints that a robot may have, fixed ones too.
 JOINT_LIMIT = 10_000
@@ -38,7 +38,6 @@ ROW_LIMIT = 20_000
 def link(
     urdf: Urdf,
     extension: Extension | None,
-    document: YamlDocument | None,
     diagnostics: Diagnostics,
     root: Root | None = None,
     *,
@@ -51,7 +50,6 @@ def link(
     Args:
         urdf: The URDF, sound by itself.
         extension: The description; None for a bare URDF.
-        document: Where the description was read from; None with it.
         diagnostics: Gets what is found.
         root: In place of the root that the description states.
         mimic: Whether a mimic joint depends on its leader; if not, it is free, as if the URDF had no ``<mimic>``. In a
@@ -64,21 +62,20 @@ def link(
     mimics = {} if mimic else {joint.name: joint.mimic for joint in urdf.joints.values() if joint.mimic}
     if not mimic or (extension is not None and extension.version == "1"):
         urdf = urdf.without_mimics()
-    if extension is None or document is None:
+    if extension is None:
         mechanism = _bare(urdf, diagnostics, root or "fixed")
     else:
-        mechanism = _described(urdf, extension, document, diagnostics, root or extension.root)
+        reporter = YamlReporter(extension.document, diagnostics)
+        mechanism = _described(urdf, extension, reporter, root or extension.root)
         mechanism = replace(mechanism, configurations=_led(mechanism, drivers(mimics)))
-        _reserve_names(extension, document, diagnostics, mechanism.root)
+        _reserve_names(extension, reporter, mechanism.root)
     if mechanism.root == "floating":
         _reserve_root_joint(urdf, diagnostics)
-    _refuse_too_large(mechanism, urdf, document, diagnostics)
+    _refuse_too_large(mechanism, urdf, extension, diagnostics)
     return None if diagnostics.error_count > before else mechanism
 
 
-def _refuse_too_large(
-    mechanism: Mechanism, urdf: Urdf, document: YamlDocument | None, diagnostics: Diagnostics
-) -> None:
+def _refuse_too_large(mechanism: Mechanism, urdf: Urdf, extension: Extension | None, diagnostics: Diagnostics) -> None:
     """EU-FIL-002: a robot is not so large that its model takes more memory than a machine has."""
     joints = len(mechanism.joints)
     velocities = sum(joint.coordinates.nv for joint in mechanism.joints)
@@ -88,10 +85,10 @@ def _refuse_too_large(
     elif velocities > VELOCITY_LIMIT:
         message = f"the joints of the robot have {velocities:,} velocities; they may have {VELOCITY_LIMIT:,}"
         diagnostics.report("file-too-large", message, urdf.document.place(urdf.document.root))
-    elif mechanism.nc > ROW_LIMIT and document is not None:
+    elif mechanism.nc > ROW_LIMIT and extension is not None:
         message = f"the closures of the robot have {mechanism.nc:,} constraint rows; they may have {ROW_LIMIT:,}"
         key = "closed_loop" if mechanism.version == "1" else "closures"
-        diagnostics.report("file-too-large", message, document.place((key,)))
+        diagnostics.report("file-too-large", message, extension.document.place((key,)))
 
 
 def _bare(urdf: Urdf, diagnostics: Diagnostics, root: Root) -> Mechanism:
@@ -101,33 +98,30 @@ def _bare(urdf: Urdf, diagnostics: Diagnostics, root: Root) -> Mechanism:
     return Mechanism(urdf.name, "", root, (bodies[urdf.root], *(bodies[joint.child] for joint in ordered)), ordered)
 
 
-def _described(
-    urdf: Urdf, extension: Extension, document: YamlDocument, diagnostics: Diagnostics, root: Root
-) -> Mechanism:
+def _described(urdf: Urdf, extension: Extension, reporter: YamlReporter, root: Root) -> Mechanism:
     joints = Joints({joint.name: joint_of(joint) for joint in urdf.joints.values()})
     faulty = replace_joints(
         joints,
         extension.joints,
         urdf,
         _closure_links(extension, urdf),
-        document,
-        diagnostics,
+        reporter,
         merges_revolutes=extension.merges_revolutes,
     )
-    check_ranges(urdf, joints.by_name, diagnostics)
-    _own_keys(extension, urdf, document, diagnostics)
-    names = FrameNames(urdf, joints.by_name, faulty, document, diagnostics)
+    check_ranges(urdf, joints.by_name, reporter.diagnostics)
+    _own_keys(extension, urdf, reporter)
+    names = FrameNames(urdf, joints.by_name, faulty, reporter)
     frames = names.add(extension.frames)
     order = depth_first(urdf.root, joints.by_name.values())
     rigid = rigid_roots(urdf.root, order)
-    closures = link_closures(extension.closures, names, rigid, document, diagnostics)
+    closures = link_closures(extension.closures, names, rigid, reporter)
     # What is said of a joint whose own entry is at fault would only repeat that fault.
     entries = [entry for entry in extension.actuators if entry.joint not in faulty]
-    actuators = link_actuators(entries, urdf, joints.by_name, joints.merged, joints.split, document, diagnostics)
+    actuators = link_actuators(entries, urdf, joints.by_name, joints.merged, joints.split, reporter)
     named = joints.by_name
     if extension.root == "floating":
         named = {**named, ROOT_JOINT: Joint(ROOT_JOINT, JointType.FLOATING, "", urdf.root)}
-    configurations = link_configurations(extension.configurations, named, joints.merged, faulty, document, diagnostics)
+    configurations = link_configurations(extension.configurations, named, joints.merged, faulty, reporter)
     if root == "fixed":  # whatever the description says: then there is nothing that the root could stand on
         for coordinates in configurations.values():
             coordinates.pop(ROOT_JOINT, None)
@@ -172,16 +166,17 @@ def _led(mechanism: Mechanism, laws: Mapping[str, Mimic]) -> Mapping[str, Mappin
     return MappingProxyType(configurations)
 
 
-def _own_keys(extension: Extension, urdf: Urdf, document: YamlDocument, diagnostics: Diagnostics) -> None:
+def _own_keys(extension: Extension, urdf: Urdf, reporter: YamlReporter) -> None:
     """EU-EXT-003: where joints are named, a key that begins with ``x-`` does not name one."""
     for pointer in extension.own_data:
         among_joints = (pointer[0], len(pointer)) in (("joints", 2), ("configurations", 3))
         if among_joints and pointer[-1] in urdf.joints:
-            diagnostics.report(
+            reporter.report(
                 "own-key-is-joint",
                 f"'{pointer[-1]}' is a joint, but as a key that begins with 'x-' it is the user's own, without effect",
-                document.place(pointer, True),
+                pointer,
                 "rename the joint in the URDF",
+                key=True,
             )
 
 
@@ -206,18 +201,19 @@ def _closure_links(extension: Extension, urdf: Urdf) -> set[str]:
     return {side for side in sides if side is not None}
 
 
-def _reserve_names(extension: Extension, document: YamlDocument, diagnostics: Diagnostics, root: Root) -> None:
+def _reserve_names(extension: Extension, reporter: YamlReporter, root: Root) -> None:
     """EU-URD-011: what the description names anew takes no name that the model needs for itself."""
     reserved = ("universe", ROOT_JOINT) if root == "floating" else ("universe",)
     named = [("joint", entry.name, entry.pointer, True) for entry in extension.joints if entry.merges]
     named += [("frame", entry.name, (*entry.pointer, "name"), False) for entry in extension.frames]
     for kind, name, pointer, key in named:
         if name in reserved:
-            diagnostics.report(
+            reporter.report(
                 "urdf-reserved-name",
                 f"'{name}' is a name that the model needs for itself, and cannot be that of a {kind}",
-                document.place(pointer, key),
+                pointer,
                 f"give the {kind} another name",
+                key=key,
             )
 
 

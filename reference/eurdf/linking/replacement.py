@@ -7,15 +7,16 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 
-from eurdf.diagnostics import Diagnostics, Hint, did_you_mean
-from eurdf.format.extension import JointEntry, Pointer
+from eurdf.diagnostics import Hint, did_you_mean
+from eurdf.format.extension import JointEntry
 from eurdf.format.urdf import Urdf
 from eurdf.linking.merging import PARALLEL, NotMergeable, check_chain, find_chains, fixed, merge
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_type import COORDINATES, JointType
 from eurdf.mechanism.pose import Vector3, direction
-from eurdf.reading.yaml_reader import YamlDocument
+from eurdf.reading.reporter import YamlReporter
+from eurdf.reading.yaml_node import Pointer
 
 _ROTARY = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS})
 _SLIDING = frozenset({JointType.PRISMATIC})
@@ -61,8 +62,7 @@ def replace_joints(
     entries: tuple[JointEntry, ...],
     urdf: Urdf,
     closure_links: Collection[str],
-    document: YamlDocument,
-    diagnostics: Diagnostics,
+    reporter: YamlReporter,
     *,
     merges_revolutes: bool,
 ) -> set[str]:
@@ -73,8 +73,7 @@ def replace_joints(
         entries: As written.
         urdf: The URDF.
         closure_links: Links that carry a frame of a closure.
-        document: To point into.
-        diagnostics: Gets what is found.
+        reporter: Gets what is found.
         merges_revolutes: Whether version 1's rule holds.
 
     Returns:
@@ -87,25 +86,25 @@ def replace_joints(
     seen: set[str] = set()
     for entry in entries:
         if entry.name in merged and entry.name in urdf.joints:
-            diagnostics.report(
+            reporter.report(
                 "duplicate-replacement",
                 f"joint '{entry.name}' is changed, and merged into '{merged[entry.name]}' too",
-                document.place(entry.pointer),
+                entry.pointer,
                 f"say it of '{merged[entry.name]}', or leave '{entry.name}' out of its 'merges'",
             )
             continue
         if entry.name in seen:
-            diagnostics.report(
+            reporter.report(
                 "duplicate-replacement",
                 f"joint '{entry.name}' is listed twice",
-                document.place(entry.pointer),
+                entry.pointer,
                 "keep one of the two",
             )
             continue
         seen.add(entry.name)
-        before = len(diagnostics)
-        _Replacement(entry, joints, urdf, mimicking, mimicked, closure_links, document, diagnostics).apply()
-        if len(diagnostics) > before:
+        before = len(reporter.diagnostics)
+        _Replacement(entry, joints, urdf, mimicking, mimicked, closure_links, reporter).apply()
+        if len(reporter.diagnostics) > before:
             faulty.update({entry.name, *entry.merges, *(f"{entry.name}_{letter}" for letter in entry.split)})
     if merges_revolutes:
         for chain in find_chains(urdf, joints.by_name, seen, closure_links):
@@ -126,11 +125,15 @@ class _Replacement:
     mimicking: Mapping[str, str]
     mimicked: Mapping[str, str]
     closure_links: Collection[str]
-    document: YamlDocument
-    diagnostics: Diagnostics
+    reporter: YamlReporter
 
     def report(self, code: str, message: str, *keys: str | int, hint: str | None = None) -> None:
-        self.diagnostics.report(code, message, self.document.place((*self.entry.pointer, *keys)), hint)
+        self.reporter.report(
+            code,
+            message,
+            (*self.entry.pointer, *keys),
+            hint,
+        )
 
     def apply(self) -> None:
         entry = self.entry
@@ -156,8 +159,12 @@ class _Replacement:
             hint: Hint = partial(did_you_mean, name, self.urdf.joints)
             if name in self.urdf.links:
                 hint = f"'{name}' is a link; name the joint that moves it"
-            self.diagnostics.report(
-                "unknown-joint", f"'{name}' is no joint of the robot", self.document.place(pointer, key), hint
+            self.reporter.report(
+                "unknown-joint",
+                f"'{name}' is no joint of the robot",
+                pointer,
+                hint,
+                key=key,
             )
         return joint
 
@@ -169,10 +176,10 @@ class _Replacement:
             why = f"'{self.mimicked[joint.name]}' mimics it"
         else:
             return False
-        self.diagnostics.report(
+        self.reporter.report(
             "joint-mimics",
             f"joint '{joint.name}' cannot be changed: {why}",
-            self.document.place(pointer),
+            pointer,
             "take the <mimic> out of the URDF, or leave the joint as it is",
         )
         return True
@@ -185,18 +192,18 @@ class _Replacement:
         for index, name in enumerate(entry.merges):
             pointer = (*entry.pointer, "merges", index)
             if name in entry.merges[:index]:
-                self.diagnostics.report(
+                self.reporter.report(
                     "duplicate-replacement",
                     f"joint '{name}' stands twice among those that are merged",
-                    self.document.place(pointer),
+                    pointer,
                     "name three different joints",
                 )
                 return None
             if name in self.joints.merged:
-                self.diagnostics.report(
+                self.reporter.report(
                     "duplicate-replacement",
                     f"joint '{name}' is already merged into '{self.joints.merged[name]}'",
-                    self.document.place(pointer),
+                    pointer,
                 )
                 return None
             joint = self.target(name, pointer)
@@ -205,11 +212,12 @@ class _Replacement:
             chain.append(joint)
         taken = entry.name in self.urdf.joints and entry.name != entry.merges[2]
         if taken or (entry.name in self.joints.by_name and entry.name not in self.urdf.joints):
-            self.diagnostics.report(
+            self.reporter.report(
                 "duplicate-joint-name",
                 f"there is already a joint '{entry.name}'",
-                self.document.place(entry.pointer, True),
+                entry.pointer,
                 f"give the merged joint a new name, or that of the last one, '{entry.merges[2]}'",
+                key=True,
             )
             return None
         try:
@@ -235,10 +243,10 @@ class _Replacement:
         allowed = _REPLACES[entry.type]
         if joint.type not in allowed:
             wanted = sorted(str(kind) for kind in allowed) if entry.type != "fixed" else ["moving"]
-            self.diagnostics.report(
+            self.reporter.report(
                 "joint-kind",
                 f"joint '{joint.name}' is {joint.type} in the URDF and cannot become {entry.type}",
-                self.document.place((*entry.pointer, "type")),
+                (*entry.pointer, "type"),
                 f"only a {' or '.join(wanted)} joint can",
             )
             return None
@@ -295,10 +303,10 @@ class _Replacement:
         names = tuple(f"{joint.name}_{letter}" for letter in self.entry.split)
         for name in names:
             if name in self.urdf.joints:
-                self.diagnostics.report(
+                self.reporter.report(
                     "duplicate-joint-name",
                     f"universal joint '{joint.name}' makes a joint '{name}', and there already is one",
-                    self.document.place(self.entry.pointer),
+                    self.entry.pointer,
                     "rename the other joint in the URDF",
                 )
                 return None

@@ -31,4 +31,4 @@ def reread(text: str, urdf: Urdf, file: str) -> tuple[Mechanism | None, Diagnost
     extension = read_extension(document, diagnostics)
     if extension is None:
         return None, diagnostics
-    return link(urdf, extension, document, diagnostics), diagnostics
+    return link(urdf, extension, diagnostics), diagnostics

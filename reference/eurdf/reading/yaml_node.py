@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+#: The keys and indices that lead to a value.
+Pointer = tuple[str | int, ...]
+
 #: Index, in characters, of the first character of a node and of the one after its last. The end is None for a mapping
 #: or list in block style: libyaml puts it where the next node begins.
 Span = tuple[int, int | None]

@@ -11,8 +11,8 @@ import yaml
 from yaml.cyaml import CLoader
 from yaml.tokens import BlockEntryToken, FlowSequenceStartToken, KeyToken
 
-from eurdf.format.extension import Pointer
 from eurdf.reading.source import Source
+from eurdf.reading.yaml_node import Pointer
 from eurdf.reading.yaml_reader import YamlDocument
 
 # Where libyaml ends a line, and so a comment.

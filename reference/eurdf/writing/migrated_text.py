@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from eurdf.diagnostics import Fault
-from eurdf.format.extension import Extension, FrameReference, JointEntry, Pointer
+from eurdf.format.extension import Extension, FrameReference, JointEntry
 from eurdf.format.field import is_own_key
 from eurdf.format.schema import FILES
 from eurdf.format.urdf import Urdf
@@ -27,6 +27,7 @@ from eurdf.format.yaml_text import (
     text_of,
 )
 from eurdf.reading.source import BREAK, Source
+from eurdf.reading.yaml_node import Pointer
 from eurdf.reading.yaml_reader import YamlDocument, read_yaml
 from eurdf.writing.comments import Attached, Comment, attach, comments_of
 

@@ -7,8 +7,9 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import TYPE_CHECKING
 
-from eurdf.format.extension import Extension, Pointer
+from eurdf.format.extension import Extension
 from eurdf.mechanism.joint_type import JointType
+from eurdf.reading.yaml_node import Pointer
 
 if TYPE_CHECKING:
     from eurdf.diagnostics import Diagnostics, Place
