@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import eurdf
-from eurdf.linking.description import describe
+from eurdf.linking.description import Unlinked, describe
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.same_model import differences, with_universal_joints
 from eurdf_conformance.comparison.text import same_text
@@ -88,7 +88,7 @@ def is_the_same_in_version_1(candidate: Candidate) -> list[str] | None:
     old = describe(file, root=new.root, geometry=False)
     told = set(is_sound(candidate))  # of the URDF, which both share
     faults = [fault for fault in map(str, old.diagnostics) if fault not in told]
-    if old.mechanism is None or faults:
+    if isinstance(old, Unlinked) or faults:
         return faults
     return [f"robot.v1.yaml: {found}" for found in differences(_as_named(old.mechanism, new), new)]
 

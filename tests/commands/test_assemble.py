@@ -306,7 +306,7 @@ def test_a_file_that_cannot_be_edited_is_left_alone(folder: Path, run: Run) -> N
 def test_a_file_that_another_program_changed_is_left_alone(
     folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    import eurdf.assembled
+    import eurdf.writing.assembled
 
     file = bench(folder)
     compute = eurdf.writing.assembled.with_assembled

@@ -21,7 +21,7 @@ from eurdf.diagnostics import Diagnostics, Fault
 from eurdf.format.read_extension import read_extension
 from eurdf.format.urdf import Urdf, read_urdf
 from eurdf.kinematics.residual import residual
-from eurdf.linking.description import Description, describe
+from eurdf.linking.description import Described, describe
 from eurdf.linking.link import link
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.same_model import differences, with_universal_joints
@@ -58,13 +58,20 @@ def workbench(text: str = PLAIN_WORKBENCH) -> Urdf:
 URDF = workbench()
 
 
-def described(text: str) -> Description:
-    """The workbench with a description."""
+def read(text: str) -> Described | None:
+    """The workbench with a description; None if that has an error."""
     diagnostics = Diagnostics()
-    document = read_yaml(Source("robot.yaml", text, text.encode()))
-    extension = read_extension(document, diagnostics)
-    mechanism = None if extension is None else link(URDF, extension, document, diagnostics)
-    return Description("robot.yaml", diagnostics, mechanism, URDF, extension, document)
+    extension = read_extension(read_yaml(Source("robot.yaml", text, text.encode())), diagnostics)
+    mechanism = None if extension is None else link(URDF, extension, diagnostics)
+    if extension is None or mechanism is None:
+        return None
+    return Described("robot.yaml", diagnostics, URDF, mechanism, extension)
+
+
+def described(text: str) -> Described:
+    description = read(text)
+    assert description is not None
+    return description
 
 
 def migrated(text: str) -> Migration:
@@ -72,9 +79,7 @@ def migrated(text: str) -> Migration:
 
 
 def linked(text: str) -> Mechanism:
-    mechanism = described(text).mechanism
-    assert mechanism is not None
-    return mechanism
+    return described(text).mechanism
 
 
 def but_for_the_version(mechanism: Mechanism) -> Mechanism:
@@ -264,10 +269,10 @@ def says_half_of_a_universal_joint(document: dict[str, Any]) -> bool:
 @given(st.data())
 def test_any_document_is_the_same_model_in_version_2(data: st.DataObject) -> None:
     document = data.draw(documents())
-    description = described(data.draw(written(document)))
+    description = read(data.draw(written(document)))
+    assume(description is not None)
+    assert description is not None
     before = description.mechanism
-    assume(before is not None)
-    assert before is not None
     try:
         migration = migrate(description)
     except NotMigratable:
@@ -288,25 +293,24 @@ def test_any_document_is_the_same_model_in_version_2(data: st.DataObject) -> Non
 @given(st.data())
 def test_any_document_moves_alike_in_version_2(data: st.DataObject) -> None:
     document = data.draw(documents())
-    description = described(json.dumps(document))
-    before = description.mechanism
-    assume(before is not None and not says_half_of_a_universal_joint(document))
-    assert before is not None
-    assert_same_motion(before, migrate(description).mechanism)
+    description = read(json.dumps(document))
+    assume(description is not None and not says_half_of_a_universal_joint(document))
+    assert description is not None
+    assert_same_motion(description.mechanism, migrate(description).mechanism)
 
 
 @settings(max_examples=100, deadline=None, derandomize=True)
 @given(st.data())
 def test_no_comment_is_lost_or_doubled(data: st.DataObject) -> None:
     text = data.draw(written(data.draw(documents())))
-    description = described(text)
-    assume(description.mechanism is not None)
+    description = read(text)
+    assume(description is not None)
+    assert description is not None
     try:
         migration = migrate(description)
     except NotMigratable:
         return
-    assert description.document is not None
-    before = sorted(comment.text for comment in comments_of(description.document.source))
+    before = sorted(comment.text for comment in comments_of(description.extension.document.source))
     source = Source("", migration.text, migration.text.encode())
     after = [comment.text for comment in comments_of(source)]
     assert sorted(piece for comment in after for piece in pieces(comment)) == before
@@ -380,14 +384,12 @@ x-masses:
 
 def test_comments_go_with_what_they_speak_of_and_own_data_stay_as_written() -> None:
     description = described(COMMENTED)
-    assert description.document is not None
-    assert migrate(description, schema=schema_named(description.document)).text == MIGRATED
+    assert migrate(description, schema=schema_named(description.extension.document)).text == MIGRATED
 
 
 def test_windows_line_ends_change_nothing() -> None:
     description = described(COMMENTED.replace("\n", "\r\n"))
-    assert description.document is not None
-    assert migrate(description, schema=schema_named(description.document)).text == MIGRATED
+    assert migrate(description, schema=schema_named(description.extension.document)).text == MIGRATED
 
 
 def test_what_was_done_is_told() -> None:

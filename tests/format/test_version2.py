@@ -84,7 +84,9 @@ def test_the_top_of_the_file_is_read() -> None:
 
 
 def test_what_is_left_out_has_its_default() -> None:
-    assert sound("") == Extension(version="2.0", urdf="robot.urdf", root="fixed")
+    assert sound("") == Extension(
+        read_yaml(Source("robot.yaml", "{}", b"{}")), version="2.0", urdf="robot.urdf", root="fixed"
+    )
 
 
 def test_a_closure_joins_named_frames_or_poses() -> None:

@@ -20,7 +20,7 @@ Root = Literal["fixed", "floating"]
 def mechanism_of(text: str, root: Root = "fixed", mimic: bool = True) -> Mechanism:
     diagnostics = Diagnostics()
     urdf = read_urdf(read_xml(Source("robot.urdf", text, text.encode())), diagnostics)
-    mechanism = None if urdf is None else link(urdf, None, None, diagnostics, root, mimic=mimic)
+    mechanism = None if urdf is None else link(urdf, None, diagnostics, root, mimic=mimic)
     assert mechanism is not None, [str(found) for found in diagnostics]
     return mechanism
 

@@ -11,7 +11,7 @@ from eurdf.checking.loops import closure_diagnostics
 from eurdf.diagnostics import Diagnostic
 from eurdf.diagnostics.report import encodable
 from eurdf.exceptions import RobotNotFound
-from eurdf.linking.description import Description, describe, find_meshes
+from eurdf.linking.description import Linked, Unlinked, describe, find_meshes
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.robot import Robot, build_robot
 from eurdf_conformance.adapters.reference_canonical import canonical_robot
@@ -44,8 +44,8 @@ class Reference:
             return rejected(Issue(code=code, file=description.name, line=None, column=None, message=str(none)))
         found = list(read.diagnostics)
         if read.urdf is not None:
-            found += find_meshes(read)[1]
-        if read.diagnostics.refused or read.mechanism is None:
+            found += find_meshes(read.urdf)[1]
+        if isinstance(read, Unlinked) or read.diagnostics.refused:
             return rejected(*self.issues(found))
         self._robot = build_robot(read.mechanism, geometry=False)
         found += closure_diagnostics(read, self._robot)
@@ -62,7 +62,7 @@ class Reference:
             raise ValueError("no robot was accepted")
         return [self.values(self._robot, each, frames, quantities) for each in configurations]
 
-    def describe(self, description: Path, urdf: Path) -> Description:
+    def describe(self, description: Path, urdf: Path) -> Unlinked | Linked:
         """The robot as read; that the URDF exists which the description names is for the parser to see."""
         return describe(description, urdf if os.path.lexists(urdf) else None)
 

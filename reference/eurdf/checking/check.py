@@ -12,11 +12,11 @@ from eurdf.checking.advice.mimics import advise_on_mimics
 from eurdf.checking.advice.quaternions import advise_on_quaternions
 from eurdf.checking.loops import closure_diagnostics
 from eurdf.diagnostics.report import Report
-from eurdf.linking.description import Description, describe, find_meshes
+from eurdf.linking.description import Described, Unlinked, describe, find_meshes
 from eurdf.reading.given import Given
 
 if TYPE_CHECKING:
-    from eurdf.mechanism.mechanism import Mechanism
+    pass
 
 
 def check(
@@ -50,22 +50,22 @@ def check(
     diagnostics = description.diagnostics
     meshes: dict[str, str] = {}
     if description.urdf is not None:
-        meshes, missing = find_meshes(description, package_dirs)
+        meshes, missing = find_meshes(description.urdf, package_dirs)
         for found in missing:
             diagnostics.add(found)
-    mechanism = description.mechanism
-    if mechanism is not None and not diagnostics.refused:
-        if mechanism.closures:
-            _check_loops(description, mechanism)
-        else:
-            advise_on_quaternions(description, None, diagnostics)
+    if not isinstance(description, Unlinked) and not diagnostics.refused:
+        if isinstance(description, Described):
+            if description.mechanism.closures:
+                _check_loops(description)
+            else:
+                advise_on_quaternions(description, None, diagnostics)
         advise_on_mimics(description, diagnostics)
         advise_on_angles(description, diagnostics)
         advise_on_lengths(description, meshes, diagnostics)
     return Report(description.path, tuple(diagnostics))
 
 
-def _check_loops(description: Description, mechanism: Mechanism) -> None:
+def _check_loops(description: Described) -> None:
     """Report what needs a simulator: whether the loops close and, where there is no error, advice on how they move."""
     # Only now: a description without closures is checked without a simulator.
     from eurdf.checking.advice.actuation import advise_on_actuation
@@ -75,7 +75,7 @@ def _check_loops(description: Description, mechanism: Mechanism) -> None:
     from eurdf.pinocchio.robot import build_robot
 
     diagnostics = description.diagnostics
-    robot = build_robot(mechanism, geometry=False)
+    robot = build_robot(description.mechanism, geometry=False)
     assembly = None if "assembled" in robot.configurations else assemble(robot)
     for found in closure_diagnostics(description, robot, assembly):
         diagnostics.add(found)

@@ -9,7 +9,7 @@ from functools import partial
 
 from eurdf.checking.loops import closure_diagnostics
 from eurdf.exceptions import InvalidRobot
-from eurdf.linking.description import describe, find_meshes, place_of_file
+from eurdf.linking.description import Unlinked, describe, find_meshes, place_of_file
 from eurdf.mechanism.mechanism import Root
 from eurdf.pinocchio.geometry import UnreadableMesh
 from eurdf.pinocchio.robot import Robot, build_robot
@@ -71,20 +71,20 @@ def load(
         path, urdf, root, geometry=geometry, mimic=mimic, package_dirs=package_dirs, xacro_args=xacro_args
     )
     diagnostics = description.diagnostics
-    if description.mechanism is None:
+    if isinstance(description, Unlinked):
         raise InvalidRobot(description.path, tuple(diagnostics))
     files: dict[str, str] = {}
     lacks_mesh = False
     no_geometry = f"the geometry of {description.path} cannot be built; load it with geometry=False to do without"
     if geometry:
-        files, missing = find_meshes(description, package_dirs)
+        files, missing = find_meshes(description.urdf, package_dirs)
         for found in missing:
             diagnostics.add(found)
         lacks_mesh = any(found.code == "urdf-mesh-missing" for found in missing)
     try:
         robot = build_robot(description.mechanism, geometry=geometry and not lacks_mesh, resolve=files.get)
     except UnreadableMesh as mesh:
-        place = partial(place_of_file, description, "mesh", mesh.uri)
+        place = partial(place_of_file, description.urdf, "mesh", mesh.uri)
         diagnostics.report("urdf-mesh-unreadable", f"mesh '{mesh.uri}' cannot be read: {mesh.reason}", place)
         raise InvalidRobot(description.path, tuple(diagnostics), no_geometry) from None
     if strict or check_loops or "assembled" in description.mechanism.configurations:

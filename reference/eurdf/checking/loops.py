@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from eurdf.checking.advice.quaternions import closes_w_first
 from eurdf.diagnostics import Diagnostics
-from eurdf.linking.description import Description
+from eurdf.linking.description import Described, Linked
 
 if TYPE_CHECKING:
     from eurdf.kinematics.assembly import Assembly
@@ -19,9 +19,7 @@ if TYPE_CHECKING:
 ROUNDED = 1e-4
 
 
-def closure_diagnostics(
-    description: Description, robot: Robot | None = None, assembly: Assembly | None = None
-) -> Diagnostics:
+def closure_diagnostics(description: Linked, robot: Robot, assembly: Assembly | None = None) -> Diagnostics:
     """EU-CLO-005, EU-CLO-006: the loops close, at the assembled configuration where there is one.
 
     Args:
@@ -31,14 +29,11 @@ def closure_diagnostics(
     """
     diagnostics = Diagnostics()
     mechanism = description.mechanism
-    if mechanism is None or not mechanism.closures:
+    if not isinstance(description, Described) or not mechanism.closures:
         return diagnostics
     # Only now: a description without closures is checked without a simulator.
     from eurdf.kinematics.assembly import assemble
-    from eurdf.pinocchio.robot import build_robot
 
-    if robot is None:
-        robot = build_robot(mechanism, geometry=False)
     if "assembled" in mechanism.configurations:
         return assembled_diagnostics(description, robot)
     assembly = assemble(robot) if assembly is None else assembly
@@ -64,7 +59,7 @@ def closure_diagnostics(
     return diagnostics
 
 
-def assembled_diagnostics(description: Description, robot: Robot) -> Diagnostics:
+def assembled_diagnostics(description: Described, robot: Robot) -> Diagnostics:
     """EU-CLO-005: at ``assembled`` every closure is closed."""
     from eurdf.kinematics.residual import closure_openings
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from eurdf.commands.assembly_info import AssemblyInfo, JointPosition
     from eurdf.kinematics.array import Vector
     from eurdf.kinematics.assembly import Assembly
-    from eurdf.linking.description import Description
+    from eurdf.linking.description import Described
     from eurdf.pinocchio.robot import Robot
     from eurdf.writing.assembled import BeyondLimit
 
@@ -74,16 +74,16 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(args: argparse.Namespace) -> int:
     """Assemble, show, write, and return the exit code."""
-    from eurdf.linking.description import describe
+    from eurdf.linking.description import Described, Unlinked, describe
 
     path = select_one(args.path)
     if args.force and not args.write:
         raise CannotRun("--force replaces what --write would write: give --write too")
     description = describe(path, geometry=False, **robot_options(args))
-    if description.diagnostics.refused or description.mechanism is None:
+    if isinstance(description, Unlinked) or description.diagnostics.refused:
         show_refusal(description.path, tuple(description.diagnostics), args.json)
         return 1
-    if description.extension is None:
+    if not isinstance(description, Described):
         raise CannotRun(
             f"'{description.path}' is a bare URDF, which has no loops; `eurdf generate` writes a description with them"
         )
@@ -113,12 +113,11 @@ def run(args: argparse.Namespace) -> int:
     return code
 
 
-def _file_to_write(path: str, description: Description) -> str:
+def _file_to_write(path: str, description: Described) -> str:
     """The file that can have a configuration."""
-    assert description.extension is not None
-    assert description.document is not None
-    file = description.document.source.file
-    if not description.document.source.is_file:
+    source = description.extension.document.source
+    file = source.file
+    if not source.is_file:
         raise CannotRun(f"--write needs a file to write to, and the description came from {file}")
     if description.extension.version == "1":
         raise CannotRun(
@@ -163,7 +162,7 @@ def _assemble(robot: Robot, q0: Vector, hold: list[str], limits: bool) -> Assemb
     return assembly
 
 
-def _write(file: str, description: Description, robot: Robot, q: Vector, force: bool) -> bool:
+def _write(file: str, description: Described, robot: Robot, q: Vector, force: bool) -> bool:
     """Write the configuration to the description; return whether that changed the file."""
     from eurdf.reading.source import BOM
     from eurdf.writing.assembled import NAME, is_stated, with_assembled
@@ -173,8 +172,7 @@ def _write(file: str, description: Description, robot: Robot, q: Vector, force: 
         return False
     if NAME in robot.configurations and not force:
         raise CannotRun(f"'{file}' has a different configuration '{NAME}' already; --force replaces it")
-    assert description.document is not None
-    source = description.document.source
+    source = description.extension.document.source
     try:
         text, diagnostics = with_assembled(description, robot, q)
     except NotEditable as reason:

@@ -52,27 +52,27 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(args: argparse.Namespace) -> int:
     """Migrate, write, tell what was done, and return the exit code."""
-    from eurdf.linking.description import describe
+    from eurdf.linking.description import Described, Unlinked, describe
     from eurdf.writing.migrated_text import NotMigratable, schema_named
     from eurdf.writing.migration import migrate
 
     path = select_one(args.path)
     description = describe(path, **robot_options(args))
     path = description.path
-    if description.diagnostics.refused or description.mechanism is None:
+    if isinstance(description, Unlinked) or description.diagnostics.refused:
         show_refusal(path, tuple(description.diagnostics), args.json)
         return 1
-    if description.document is None or description.extension is None:
+    if not isinstance(description, Described):
         raise CannotRun(f"'{path}' is a bare URDF, which has nothing to migrate; `eurdf generate` writes a description")
-    assert description.urdf is not None
-    source, urdf = description.document.source, description.urdf.document.source
+    document = description.extension.document
+    source, urdf = document.source, description.urdf.document.source
     schema: EditorSchema | None = None
     if description.extension.version != "1":
         text, output = source.text, None
         notes: tuple[str, ...] = (f"'{source.file}' is of version 2.0 already: nothing to do",)
     else:
         output = args.output
-        reference = schema_named(description.document) if args.schema == "format" else None
+        reference = schema_named(document) if args.schema == "format" else None
         if output is not None and not _leads_to_a_schema(reference, output):
             refuse_to_replace(output, args.force)
             schema = schema_beside(output, "2", args.schema, description.urdf, args.force)
@@ -81,7 +81,7 @@ def run(args: argparse.Namespace) -> int:
             urdf_path = urdf_named(output or source.file, urdf)
             migration = migrate(description, urdf_path, reference)
         except NotMigratable as reason:
-            line = description.document.place(reason.pointer).line if reason.pointer else None
+            line = document.place(reason.pointer).line if reason.pointer else None
             where = f"{source.file}:{line}" if line else source.file
             raise CannotRun(f"cannot migrate: {where}: {reason}") from None
         text, notes = migration.text, migration.notes

@@ -36,42 +36,55 @@ _MimicErrors = Literal["refused", "kept", "ignored"]
 
 
 @dataclass(frozen=True, slots=True)
-class Description:
-    """A robot as read.
+class Unlinked:
+    """The files of a robot in which an error leaves no mechanism.
 
     Attributes:
         path: As the caller gave it.
         diagnostics: Found by all phases but the last, that of closures.
-        mechanism: None where an error leaves none.
-        urdf: None where it could not be read.
-        extension: None for a bare URDF, or where it could not be read.
-        document: Where the extension was read from.
+        urdf: None if it has an error itself, or was not read.
     """
 
     path: str
     diagnostics: Diagnostics
-    mechanism: Mechanism | None = None
     urdf: Urdf | None = None
-    extension: Extension | None = None
-    document: YamlDocument | None = None
 
-    @property
-    def folder(self) -> Path:
-        """Folder of the URDF, which its mesh paths are relative to."""
-        assert self.urdf is not None
-        return self.urdf.document.source.folder
+
+@dataclass(frozen=True, slots=True)
+class Linked:
+    """A robot as read and linked; of a bare URDF, unless it is a `Described`.
+
+    Attributes:
+        path: As the caller gave it.
+        diagnostics: Found by all phases but the last, that of closures.
+        urdf: The URDF.
+        mechanism: What the files describe.
+    """
+
+    path: str
+    diagnostics: Diagnostics
+    urdf: Urdf
+    mechanism: Mechanism
+
+
+@dataclass(frozen=True, slots=True)
+class Described(Linked):
+    """A robot with a description as read and linked.
+
+    Attributes:
+        extension: The description.
+    """
+
+    extension: Extension
 
     def place_of_closure(self, closure: Closure) -> Place:
         """Where a closure is stated."""
-        assert self.extension is not None
-        assert self.document is not None
         entry = next(entry for entry in self.extension.closures if entry.name == closure.name)
-        return self.document.place(entry.pointer)
+        return self.extension.document.place(entry.pointer)
 
     def place_of_configuration(self, name: str) -> Place:
         """Where a configuration is stated."""
-        assert self.document is not None
-        return self.document.place(("configurations", name), True)
+        return self.extension.document.place(("configurations", name), True)
 
 
 def describe(
@@ -83,7 +96,7 @@ def describe(
     mimic: bool = True,
     package_dirs: Sequence[str | os.PathLike[str]] = (),
     xacro_args: Mapping[str, str] | None = None,
-) -> Description:
+) -> Unlinked | Linked:
     """Read and link the files of a robot, and check its inertias.
 
     EU-DIA-002: what needs a file that has an error is not looked at, so that nothing is told that only follows from it.
@@ -110,38 +123,38 @@ def describe(
         given = files.urdf and _expanded(files.urdf, name, diagnostics, package_dirs, xacro_args)
     except Fault as fault:
         diagnostics.add(fault.diagnostic)
-        return Description(name, diagnostics)
+        return Unlinked(name, diagnostics)
     if given is None and xacro_args:
         raise CannotExpand(name, _NO_XACRO)
     if files.description is None:
         assert given is not None
-        tree = _read_urdf(given, diagnostics, geometry, "refused" if mimic else "kept")
-        mechanism = None if tree is None else link(tree, None, None, diagnostics, root, mimic=mimic)
-        return _finish(Description(name, diagnostics, mechanism, tree))
-    document = _read_yaml(files.description, diagnostics)
-    extension = None if document is None else read_extension(document, diagnostics)
-    urdf_path = given or _named_urdf(files.description, extension, document)
-    if not isinstance(urdf_path, Source) and given is None and not os.path.lexists(urdf_path):
-        # Where the description could not be read, which URDF it means is a guess that deserves no second error.
-        if extension is not None and document is not None:
-            _urdf_not_found(urdf_path, extension, document, diagnostics)
-        return Description(name, diagnostics, None, None, extension, document)
-    # Without a version, whether a mimic has an effect is not known.
-    version = None if document is None else version_of(document)
-    mimic_errors: _MimicErrors = "ignored" if version in (None, "1") else "refused" if mimic else "kept"
+        urdf_path, extension = given, None
+        mimic_errors: _MimicErrors = "refused" if mimic else "kept"
+    else:
+        document = _read_yaml(files.description, diagnostics)
+        extension = None if document is None else read_extension(document, diagnostics)
+        urdf_path = given or _named_urdf(files.description, extension, document)
+        if not isinstance(urdf_path, Source) and given is None and not os.path.lexists(urdf_path):
+            # Where the description could not be read, which URDF it means is a guess that deserves no second error.
+            if extension is not None:
+                _urdf_not_found(urdf_path, extension, diagnostics)
+            return Unlinked(name, diagnostics)
+        # Without a version, whether a mimic has an effect is not known.
+        version = None if document is None else version_of(document)
+        mimic_errors = "ignored" if version in (None, "1") else "refused" if mimic else "kept"
     tree = _read_urdf(urdf_path, diagnostics, geometry, mimic_errors)
+    if tree is None:
+        return Unlinked(name, diagnostics)
     mechanism = None
-    if tree is not None and extension is not None:
-        mechanism = link(tree, extension, document, diagnostics, root, mimic=mimic)
-    return _finish(Description(name, diagnostics, mechanism, tree, extension, document))
-
-
-def _finish(description: Description) -> Description:
-    if description.urdf is not None:
-        faulty = check_inertias(description.urdf, description.diagnostics)
-        if description.mechanism is not None:
-            check_leaves(description.mechanism, description.urdf, description.diagnostics, faulty)
-    return description
+    if extension is not None or files.description is None:
+        mechanism = link(tree, extension, diagnostics, root, mimic=mimic)
+    faulty = check_inertias(tree, diagnostics)
+    if mechanism is None:
+        return Unlinked(name, diagnostics, tree)
+    check_leaves(mechanism, tree, diagnostics, faulty)
+    if extension is None:
+        return Linked(name, diagnostics, tree, mechanism)
+    return Described(name, diagnostics, tree, mechanism, extension)
 
 
 def read_urdf_alone(
@@ -234,8 +247,9 @@ def _named_urdf(description: Path | Source, extension: Extension | None, documen
         return folder / "robot.urdf"
 
 
-def _urdf_not_found(path: Path, extension: Extension, document: YamlDocument, diagnostics: Diagnostics) -> None:
+def _urdf_not_found(path: Path, extension: Extension, diagnostics: Diagnostics) -> None:
     """EU-FIL-004: the URDF that the description names exists."""
+    document = extension.document
     home = document.source.folder
     message = f"the URDF '{extension.urdf}' does not exist"
     if extension.version != "1" and "urdf" not in document.data:
@@ -281,16 +295,13 @@ def _files_near(path: Path, home: Path, suffix: str) -> list[str]:
     return []
 
 
-def find_meshes(
-    description: Description, package_dirs: Sequence[str | os.PathLike[str]] = ()
-) -> tuple[dict[str, str], Diagnostics]:
+def find_meshes(urdf: Urdf, package_dirs: Sequence[str | os.PathLike[str]] = ()) -> tuple[dict[str, str], Diagnostics]:
     """EU-URD-028, EU-URD-033: look every mesh and every texture up.
 
     Returns:
         The path of each file found, by URI; and one diagnostic for all meshes, one for all textures that were not.
     """
-    assert description.urdf is not None
-    shapes = [shape for link_ in description.urdf.links.values() for shape in (*link_.visuals, *link_.collisions)]
+    shapes = [shape for link_ in urdf.links.values() for shape in (*link_.visuals, *link_.collisions)]
     found: dict[str, str] = {}
     diagnostics = Diagnostics()
     for tag, uris in (
@@ -299,7 +310,7 @@ def find_meshes(
     ):
         missing = []
         for uri in uris:
-            path = resolve(uri, description.folder, package_dirs)
+            path = resolve(uri, urdf.document.source.folder, package_dirs)
             if path is None:
                 missing.append(uri)
             else:
@@ -309,15 +320,14 @@ def find_meshes(
             diagnostics.report(
                 f"urdf-{tag}-missing",
                 f"{count} not found: {quoted(missing)}",
-                partial(place_of_file, description, tag, missing[0]),
+                partial(place_of_file, urdf, tag, missing[0]),
                 HINT,
             )
     return found, diagnostics
 
 
-def place_of_file(description: Description, tag: str, uri: str) -> Place:
+def place_of_file(urdf: Urdf, tag: str, uri: str) -> Place:
     """Where the URDF first names a mesh or a texture."""
-    assert description.urdf is not None
-    document = description.urdf.document
+    document = urdf.document
     element = next(element for element in document.root.iter(tag) if element.get("filename") == uri)
     return document.place(element, "filename")

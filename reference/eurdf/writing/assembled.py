@@ -11,7 +11,7 @@ from eurdf.diagnostics import Diagnostics
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.residual import residual
 from eurdf.linking.configurations import within_limits
-from eurdf.linking.description import Description
+from eurdf.linking.description import Described
 from eurdf.linking.rereading import reread
 from eurdf.mechanism.joint_type import COORDINATES, JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
@@ -77,14 +77,14 @@ def is_stated(robot: Robot, q: Vector) -> bool:
     return stated is not None and bool(np.abs(stated - q).max(initial=0.0) <= _SAME)
 
 
-def with_assembled(description: Description, robot: Robot, q: Vector) -> tuple[str, Diagnostics]:
+def with_assembled(description: Described, robot: Robot, q: Vector) -> tuple[str, Diagnostics]:
     """The text of a description in which the configuration ``assembled`` is q.
 
     Joints at their neutral are left out, unless the file states them already. Numbers are rounded to 15 decimals where
     the loops stay as closed.
 
     Args:
-        description: Of version 2, with a mechanism.
+        description: Of version 2.
         robot: The robot built from it, with its own root.
         q: Configuration (nq,).
 
@@ -94,16 +94,14 @@ def with_assembled(description: Description, robot: Robot, q: Vector) -> tuple[s
     Raises:
         NotEditable: The file is written in a way in which that cannot be changed alone.
     """
-    assert description.document is not None
-    assert description.urdf is not None
-    file = description.document.source.file
+    document = description.extension.document
     exact = robot.coordinates(q)
     enough = max(CLOSED_IN_FULL, _largest_row(robot, q))
     rounded = {name: tuple(round(value, _DECIMALS) for value in values) for name, values in exact.items()}
     text, diagnostics = "", Diagnostics()
     for coordinates in (rounded, exact):
-        text = with_configuration(description.document, NAME, _to_state(description, robot, coordinates))
-        mechanism, diagnostics = reread(text, description.urdf, file)
+        text = with_configuration(document, NAME, _to_state(description, robot, coordinates))
+        mechanism, diagnostics = reread(text, description.urdf, document.source.file)
         if mechanism is None:
             break
         back = configuration_vector(robot.mechanism, robot.model, mechanism.configurations[NAME])
@@ -113,10 +111,9 @@ def with_assembled(description: Description, robot: Robot, q: Vector) -> tuple[s
 
 
 def _to_state(
-    description: Description, robot: Robot, coordinates: Mapping[str, Sequence[float]]
+    description: Described, robot: Robot, coordinates: Mapping[str, Sequence[float]]
 ) -> dict[str, Sequence[float]]:
     """The coordinates of the joints that a file has to state."""
-    assert description.extension is not None
     entries = {entry.name: entry.joints for entry in description.extension.configurations}
     stated = entries.get(NAME, {})
     neutral = {joint.name: joint.coordinates.neutral for joint in robot.mechanism.joints}

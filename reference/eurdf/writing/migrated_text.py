@@ -59,7 +59,6 @@ class Migrated:
 
 
 def migrated(
-    document: YamlDocument,
     extension: Extension,
     urdf: Urdf,
     merged: Mapping[str, Sequence[str]],
@@ -69,8 +68,7 @@ def migrated(
     """Write a description of version 1 in version 2.
 
     Args:
-        document: The file.
-        extension: What it says, of version 1 and linked without error.
+        extension: The description, of version 1 and linked without error.
         urdf: Its URDF.
         merged: The joints that version 1 merges by rule: for each spherical joint, the three it is made of.
         urdf_path: Path of the URDF from the new file.
@@ -79,7 +77,7 @@ def migrated(
     Raises:
         NotMigratable: Version 2 cannot say the same.
     """
-    return _Migration(document, extension, urdf, merged, urdf_path, schema).migrated()
+    return _Migration(extension, urdf, merged, urdf_path, schema).migrated()
 
 
 def schema_named(document: YamlDocument) -> str | None:
@@ -120,14 +118,13 @@ class _Migration:
 
     def __init__(
         self,
-        document: YamlDocument,
         extension: Extension,
         urdf: Urdf,
         merged: Mapping[str, Sequence[str]],
         urdf_path: str,
         schema: str | None,
     ) -> None:
-        self.document = document
+        self.document = extension.document
         self.extension = extension
         self.urdf = urdf
         self.merged = merged

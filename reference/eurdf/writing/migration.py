@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from eurdf.format.urdf import Urdf
-from eurdf.linking.description import Description
+from eurdf.linking.description import Described
 from eurdf.linking.rereading import reread
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Mechanism
@@ -32,33 +32,24 @@ class Migration:
     mechanism: Mechanism
 
 
-def migrate(description: Description, urdf_path: str = "robot.urdf", schema: str | None = None) -> Migration:
+def migrate(description: Described, urdf_path: str = "robot.urdf", schema: str | None = None) -> Migration:
     """Write a robot's description of version 1 in version 2.
 
     What version 1 does by itself is said; the user's own data and the comments are kept. The text is read once more,
     and only returned where it describes the same model.
 
     Args:
-        description: Of version 1, with a mechanism.
+        description: Of version 1.
         urdf_path: Path of the URDF from the folder of the new file.
         schema: Path of the schema from the folder of the new file, for its first line; None for no such line.
 
     Raises:
         NotMigratable: Version 2 cannot say the same.
     """
-    extension, document, urdf, before = (
-        description.extension,
-        description.document,
-        description.urdf,
-        description.mechanism,
-    )
-    assert extension is not None
-    assert document is not None
-    assert urdf is not None
-    assert before is not None
+    extension, urdf, before = description.extension, description.urdf, description.mechanism
     _refuse_mimics(urdf)
-    result = migrated(document, extension, urdf, merged_by_rule(description), urdf_path, schema)
-    after, diagnostics = reread(result.text, urdf, document.source.file)
+    result = migrated(extension, urdf, merged_by_rule(description), urdf_path, schema)
+    after, diagnostics = reread(result.text, urdf, extension.document.source.file)
     if after is None:
         raise NotMigratable(f"version 2 does not allow it: {diagnostics.errors[0].message}", ())
     found = differences(before, after)
@@ -88,12 +79,9 @@ def _refuse_mimics(urdf: Urdf) -> None:
         )
 
 
-def merged_by_rule(description: Description) -> dict[str, tuple[str, str, str]]:
+def merged_by_rule(description: Described) -> dict[str, tuple[str, str, str]]:
     """For each spherical joint that version 1 made of three revolutes by itself, their names (EU-ONE-007)."""
     extension, urdf, mechanism = description.extension, description.urdf, description.mechanism
-    assert extension is not None
-    assert urdf is not None
-    assert mechanism is not None
     listed = {entry.name for entry in extension.joints}
     carrying = {joint.child: joint.name for joint in urdf.joints.values()}
 

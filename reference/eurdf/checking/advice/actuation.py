@@ -16,7 +16,7 @@ from eurdf.pinocchio.robot import build_robot
 if TYPE_CHECKING:
     from eurdf.diagnostics import Diagnostics, Place
     from eurdf.kinematics.array import Vector
-    from eurdf.linking.description import Description
+    from eurdf.linking.description import Described
     from eurdf.mechanism.mechanism import Mechanism
     from eurdf.pinocchio.robot import Robot
 
@@ -31,7 +31,7 @@ _NAMES_LISTED = 6
 _MOTIONS_LISTED = 3
 
 
-def advise_on_actuation(description: Description, robot: Robot, q: Vector, diagnostics: Diagnostics) -> None:
+def advise_on_actuation(description: Described, robot: Robot, q: Vector, diagnostics: Diagnostics) -> None:
     """Report loops without an actuator; else actuators that depend on one another, and motions left uncontrolled.
 
     Nothing is reported where an earlier warning may be the reason: a misspelt key, or a closure that is left out.
@@ -67,7 +67,7 @@ def advise_on_actuation(description: Description, robot: Robot, q: Vector, diagn
 
 
 def _report_dependent(
-    description: Description, robot: Robot, loop: LoopAnalysis, locking: Sequence[str], diagnostics: Diagnostics
+    description: Described, robot: Robot, loop: LoopAnalysis, locking: Sequence[str], diagnostics: Diagnostics
 ) -> None:
     """Report the dependent actuators of a group of loops, and the 6d closures that lock them where some were found."""
     dependent = [name for together in loop.dependent_actuators for name in together]
@@ -129,7 +129,7 @@ def _trials(names: Sequence[str]) -> list[tuple[str, ...]]:
     return [*alone, tuple(names)] if len(names) > 1 else alone
 
 
-def _report_uncontrolled(description: Description, robot: Robot, analysis: Analysis, diagnostics: Diagnostics) -> None:
+def _report_uncontrolled(description: Described, robot: Robot, analysis: Analysis, diagnostics: Diagnostics) -> None:
     """Report the motions that are possible with every actuator held, except those that need no actuator."""
     if not analysis.motions:
         return
@@ -157,17 +157,14 @@ def _actuators_key(mechanism: Mechanism) -> str:
     return "name_mot" if mechanism.version == "1" else "actuators"
 
 
-def _place_of_key(description: Description, key: str) -> Place:
-    assert description.document is not None
-    return description.document.place((key,), True)
+def _place_of_key(description: Described, key: str) -> Place:
+    return description.extension.document.place((key,), True)
 
 
-def _place_of_last_actuator(description: Description, joints: Sequence[str]) -> Place:
+def _place_of_last_actuator(description: Described, joints: Sequence[str]) -> Place:
     """Of several actuators the one that is listed last, as what was added most likely."""
-    assert description.extension is not None
-    assert description.document is not None
     entry = next(entry for entry in reversed(description.extension.actuators) if entry.joint in joints)
-    return description.document.place(entry.pointer)
+    return description.extension.document.place(entry.pointer)
 
 
 def _counted(noun: str, names: Sequence[str]) -> str:

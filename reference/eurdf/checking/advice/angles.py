@@ -8,13 +8,13 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from eurdf.format.extension import Extension
+from eurdf.linking.description import Described, Linked
 from eurdf.mechanism.joint_type import JointType
 from eurdf.reading.yaml_node import Pointer
 
 if TYPE_CHECKING:
     from eurdf.diagnostics import Diagnostics, Place
     from eurdf.format.urdf import Urdf
-    from eurdf.linking.description import Description
     from eurdf.mechanism.mechanism import Mechanism
 
 # An orientation beyond one turn, and a joint angle beyond two, is looked at, in rad. Wrists and steering wheels turn up
@@ -38,18 +38,16 @@ _Place = Callable[[], "Place"]
 _Found = tuple[float, str, _Place]
 
 
-def advise_on_angles(description: Description, diagnostics: Diagnostics) -> None:
+def advise_on_angles(description: Linked, diagnostics: Diagnostics) -> None:
     """Report the angles of each file that are likely in degrees, at the first of them.
 
     Args:
-        description: The robot as read, with a mechanism.
+        description: The robot as read.
         diagnostics: Gets what is found.
     """
-    assert description.urdf is not None
-    assert description.mechanism is not None
     _report([*_in_urdf(description.urdf)], diagnostics)
-    if description.extension is not None:
-        _report([*_in_extension(description, description.extension, description.mechanism)], diagnostics)
+    if isinstance(description, Described):
+        _report([*_in_extension(description.extension, description.mechanism)], diagnostics)
 
 
 def _report(found: list[_Found], diagnostics: Diagnostics) -> None:
@@ -96,9 +94,8 @@ def _in_urdf(urdf: Urdf) -> Iterator[_Found]:
         yield from open_ended
 
 
-def _in_extension(description: Description, extension: Extension, mechanism: Mechanism) -> Iterator[_Found]:
-    assert description.document is not None
-    place_at = description.document.place
+def _in_extension(extension: Extension, mechanism: Mechanism) -> Iterator[_Found]:
+    place_at = extension.document.place
 
     def found(value: float, what: str, pointer: Pointer) -> _Found:
         return value, what, partial(place_at, pointer)

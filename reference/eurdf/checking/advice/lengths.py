@@ -9,7 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from eurdf.checking.advice.mesh_size import mesh_size
-from eurdf.linking.description import Description, place_of_file
+from eurdf.linking.description import Described, Linked, place_of_file
 from eurdf.mechanism.joint_type import JointType
 
 if TYPE_CHECKING:
@@ -32,16 +32,15 @@ _HEAVY = 10.0
 _Found = tuple[float, str, Callable[[], "Place"]]
 
 
-def advise_on_lengths(description: Description, meshes: Mapping[str, str], diagnostics: Diagnostics) -> None:
+def advise_on_lengths(description: Linked, meshes: Mapping[str, str], diagnostics: Diagnostics) -> None:
     """Report lengths that are likely in millimetres: of the whole robot, or else single ones far beyond the others.
 
     Args:
-        description: The robot as read, with a mechanism.
+        description: The robot as read.
         meshes: Path of each mesh file that was found, by its URI.
         diagnostics: Gets what is found.
     """
     urdf = description.urdf
-    assert urdf is not None
     joints = [found for found in _between_joints(urdf) if found[0] > 0.0]
     if not joints:
         return
@@ -54,8 +53,11 @@ def advise_on_lengths(description: Description, meshes: Mapping[str, str], diagn
             message = f"{what} is {length:.4g} m, the median of all joints {median:.4g} m{weight}"
             diagnostics.report("x-length-in-millimetres", message, place, _hint(length))
         return
-    in_urdf, in_extension = [*joints, *_centres_of_mass(urdf)], list(_of_extension(description))
-    in_meshes = list(_of_meshes(description, meshes))
+    in_urdf, in_extension = (
+        [*joints, *_centres_of_mass(urdf)],
+        list(_of_extension(description)),
+    )
+    in_meshes = list(_of_meshes(urdf, meshes))
     for of_a_kind in (in_urdf, in_extension, in_meshes):
         long = [found for found in of_a_kind if max(_LONG, _TIMES * median) < found[0] <= _MOST]
         if not long:
@@ -90,25 +92,24 @@ def _centres_of_mass(urdf: Urdf) -> Iterator[_Found]:
             yield math.hypot(*link.inertia.pose.xyz), f"the centre of mass of link '{link.name}'", place
 
 
-def _of_extension(description: Description) -> Iterator[_Found]:
+def _of_extension(description: Linked) -> Iterator[_Found]:
     """The positions of the frames that the description gives."""
-    if description.extension is None or description.document is None:
+    if not isinstance(description, Described):
         return
     for reference in description.extension.references:
         if any(reference.xyz):
-            place = partial(description.document.place, (*reference.pointer, "xyz"))
+            place = partial(description.extension.document.place, (*reference.pointer, "xyz"))
             yield math.hypot(*reference.xyz), "the distance of a frame", place
 
 
-def _of_meshes(description: Description, meshes: Mapping[str, str]) -> Iterator[_Found]:
+def _of_meshes(urdf: Urdf, meshes: Mapping[str, str]) -> Iterator[_Found]:
     """The sizes of meshes that are not scaled."""
-    assert description.urdf is not None
     seen: set[str] = set()
-    for link in description.urdf.links.values():
+    for link in urdf.links.values():
         for shape in (*link.visuals, *link.collisions):
             if shape.filename in seen or shape.filename not in meshes or shape.size != (1.0, 1.0, 1.0):
                 continue
             seen.add(shape.filename)
             size = mesh_size(meshes[shape.filename])
             if size is not None:
-                yield size, f"mesh '{shape.filename}'", partial(place_of_file, description, "mesh", shape.filename)
+                yield size, f"mesh '{shape.filename}'", partial(place_of_file, urdf, "mesh", shape.filename)

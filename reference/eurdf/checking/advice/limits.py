@@ -15,14 +15,14 @@ from eurdf.writing.assembled import BeyondLimit, beyond_limits
 if TYPE_CHECKING:
     from eurdf.diagnostics import Diagnostics
     from eurdf.kinematics.array import Vector
-    from eurdf.linking.description import Description
+    from eurdf.linking.description import Described
     from eurdf.pinocchio.robot import Robot
 
 # Joints that a hint lists.
 _JOINTS_LISTED = 4
 
 
-def advise_on_limits(description: Description, robot: Robot, q: Vector, diagnostics: Diagnostics) -> None:
+def advise_on_limits(description: Described, robot: Robot, q: Vector, diagnostics: Diagnostics) -> None:
     """Report loops for which no closed configuration was found within the limits of their joints.
 
     It costs nothing where the closed configuration is within them. Where it is not, configurations within are searched

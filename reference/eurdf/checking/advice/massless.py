@@ -15,7 +15,7 @@ from eurdf.mechanism.mechanism import ROOT_JOINT
 
 if TYPE_CHECKING:
     from eurdf.diagnostics import Diagnostics
-    from eurdf.linking.description import Description
+    from eurdf.linking.description import Described
     from eurdf.pinocchio.robot import Robot
 
 # How far from the closed configuration the joints are moved for a second look, rad and characteristic lengths: what is
@@ -29,7 +29,7 @@ _NOTHING = 1e-4
 _REACH = 1e-4
 
 
-def advise_on_massless_links(description: Description, robot: Robot, q: Vector, diagnostics: Diagnostics) -> None:
+def advise_on_massless_links(description: Described, robot: Robot, q: Vector, diagnostics: Diagnostics) -> None:
     """Report links of loops without mass, unless they only part the axes of a joint of several, such as a ball.
 
     A link that reaches to another place than its joint is a part whose mass was forgotten. Any link that can move while
@@ -84,10 +84,9 @@ def advise_on_massless_links(description: Description, robot: Robot, q: Vector, 
                 _report(description, [child_of[model.names[joint]]], why, diagnostics)
 
 
-def _report(description: Description, links: list[str], why: str, diagnostics: Diagnostics) -> None:
+def _report(description: Described, links: list[str], why: str, diagnostics: Diagnostics) -> None:
     """Report the first of the links that the URDF has."""
     urdf = description.urdf
-    assert urdf is not None
     known = next((urdf.links[link] for link in links if link in urdf.links), None)
     if known is not None:
         diagnostics.report(

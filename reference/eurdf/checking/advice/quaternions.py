@@ -9,7 +9,7 @@ from eurdf.mechanism.mechanism import ROOT_JOINT
 
 if TYPE_CHECKING:
     from eurdf.diagnostics import Diagnostics
-    from eurdf.linking.description import Description
+    from eurdf.linking.description import Described
     from eurdf.mechanism.mechanism import Mechanism
     from eurdf.pinocchio.robot import Robot
 
@@ -19,7 +19,7 @@ _SAME = 1e-6
 _Coordinates = Mapping[str, tuple[float, ...]]
 
 
-def advise_on_quaternions(description: Description, robot: Robot | None, diagnostics: Diagnostics) -> None:
+def advise_on_quaternions(description: Described, robot: Robot | None, diagnostics: Diagnostics) -> None:
     """Report the quaternions of named configurations that are likely w x y z, in place of x y z w.
 
     They are so where the loops close by them in that order alone; or where they are the identity in that order,
@@ -30,9 +30,7 @@ def advise_on_quaternions(description: Description, robot: Robot | None, diagnos
         robot: The robot built from it, where it has closures.
         diagnostics: Gets what is found.
     """
-    mechanism, extension, document = description.mechanism, description.extension, description.document
-    if mechanism is None or extension is None or document is None:
-        return
+    mechanism, extension = description.mechanism, description.extension
     entries = {entry.name: entry for entry in extension.configurations}
     for name, coordinates in mechanism.configurations.items():
         turned = w_first(mechanism, coordinates)
@@ -52,7 +50,7 @@ def advise_on_quaternions(description: Description, robot: Robot | None, diagnos
                 diagnostics.report(
                     "x-quaternion-order",
                     f"the quaternion of joint '{joint}' in configuration '{name}' is likely w first: {why} only then",
-                    document.place((*entries[name].pointer, joint)),
+                    extension.document.place((*entries[name].pointer, joint)),
                     f"the order is x, y, z, w: {quaternion}",
                 )
 
