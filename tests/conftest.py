@@ -6,25 +6,28 @@ import gc
 import os
 import tempfile
 from collections import Counter
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import settings
 
+from support.shared_runs import SharedRun, certify_once
+
 #: Files whose tests are run by one worker, since they share something that takes long to make.
 TOGETHER = ("test_site.py", "test_editor.py", "test_explore.py", "test_examples.py")
 
 #: Files with the longest tests. They are started first, so that no worker is left with one at the end.
 FIRST = (
+    "test_certify.py",
     "test_site.py",
     "test_editor.py",
     "test_write_an_adapter.py",
     "test_explore.py",
     "test_random_mechanisms.py",
     "test_suite.py",
-    "test_certify.py",
-    "test_cases.py",
     "test_bad_input.py",
     "test_examples.py",
     "test_schema.py",
@@ -60,6 +63,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     last = len(FIRST)
     items.sort(key=lambda item: FIRST.index(item.path.name) if item.path.name in FIRST else last)
+
+
+@pytest.fixture(scope="session")
+def shared_run(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., SharedRun]:
+    """``eurdf certify`` with some arguments, run once a session."""
+    base = tmp_path_factory.getbasetemp()
+    return partial(certify_once, base.parent if "PYTEST_XDIST_WORKER" in os.environ else base)
 
 
 def pytest_collection_finish() -> None:

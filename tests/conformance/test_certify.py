@@ -6,8 +6,11 @@ import json
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
+from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -24,10 +27,14 @@ from eurdf_conformance.corpus.case import InvalidCase
 from eurdf_conformance.corpus.read import read_cases
 from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level
+from eurdf_conformance.suite.item import planned_items
 from eurdf_conformance.suite.smoke import smoke_lines
+from support.shared_runs import SharedRun
 from support.suite_runs import INVALID, PLANNED, VALID, item, result, run
 from support.terminal import on_a_terminal
 from support.warm import run_module
+
+Run = Callable[..., SharedRun]
 
 REFERENCE = "eurdf_conformance.adapters.reference:PARSER"
 
@@ -36,6 +43,7 @@ MOST_SHOWN = 20
 
 #: What is tested where it does not matter what.
 SOME = ("--level", "accept", "--format-version", "1", "--jobs", "0")
+SOME_CASES = [case for case in read_cases() if case.case.version == "1"]
 
 
 def one_answer(word: str, *options: str) -> str:
@@ -68,47 +76,45 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 # --- what it says ----------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
-def test_the_reference_is_certified_and_its_certificate_says_so_again_when_it_is_replayed(folder: Path) -> None:
-    done = certify("--parser", REFERENCE, *SOME, "--certificate", "mine", "--date", "2026-01-31")
-    assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.endswith(": Certified for version 1: accept\n")
-    assert sorted(path.name for path in Path("mine").iterdir()) == ["badge.svg", "certificate.json", "report.html"]
-    certificate = read_certificate(folder / "mine")
-    assert (certificate.certified, certificate.date) == (True, "2026-01-31")
-
-    again = certify("--verify", "mine", "--jobs", "0")
-    assert (again.returncode, again.stdout) == (0, "mine: the same\n")
-    assert again.stderr == f"running {REFERENCE}\n"
+def test_the_reference_is_certified_at_every_level_of_both_versions(shared_run: Run) -> None:
+    """The one run of the tests in which the reference answers every case and every property."""
+    done = shared_run("--parser", REFERENCE, "--date", "2026-01-31")
+    assert (done.returncode, done.stderr) == (0, ""), done.stdout
+    assert done.stdout.endswith(": Certified for version 1: all levels; version 2: all levels\n")
+    certificate = read_certificate(Path(done.certificate))
+    assert (certificate.certified, certificate.failures, certificate.date) == (True, (), "2026-01-31")
+    asked = {(level.version, level.level): level.items for level in certificate.levels}
+    planned = Counter((item.version, item.level) for item in planned_items(read_cases()))
+    assert asked == planned
 
 
-@pytest.mark.slow
-def test_a_parser_that_accepts_everything_fails_on_every_invalid_case_and_on_no_valid_one(folder: Path) -> None:
-    given = certificate_of("--parser", ACCEPTS, "--level", "accept", "--jobs", "0")
-    failed = {failure["id"] for failure in given["failures"]}
-    cases = read_cases()
-    right = {case.path for case in cases if not isinstance(case.case, InvalidCase) or case.case.either}
-    wrong = {case.path for case in cases} - right
+def test_a_parser_that_accepts_everything_fails_on_every_invalid_case_and_on_no_valid_one(shared_run: Run) -> None:
+    certificate = read_certificate(Path(shared_run("--parser", ACCEPTS, *SOME).certificate))
+    failed = {failure.id for failure in certificate.failures}
+    right = {case.path for case in SOME_CASES if not isinstance(case.case, InvalidCase) or case.case.either}
+    wrong = {case.path for case in SOME_CASES} - right
     assert wrong <= failed
     assert not right & failed
-    assert not given["certified"]
-    assert not any(level["certified"] for level in given["levels"])
+    assert not certificate.certified
+    assert not any(level.certified for level in certificate.levels)
 
 
-@pytest.mark.slow
-def test_a_parser_that_rejects_everything_fails_on_every_valid_case_and_on_no_invalid_one(folder: Path) -> None:
-    given = certificate_of("--parser", REJECTS, "--level", "accept", "--jobs", "0")
-    failed = {failure["id"] for failure in given["failures"]}
-    cases = read_cases()
-    wrong = {case.path for case in cases if not isinstance(case.case, InvalidCase)}
-    assert wrong <= failed
-    assert not {case.path for case in cases if isinstance(case.case, InvalidCase)} & failed
-    assert not any(level["certified"] for level in given["levels"])
+def test_a_parser_that_rejects_everything_fails_on_every_valid_case_and_on_no_invalid_one(shared_run: Run) -> None:
+    certificate = read_certificate(Path(shared_run("--parser", REJECTS, *SOME).certificate))
+    failed = {failure.id for failure in certificate.failures}
+    assert {case.path for case in SOME_CASES if not isinstance(case.case, InvalidCase)} <= failed
+    assert not {case.path for case in SOME_CASES if isinstance(case.case, InvalidCase)} & failed
+    assert not any(level.certified for level in certificate.levels)
 
 
-def test_what_failed_is_shown_with_the_reason_and_the_command_that_runs_it_again(folder: Path) -> None:
-    done = certify("--parser", ACCEPTS, *SOME)
+def test_what_failed_is_shown_with_the_reason_and_the_command_that_runs_it_again(shared_run: Run) -> None:
+    done = shared_run("--parser", ACCEPTS, *SOME)
     assert done.returncode == 1
+    assert sorted(path.name for path in Path(done.certificate).iterdir()) == [
+        "badge.svg",
+        "certificate.json",
+        "report.html",
+    ]
     shown = re.findall(r"^failed (\w+)/([\w-]+)/accept: \S", done.stdout, re.MULTILINE)
     assert len(shown) == MOST_SHOWN
     for _, id_ in shown:
@@ -117,12 +123,14 @@ def test_what_failed_is_shown_with_the_reason_and_the_command_that_runs_it_again
     assert done.stdout.endswith("always_accepted 1: Not certified at any level\n")
 
 
-@pytest.mark.slow
-def test_the_json_is_the_certificate_and_fits_its_schema_however_the_run_is_spread(folder: Path) -> None:
-    here = certificate_of("--parser", REJECTS, *SOME)
+def test_the_json_is_the_certificate_and_fits_its_schema_however_the_run_is_spread(
+    folder: Path, shared_run: Run
+) -> None:
+    alone = Path(shared_run("--parser", REJECTS, *SOME).certificate, "certificate.json")
     spread = certificate_of("--parser", REJECTS, *SOME[:-1], "2", "--certificate", "mine")
-    jsonschema.Draft202012Validator(certificate_schema()).validate(here)
-    assert here == spread == json.loads(Path("mine/certificate.json").read_text(encoding="utf-8"))
+    jsonschema.Draft202012Validator(certificate_schema()).validate(spread)
+    assert spread == json.loads(Path("mine/certificate.json").read_text(encoding="utf-8"))
+    assert spread == json.loads(alone.read_text(encoding="utf-8"))
 
 
 # --- a first try -----------------------------------------------------------------------------------------------------
@@ -180,8 +188,9 @@ def known_failures(folder: Path, *ids: str) -> Path:
     return file
 
 
-def test_known_failures_are_counted_and_do_not_certify(folder: Path) -> None:
-    failed = [each["id"] for each in certificate_of("--parser", REJECTS, *SOME)["failures"]]
+def test_known_failures_are_counted_and_do_not_certify(folder: Path, shared_run: Run) -> None:
+    certificate = read_certificate(Path(shared_run("--parser", REJECTS, *SOME).certificate))
+    failed = [failure.id for failure in certificate.failures]
     file = known_failures(folder, *failed)
     done = certify("--parser", REJECTS, *SOME, "--known-failures", file)
     assert done.returncode == 1
@@ -335,8 +344,8 @@ def test_a_wrong_value_of_an_option_is_refused(
 # --- again, and side by side -----------------------------------------------------------------------------------------
 
 
-def test_a_replay_by_another_parser_is_told_line_by_line(folder: Path) -> None:
-    assert certify("--parser", REJECTS, *SOME, "--certificate", "mine").returncode == 1
+def test_a_replay_by_another_parser_is_told_line_by_line(folder: Path, shared_run: Run) -> None:
+    shutil.copytree(shared_run("--parser", REJECTS, *SOME).certificate, "mine")
     again = certify("--verify", "mine/certificate.json", "--parser", ACCEPTS, "--jobs", "0")
     assert again.returncode == 1
     assert again.stdout.startswith("parser, name: 'always_rejected' then, 'always_accepted' now\n")
@@ -352,6 +361,7 @@ def test_a_replay_tells_what_somebody_has_changed_in_the_file(folder: Path) -> N
     assert certify("--parser", REJECTS, "--smoke", "--certificate", "mine").returncode == 1
     again = certify("--verify", "mine")
     assert (again.returncode, again.stdout) == (0, "mine: the same\n")
+    assert again.stderr == f"running {REJECTS}\n"
     file = Path("mine/certificate.json")
     text = file.read_text(encoding="utf-8")
     file.write_text(text.replace("-k tq4m8z/accept", "; reboot").replace('"known": false', '"known": true', 1))
@@ -380,10 +390,9 @@ def test_what_a_parser_writes_that_does_not_start_steers_no_terminal(folder: Pat
     assert "\x1b" not in done.stderr
 
 
-def test_a_comparison_is_one_page_of_all_its_certificates(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    for name, parser in (("a", REJECTS), ("b", ACCEPTS)):
-        certify("--parser", parser, *SOME, "--certificate", name)
-    assert main(["certify", "--compare", "a", "b/certificate.json", "-o", "page.html"]) == 0
+def test_a_comparison_is_one_page_of_all_its_certificates(folder: Path, shared_run: Run) -> None:
+    a, b = (shared_run("--parser", parser, *SOME).certificate for parser in (REJECTS, ACCEPTS))
+    assert main(["certify", "--compare", a, f"{b}/certificate.json", "-o", "page.html"]) == 0
     page = Path("page.html").read_text(encoding="utf-8")
     assert page.index("always_rejected 1") < page.index("always_accepted 1")
     assert "Clauses on which they differ" in page
