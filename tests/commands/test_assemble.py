@@ -80,7 +80,7 @@ def largest_row(path: Path) -> float:
     return float(np.abs(eurdf.residual(robot, robot.configurations["assembled"])).max())
 
 
-def test_the_coordinates_of_each_joint_are_shown_with_their_units(folder: Path, run: Run) -> None:
+def test_coordinates_are_shown_with_units(folder: Path, run: Run) -> None:
     bench(folder, DESCRIPTION + READY)
     code, out, err = run("robot.yaml", "--from", "ready", "--hold", "motor")
     assert (code, err) == (0, "")
@@ -93,7 +93,7 @@ def test_the_coordinates_of_each_joint_are_shown_with_their_units(folder: Path, 
     assert (folder / "robot.yaml").read_text() == DESCRIPTION + READY
 
 
-def test_a_terminal_shows_the_same_table(folder: Path) -> None:
+def test_terminal_shows_the_same_table(folder: Path) -> None:
     bench(folder, DESCRIPTION + READY)
     code, shown = on_a_terminal(["-m", "eurdf", "assemble", "robot.yaml"], columns=120)
     assert code == 0
@@ -102,7 +102,7 @@ def test_a_terminal_shows_the_same_table(folder: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["delta", "digit_leg", "kangaroo_2legs", "slider_crank", "tesla_optimus_ankle"])
-def test_json_fits_its_schema_and_has_every_coordinate(name: str, run: Run) -> None:
+def test_json_matches_schema_and_has_all_coordinates(name: str, run: Run) -> None:
     code, out, err = run(name, "--json")
     assert (code, err) == (0, "")
     found = json.loads(out)
@@ -113,7 +113,7 @@ def test_json_fits_its_schema_and_has_every_coordinate(name: str, run: Run) -> N
     assert (found["start"], found["closes"], found["file"], found["written"]) == ("assembled", True, None, False)
 
 
-def test_a_configuration_is_written_and_all_else_stays_as_it_was(folder: Path, run: Run) -> None:
+def test_written_configuration_changes_nothing_else(folder: Path, run: Run) -> None:
     file = bench(folder)
     code, _, err = run("robot.yaml", "--write")
     assert (code, err) == (0, "wrote the configuration 'assembled' to 'robot.yaml'\n")
@@ -125,12 +125,12 @@ def test_a_configuration_is_written_and_all_else_stays_as_it_was(folder: Path, r
     assert eurdf.check(file).ok
     assert run("robot.yaml", "--write")[::2] == (
         0,
-        "'robot.yaml' has this configuration as 'assembled' already: nothing to do\n",
+        "'robot.yaml' already has this configuration as 'assembled': nothing to do\n",
     )
     assert file.read_text(encoding="utf-8") == text
 
 
-def test_a_byte_order_mark_and_line_breaks_stay(folder: Path, run: Run) -> None:
+def test_byte_order_mark_and_line_breaks_are_kept(folder: Path, run: Run) -> None:
     file = bench(folder)
     before = b"\xef\xbb\xbf" + DESCRIPTION.replace("\n", "\r\n").encode()
     file.write_bytes(before)
@@ -141,13 +141,13 @@ def test_a_byte_order_mark_and_line_breaks_stay(folder: Path, run: Run) -> None:
     assert largest_row(file) <= 1e-12
 
 
-def test_a_different_assembled_is_replaced_only_by_force(folder: Path, run: Run) -> None:
+def test_different_assembled_is_replaced_only_with_force(folder: Path, run: Run) -> None:
     file = bench(folder, DESCRIPTION + READY + "  assembled:\n    # the motor\n    motor: 0.1  # rad\n")
     before = file.read_text()
     code, out, err = run("robot.yaml", "--write", "--hold", "motor")
     assert code == 2
     assert out.startswith("workbench  closed")
-    assert err == ("eurdf: 'robot.yaml' has a different configuration 'assembled' already; --force replaces it\n")
+    assert err == ("eurdf: 'robot.yaml' already has a different configuration 'assembled'; --force replaces it\n")
     assert file.read_text() == before
     code, _, err = run("robot.yaml", "--write", "--hold", "motor", "--force")
     assert (code, err) == (0, "wrote the configuration 'assembled' to 'robot.yaml'\n")
@@ -157,19 +157,19 @@ def test_a_different_assembled_is_replaced_only_by_force(folder: Path, run: Run)
     assert largest_row(file) <= 1e-12
 
 
-def test_a_joint_that_is_stated_stays_stated_where_it_is_at_its_neutral(folder: Path, run: Run) -> None:
+def test_stated_neutral_joint_stays_stated(folder: Path, run: Run) -> None:
     file = bench(folder, DESCRIPTION + READY + "  assembled: {stage: 0.1, pivot: 0.3}\n")
     assert run("robot.yaml", "--write", "--from", "neutral", "--hold", "motor", "--force")[0] == 0
     assert re.search(r"^  assembled: \{stage: 0, pivot: 0\}$", file.read_text(), re.MULTILINE)
 
 
-def test_the_json_of_a_write_names_the_file(folder: Path, run: Run) -> None:
+def test_json_of_write_names_the_file(folder: Path, run: Run) -> None:
     bench(folder)
     written = [json.loads(run("robot.yaml", "--write", "--json")[1]) for _ in range(2)]
     assert [(each["file"], each["written"]) for each in written] == [("robot.yaml", True), ("robot.yaml", False)]
 
 
-def test_a_floating_root_is_stated_only_where_it_has_moved(folder: Path, run: Run) -> None:
+def test_floating_root_is_stated_only_if_moved(folder: Path, run: Run) -> None:
     floating = DESCRIPTION.replace("closures:", "root: floating\nclosures:")
     file = bench(folder, floating + "configurations: {up: {root_joint: [0, 0, 1, 0, 0, 0, 1], motor: 0.5}}\n")
     assert run("robot.yaml", "--write", "--from", "up")[0] == 0
@@ -182,15 +182,13 @@ def open_bench(urdf: str) -> str:
 
 
 @pytest.mark.parametrize("options", [(), ("--write",), ("--write", "--force", "--json")])
-def test_loops_that_cannot_close_exit_with_1_and_list_the_openings(
-    folder: Path, run: Run, options: tuple[str, ...]
-) -> None:
+def test_impossible_loops_exit_1_and_list_openings(folder: Path, run: Run, options: tuple[str, ...]) -> None:
     file = bench(folder, urdf=open_bench)
     code, out, err = run("robot.yaml", *options)
     assert code == 1
     # A rocker of 0.3 m is 0.7 m or more away from the end of 0.2 m and 0.4 m.
     first, *rest = err.splitlines()
-    assert re.match(r"no configuration was found that closes the loops; at the best, 'pin' by \d{3} mm$", first)
+    assert re.match(r"no configuration was found that closes the loops; least open: 'pin' by \d{3} mm$", first)
     assert rest == (["nothing was written to 'robot.yaml'"] if options else [])
     assert file.read_text() == DESCRIPTION
     if "--json" in options:
@@ -206,7 +204,7 @@ def narrow(urdf: str) -> str:
     return urdf.replace('<limit lower="-3" upper="3" effort="5"', '<limit lower="0.05" upper="0.3" effort="5"')
 
 
-def test_a_closed_configuration_keeps_the_limits_where_it_can(folder: Path, run: Run) -> None:
+def test_limits_are_respected_if_possible(folder: Path, run: Run) -> None:
     file = bench(folder, urdf=narrow)
     assert run("robot.yaml", "--write")[0] == 0
     robot = eurdf.load(file, geometry=False)
@@ -216,12 +214,12 @@ def test_a_closed_configuration_keeps_the_limits_where_it_can(folder: Path, run:
     assert eurdf.check(file).ok
 
 
-def test_a_configuration_beyond_limits_is_shown_but_not_written(folder: Path, run: Run) -> None:
+def test_configuration_beyond_limits_is_shown_not_written(folder: Path, run: Run) -> None:
     file = bench(folder, urdf=narrow)
     code, out, err = run("robot.yaml", "--hold", "motor")
     assert code == 0
     assert re.search(r"^pivot +revolute +0 +rad +beyond its limits$", out, re.MULTILINE)
-    message = "the loops close only beyond the limits of joints: 'pivot' at 0 rad (limits 0.05 to 0.3)\n"
+    message = "the loops close only with joints beyond their limits: 'pivot' at 0 rad (limits 0.05 to 0.3)\n"
     assert re.sub("at -?[0-9.e-]+ rad", "at 0 rad", err) == message
     code, _, err = run("robot.yaml", "--hold", "motor", "--write")
     assert (code, err.splitlines()[1]) == (1, "nothing was written to 'robot.yaml'")
@@ -229,13 +227,11 @@ def test_a_configuration_beyond_limits_is_shown_but_not_written(folder: Path, ru
     code, _, err = run("robot.yaml", "--hold", "motor", "--limits")
     assert code == 1
     first, second = err.splitlines()
-    assert first.startswith(
-        "no configuration was found that closes the loops with 'motor' held; at the best, 'pin' by "
-    )
-    assert second == "at their limits: 'pivot' (lower limit 0.05)"
+    assert first.startswith("no configuration was found that closes the loops with 'motor' held; least open: 'pin' by ")
+    assert second == "joints at their limits: 'pivot' (lower limit 0.05)"
 
 
-def test_a_range_of_0_to_0_keeps_nothing_from_being_written(folder: Path, run: Run) -> None:
+def test_zero_range_does_not_prevent_writing(folder: Path, run: Run) -> None:
     given, none = 'lower="-3" upper="3" effort="5"', 'lower="0" upper="0" effort="5"'
     file = bench(folder, urdf=lambda urdf: urdf.replace(given, none))
     code, out, _ = run("robot.yaml", "--write")
@@ -244,26 +240,26 @@ def test_a_range_of_0_to_0_keeps_nothing_from_being_written(folder: Path, run: R
     assert eurdf.check(file).ok
 
 
-def test_version_1_is_assembled_but_has_no_configurations(folder: Path, run: Run) -> None:
+def test_version_1_is_assembled_but_not_written(folder: Path, run: Run) -> None:
     shutil.copytree(ROBOTS / "four_bar", folder / "bar")
     code, out, err = run("bar/robot.v1.yaml")
     assert (code, err) == (0, "")
     assert out.startswith("four_bar  closed")
-    message = "'bar/robot.v1.yaml' is of version 1, which has no configurations; `eurdf migrate` writes it in version 2"
+    message = "'bar/robot.v1.yaml' has version 1, which has no configurations; `eurdf migrate` converts it to version 2"
     assert run("bar/robot.v1.yaml", "--write") == (2, "", f"eurdf: {message}\n")
 
 
 @pytest.mark.parametrize("options", [(), ("--write",)])
-def test_a_bare_urdf_has_no_loops(folder: Path, run: Run, options: tuple[str, ...]) -> None:
+def test_plain_urdf_has_no_loops(folder: Path, run: Run, options: tuple[str, ...]) -> None:
     bench(folder)
     code, out, err = run("workbench.urdf", *options)
     assert (code, out) == (2, "")
     assert err == (
-        "eurdf: 'workbench.urdf' is a bare URDF, which has no loops; `eurdf generate` writes a description with them\n"
+        "eurdf: 'workbench.urdf' is a plain URDF, without loops; `eurdf generate` writes a description with closures\n"
     )
 
 
-def test_a_robot_with_errors_is_refused_with_its_diagnostics(folder: Path, run: Run) -> None:
+def test_robot_with_errors_is_refused_with_diagnostics(folder: Path, run: Run) -> None:
     bench(folder, DESCRIPTION.replace("rod_tip", "rod_tpi"))
     code, out, err = run("robot.yaml")
     assert (code, out) == (1, "")
@@ -278,34 +274,32 @@ def test_a_robot_with_errors_is_refused_with_its_diagnostics(folder: Path, run: 
     [
         (("--hold", "motr"), "the model has no joint 'motr'; did you mean 'motor'?"),
         (("--from", "raedy"), "there is no configuration 'raedy'; did you mean 'ready'?"),
-        (("--from", "x"), "there is no configuration 'x'; there are: ready, neutral"),
+        (("--from", "x"), "there is no configuration 'x'; the configurations are: ready, neutral"),
         (("--urdf", "none.urdf"), "the URDF 'none.urdf' does not exist"),
-        (("--force",), "--force replaces what --write would write: give --write too"),
+        (("--force",), "--force has no effect without --write; add --write"),
     ],
 )
-def test_a_wrong_option_is_reported(folder: Path, run: Run, options: tuple[str, ...], message: str) -> None:
+def test_wrong_option_is_reported(folder: Path, run: Run, options: tuple[str, ...], message: str) -> None:
     bench(folder, DESCRIPTION + READY)
     assert run("robot.yaml", *options) == (2, "", f"eurdf: {message}\n")
 
 
-def test_a_robot_of_the_collection_is_not_written_to(run: Run) -> None:
+def test_collection_robot_is_not_written(run: Run) -> None:
     code, _, err = run("four_bar", "--write")
     assert code == 2
-    assert err.startswith("eurdf: 'four_bar' is a robot of the collection: copy its folder")
+    assert err.startswith("eurdf: 'four_bar' is a robot of the collection; copy its folder")
 
 
-def test_a_file_that_cannot_be_edited_is_left_alone(folder: Path, run: Run) -> None:
+def test_uneditable_file_is_unchanged(folder: Path, run: Run) -> None:
     text = DESCRIPTION + "x-c: &c {ready: {}}\nconfigurations: *c\n"
     file = bench(folder, text)
     code, _, err = run("robot.yaml", "--write")
     assert code == 2
-    assert err == "eurdf: cannot write to 'robot.yaml': 'configurations' is an alias; write it by hand\n"
+    assert err == "eurdf: cannot write to 'robot.yaml': 'configurations' is an alias; edit the file by hand\n"
     assert file.read_text() == text
 
 
-def test_a_file_that_another_program_changed_is_left_alone(
-    folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_concurrently_changed_file_is_not_overwritten(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     import eurdf.writing.assembled
 
     file = bench(folder)
@@ -318,7 +312,9 @@ def test_a_file_that_another_program_changed_is_left_alone(
     monkeypatch.setattr(eurdf.writing.assembled, "with_assembled", meanwhile)
     code, _, err = run("robot.yaml", "--write")
     assert (code, file.read_text()) == (2, "changed\n")
-    assert err == "eurdf: 'robot.yaml' was changed by another program in the meantime; nothing was written\n"
+    assert err == (
+        "eurdf: another program changed 'robot.yaml' in the meantime; nothing was written, run the command again\n"
+    )
 
 
 @pytest.mark.parametrize(
@@ -328,7 +324,7 @@ def test_a_file_that_another_program_changed_is_left_alone(
         ("configurations: {assembled: {}}\n", "residual 0"),
     ],
 )
-def test_info_names_the_command_where_no_configuration_is_stated(
+def test_info_suggests_assemble_without_stated_configuration(
     folder: Path, capsys: pytest.CaptureFixture[str], stated: str, message: str
 ) -> None:
     bench(folder, DESCRIPTION + stated)

@@ -31,7 +31,7 @@ def option(text: str, name: str) -> str:
 
 
 @pytest.mark.parametrize("command", NAMES)
-def test_every_command_shows_an_example_and_its_exit_codes(
+def test_help_shows_examples_and_exit_codes(
     command: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("COLUMNS", "100")
@@ -51,9 +51,7 @@ def test_every_command_shows_an_example_and_its_exit_codes(
         capsys.readouterr()
 
 
-def test_the_options_that_commands_share_read_alike(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_shared_options_have_the_same_help(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", "100")
     of_robots = [help_of(command, capsys) for command in OF_ROBOTS]
     of_urdfs = [help_of(command, capsys) for command in OF_URDFS]

@@ -74,12 +74,12 @@ def in_a_process(*argv: str, **options: Any) -> subprocess.CompletedProcess[str]
 # --- check -----------------------------------------------------------------------------------------------------------
 
 
-def test_a_sound_robot_exits_with_0(folder: Path, run: Run) -> None:
+def test_valid_robot_exits_0(folder: Path, run: Run) -> None:
     robot(folder / "arm")
     assert run("check", "arm") == (0, "arm: sound\n", "")
 
 
-def test_an_error_is_shown_where_it_is_and_exits_with_1(folder: Path, run: Run) -> None:
+def test_error_is_shown_with_place_and_exits_1(folder: Path, run: Run) -> None:
     robot(folder / "arm", ACTUATES_NOTHING)
     code, out, err = run("check", "arm")
     assert code == 1
@@ -90,7 +90,7 @@ def test_an_error_is_shown_where_it_is_and_exits_with_1(folder: Path, run: Run) 
     assert err == ""
 
 
-def test_every_robot_below_a_folder_is_checked_and_counted(folder: Path, run: Run) -> None:
+def test_every_robot_below_a_folder_is_checked(folder: Path, run: Run) -> None:
     robot(folder / "robots" / "a")
     robot(folder / "robots" / "b", ACTUATES_NOTHING)
     robot(folder / "robots" / "deep" / "c")
@@ -104,23 +104,23 @@ def test_every_robot_below_a_folder_is_checked_and_counted(folder: Path, run: Ru
     assert out.endswith("3 robots: 2 passed, 1 failed (1 error)\n")
 
 
-def test_a_robot_named_twice_is_checked_once(folder: Path, run: Run) -> None:
+def test_duplicate_robot_is_checked_once(folder: Path, run: Run) -> None:
     robot(folder / "arm")
     assert run("check", "arm", "arm")[1] == "arm: sound\n"
 
 
-def test_a_robot_of_the_collection_is_checked_by_its_name(folder: Path, run: Run) -> None:
+def test_collection_robot_is_checked_by_name(folder: Path, run: Run) -> None:
     assert run("check", "four_bar") == (0, "four_bar: sound\n", "")
 
 
-def test_a_urdf_other_than_the_one_named_is_used_where_asked_for(folder: Path, run: Run) -> None:
+def test_urdf_option_replaces_named_urdf(folder: Path, run: Run) -> None:
     robot(folder / "arm", urdf="<robot")
     (folder / "other.urdf").write_text(URDF, encoding="utf-8")
     assert run("check", "arm")[0] == 1
     assert run("check", "arm", "--urdf", "other.urdf")[0] == 0
 
 
-def test_a_warning_fails_a_strict_check_alone(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_warning_fails_only_strict_check(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     robot(folder)
     finds(monkeypatch, "near-miss-key")
     assert run("check", ".")[0] == 0
@@ -129,7 +129,7 @@ def test_a_warning_fails_a_strict_check_alone(folder: Path, run: Run, monkeypatc
     assert not json.loads(run("check", ".", "--format", "json", "--strict")[1])["ok"]
 
 
-def test_the_json_of_a_check_fits_its_published_schema(folder: Path, run: Run) -> None:
+def test_check_json_matches_published_schema(folder: Path, run: Run) -> None:
     robot(folder / "a")
     robot(folder / "b", ACTUATES_NOTHING)
     code, out, _ = run("check", "a", "b", "--format", "json")
@@ -141,7 +141,7 @@ def test_the_json_of_a_check_fits_its_published_schema(folder: Path, run: Run) -
     assert (found["code"], found["line"], found["column"]) == ("unknown-actuator", 2, 13)
 
 
-def test_the_sarif_of_a_check_names_the_place(folder: Path, run: Run) -> None:
+def test_check_sarif_names_the_place(folder: Path, run: Run) -> None:
     robot(folder / "my arm", ACTUATES_NOTHING)
     code, out, _ = run("check", "my arm", "--format", "sarif")
     (result,) = json.loads(out)["runs"][0]["results"]
@@ -152,7 +152,7 @@ def test_the_sarif_of_a_check_names_the_place(folder: Path, run: Run) -> None:
 
 
 @pytest.mark.parametrize("format_", ["text", "json", "sarif"])
-def test_a_path_that_is_not_there_exits_with_2_and_says_so(folder: Path, run: Run, format_: str) -> None:
+def test_missing_path_exits_2_with_message(folder: Path, run: Run, format_: str) -> None:
     code, out, err = run("check", "nowhere", "--format", format_)
     assert (code, out) == (2, "")
     assert "'nowhere'" in err
@@ -160,21 +160,21 @@ def test_a_path_that_is_not_there_exits_with_2_and_says_so(folder: Path, run: Ru
 
 
 @pytest.mark.parametrize("path", ["x" * 5000, "a\0b", "a\x1b[31mb", ""])
-def test_a_path_that_cannot_be_one_exits_with_2_in_one_line(folder: Path, run: Run, path: str) -> None:
+def test_impossible_path_exits_2_in_one_line(folder: Path, run: Run, path: str) -> None:
     code, out, err = run("check", path)
     assert (code, out) == (2, "")
     assert err.endswith("\n")
     assert err[:-1].isprintable()
 
 
-def test_a_urdf_that_is_not_there_exits_with_2(folder: Path, run: Run) -> None:
+def test_missing_urdf_exits_2(folder: Path, run: Run) -> None:
     robot(folder)
     code, _, err = run("check", ".", "--urdf", "nowhere.urdf")
     assert code == 2
     assert "'nowhere.urdf'" in err
 
 
-def test_a_folder_without_a_robot_exits_with_2(folder: Path, run: Run) -> None:
+def test_folder_without_robot_exits_2(folder: Path, run: Run) -> None:
     (folder / "empty").mkdir()
     code, out, err = run("check", "empty")
     assert (code, out) == (2, "")
@@ -184,14 +184,14 @@ def test_a_folder_without_a_robot_exits_with_2(folder: Path, run: Run) -> None:
 @pytest.mark.parametrize(
     "argv", [[], ["chek"], ["check"], ["check", "a", "--format", "xml"], ["info"], ["schema", "--version", "3"]]
 )
-def test_a_bad_usage_exits_with_2(argv: list[str]) -> None:
+def test_bad_usage_exits_2(argv: list[str]) -> None:
     with pytest.raises(SystemExit) as exit_:
         main(argv)
     assert exit_.value.code == 2
 
 
 @pytest.mark.parametrize("name", ["stdout", "stderr"])
-def test_a_stream_that_is_closed_changes_nothing_else(name: str, folder: Path) -> None:
+def test_closed_stream_changes_nothing_else(name: str, folder: Path) -> None:
     robot(folder)
     program = f"import sys; sys.{name} = None; from eurdf.commands.main import main; sys.exit(main(['check', '.']))"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=False)
@@ -202,7 +202,7 @@ def test_a_stream_that_is_closed_changes_nothing_else(name: str, folder: Path) -
 # --- which robots a path stands for ----------------------------------------------------------------------------------
 
 
-def test_a_description_in_a_folder_without_robot_yaml_is_told_by_its_keys(folder: Path) -> None:
+def test_description_is_recognized_by_its_keys(folder: Path) -> None:
     (folder / "two.yaml").write_text('# arm\nextended_urdf: "2.0"\n', encoding="utf-8")
     (folder / "one.yml").write_text("'closed_loop' : []\n", encoding="utf-8")
     (folder / "quoted.yaml").write_text('"extended_urdf": "2.0"\n', encoding="utf-8")
@@ -211,39 +211,39 @@ def test_a_description_in_a_folder_without_robot_yaml_is_told_by_its_keys(folder
     assert select(["."]) == ["./one.yml", "./quoted.yaml", "./two.yaml"]
 
 
-def test_a_description_named_as_one_is_checked_whatever_its_keys(folder: Path) -> None:
+def test_description_is_recognized_by_its_file_name(folder: Path) -> None:
     for name in ("left.eurdf.yaml", "right.eurdf.yml"):
         (folder / name).write_text('extended_urfd: "2.0"\n', encoding="utf-8")
     (folder / "mkdocs.yml").write_text("site_name: A site\n", encoding="utf-8")
     assert select(["."]) == select(["."], allow_none=True) == ["./left.eurdf.yaml", "./right.eurdf.yml"]
 
 
-def test_a_description_may_have_all_the_bytes_of_a_file_before_its_key(folder: Path) -> None:
+def test_key_is_found_anywhere_in_the_file(folder: Path) -> None:
     for name in ("one.yaml", "two.yaml"):
         (folder / name).write_text("#" * (5 << 20) + '\nextended_urdf: "2.0"\n', encoding="utf-8")
     assert select(["."]) == ["./one.yaml", "./two.yaml"]
 
 
-def test_other_descriptions_beside_robot_yaml_belong_to_that_robot(folder: Path) -> None:
+def test_yaml_beside_robot_yaml_belongs_to_it(folder: Path) -> None:
     robot(folder / "arm")
     (folder / "arm" / "robot.v1.yaml").write_text("closed_loop: []\n", encoding="utf-8")
     assert select(["arm"]) == ["arm"]
     assert select(["."]) == ["./arm"]
 
 
-def test_hidden_folders_and_links_are_not_searched(folder: Path) -> None:
+def test_hidden_folders_and_links_are_skipped(folder: Path) -> None:
     robot(folder / "arm")
     robot(folder / ".git" / "arm")
     (folder / "loop").symlink_to(folder)
     assert select(["."]) == ["./arm"]
 
 
-def test_a_folder_with_a_urdf_alone_is_a_robot(folder: Path) -> None:
+def test_folder_with_single_urdf_is_a_robot(folder: Path) -> None:
     (folder / "robot.urdf").write_text(URDF, encoding="utf-8")
     assert select(["."]) == ["."]
 
 
-def test_a_folder_without_robots_is_an_error_unless_none_are_allowed(folder: Path, run: Run) -> None:
+def test_empty_folder_is_error_unless_allowed(folder: Path, run: Run) -> None:
     (folder / "mkdocs.yml").write_text("site_name: A site\n", encoding="utf-8")
     assert run("check", ".")[0] == 1  # the one YAML file of a folder is its description
     assert run("check", "--allow-none", ".") == (0, ".: no robot\n", "")
@@ -256,7 +256,7 @@ def test_a_folder_without_robots_is_an_error_unless_none_are_allowed(folder: Pat
 # --- info ------------------------------------------------------------------------------------------------------------
 
 
-def test_info_of_a_four_bar_says_how_it_moves(folder: Path, run: Run) -> None:
+def test_info_of_four_bar_shows_mobility(folder: Path, run: Run) -> None:
     code, out, _ = run("info", "four_bar", "--json")
     info = json.loads(out)
     jsonschema.Draft202012Validator(output_schemas()["info.schema.json"]).validate(info)
@@ -281,7 +281,7 @@ def test_info_of_a_four_bar_says_how_it_moves(folder: Path, run: Run) -> None:
     assert [closure["rows"] for closure in info["closure_list"]] == [3]
 
 
-def test_info_counts_the_root_that_was_asked_for(folder: Path, run: Run) -> None:
+def test_info_uses_requested_root(folder: Path, run: Run) -> None:
     robot(folder)
     fixed = json.loads(run("info", ".", "--json")[1])
     floating = json.loads(run("info", ".", "--json", "--root", "floating")[1])
@@ -292,13 +292,13 @@ def test_info_counts_the_root_that_was_asked_for(folder: Path, run: Run) -> None
     assert fixed["mass"] == floating["mass"] == 2.0
 
 
-def test_info_counts_the_mass_of_the_root_link_too(folder: Path, run: Run) -> None:
+def test_info_includes_mass_of_root_link(folder: Path, run: Run) -> None:
     inertial = '<inertial><mass value="3"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
     robot(folder, urdf=URDF.replace('<link name="base"/>', f'<link name="base">{inertial}</link>'))
     assert json.loads(run("info", ".", "--json")[1])["mass"] == 5.0
 
 
-def test_info_tells_a_joint_that_mimics_from_the_one_that_leads_it(folder: Path, run: Run) -> None:
+def test_info_distinguishes_mimic_joint_from_leader(folder: Path, run: Run) -> None:
     follower = """\
   <link name="finger">
     <inertial><mass value="1"/><inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/></inertial>
@@ -320,7 +320,7 @@ def test_info_tells_a_joint_that_mimics_from_the_one_that_leads_it(folder: Path,
         assert info["nq"] == sum(joint["nq"] for joint in info["joint_list"])
 
 
-def test_info_of_a_robot_without_closures_needs_none(folder: Path, run: Run) -> None:
+def test_info_works_without_closures(folder: Path, run: Run) -> None:
     (folder / "arm.urdf").write_text(URDF, encoding="utf-8")
     info = json.loads(run("info", "arm.urdf", "--json")[1])
     jsonschema.Draft202012Validator(output_schemas()["info.schema.json"]).validate(info)
@@ -330,7 +330,7 @@ def test_info_of_a_robot_without_closures_needs_none(folder: Path, run: Run) -> 
     assert info["residual"] == 0.0
 
 
-def test_info_is_shown_as_tables_in_plain_ascii_when_it_is_not_read_by_a_person(folder: Path, run: Run) -> None:
+def test_info_is_plain_ascii_without_terminal(folder: Path, run: Run) -> None:
     code, out, _ = run("info", "four_bar")
     assert code == 0
     assert out.isascii()
@@ -341,7 +341,7 @@ def test_info_is_shown_as_tables_in_plain_ascii_when_it_is_not_read_by_a_person(
     assert ["uncontrolled", "0"] in [line[:2] for line in words]
 
 
-def test_info_shows_names_with_markup_and_controls_as_they_are(folder: Path, run: Run) -> None:
+def test_info_escapes_markup_and_controls(folder: Path, run: Run) -> None:
     name = "[red]up&#27;per[/red]"
     robot(folder, urdf=URDF.replace("upper", "[red]upper[/red]").replace('name="arm"', 'name="&#x202e;[b]arm"'))
     out = run("info", ".")[1]
@@ -350,7 +350,7 @@ def test_info_shows_names_with_markup_and_controls_as_they_are(folder: Path, run
     assert name not in out
 
 
-def test_info_of_a_refused_robot_shows_why_and_exits_with_1(folder: Path, run: Run) -> None:
+def test_info_of_refused_robot_exits_1_with_reason(folder: Path, run: Run) -> None:
     robot(folder, ACTUATES_NOTHING)
     code, out, _ = run("info", ".")
     assert code == 1
@@ -360,7 +360,7 @@ def test_info_of_a_refused_robot_shows_why_and_exits_with_1(folder: Path, run: R
     assert [found["code"] for found in json.loads(out)["robots"][0]["diagnostics"]] == ["unknown-actuator"]
 
 
-def test_info_of_a_folder_with_several_robots_asks_for_one(folder: Path, run: Run) -> None:
+def test_info_of_several_robots_asks_for_one(folder: Path, run: Run) -> None:
     robot(folder / "a")
     robot(folder / "b")
     code, _, err = run("info", ".")
@@ -372,18 +372,18 @@ def test_info_of_a_folder_with_several_robots_asks_for_one(folder: Path, run: Ru
 
 
 @pytest.mark.parametrize("version", ["1", "2"])
-def test_the_schema_of_each_version_is_written(run: Run, version: str) -> None:
+def test_schema_of_each_version_is_written(run: Run, version: str) -> None:
     code, out, _ = run("schema", "--version", version)
     assert code == 0
     jsonschema.Draft202012Validator.check_schema(json.loads(out))
 
 
-def test_the_schema_written_by_default_is_of_version_2(run: Run) -> None:
+def test_default_schema_is_version_2(run: Run) -> None:
     schema = json.loads(run("schema")[1])
     assert jsonschema.Draft202012Validator(schema).is_valid({"extended_urdf": "2.0"})
 
 
-def test_the_schema_for_a_robot_knows_its_joints(folder: Path, run: Run) -> None:
+def test_schema_for_robot_contains_its_joints(folder: Path, run: Run) -> None:
     robot(folder)
     code, out, _ = run("schema", "--for", "robot.urdf")
     validator = jsonschema.Draft202012Validator(json.loads(out))
@@ -392,7 +392,7 @@ def test_the_schema_for_a_robot_knows_its_joints(folder: Path, run: Run) -> None
     assert not validator.is_valid({"extended_urdf": "2.0", "actuators": ["sholder"]})
 
 
-def test_the_schema_for_a_broken_urdf_is_refused_with_the_reason(folder: Path, run: Run) -> None:
+def test_schema_for_broken_urdf_is_refused(folder: Path, run: Run) -> None:
     (folder / "robot.urdf").write_text("<robot name='arm'>", encoding="utf-8")
     code, out, err = run("schema", "--for", "robot.urdf")
     assert (code, out) == (1, "")
@@ -405,7 +405,7 @@ def test_the_schema_for_a_broken_urdf_is_refused_with_the_reason(folder: Path, r
 # --- the process -----------------------------------------------------------------------------------------------------
 
 
-def test_the_help_names_every_command_and_the_version_is_told() -> None:
+def test_help_lists_all_commands_and_version() -> None:
     result = in_a_process("--help")
     assert result.returncode == 0
     for command in ("check", "info", "schema"):
@@ -414,7 +414,7 @@ def test_the_help_names_every_command_and_the_version_is_told() -> None:
 
 
 @pytest.mark.parametrize("argv", [["--help"], ["schema"], ["check", "--help"]])
-def test_what_needs_no_simulator_loads_none(argv: list[str]) -> None:
+def test_fast_commands_load_no_simulator(argv: list[str]) -> None:
     code = (
         "import sys\nfrom eurdf.commands.main import main\n"
         "try:\n    main(sys.argv[1:])\nexcept SystemExit: pass\n"
@@ -424,7 +424,7 @@ def test_what_needs_no_simulator_loads_none(argv: list[str]) -> None:
     assert result.stderr == "False"
 
 
-def test_a_locale_without_unicode_shows_escapes_rather_than_failing(folder: Path) -> None:
+def test_ascii_locale_shows_escapes(folder: Path) -> None:
     robot(folder / "名", ACTUATES_NOTHING + "x-note: é名\n")
     result = in_a_process("check", "名", env={**os.environ, "PYTHONIOENCODING": "ascii", "PYTHONUTF8": "0"})
     assert result.returncode == 1
@@ -432,7 +432,7 @@ def test_a_locale_without_unicode_shows_escapes_rather_than_failing(folder: Path
     assert result.stderr == ""
 
 
-def test_what_is_to_become_a_file_is_utf8_in_every_locale() -> None:
+def test_file_output_is_utf8_in_every_locale() -> None:
     code = "from eurdf.commands.output import write_text; write_text('name: é名\\n')"
     environment = {**os.environ, "PYTHONIOENCODING": "ascii", "PYTHONUTF8": "0"}
     written = subprocess.run([sys.executable, "-c", code], capture_output=True, timeout=60, env=environment).stdout
@@ -440,14 +440,14 @@ def test_what_is_to_become_a_file_is_utf8_in_every_locale() -> None:
 
 
 @pytest.mark.parametrize(("variables", "coloured"), [({}, False), ({"FORCE_COLOR": "1"}, True)])
-def test_a_pipe_is_coloured_only_where_it_is_asked_for(folder: Path, variables: dict[str, str], coloured: bool) -> None:
+def test_pipe_is_coloured_only_on_request(folder: Path, variables: dict[str, str], coloured: bool) -> None:
     robot(folder)
     environment = {name: value for name, value in os.environ.items() if name not in ("FORCE_COLOR", "NO_COLOR")}
     result = in_a_process("check", ".", env={**environment, "TERM": "xterm-256color", **variables})
     assert ("\x1b[32msound" in result.stdout) == coloured
 
 
-def test_a_reader_that_stops_reading_ends_the_command_quietly(folder: Path) -> None:
+def test_closed_pipe_ends_command_quietly(folder: Path) -> None:
     robot(folder, ACTUATES_NOTHING)
     paths = [f"./{'./' * i}robot.yaml" for i in range(500)]
     process = subprocess.Popen(
@@ -502,7 +502,7 @@ def interrupted(moment: str, handler: Any) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.parametrize("moment", ["eurdf.commands.main", "eurdf.checking.check", "lxml", "the end"])
-def test_an_interrupt_ends_the_command_quietly(folder: Path, moment: str) -> None:
+def test_interrupt_ends_command_quietly(folder: Path, moment: str) -> None:
     robot(folder)
     ended = interrupted(moment, signal.SIG_DFL)
     assert ended.returncode in (130, -signal.SIGINT)  # a shell reports both as 130
@@ -510,13 +510,13 @@ def test_an_interrupt_ends_the_command_quietly(folder: Path, moment: str) -> Non
     assert moment == "the end" or ended.stdout == ""
 
 
-def test_a_command_that_was_started_with_interrupts_ignored_goes_on(folder: Path) -> None:
+def test_ignored_interrupt_stays_ignored(folder: Path) -> None:
     robot(folder)
     ended = interrupted("lxml", signal.SIG_IGN)
     assert (ended.returncode, ended.stdout, ended.stderr) == (0, ".: sound\n", "")
 
 
-def test_an_interrupt_of_main_is_an_exit_code(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_interrupt_of_main_gives_exit_code(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted_check(path: str, **options: Any) -> Report:
         raise KeyboardInterrupt
 
@@ -525,9 +525,7 @@ def test_an_interrupt_of_main_is_an_exit_code(folder: Path, run: Run, monkeypatc
     assert run("check", ".") == (130, "", "")
 
 
-def test_a_fault_of_the_program_is_not_taken_for_one_of_the_robot(
-    folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_internal_error_is_not_blamed_on_robot(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(path: str, **options: Any) -> Report:
         raise RuntimeError("impossible")
 
@@ -536,10 +534,10 @@ def test_a_fault_of_the_program_is_not_taken_for_one_of_the_robot(
     code, _, err = run("check", ".")
     assert code == 2
     assert "RuntimeError: impossible" in err
-    assert err.endswith("eurdf: this is a fault of eurdf itself, not of the robot\n")
+    assert err.endswith("eurdf: this is a bug in eurdf, not an error of the robot; please report it\n")
 
 
-def test_a_person_sees_colours_and_no_line_of_the_file_wraps(folder: Path) -> None:
+def test_terminal_output_has_colours_and_no_wrapping(folder: Path) -> None:
     robot(folder, ACTUATES_NOTHING + "x-note: " + "long " * 100 + "\n")
     _, seen = on_a_terminal(["-m", "eurdf", "check", "."])
     assert "\x1b[1;31merror\x1b[0m" in seen
@@ -549,7 +547,7 @@ def test_a_person_sees_colours_and_no_line_of_the_file_wraps(folder: Path) -> No
     assert "│" not in piped
 
 
-def test_a_person_sees_how_far_the_check_of_many_robots_is(folder: Path) -> None:
+def test_terminal_shows_progress_of_many_robots(folder: Path) -> None:
     for name in "abcdef":
         robot(folder / name)
     _, seen = on_a_terminal(["-c", _CHECK_QUICKLY, "."])
@@ -560,7 +558,7 @@ def test_a_person_sees_how_far_the_check_of_many_robots_is(folder: Path) -> None
 # --- files written ---------------------------------------------------------------------------------------------------
 
 
-def test_a_file_is_written_in_utf8_with_the_rights_of_any_new_file(folder: Path) -> None:
+def test_new_file_is_utf8_with_default_permissions(folder: Path) -> None:
     (folder / "plain").touch()
     write_new("new.yaml", "é: 1\r\n")
     assert (folder / "new.yaml").read_bytes() == "é: 1\r\n".encode()
@@ -568,11 +566,11 @@ def test_a_file_is_written_in_utf8_with_the_rights_of_any_new_file(folder: Path)
     assert sorted(os.listdir()) == ["new.yaml", "plain"]
 
 
-def test_a_file_that_exists_is_replaced_only_with_force(folder: Path) -> None:
+def test_existing_file_is_replaced_only_with_force(folder: Path) -> None:
     file = folder / "old.yaml"
     file.write_text("old", encoding="utf-8")
     file.chmod(0o600)
-    with pytest.raises(CannotRun, match=r"'old\.yaml' exists"):
+    with pytest.raises(CannotRun, match=r"'old\.yaml' already exists"):
         write_new("old.yaml", "new")
     assert file.read_text(encoding="utf-8") == "old"
     write_new("old.yaml", "new", force=True)
@@ -580,7 +578,7 @@ def test_a_file_that_exists_is_replaced_only_with_force(folder: Path) -> None:
     assert file.stat().st_mode & 0o777 == 0o600
 
 
-def test_a_link_is_followed_when_its_file_is_replaced(folder: Path) -> None:
+def test_replacing_a_file_follows_its_link(folder: Path) -> None:
     (folder / "file.yaml").write_text("old", encoding="utf-8")
     (folder / "link.yaml").symlink_to("file.yaml")
     write_new("link.yaml", "new", force=True)
@@ -588,7 +586,7 @@ def test_a_link_is_followed_when_its_file_is_replaced(folder: Path) -> None:
     assert (folder / "file.yaml").read_text(encoding="utf-8") == "new"
 
 
-def test_a_file_that_cannot_be_written_leaves_nothing_behind(folder: Path) -> None:
+def test_failed_write_leaves_nothing_behind(folder: Path) -> None:
     (folder / "sub").mkdir()
     with pytest.raises(CannotRun, match=r"cannot write 'missing/new\.yaml'"):
         write_new("missing/new.yaml", "new")
@@ -599,7 +597,7 @@ def test_a_file_that_cannot_be_written_leaves_nothing_behind(folder: Path) -> No
     assert os.listdir() == ["sub"]
 
 
-def test_a_write_that_fails_half_way_keeps_the_old_file(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_interrupted_write_keeps_old_file(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (folder / "old.yaml").write_text("old", encoding="utf-8")
 
     def full(self: Path, target: Path) -> Path:

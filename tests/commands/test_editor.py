@@ -41,7 +41,7 @@ def completed(folder: Path, body: str, *, schema: str | None = None) -> list[str
     return in_editor(session)
 
 
-def test_the_keys_of_a_description_are_completed_but_for_those_that_stand_there(tmp_path: Path) -> None:
+def test_keys_are_completed_except_present_ones(tmp_path: Path) -> None:
     assert completed(tmp_path, "|\n") == TOP
     assert completed(tmp_path, "closures: []\n|\n") == [key for key in TOP if key != "closures"]
 
@@ -56,15 +56,15 @@ def test_the_keys_of_a_description_are_completed_but_for_those_that_stand_there(
         ("joints:\n  hip: {type: universal, axes: |}\n", {"xy", "xz", "yx", "yz", "zx", "zy"}),
     ],
 )
-def test_the_values_of_a_key_are_completed(tmp_path: Path, body: str, offered: set[str]) -> None:
+def test_values_of_a_key_are_completed(tmp_path: Path, body: str, offered: set[str]) -> None:
     assert offered <= set(completed(tmp_path, body))
 
 
-def test_the_keys_of_a_closure_are_completed(tmp_path: Path) -> None:
+def test_keys_of_a_closure_are_completed(tmp_path: Path) -> None:
     assert "frames" in completed(tmp_path, "closures:\n  - name: rod\n    type: 6d\n    f|\n")
 
 
-def test_hover_text_says_what_a_key_means_and_its_unit(tmp_path: Path) -> None:
+def test_hover_shows_meaning_and_unit(tmp_path: Path) -> None:
     path, line, column = written(tmp_path, "joints:\n  screw: {type: helical, pi|tch: 0.005}\n")
 
     async def session(editor: Editor) -> str:
@@ -107,7 +107,7 @@ def underlined(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[tuple
 
 
 @pytest.mark.parametrize(("body", "said"), FAULTS, ids=[said for _, said in FAULTS])
-def test_a_fault_of_the_schema_is_underlined_where_it_is(
+def test_schema_error_is_underlined(
     tmp_path: Path, underlined: dict[str, list[tuple[int, int, str]]], body: str, said: str
 ) -> None:
     _, line, column = written(tmp_path, body)
@@ -116,7 +116,7 @@ def test_a_fault_of_the_schema_is_underlined_where_it_is(
     assert said in message
 
 
-def test_the_names_of_a_robot_are_completed_from_its_own_schema(tmp_path: Path) -> None:
+def test_robot_schema_completes_robot_names(tmp_path: Path) -> None:
     robot = ROOT / "robots" / "four_bar" / "robot.urdf"
     assert main(["schema", "--for", str(robot), "-o", str(tmp_path / "four_bar.schema.json")]) == 0
     assert "motor_crank" in completed(tmp_path, "actuators:\n  - |\n", schema="four_bar.schema.json")
@@ -126,7 +126,7 @@ def test_the_names_of_a_robot_are_completed_from_its_own_schema(tmp_path: Path) 
     assert "free_rocker" in completed(tmp_path, "joints:\n  |\n", schema="four_bar.schema.json")
 
 
-def test_the_robots_of_the_collection_are_opened_without_an_underline() -> None:
+def test_collection_opens_without_underlines() -> None:
     robots = sorted(ROOT.glob("robots/*/robot*.yaml"))
 
     async def session(editor: Editor) -> dict[Path, list[tuple[int, int, str]]]:
@@ -145,7 +145,7 @@ WRITING = {
 
 @pytest.mark.parametrize("choice", ["format", "robot"])
 @pytest.mark.parametrize("command", sorted(WRITING))
-def test_what_a_command_wrote_is_completed_without_another_step(
+def test_command_output_is_completed_at_once(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str, choice: str
 ) -> None:
     robot = ROOT / "robots" / "four_bar"
@@ -172,9 +172,7 @@ def test_what_a_command_wrote_is_completed_without_another_step(
     assert ("coupler" in links) == (choice == "robot")
 
 
-def test_the_schema_that_the_readme_shows_is_found_by_the_first_line_that_it_shows(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_readme_schema_is_found_by_its_first_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     shutil.copy(ROOT / "robots" / "four_bar" / "robot.urdf", tmp_path)
     monkeypatch.chdir(tmp_path)
     shown = re.findall(

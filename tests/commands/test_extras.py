@@ -51,7 +51,7 @@ def not_installed(name: str) -> None:
     ],
     ids=["clone", "editable", "another folder", "wheel", "index"],
 )
-def test_the_command_fits_where_the_package_came_from(
+def test_install_command_matches_package_origin(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, origin: dict[str, Any] | None, command: str
 ) -> None:
     clone = tmp_path / "a clone"
@@ -63,7 +63,7 @@ def test_the_command_fits_where_the_package_came_from(
     assert extras.install_command("xacro") == command
 
 
-def test_a_checkout_that_is_not_installed_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_uninstalled_checkout_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(extras, "distribution", not_installed)
     monkeypatch.setattr(extras, "_pip_is_ours", lambda: True)
     monkeypatch.chdir(tmp_path)
@@ -72,7 +72,7 @@ def test_a_checkout_that_is_not_installed_is_named(monkeypatch: pytest.MonkeyPat
     assert extras.install_command("xacro") == 'pip install ".[xacro]"'
 
 
-def test_a_pip_of_another_python_is_not_proposed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_pip_of_other_python_is_not_suggested(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", "/nowhere")
     assert extras.install_command("xacro").startswith(f"{sys.executable} -m pip install ")
 
@@ -87,7 +87,7 @@ def test_a_pip_of_another_python_is_not_proposed(monkeypatch: pytest.MonkeyPatch
     ],
     ids=["checkout", "editable", "a folder that is gone", "index"],
 )
-def test_the_suite_is_installed_from_where_the_package_came_from(
+def test_suite_is_installed_from_package_origin(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, origin: dict[str, Any] | None, command: str
 ) -> None:
     folder = checkout(tmp_path / "a checkout")
@@ -102,7 +102,7 @@ def test_the_suite_is_installed_from_where_the_package_came_from(
     [(["hypothesis", "ruamel.yaml", "xdist"], "hypothesis ruamel.yaml pytest-xdist"), (["eurdf"], str(ROOT))],
     ids=["of the suite", "eurdf"],
 )
-def test_the_suite_says_how_to_install_the_packages_it_lacks(names: list[str], packages: str) -> None:
+def test_suite_says_how_to_install_missing_packages(names: list[str], packages: str) -> None:
     done = subprocess.run(
         [sys.executable, "-c", WITHOUT.format(names=names), "conformance/", "--collect-only"],
         cwd=ROOT,

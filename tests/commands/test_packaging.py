@@ -17,11 +17,11 @@ def project(folder: Path) -> dict[str, Any]:
 READER, SUITE = project(ROOT), project(ROOT / "conformance")
 
 
-def test_the_suite_has_the_version_of_the_reader_and_needs_it() -> None:
+def test_suite_requires_same_version_of_reference() -> None:
     assert SUITE["version"] == READER["version"]
     assert f"eurdf=={READER['version']}" in SUITE["dependencies"]
 
 
-def test_an_editable_install_with_test_extra_has_what_the_suite_needs() -> None:
+def test_editable_install_has_test_dependencies() -> None:
     packages = {package for package in SUITE["dependencies"] if not package.startswith("eurdf==")}
     assert packages <= set(READER["optional-dependencies"]["test"])

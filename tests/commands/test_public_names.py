@@ -13,7 +13,7 @@ import pytest
 import eurdf
 
 
-def test_every_public_name_can_be_loaded() -> None:
+def test_every_public_name_loads() -> None:
     for name in eurdf.__all__:
         assert getattr(eurdf, name) is not None
     assert set(eurdf.__all__) <= set(dir(eurdf))
@@ -33,7 +33,7 @@ def four_bar() -> eurdf.Robot:
 
 
 @pytest.mark.parametrize("name", TAKE_NAMES)
-def test_a_name_alone_is_one_name(name: str) -> None:
+def test_single_name_is_accepted(name: str) -> None:
     one, listed = TAKE_NAMES[name]("motor_crank"), TAKE_NAMES[name](["motor_crank"])
     assert one == pytest.approx(listed, abs=1e-9)
 
@@ -49,10 +49,10 @@ def test_no_other_public_function_takes_several_names() -> None:
     assert takes == set(TAKE_NAMES)
 
 
-def test_a_name_that_is_not_there_is_an_attribute_error_that_says_so() -> None:
+def test_unknown_name_raises_attribute_error() -> None:
     assert not hasattr(eurdf, "lood")
 
 
-def test_importing_the_package_loads_no_simulator() -> None:
+def test_import_loads_no_simulator() -> None:
     code = "import sys, eurdf; eurdf.Mechanism; assert 'pinocchio' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True)

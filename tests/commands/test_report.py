@@ -49,7 +49,7 @@ def at(text: str, column: int | None, end_column: int | None = None, width: int 
     return text_of(Report("robot.yaml", (Diagnostic("wrong-type", "it is wrong", place),)), width)[1:]
 
 
-def test_a_finding_is_shown_with_its_line_and_the_place_underlined(robot: Path) -> None:
+def test_diagnostic_shows_line_with_underlined_place(robot: Path) -> None:
     assert text_of(Report(".", (UNKNOWN,))) == [
         "robot.yaml:3:46: error: closure 'knee' names the frame 'rod_tpi', which does not exist"
         " [unknown-frame EU-FRM-001]",
@@ -59,7 +59,7 @@ def test_a_finding_is_shown_with_its_line_and_the_place_underlined(robot: Path) 
     ]
 
 
-def test_findings_are_shown_by_file_and_then_by_position(robot: Path) -> None:
+def test_diagnostics_are_sorted_by_file_and_position(robot: Path) -> None:
     urdf = Diagnostic("urdf-no-link", "the robot has no link", Place("robot.urdf", 1, 1))
     heads = [
         line for line in text_of(Report(".", (UNKNOWN, urdf, NEAR_MISS))) if ": error: " in line or "warning" in line
@@ -67,7 +67,7 @@ def test_findings_are_shown_by_file_and_then_by_position(robot: Path) -> None:
     assert [head.split(": ")[0] for head in heads] == ["robot.yaml:1:1", "robot.yaml:3:46", "robot.urdf:1:1"]
 
 
-def test_a_finding_on_a_file_as_a_whole_names_only_the_file(robot: Path) -> None:
+def test_diagnostic_of_whole_file_has_no_line(robot: Path) -> None:
     found = Diagnostic("urdf-not-found", "'robot.urdf' does not exist", Place("robot.urdf"))
     assert text_of(Report(".", (found,))) == [
         "robot.urdf: error: 'robot.urdf' does not exist [urdf-not-found EU-FIL-004]"
@@ -75,53 +75,53 @@ def test_a_finding_on_a_file_as_a_whole_names_only_the_file(robot: Path) -> None
 
 
 @pytest.mark.usefixtures("robot")
-def test_a_place_without_a_column_shows_the_line_alone() -> None:
+def test_place_without_column_shows_line_only() -> None:
     assert at("a: 1\nb: 2\n", None, line=2) == ["    2 | b: 2"]
 
 
 @pytest.mark.usefixtures("robot")
-def test_a_line_that_the_file_does_not_have_is_not_shown() -> None:
+def test_missing_line_is_not_shown() -> None:
     assert at("a: 1\n", 1, line=7) == []
 
 
 @pytest.mark.usefixtures("robot")
-def test_a_tab_before_the_place_moves_the_caret_with_the_text() -> None:
+def test_caret_is_right_after_a_tab() -> None:
     line, caret = at("\tkey: value", 7, 12)
     assert line[caret.index("^") :].startswith("value")
     assert "\t" not in line
 
 
 @pytest.mark.usefixtures("robot")
-def test_a_wide_character_before_the_place_moves_the_caret_by_two_columns() -> None:
+def test_caret_is_right_after_wide_character() -> None:
     line, caret = at("名前: [rod]", 6, 9)
     assert cells(line[: line.index("rod")]) == caret.index("^")
     assert caret.count("^") == 3
 
 
 @pytest.mark.usefixtures("robot")
-def test_wide_characters_are_underlined_over_their_whole_width() -> None:
+def test_wide_characters_are_fully_underlined() -> None:
     assert at("名前: 1", 1, 3)[1].count("^") == 4
 
 
 @pytest.mark.usefixtures("robot")
-def test_a_place_at_the_end_of_a_line_has_its_caret_after_the_text() -> None:
+def test_caret_at_line_end_follows_the_text() -> None:
     line, caret = at("key: [a, b", 11)
     assert caret.index("^") == len(line)
 
 
 @pytest.mark.usefixtures("robot")
 @pytest.mark.parametrize("break_", ["\n", "\r\n", "\r"])
-def test_lines_are_counted_over_every_line_break_there_is(break_: str) -> None:
+def test_all_line_breaks_are_counted(break_: str) -> None:
     assert at(f"a: 1{break_}b: 2{break_}c: 3", 4, 5, line=2)[0] == "    2 | b: 2"
 
 
 @pytest.mark.usefixtures("robot")
-def test_a_byte_order_mark_does_not_move_the_caret() -> None:
+def test_byte_order_mark_does_not_move_caret() -> None:
     assert at("\ufeffkey: 1", 1, 4) == ["    1 | key: 1", "      | ^^^"]
 
 
 @pytest.mark.usefixtures("robot")
-def test_a_long_line_is_clipped_around_the_place() -> None:
+def test_long_line_is_clipped_around_place() -> None:
     line, caret = at("x" * 3000 + "HERE" + "y" * 3000, 3001, 3005, width=60)
     assert len(line) <= 60 + 8
     assert line[caret.index("^") : caret.rindex("^") + 1] == "HERE"
@@ -129,14 +129,14 @@ def test_a_long_line_is_clipped_around_the_place() -> None:
 
 
 @pytest.mark.usefixtures("robot")
-def test_a_long_line_is_clipped_at_its_end_alone_when_the_place_is_at_its_start() -> None:
+def test_long_line_is_clipped_at_its_end() -> None:
     line, caret = at("HERE" + "y" * 3000, 1, 5, width=60)
     assert line.startswith("    1 | HEREy")
     assert caret.endswith(" ^^^^")
 
 
 @pytest.mark.usefixtures("robot")
-def test_a_line_of_a_million_characters_is_shown_at_once() -> None:
+def test_line_of_a_million_characters_is_fast() -> None:
     line, _ = at("[" + "a, " * 400_000 + "]", 600_001)
     assert len(line) < 120
 
@@ -147,7 +147,7 @@ def test_a_line_of_a_million_characters_is_shown_at_once() -> None:
     length=st.integers(0, 40),
     width=st.integers(20, 120),
 )
-def test_the_marks_stand_under_the_first_character_meant(
+def test_marks_start_under_first_character(
     tmp_path_factory: pytest.TempPathFactory, text: str, start: int, length: int, width: int
 ) -> None:
     file = tmp_path_factory.mktemp("wild") / "robot.yaml"
@@ -177,19 +177,19 @@ def test_the_marks_stand_under_the_first_character_meant(
         ("pied à terre 名", "pied à terre 名"),
     ],
 )
-def test_a_message_cannot_steer_the_terminal(text: str, shown: str) -> None:
+def test_message_cannot_control_terminal(text: str, shown: str) -> None:
     found = Diagnostic("wrong-type", text, Place("robot.urdf"), text)
     head, hint = text_of(Report(".", (found,)))
     assert head == f"robot.urdf: error: {shown} [wrong-type EU-SCH-002]"
     assert hint == f"      = hint: {shown}"
 
 
-def test_a_message_with_a_huge_name_is_cut() -> None:
+def test_huge_name_in_message_is_shortened() -> None:
     found = Diagnostic("wrong-type", "x" * 10**6, Place("robot.yaml"))
     assert len(text_of(Report(".", (found,)))[0]) < 1100
 
 
-def test_a_place_in_no_regular_file_is_shown_without_its_line(tmp_path: Path) -> None:
+def test_place_outside_regular_file_has_no_line(tmp_path: Path) -> None:
     for file in (str(tmp_path), "/dev/zero", "no\0file", ""):
         found = Diagnostic("file-unreadable", "it is no file", Place(file, 1, 1))
         assert len(text_of(Report("r", (found,)))) == 1
@@ -199,19 +199,19 @@ def summary(report: Report, strict: bool = False) -> str:
     return "".join(piece for piece, _ in summary_line(report, strict))
 
 
-def test_the_summary_counts_errors_and_warnings() -> None:
+def test_summary_counts_errors_and_warnings() -> None:
     assert summary(Report("a")) == "a: sound"
     assert summary(Report("a", (UNKNOWN,))) == "a: 1 error"
     assert summary(Report("a", (UNKNOWN, NEAR_MISS, UNKNOWN))) == "a: 2 errors, 1 warning"
 
 
-def test_the_total_counts_robots_that_pass_and_fail() -> None:
+def test_total_counts_passing_and_failing_robots() -> None:
     reports = [Report("a"), Report("b", (NEAR_MISS,)), Report("c", (UNKNOWN, NEAR_MISS))]
     assert "".join(p for p, _ in total_line(reports)) == "3 robots: 2 passed, 1 failed (1 error, 2 warnings)"
     assert "".join(p for p, _ in total_line(reports, strict=True)).startswith("3 robots: 1 passed, 2 failed")
 
 
-def test_a_robot_with_warnings_alone_passes_unless_the_check_is_strict() -> None:
+def test_warnings_fail_only_strict_check() -> None:
     report = Report("a", (NEAR_MISS,))
     assert report.ok
     assert report.passes()
@@ -220,7 +220,7 @@ def test_a_robot_with_warnings_alone_passes_unless_the_check_is_strict() -> None
     assert report.warnings == (NEAR_MISS,)
 
 
-def test_the_json_form_holds_everything_a_finding_says() -> None:
+def test_json_contains_all_fields() -> None:
     document = reports_to_json([Report("robots/knee", (UNKNOWN,)), Report("robots/hip")])
     assert document == {
         "version": 1,
@@ -250,7 +250,7 @@ def test_the_json_form_holds_everything_a_finding_says() -> None:
     }
 
 
-def test_every_rule_fits_the_schema_of_the_report() -> None:
+def test_every_rule_matches_report_schema() -> None:
     found = tuple(Diagnostic(code, "it is wrong", Place("r.yaml")) for code in REGISTRY)
     document = reports_to_json([Report("r", found)], strict=True)
     jsonschema.Draft202012Validator(report_schema()).validate(document)
@@ -272,7 +272,7 @@ def test_advice_has_no_clause(own_code: str) -> None:
     assert text_of(report) == ["r.yaml:3: warning: joint 'knee' is worn [x-worn]"]
 
 
-def test_only_advice_is_without_a_clause_and_it_is_a_warning() -> None:
+def test_only_advice_has_no_clause_and_is_warning() -> None:
     own = {code for code in REGISTRY if code.startswith("x-")}
     assert own == {code for code, rule in REGISTRY.items() if rule.clause is None}
     assert own == {code for code, rule in REGISTRY.items() if rule.phase is Phase.ADVICE}
@@ -280,7 +280,7 @@ def test_only_advice_is_without_a_clause_and_it_is_a_warning() -> None:
 
 
 @given(st.text(), st.text(), st.one_of(st.none(), st.text()), st.text())
-def test_any_text_in_a_finding_makes_valid_json(path: str, message: str, hint: str | None, pointer: str) -> None:
+def test_any_text_gives_valid_json(path: str, message: str, hint: str | None, pointer: str) -> None:
     found = Diagnostic("wrong-type", message, Place(path, 1, 1, 2, pointer), hint)
     document = json.loads(json.dumps(reports_to_json([Report(path, (found,))])).encode("utf-8"))
     jsonschema.Draft202012Validator(report_schema()).validate(document)
@@ -297,7 +297,7 @@ def test_any_text_in_a_finding_makes_valid_json(path: str, message: str, hint: s
         {"more": 1},
     ],
 )
-def test_the_schema_of_the_report_refuses_what_is_not_one(damage: dict[str, object]) -> None:
+def test_report_schema_rejects_other_objects(damage: dict[str, object]) -> None:
     document = reports_to_json([Report("r", (UNKNOWN,))])
     document["robots"][0]["diagnostics"][0].update(damage)
     with pytest.raises(jsonschema.ValidationError):
@@ -305,7 +305,7 @@ def test_the_schema_of_the_report_refuses_what_is_not_one(damage: dict[str, obje
 
 
 @pytest.mark.parametrize("name", sorted(output_schemas()))
-def test_the_published_schemas_of_the_output_are_current(name: str) -> None:
+def test_published_output_schemas_are_current(name: str) -> None:
     schema = output_schemas()[name]
     jsonschema.Draft202012Validator.check_schema(schema)
     written = (SCHEMAS / name).read_text(encoding="utf-8")

@@ -40,7 +40,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_every_robot_of_the_collection_is_listed(run: Run) -> None:
+def test_every_collection_robot_is_listed(run: Run) -> None:
     code, out, err = run("robots")
     assert (code, err) == (0, "")
     heading, *lines = out.splitlines()
@@ -48,14 +48,14 @@ def test_every_robot_of_the_collection_is_listed(run: Run) -> None:
     assert [line.split()[0] for line in lines] == eurdf.collection_names()
 
 
-def test_its_dimensions_and_its_description_are_told(folder: Path, run: Run) -> None:
+def test_dimensions_and_description_are_shown(folder: Path, run: Run) -> None:
     _, out, _ = run("robots")
     digit = next(line for line in out.splitlines() if line.startswith("digit_leg "))
     assert digit.split()[1:8] == ["27", "3", "18", "9", "6", "3", "fixed"]
     assert "Left leg of Agility Robotics' Digit" in digit
 
 
-def test_what_it_writes_as_json_is_what_its_schema_says(folder: Path, run: Run) -> None:
+def test_json_matches_schema(folder: Path, run: Run) -> None:
     code, out, _ = run("robots", "--json")
     found = json.loads(out)
     jsonschema.Draft202012Validator(output_schemas()["robots.schema.json"]).validate(found)
@@ -75,7 +75,7 @@ def test_what_it_writes_as_json_is_what_its_schema_says(folder: Path, run: Run) 
 
 
 @pytest.mark.parametrize("content", ["closures: [", 'extended_urdf: "2.0"\nactuators: [motor]\n', "\0", ""])
-def test_a_broken_robot_is_listed_with_what_is_wrong_with_it(folder: Path, run: Run, content: str) -> None:
+def test_broken_robot_is_listed_with_error(folder: Path, run: Run, content: str) -> None:
     (folder / "digit_leg" / "robot.yaml").write_text(content)
     code, out, err = run("robots")
     assert code == 1
@@ -91,7 +91,7 @@ def test_a_broken_robot_is_listed_with_what_is_wrong_with_it(folder: Path, run: 
     assert found["robots"][1]["error"] is None
 
 
-def test_a_robot_that_does_not_close_is_listed_without_what_follows_from_that(folder: Path, run: Run) -> None:
+def test_open_robot_is_listed_without_ranks(folder: Path, run: Run) -> None:
     urdf = folder / "four_bar" / "robot.urdf"
     text = urdf.read_text()
     assert "-0.07 0 0.24" in text
@@ -102,9 +102,7 @@ def test_a_robot_that_does_not_close_is_listed_without_what_follows_from_that(fo
     assert (four_bar["nc"], four_bar["mobility"]) == (3, None)
 
 
-def test_descriptions_give_way_to_numbers_in_a_narrow_window(
-    folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_descriptions_are_dropped_in_narrow_terminal(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("FORCE_COLOR", "1")
     monkeypatch.setenv("COLUMNS", "80")
     _, out, _ = run("robots")

@@ -48,14 +48,14 @@ def message_of(message: str, hint: str | None = None) -> str:
     return text
 
 
-def test_the_schema_of_the_test_is_that_of_sarif_and_refuses_what_is_not_sarif() -> None:
+def test_test_schema_is_sarif_and_rejects_other_objects() -> None:
     assert SCHEMA["id"].endswith("sarif-schema-2.1.0.json")
     log = sarif_log([Report("r", (UNKNOWN,))], "1.2.3")
     log["runs"][0]["results"][0]["level"] = "fatal"
     assert not VALIDATOR.is_valid(log)
 
 
-def test_a_finding_becomes_a_result_at_its_place() -> None:
+def test_diagnostic_becomes_result_at_its_place() -> None:
     run = run_of(UNKNOWN)
     assert run["columnKind"] == "unicodeCodePoints"
     assert run["results"] == [
@@ -79,7 +79,7 @@ def test_a_finding_becomes_a_result_at_its_place() -> None:
     ]
 
 
-def test_the_tool_tells_the_rules_that_were_broken_and_their_clauses() -> None:
+def test_tool_lists_violated_rules_with_clauses() -> None:
     near_miss = Diagnostic("near-miss-key", "'types' is no key", Place("robot.yaml", 1))
     run = run_of(UNKNOWN, near_miss, UNKNOWN)
     driver = run["tool"]["driver"]
@@ -87,7 +87,7 @@ def test_the_tool_tells_the_rules_that_were_broken_and_their_clauses() -> None:
     assert [rule["id"] for rule in driver["rules"]] == ["near-miss-key", "unknown-frame"]
     assert driver["rules"][0] == {
         "id": "near-miss-key",
-        "shortDescription": {"text": "A key of the user's own is nearly a key of the format."},
+        "shortDescription": {"text": "A user-defined key is similar to a key of the format."},
         "helpUri": help_uri("near-miss-key"),
         "defaultConfiguration": {"level": "warning"},
         "properties": {"clause": "EU-ONE-002", "phase": "schema"},
@@ -126,31 +126,29 @@ def metadata_with(*urls: str) -> Callable[[str], Message]:
          "https://b.example/spec/diagnostics.html#unknown-frame"),
     ],
 )  # fmt: skip
-def test_a_rule_links_to_its_code_on_the_site_of_the_package(
-    monkeypatch: pytest.MonkeyPatch, urls: list[str], uri: str
-) -> None:
+def test_rule_links_to_its_code_on_site(monkeypatch: pytest.MonkeyPatch, urls: list[str], uri: str) -> None:
     monkeypatch.setattr("eurdf.diagnostics.help_uri.metadata", metadata_with(*urls))
     (rule,) = run_of(UNKNOWN)["tool"]["driver"]["rules"]
     assert rule["helpUri"] == uri
 
 
-def test_the_page_of_the_site_has_every_code_at_the_anchor_of_its_name() -> None:
+def test_site_page_has_anchor_for_every_code() -> None:
     page = (Path(__file__).parents[2] / "spec" / "diagnostics.md").read_text(encoding="utf-8")
     assert set(re.findall(r"^:::\{diagnostic\} (\S+)$", page, re.MULTILINE)) == set(REGISTRY)
 
 
-def test_every_code_of_the_registry_makes_a_valid_log() -> None:
+def test_every_code_makes_a_valid_log() -> None:
     found = [Diagnostic(code, "it is wrong", Place("robot.yaml", 1, 1, 2, "/a")) for code in REGISTRY]
     run = run_of(*found)
     assert len(run["results"]) == len(REGISTRY)
     assert len({rule["helpUri"] for rule in run["tool"]["driver"]["rules"]}) == len(REGISTRY)
 
 
-def test_robots_without_findings_make_an_empty_run() -> None:
+def test_robots_without_diagnostics_make_empty_run() -> None:
     assert run_of()["results"] == []
 
 
-def test_a_finding_that_two_robots_share_stands_once() -> None:
+def test_shared_diagnostic_occurs_once() -> None:
     log = sarif_log([Report("a", (UNKNOWN,)), Report("b", (UNKNOWN,))], "1.2.3")
     assert len(log["runs"][0]["results"]) == 1
 
@@ -165,7 +163,7 @@ def test_a_finding_that_two_robots_share_stands_once() -> None:
         (Place("a"), None),
     ],
 )
-def test_a_region_says_as_much_as_is_known(place: Place, region: dict[str, int] | None) -> None:
+def test_region_contains_what_is_known(place: Place, region: dict[str, int] | None) -> None:
     result = run_of(Diagnostic("wrong-type", "it is wrong", place))["results"][0]
     assert result["locations"][0]["physicalLocation"].get("region") == region
 
@@ -185,26 +183,24 @@ def test_a_region_says_as_much_as_is_known(place: Place, region: dict[str, int] 
         ("/shopfloor/knee.yaml", "file:///shopfloor/knee.yaml"),
     ],
 )
-def test_a_path_is_a_uri_relative_to_the_folder_or_absolute_outside_of_it(file: str, uri: str) -> None:
+def test_path_is_relative_to_folder_or_absolute(file: str, uri: str) -> None:
     assert uri_of(file) == uri
 
 
-def test_paths_are_relative_to_the_working_directory_by_default(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_paths_are_relative_to_working_directory_by_default(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     found = Diagnostic("wrong-type", "it is wrong", Place(str(tmp_path / "robot.yaml"), 1))
     location = sarif_log([Report("r", (found,))], "1")["runs"][0]["results"][0]["locations"][0]
     assert location["physicalLocation"]["artifactLocation"]["uri"] == "robot.yaml"
 
 
-def test_a_message_is_made_of_whole_sentences() -> None:
+def test_message_consists_of_whole_sentences() -> None:
     assert message_of("it is wrong") == "it is wrong."
     assert message_of("it is wrong", "quote it") == "it is wrong. Quote it."
     assert message_of("it is wrong", "did you mean 'a'?") == "it is wrong. Did you mean 'a'?"
 
 
-def test_a_name_in_a_message_cannot_pass_for_a_link_or_a_placeholder() -> None:
+def test_name_in_message_is_no_link_or_placeholder() -> None:
     assert message_of("no frame '[click](https://example.org)'") == r"no frame '\[click](https://example.org)'."
     assert message_of("no joint 'leg{0}'") == "no joint 'leg{{0}}'."
     assert message_of("no joint 'leg[0]'") == "no joint 'leg[0]'."
@@ -212,7 +208,7 @@ def test_a_name_in_a_message_cannot_pass_for_a_link_or_a_placeholder() -> None:
 
 @settings(max_examples=60)
 @given(st.text(), st.text(min_size=1), st.text(), st.text())
-def test_any_text_in_a_finding_makes_a_valid_log(file: str, message: str, hint: str, pointer: str) -> None:
+def test_any_text_makes_a_valid_log(file: str, message: str, hint: str, pointer: str) -> None:
     found = Diagnostic("wrong-type", message, Place(file, 1, 1, 2, pointer), hint)
     run = json.loads(json.dumps(run_of(found)).encode("utf-8"))
     uri = run["results"][0]["locations"][0]["physicalLocation"]["artifactLocation"]["uri"]

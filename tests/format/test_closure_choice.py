@@ -30,7 +30,7 @@ def mechanism_of(name: str) -> Mechanism:
 
 
 @pytest.mark.parametrize("name", collection_names())
-def test_each_robot_of_the_collection_gets_the_types_that_it_has(name: str) -> None:
+def test_collection_robots_get_their_types(name: str) -> None:
     mechanism = mechanism_of(name)
     types = {closure.name: closure.type for closure in mechanism.closures}
     choice = choose_types(mechanism, types, list(types))
@@ -38,7 +38,7 @@ def test_each_robot_of_the_collection_gets_the_types_that_it_has(name: str) -> N
     assert len(choice.notes) == len(analyze(build_robot(mechanism, geometry=False)).loops)
 
 
-def test_only_undecided_closures_are_chosen_and_notes_use_the_given_words() -> None:
+def test_only_undecided_closures_are_chosen() -> None:
     mechanism = mechanism_of("five_bar_3d")
     (name,) = [closure.name for closure in mechanism.closures]
     choice = choose_types(mechanism, [name], ["the pin"])
@@ -68,7 +68,7 @@ def notes_of(text: str, version: Literal["1", "2"] = "2") -> tuple[list[str | No
 
 
 @pytest.mark.parametrize("version", ["1", "2"])
-def test_a_pin_that_6d_cannot_close_is_3d(version: Literal["1", "2"]) -> None:
+def test_pin_that_cannot_close_in_6d_is_3d(version: Literal["1", "2"]) -> None:
     types, (note,) = notes_of(four_bar(), version)
     assert types == ["3d"]
     assert note == (
@@ -76,13 +76,13 @@ def test_a_pin_that_6d_cannot_close_is_3d(version: Literal["1", "2"]) -> None:
     )
 
 
-def test_a_loop_that_closes_in_neither_way_is_6d_and_the_note_says_so() -> None:
+def test_impossible_loop_is_6d_with_note() -> None:
     types, (note,) = notes_of(four_bar(("0.42 0 0", "4.2 0 0")))
     assert types == ["6d"]
     assert note.startswith("'closing_rocker_pin' is 6d, though no configuration closes the loops: with 3d no config")
 
 
-def test_a_note_says_where_the_motion_was_not_computed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_note_says_where_motion_was_not_computed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("eurdf.kinematics.analysis._MOST_WORK", 1.0)
     weld = mechanism_of("five_bar_6d")
     (name,) = [closure.name for closure in weld.closures]
@@ -92,6 +92,6 @@ def test_a_note_says_where_the_motion_was_not_computed(monkeypatch: pytest.Monke
     assert note.startswith(f"'{name}' is 6d: ranks are not computed: the loops that share joints with that of '{name}'")
 
 
-def test_types_in_names_are_not_judged() -> None:
+def test_types_in_names_are_final() -> None:
     welded = four_bar(("closing_rocker_pin_1", "closedloop6D_1A"), ("closing_rocker_pin_2", "closedloop6D_1B"))
     assert notes_of(welded) == (["6d"], ())

@@ -75,7 +75,7 @@ LAYOUTS = [
 
 
 @pytest.mark.parametrize(("before", "after"), [layout[1:] for layout in LAYOUTS], ids=[title for title, *_ in LAYOUTS])
-def test_a_configuration_is_added_or_replaced_and_all_else_stays(before: str, after: str) -> None:
+def test_changed_configuration_keeps_everything_else(before: str, after: str) -> None:
     assert edited(before) == after
     found = read_yaml(Source("", after, after.encode())).data["configurations"]["assembled"]
     assert found == {"a": 0.5, "b": [0, 0, 0, 1]}
@@ -92,12 +92,12 @@ def test_a_configuration_is_added_or_replaced_and_all_else_stays(before: str, af
     ],
     ids=["an alias", "an anchor", "an anchor of a number", "marks of keys", "a joint that is not stated"],
 )
-def test_what_cannot_be_changed_alone_is_refused(text: str) -> None:
+def test_uneditable_configuration_is_refused(text: str) -> None:
     with pytest.raises(NotEditable):
         edited(text)
 
 
-def test_many_joints_have_a_line_each() -> None:
+def test_many_joints_get_one_line_each() -> None:
     joints = {f"joint_of_the_leg_{index}": (float(index) / 7,) for index in range(8)}
     lines = [
         f"    {name}: {value!r}\n".replace(": 0.0", ": 0").replace("1.0\n", "1\n") for name, (value,) in joints.items()
@@ -116,7 +116,7 @@ names = st.text(st.characters(exclude_categories=["Cs"]), min_size=1)
     coordinates=st.dictionaries(names, st.lists(numbers, min_size=1, max_size=7), min_size=1),
     before=st.sampled_from([layout[1] for layout in LAYOUTS if "assembled" not in layout[1]]),
 )
-def test_every_number_and_name_reads_back(coordinates: dict[str, list[float]], before: str) -> None:
+def test_numbers_and_names_survive_round_trip(coordinates: dict[str, list[float]], before: str) -> None:
     after = edited(before, coordinates)
     expected = {name: values[0] if len(values) == 1 else values for name, values in coordinates.items()}
     assert read_yaml(Source("", after, after.encode())).data["configurations"]["assembled"] == expected

@@ -92,7 +92,7 @@ BALL = ("rev0 revolute base int10 x", "rev1 revolute int10 int20 y", "rev2 revol
 
 @needs_wild
 @pytest.mark.parametrize("name", WILD_ROBOTS)
-def test_the_names_of_a_published_robot_say_what_its_file_says(name: str) -> None:
+def test_names_of_published_robot_match_its_file(name: str) -> None:
     urdf = read_urdf(read_xml(read_source(WILD / name / "robot.urdf")), Diagnostics())
     assert urdf is not None
     found = generate(urdf, conventions()).found
@@ -111,7 +111,7 @@ def test_the_names_of_a_published_robot_say_what_its_file_says(name: str) -> Non
 
 @needs_wild
 @pytest.mark.parametrize("name", WILD_ROBOTS)
-def test_both_versions_generated_of_a_published_robot_are_the_same_model(name: str) -> None:
+def test_both_versions_give_the_same_model(name: str) -> None:
     urdf = read_urdf(read_xml(read_source(WILD / name / "robot.urdf")), Diagnostics())
     assert urdf is not None
     one, two = (generate(urdf, conventions(), version) for version in ("1", "2"))
@@ -140,7 +140,7 @@ def test_both_versions_generated_of_a_published_robot_are_the_same_model(name: s
         ("closing_knee_1", "closing_knee_2", ("closing_knee", None)),
     ],
 )
-def test_two_links_named_alike_are_a_closure(a: str, b: str, closure: tuple[str, str | None]) -> None:
+def test_two_similar_link_names_are_a_closure(a: str, b: str, closure: tuple[str, str | None]) -> None:
     urdf = read(urdf_text("hip revolute base thigh", f"j1 fixed thigh {a}", f"j2 fixed base {b}"))
     found = find(urdf, conventions())
     assert [(one.name, one.type) for one in found.closures] == [closure]
@@ -148,7 +148,7 @@ def test_two_links_named_alike_are_a_closure(a: str, b: str, closure: tuple[str,
     assert found.warnings == ()
 
 
-def test_names_that_say_both_types_decide_nothing() -> None:
+def test_contradicting_type_names_decide_nothing() -> None:
     found = find(
         read(urdf_text("hip revolute base a0", "j1 fixed a0 closedloop1_A_3D", "j2 fixed base closedloop1_B_6D")),
         conventions(),
@@ -165,7 +165,7 @@ HINGE = tuple(
 )
 
 
-def test_a_revolute_mate_of_onshape_is_two_closures_in_position() -> None:
+def test_onshape_revolute_mate_is_two_3d_closures() -> None:
     generation = generated(*LEG[:3], *HINGE)
     assert [(closure.name, closure.type, closure.frames) for closure in generation.found.closures] == [
         ("closing_pin", "3d", ("closing_pin_1", "closing_pin_2")),
@@ -176,7 +176,7 @@ def test_a_revolute_mate_of_onshape_is_two_closures_in_position() -> None:
     assert note.startswith("'closing_pin' is a revolute mate")
 
 
-def test_half_of_an_axis_is_reported_and_decides_nothing() -> None:
+def test_half_an_axis_is_reported() -> None:
     found = generated(*LEG[:3], *HINGE[:3]).found
     assert [(closure.name, closure.frames) for closure in found.closures] == [
         ("closing_pin", ("closing_pin_1", "closing_pin_2"))
@@ -185,7 +185,7 @@ def test_half_of_an_axis_is_reported_and_decides_nothing() -> None:
 
 
 @pytest.mark.parametrize(("given_", "count"), [("3d", 2), ("6d", 1)])
-def test_the_user_may_decide_the_type_of_every_closure(
+def test_user_can_set_all_closure_types(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], given_: str, count: int
 ) -> None:
     file = tmp_path / "leg.urdf"
@@ -199,16 +199,16 @@ def test_the_user_may_decide_the_type_of_every_closure(
     assert yaml.safe_load(capsys.readouterr().out)["closures"][0]["type"] == given_
 
 
-def test_joints_are_frames_as_well() -> None:
+def test_joints_are_frames_too() -> None:
     found = generated("hip revolute base a", "closedloop1_A revolute a b", "closedloop1_B revolute base c").found
     assert found.closures[0].frames == ("closedloop1_A", "closedloop1_B")
 
 
-def test_of_a_link_and_the_joint_that_fixes_it_the_link_is_named() -> None:
+def test_link_is_preferred_to_its_fixed_joint() -> None:
     assert generated(*LEG).found.closures[0].frames == ("closedloop1_A", "closedloop1_B")
 
 
-def test_loops_come_in_the_order_of_their_numbers() -> None:
+def test_loops_are_sorted_by_number() -> None:
     rows = [f"j{n}{s} revolute base closedloop{n}_{s}" for n in (10, 2, 1) for s in "AB"]
     assert [closure.name for closure in generated(*rows).found.closures] == [
         "closedloop1",
@@ -217,13 +217,13 @@ def test_loops_come_in_the_order_of_their_numbers() -> None:
     ]
 
 
-def test_half_a_pair_is_told_and_left_out() -> None:
+def test_half_a_pair_is_reported_and_skipped() -> None:
     found = generated("hip revolute base thigh", "j1 fixed thigh closedloop1_A").found
     assert found.closures == ()
     assert found.warnings == ("'closedloop1_A' has no other side: a closure has two frames; left out",)
 
 
-def test_a_pair_of_one_rigid_body_is_told_and_left_out() -> None:
+def test_pair_within_one_body_is_reported_and_skipped() -> None:
     found = generated("hip revolute base thigh", "j1 fixed thigh loop_A", "j2 fixed thigh closedloop1_A",
                       "j3 fixed loop_A closedloop1_B").found  # fmt: skip
     assert found.closures == ()
@@ -231,14 +231,14 @@ def test_a_pair_of_one_rigid_body_is_told_and_left_out() -> None:
     assert "'closedloop1_A' and 'closedloop1_B' are fixed to each other" in warning
 
 
-def test_more_than_two_sides_are_told_and_left_out() -> None:
+def test_more_than_two_sides_are_reported_and_skipped() -> None:
     rows = [f"j{side} revolute base loop1_{side}" for side in "ABC"]
     found = generated(*rows, closures=["(?P<loop>loop.)_(?P<side>.)"]).found
     assert found.closures == ()
     assert "3 sides" in found.warnings[0]
 
 
-def test_a_second_closure_of_the_same_frames_is_told_and_left_out() -> None:
+def test_duplicate_closure_is_reported_and_skipped() -> None:
     found = generated(
         *LEG, closures=[PUBLISHED_CLOSURE, r"(?P<loop>closed)loop1_(?P<side>.)_frame"]
     ).found  # fmt: skip
@@ -246,7 +246,7 @@ def test_a_second_closure_of_the_same_frames_is_told_and_left_out() -> None:
     assert "already" in found.warnings[0]
 
 
-def test_two_frames_for_one_side_are_told() -> None:
+def test_two_frames_of_one_side_are_reported() -> None:
     rows = ("hip revolute base thigh", "j1 fixed thigh closedloop1_A", "closedloop1_A_frame revolute base other",
             "j2 fixed base closedloop1_B")  # fmt: skip
     found = generated(*rows).found
@@ -255,7 +255,7 @@ def test_two_frames_for_one_side_are_told() -> None:
                               "'closedloop1_A_frame'",)  # fmt: skip
 
 
-def test_a_pattern_of_the_user_tells_sides_loops_and_types() -> None:
+def test_user_pattern_gives_sides_loops_and_types() -> None:
     rows = ("hip revolute base thigh", "j1 fixed thigh rod7_top_3D", "j2 fixed base rod7_bottom_3D")
     found = generated(
         *rows, closures=[r"(?P<loop>rod\d+)_(?P<side>top|bottom)_(?P<type>.[dD])"], motors=["^hip$"]
@@ -266,7 +266,7 @@ def test_a_pattern_of_the_user_tells_sides_loops_and_types() -> None:
     assert found.motors == ("hip",)
 
 
-def test_without_a_group_loop_a_closure_is_named_by_what_its_frames_have_in_common() -> None:
+def test_default_loop_name_is_common_part() -> None:
     rows = ("hip revolute base thigh", "j1 fixed thigh top_of_rod", "j2 fixed base bottom_of_rod")
     assert generated(*rows, closures=["(?P<side>top|bottom)_of_.*"]).found.closures[0].name == "of_rod"
 
@@ -281,7 +281,7 @@ def test_without_a_group_loop_a_closure_is_named_by_what_its_frames_have_in_comm
         "closing_" + "_1_z" * 50_000,
     ],
 )
-def test_a_name_of_any_length_is_judged_at_once(name: str) -> None:
+def test_names_of_any_length_are_fast(name: str) -> None:
     for pattern in conventions().closures:
         pattern.fullmatch(name)
     for joint in (name, "left_" * 50_000 + "x", "_mot" * 50_000 + "x"):
@@ -298,7 +298,7 @@ def test_a_name_of_any_length_is_judged_at_once(name: str) -> None:
     ["mot", "motor", "mot1", "mot1_rod2", "motor_knee", "Motor-knee", "motor3", "left_motor", "left_motor_4barlink1",
      "front_left_motor_hip", "FL_motor_hip", "l_mot1", "knee_motor", "left_knee_motor_2", "ankle_motor_joint"],
 )  # fmt: skip
-def test_a_joint_whose_name_begins_or_ends_with_the_word_is_a_motor(name: str) -> None:
+def test_motor_name_begins_or_ends_with_word(name: str) -> None:
     assert generated(f"{name} revolute base thigh").found.motors == (name,)
 
 
@@ -307,11 +307,11 @@ def test_a_joint_whose_name_begins_or_ends_with_the_word_is_a_motor(name: str) -
     ["moteur_rod", "motion", "free_motor_holder", "knee", "free_motor", "frame_motor_knee", "passive_motor", "remotor",
      "hip_part_motor_part_rev0", "holder_hip_rotation_motor_4_rev0", "spherical_transmission_motor_hip1"],
 )  # fmt: skip
-def test_a_joint_that_only_contains_the_word_is_no_motor(name: str) -> None:
+def test_word_inside_name_is_no_motor(name: str) -> None:
     assert generated(f"{name} revolute base thigh", "motor revolute base other").found.motors == ("motor",)
 
 
-def test_a_robot_without_closures_or_motors_gets_hints_with_names_of_its_own() -> None:
+def test_missing_closures_or_motors_give_hints() -> None:
     urdf = read(urdf_text("knee revolute base thigh", "the.moteur revolute thigh shin", "j1 fixed shin rod_tip0"))
     found = find(urdf, conventions())
     closure, motor = hints(urdf, found, conventions())
@@ -326,13 +326,13 @@ def test_a_robot_without_closures_or_motors_gets_hints_with_names_of_its_own() -
 
 
 @pytest.mark.parametrize("joint", ["motor_weld fixed base thigh", None], ids=["a fixed joint", "no joint"])
-def test_a_robot_in_which_no_joint_moves_gets_a_hint_as_well(joint: str | None) -> None:
+def test_robot_without_moving_joint_gives_hint(joint: str | None) -> None:
     urdf = read(urdf_text(joint) if joint else '<robot name="r"><link name="base"/></robot>')
     *_, motor = hints(urdf, find(urdf, conventions()), conventions())
     assert motor == "no joint can be actuated: each is fixed or mimics another; change its type in the URDF"
 
 
-def test_a_hint_says_that_a_pattern_of_the_user_matches_nothing() -> None:
+def test_unmatched_user_pattern_gives_hint() -> None:
     given_ = conventions(closures=["(?P<side>top|bottom)_rod"], motors=["drive"])
     urdf = read(urdf_text("knee revolute base thigh"))
     closure, motor = hints(urdf, find(urdf, given_), given_)
@@ -340,7 +340,7 @@ def test_a_hint_says_that_a_pattern_of_the_user_matches_nothing() -> None:
     assert motor.startswith("no joint that can move matches a --motor pattern")
 
 
-def test_motors_that_cannot_drive_are_told_and_left_out() -> None:
+def test_undrivable_motors_are_reported_and_skipped() -> None:
     found = generated("motor_a revolute base a", "motor_b revolute a b x motor_a", "motor_c fixed b c").found
     assert found.motors == ("motor_a",)
     assert found.warnings == (
@@ -349,14 +349,14 @@ def test_motors_that_cannot_drive_are_told_and_left_out() -> None:
     )
 
 
-def test_spherical_joints_are_told_by_their_names() -> None:
+def test_spherical_joints_are_recognized_by_name() -> None:
     found = generated("spherical_hip revolute base a", "ball_spherical fixed a b", "x-spherical revolute b c").found
     assert found.sphericals == ("spherical_hip",)
     assert len(found.warnings) == 2
     assert "only a revolute joint becomes spherical" in found.warnings[0]
 
 
-def test_three_revolutes_whose_axes_meet_are_merged() -> None:
+def test_three_intersecting_revolutes_are_merged() -> None:
     generation = generated(*BALL)
     assert generation.merges == {"rev2": ("rev0", "rev1", "rev2")}
     assert "  rev2: {type: spherical, merges: [rev0, rev1, rev2]}\n" in generation.text
@@ -379,12 +379,12 @@ def test_motors_are_not_merged() -> None:
         ({"closures": ["loop_(A|B)"]}, r"'loop_\(A\|B\)' has no group 'side'"),
     ],
 )
-def test_a_bad_pattern_is_told(patterns: dict[str, list[str]], said: str) -> None:
+def test_bad_pattern_is_reported(patterns: dict[str, list[str]], said: str) -> None:
     with pytest.raises(BadPattern, match=said):
         conventions(**patterns)
 
 
-def test_the_patterns_that_are_given_stand_in_place_of_the_published_ones() -> None:
+def test_given_patterns_replace_conventions() -> None:
     given_ = conventions(closures=["(?P<side>.)"])
     assert [pattern.pattern for pattern in given_.closures] == ["(?P<side>.)"]
     assert PUBLISHED_CLOSURE in [pattern.pattern for pattern in conventions().closures]
@@ -404,21 +404,21 @@ actuators: [motor_hip]
 """
 
 
-def test_the_text_is_as_a_person_would_write_it() -> None:
+def test_text_is_formatted_naturally() -> None:
     assert generated(*LEG).text == LEG_TEXT
 
 
-def test_long_lists_stand_a_line_each() -> None:
+def test_long_lists_have_one_item_per_line() -> None:
     rows = [f"motor_with_quite_a_long_name_{n} revolute base rod{n}a" for n in range(5)]
     assert "actuators:\n  - motor_with_quite_a_long_name_0\n  - motor" in generated(*rows).text
 
 
-def test_version_1_is_written_as_well() -> None:
+def test_version_1_is_written_too() -> None:
     generation = generate(read(urdf_text(*LEG)), conventions(), "1")
     assert generation.text == ("closed_loop: [[closedloop1_A, closedloop1_B]]\ntype: [3d]\nname_mot: [motor_hip]\n")
 
 
-def test_a_urdf_without_names_of_any_meaning_gives_a_sound_description() -> None:
+def test_meaningless_names_give_valid_description() -> None:
     for version in ("1", "2"):
         generation = generate(read(urdf_text("knee revolute base rod")), conventions(), version)
         assert generation.mechanism is not None
@@ -446,7 +446,7 @@ def read_back(text: str) -> Any:
 
 @settings(max_examples=300, deadline=None, derandomize=True)
 @given(name=xml_text | nasty)
-def test_every_name_reads_back_wherever_it_stands(name: str) -> None:
+def test_names_survive_round_trip_everywhere(name: str) -> None:
     text = "\n".join(
         [
             *lines_of(name + "k", name),
@@ -472,13 +472,13 @@ def test_every_name_reads_back_wherever_it_stands(name: str) -> None:
 @settings(max_examples=100, deadline=None, derandomize=True)
 @example(1e-05)
 @example(-0.0)
-def test_every_number_reads_back(value: float | bool | None) -> None:
+def test_numbers_survive_round_trip(value: float | bool | None) -> None:
     text = f"k: {scalar(value)}\n"
     assert repr(read_back(text)["k"]) == repr(value)
     assert repr(yaml.safe_load(text)["k"]) == repr(value)  # to readers of YAML 1.1 too
 
 
-def test_items_of_lists_are_indented_by_what_leads_them() -> None:
+def test_list_items_are_indented_equally() -> None:
     value = {"first": ["x" * 60, "y" * 60], "second": {}}
     text = "list:\n" + "".join(f"  {line}\n" for line in lines_of_item(value))
     assert read_back(text) == {"list": [value]}
@@ -488,7 +488,7 @@ def test_items_of_lists_are_indented_by_what_leads_them() -> None:
 
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(st.lists(xml_text | nasty, unique=True, min_size=3, max_size=3), st.booleans())
-def test_a_robot_with_names_of_any_kind_is_described(names: list[str], both: bool) -> None:
+def test_any_names_can_be_described(names: list[str], both: bool) -> None:
     loop, motor, ball = names
     a, b = f"closedloop{loop}_A", f"closedloop{loop}_B"
     base, rod, other = "base\x7f", "rod", "other"
@@ -514,14 +514,14 @@ def leg(tmp_path: Path) -> Path:
     return file
 
 
-def test_the_command_writes_to_the_standard_output(leg: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_command_writes_to_standard_output(leg: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["generate", str(leg)]) == 0
     out, err = capsys.readouterr()
     assert out == LEG_TEXT.replace("robot.urdf", "leg.urdf")
     assert "1 closure: closedloop1 (closedloop1_A, closedloop1_B, 3d)\n1 motor: motor_hip\n" in err
 
 
-def test_the_command_replaces_a_file_only_by_force(leg: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_command_replaces_file_only_with_force(leg: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = leg.parent / "sub" / "leg.yaml"
     out.parent.mkdir()
     out.write_text("mine", encoding="utf-8")
@@ -535,32 +535,32 @@ def test_the_command_replaces_a_file_only_by_force(leg: Path, capsys: pytest.Cap
     assert description.extension.urdf == "../leg.urdf"
 
 
-def test_the_root_may_float(leg: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_root_can_float(leg: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["generate", str(leg), "--root", "floating"]) == 0
     assert "\nroot: floating\n" in capsys.readouterr().out
     assert main(["generate", str(leg), "--root", "floating", "--version", "1"]) == 2
-    assert "version 1 cannot say" in capsys.readouterr().err
+    assert "version 1 cannot state a floating root" in capsys.readouterr().err
 
 
-def test_version_1_tells_that_it_cannot_name_its_urdf(leg: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_version_1_cannot_name_its_urdf(leg: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["generate", str(leg), "--version", "1"]) == 0
     assert "'leg.urdf'" in capsys.readouterr().err
 
 
-def test_patterns_may_be_repeated(leg: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_patterns_are_repeatable(leg: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["generate", str(leg), "--motor", "hip", "--motor", "knee"]) == 0
     assert "actuators: [motor_hip, free_knee]" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("option", ["--closure", "--motor", "--spherical"])
-def test_a_bad_pattern_cannot_run(leg: Path, capsys: pytest.CaptureFixture[str], option: str) -> None:
+def test_bad_pattern_cannot_run(leg: Path, capsys: pytest.CaptureFixture[str], option: str) -> None:
     assert main(["generate", str(leg), option, "a)b"]) == 2
     out, err = capsys.readouterr()
     assert out == ""
     assert "'a)b' is no regular expression" in err
 
 
-def test_names_that_say_what_cannot_be_write_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_contradicting_names_write_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file, out = tmp_path / "ball.urdf", tmp_path / "ball.yaml"
     file.write_text(urdf_text(*BALL), encoding="utf-8")
     # Version 1 merges the three by itself, and then two of them cannot be actuated.
@@ -570,7 +570,7 @@ def test_names_that_say_what_cannot_be_write_nothing(tmp_path: Path, capsys: pyt
     assert main(["generate", str(file), "--motor", "rev", "-o", str(out)]) == 0
 
 
-def test_a_urdf_with_errors_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_urdf_with_errors_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "bad.urdf"
     file.write_text("<robot name='r'><link name='a'/><link name='b'/></robot>", encoding="utf-8")
     assert main(["generate", str(file)]) == 1
@@ -580,7 +580,7 @@ def test_a_urdf_with_errors_is_refused(tmp_path: Path, capsys: pytest.CaptureFix
     assert main(["generate", str(tmp_path / "none.urdf")]) == 2
 
 
-def test_json_has_the_text_and_what_was_found(leg: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_json_contains_text_and_notes(leg: Path, capsys: pytest.CaptureFixture[str]) -> None:
     leg.write_text(urdf_text(*LEG, "j9 fixed rod closedloop9_A"), encoding="utf-8")
     assert main(["generate", str(leg), "--json"]) == 0
     answer = json.loads(capsys.readouterr().out)
@@ -592,9 +592,7 @@ def test_json_has_the_text_and_what_was_found(leg: Path, capsys: pytest.CaptureF
     assert answer["hints"] == []
 
 
-def test_the_command_never_ends_without_closures_or_motors_and_no_hint(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_missing_closures_or_motors_always_give_hint(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "arm.urdf"
     file.write_text(urdf_text("knee revolute base thigh"), encoding="utf-8")
     assert main(["generate", str(file)]) == 0

@@ -57,7 +57,7 @@ def generated(folder: Path, data: bytes, urdf: str = "robot.urdf", *options: str
 
 
 @pytest.mark.parametrize("name", NAMES, ids=ascii)
-def test_a_name_of_any_kind_reads_back(tmp_path: Path, name: str) -> None:
+def test_any_name_survives_round_trip(tmp_path: Path, name: str) -> None:
     written = generated(tmp_path, urdf_text(name).encode(), "robot.urdf", "--schema", "robot")
     assert written["actuators"] == [f"motor_{name}"]
     (closure,) = written["closures"]
@@ -70,7 +70,7 @@ def test_a_name_of_any_kind_reads_back(tmp_path: Path, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["no", "膝", "a: b", "x\ny"], ids=ascii)
-def test_version_1_reads_back_as_well(tmp_path: Path, name: str) -> None:
+def test_version_1_survives_round_trip(tmp_path: Path, name: str) -> None:
     written = generated(tmp_path, urdf_text(name).encode(), "robot.urdf", "--version", "1")
     assert written["name_mot"] == [f"motor_{name}"]
 
@@ -84,7 +84,7 @@ def test_version_1_reads_back_as_well(tmp_path: Path, name: str) -> None:
     ],
     ids=["CRLF", "CR", "byte order mark"],
 )
-def test_line_ends_of_the_urdf_do_not_show(tmp_path: Path, data: bytes) -> None:
+def test_urdf_line_ends_do_not_matter(tmp_path: Path, data: bytes) -> None:
     assert generated(tmp_path, data)["actuators"] == ["motor_é"]
     text = (tmp_path / "out.yaml").read_bytes()
     assert b"\r" not in text
@@ -92,7 +92,7 @@ def test_line_ends_of_the_urdf_do_not_show(tmp_path: Path, data: bytes) -> None:
 
 
 @pytest.mark.parametrize("encoding", ["latin-1", "utf-16"])
-def test_another_encoding_is_refused_and_nothing_is_written(
+def test_other_encoding_is_refused_without_writing(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], encoding: str
 ) -> None:
     (tmp_path / "robot.urdf").write_bytes(urdf_text("é").encode(encoding))
@@ -104,5 +104,5 @@ def test_another_encoding_is_refused_and_nothing_is_written(
 @pytest.mark.parametrize(
     "urdf", ["no.urdf", "a: b.urdf", "my robot #1.urdf", "膝.urdf", "'x'.urdf", "1e3.urdf", "-x.urdf", "[a].urdf"]
 )
-def test_a_urdf_of_any_file_name_is_named(tmp_path: Path, urdf: str) -> None:
+def test_urdf_of_any_file_name_is_named(tmp_path: Path, urdf: str) -> None:
     assert generated(tmp_path, urdf_text("x").encode(), urdf)["urdf"] == urdf

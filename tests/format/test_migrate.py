@@ -158,7 +158,7 @@ def assert_same_motion(before: Mechanism, after: Mechanism) -> None:
 
 @needs_wild
 @pytest.mark.parametrize("name", WILD_ROBOTS)
-def test_a_published_robot_is_the_same_model_in_version_2(name: str) -> None:
+def test_published_robot_keeps_its_model(name: str) -> None:
     description = describe(WILD / name)
     before = description.mechanism
     assert before is not None
@@ -175,14 +175,14 @@ def test_a_published_robot_is_the_same_model_in_version_2(name: str) -> None:
 
 
 @needs_wild
-def test_the_comments_of_a_published_file_stand_where_they_belong() -> None:
+def test_comments_of_published_file_stay_in_place() -> None:
     lines = migrate(describe(WILD / "digit_like_2legs")).text.splitlines()
     assert lines[lines.index("  # SPHERICAL") + 1] == "  spherical_free_hip: spherical"
     assert lines[lines.index("  # Ujoints") + 1] == "  spherical_free_knee: {type: universal, axes: xy}"
 
 
 @pytest.mark.parametrize("name", sorted(path.parent.name for path in ROBOTS.glob("*/robot.v1.yaml")))
-def test_a_robot_of_the_collection_migrates_to_its_own_version_2(name: str) -> None:
+def test_collection_robot_migrates_to_its_version_2(name: str) -> None:
     two = describe(ROBOTS / name).mechanism
     assert two is not None
     after = migrate(describe(ROBOTS / name / "robot.v1.yaml")).mechanism
@@ -267,7 +267,7 @@ def says_half_of_a_universal_joint(document: dict[str, Any]) -> bool:
 
 @settings(max_examples=120, deadline=None, derandomize=True)
 @given(st.data())
-def test_any_document_is_the_same_model_in_version_2(data: st.DataObject) -> None:
+def test_any_document_keeps_its_model(data: st.DataObject) -> None:
     document = data.draw(documents())
     description = read(data.draw(written(document)))
     assume(description is not None)
@@ -291,7 +291,7 @@ def test_any_document_is_the_same_model_in_version_2(data: st.DataObject) -> Non
 
 @settings(max_examples=25, deadline=None, derandomize=True)
 @given(st.data())
-def test_any_document_moves_alike_in_version_2(data: st.DataObject) -> None:
+def test_any_document_keeps_its_kinematics(data: st.DataObject) -> None:
     document = data.draw(documents())
     description = read(json.dumps(document))
     assume(description is not None and not says_half_of_a_universal_joint(document))
@@ -301,7 +301,7 @@ def test_any_document_moves_alike_in_version_2(data: st.DataObject) -> None:
 
 @settings(max_examples=100, deadline=None, derandomize=True)
 @given(st.data())
-def test_no_comment_is_lost_or_doubled(data: st.DataObject) -> None:
+def test_no_comment_is_lost_or_duplicated(data: st.DataObject) -> None:
     text = data.draw(written(data.draw(documents())))
     description = read(text)
     assume(description is not None)
@@ -382,7 +382,7 @@ x-masses:
 """
 
 
-def test_comments_go_with_what_they_speak_of_and_own_data_stay_as_written() -> None:
+def test_comments_and_user_data_are_kept() -> None:
     description = described(COMMENTED)
     assert migrate(description, schema=schema_named(description.extension.document)).text == MIGRATED
 
@@ -392,28 +392,28 @@ def test_windows_line_ends_change_nothing() -> None:
     assert migrate(description, schema=schema_named(description.extension.document)).text == MIGRATED
 
 
-def test_what_was_done_is_told() -> None:
+def test_changes_are_listed() -> None:
     notes = "\n".join(migrated(COMMENTED).notes)
     for said in ("'closure_1'", "spherical joint 'wrist_z'", "universal joint 'elbow'", "'note'", "'x-note'"):
         assert said in notes
 
 
-def test_own_data_with_an_alias_into_the_format_keep_their_values() -> None:
+def test_user_data_with_format_alias_keep_values() -> None:
     migration = migrated("name_mot: &motors [motor]\nbackup: *motors\nalso: &a {k: [1]}\ntoo: *a\n")
     values = {"/x-backup": ["motor"], "/x-also": {"k": [1]}, "/x-too": {"k": [1]}}
     assert migration.mechanism.own_data == values
 
 
-def test_own_keys_never_meet() -> None:
+def test_user_keys_never_collide() -> None:
     assert own_keys(["x-a", "a", "x-x-a", "type", "b"]) == {"x-a": "x-a", "a": "x-x-x-a", "x-x-a": "x-x-a", "b": "x-b"}
 
 
-def test_own_text_of_several_lines_stays_as_written() -> None:
+def test_multi_line_user_text_is_unchanged() -> None:
     text = migrated("name_mot: [motor]\nwhy: |\n  first # no comment\n\n  last\n").text
     assert text.endswith("x-why: |\n  first # no comment\n\n  last\n")
 
 
-def test_both_axes_actuated_are_the_universal_joint_actuated() -> None:
+def test_two_actuated_axes_become_universal_actuator() -> None:
     text = "joint_name: [elbow]\njoint_type: [UJOINT_XY]\nname_mot: [motor, elbow_X, elbow_Y, grip]\n"
     migration = migrated(text)
     assert migration.mechanism.actuators == ("motor", "elbow", "grip")
@@ -421,20 +421,20 @@ def test_both_axes_actuated_are_the_universal_joint_actuated() -> None:
 
 
 @pytest.mark.parametrize("motors", ["[elbow_X]", "[elbow_Y, elbow_X]", "[elbow_X, motor, elbow_Y]"])
-def test_one_axis_actuated_cannot_be_said_in_version_2(motors: str) -> None:
+def test_single_actuated_axis_is_refused(motors: str) -> None:
     with pytest.raises(NotMigratable, match="one of the two axes of universal joint 'elbow'") as reason:
         migrated(f"joint_name: [elbow]\njoint_type: [UJOINT_XY]\nname_mot: {motors}\n")
     assert reason.value.pointer[0] == "name_mot"
 
 
-def test_the_far_side_of_a_universal_joint_is_still_a_frame() -> None:
+def test_far_side_of_universal_joint_stays_a_frame() -> None:
     text = "joint_name: [elbow]\njoint_type: [UJOINT_XY]\nclosed_loop: [[elbow_Y, slider]]\n"
     migration = migrated(text)
     assert migration.mechanism.closures[0].a.frame == "elbow"
     assert_same_motion(linked(text), migration.mechanism)
 
 
-def test_a_frame_between_the_axes_of_a_universal_joint_cannot_be_said_in_version_2() -> None:
+def test_frame_between_universal_axes_is_refused() -> None:
     with pytest.raises(NotMigratable, match="'elbow_X' lies between the two axes"):
         migrated("joint_name: [elbow]\njoint_type: [UJOINT_XY]\nclosed_loop: [[elbow_X, slider]]\n")
 
@@ -455,18 +455,18 @@ def test_a_frame_between_the_axes_of_a_universal_joint_cannot_be_said_in_version
         ),
     ],
 )
-def test_another_model_is_told_from_the_same(other: str, said: str) -> None:
+def test_different_model_is_detected(other: str, said: str) -> None:
     assert differences(linked("closed_loop: [[rod_tip, slider]]\n"), linked(other)) == [said]
 
 
 @pytest.mark.parametrize("axes", ["UJOINT_YX", "UJOINT_XZ"])
-def test_other_axes_are_another_model(axes: str) -> None:
+def test_different_axes_are_a_different_model(axes: str) -> None:
     text = "joint_name: [pivot]\njoint_type: [{}]\n"
     found = differences(linked(text.format("UJOINT_XY")), linked(text.format(axes)))
     assert found == ["joint 'pivot' is another"]
 
 
-def test_a_mechanism_without_split_joints_is_left_as_it_is() -> None:
+def test_mechanism_without_split_joints_is_unchanged() -> None:
     mechanism = linked("name_mot: [motor]\n")
     assert with_universal_joints(mechanism) is mechanism
 
@@ -481,14 +481,14 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def test_the_command_writes_to_the_standard_output(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_command_writes_to_standard_output(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["migrate", str(folder)]) == 0
     out, err = capsys.readouterr()
     assert out == MIGRATED
     assert "wrist_z" in err
 
 
-def test_the_command_replaces_a_file_only_by_force(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_command_replaces_file_only_with_force(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = folder / "robot.yaml"
     assert main(["migrate", str(file), "-o", str(file)]) == 2
     assert "--force" in capsys.readouterr().err
@@ -499,7 +499,7 @@ def test_the_command_replaces_a_file_only_by_force(folder: Path, capsys: pytest.
     assert (folder / "extended-urdf-2.0.schema.json").is_file()
 
 
-def test_the_new_file_names_the_urdf_from_where_it_is(folder: Path) -> None:
+def test_new_file_names_urdf_relatively(folder: Path) -> None:
     (folder / "new").mkdir()
     out = folder / "new" / "bench.yaml"
     assert main(["migrate", str(folder), "-o", str(out)]) == 0
@@ -507,14 +507,14 @@ def test_the_new_file_names_the_urdf_from_where_it_is(folder: Path) -> None:
     assert describe(out).mechanism is not None
 
 
-def test_the_new_file_names_the_urdf_that_was_given(folder: Path) -> None:
+def test_new_file_names_given_urdf(folder: Path) -> None:
     (folder / "robot.urdf").rename(folder / "no: name.urdf")
     out = folder / "two.yaml"
     assert main(["migrate", str(folder), "--urdf", str(folder / "no: name.urdf"), "-o", str(out)]) == 0
     assert describe(out).mechanism is not None
 
 
-def test_a_file_of_version_2_is_left_as_it_is(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_version_2_file_is_unchanged(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "robot.yaml").write_text(MIGRATED, encoding="utf-8")
     assert main(["migrate", str(folder)]) == 0
     out, err = capsys.readouterr()
@@ -524,7 +524,7 @@ def test_a_file_of_version_2_is_left_as_it_is(folder: Path, capsys: pytest.Captu
     assert not (folder / "other.yaml").exists()
 
 
-def test_a_robot_with_errors_is_refused(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_robot_with_errors_is_refused(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "robot.yaml").write_text("name_mot: [mottor]\n", encoding="utf-8")
     assert main(["migrate", str(folder), "-o", str(folder / "two.yaml")]) == 1
     out, err = capsys.readouterr()
@@ -533,7 +533,7 @@ def test_a_robot_with_errors_is_refused(folder: Path, capsys: pytest.CaptureFixt
     assert not (folder / "two.yaml").exists()
 
 
-def test_what_version_2_cannot_say_is_told_with_its_line(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_inexpressible_value_is_reported_with_line(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text = "joint_name: [elbow]\njoint_type: [UJOINT_XY]\nname_mot: [elbow_X]\n"
     (folder / "robot.yaml").write_text(text, encoding="utf-8")
     assert main(["migrate", str(folder), "-o", str(folder / "two.yaml")]) == 2
@@ -541,12 +541,12 @@ def test_what_version_2_cannot_say_is_told_with_its_line(folder: Path, capsys: p
     assert not (folder / "two.yaml").exists()
 
 
-def test_a_bare_urdf_has_nothing_to_migrate(capsys: pytest.CaptureFixture[str]) -> None:
+def test_plain_urdf_has_nothing_to_migrate(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["migrate", str(WORKBENCH)]) == 2
     assert "eurdf generate" in capsys.readouterr().err
 
 
-def test_json_has_the_text_and_what_was_done(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_json_contains_text_and_changes(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["migrate", str(folder), "--json"]) == 0
     answer = json.loads(capsys.readouterr().out)
     assert (answer["from"], answer["to"], answer["output"]) == ("1", "2.0", None)

@@ -22,7 +22,7 @@ from eurdf_conformance.oracle.near import is_near
         ("", "abc", 3),
     ],
 )
-def test_an_edit_puts_in_takes_out_or_exchanges_neighbours(name: str, known: str, count: int) -> None:
+def test_edit_inserts_deletes_or_swaps_letters(name: str, known: str, count: int) -> None:
     assert edits(name, known) == edits(known, name) == count
 
 
@@ -37,11 +37,11 @@ def test_an_edit_puts_in_takes_out_or_exchanges_neighbours(name: str, known: str
         ("", None),
     ],
 )
-def test_near_is_two_edits_or_one_of_a_short_name(name: str, found: str | None) -> None:
+def test_near_means_two_edits_or_one_if_short(name: str, found: str | None) -> None:
     assert near(name, ("type", "limit")) == found
 
 
-def test_reference_and_oracle_have_the_same_opinion_of_any_two_names() -> None:
+def test_reference_and_oracle_agree_on_any_names() -> None:
     random = np.random.default_rng(1)
     names = ["".join(random.choice(list("abcA"), size=random.integers(0, 8))) for _ in range(300)]
     found = [(near(one, [other]) is not None, is_near(one, other)) for one in names for other in names[:60]]

@@ -88,12 +88,12 @@ def accepted(version: str, document: Any) -> bool:
 
 
 @pytest.mark.parametrize("version", VERSIONS)
-def test_the_schema_file_is_current(version: Literal["1", "2"]) -> None:
+def test_schema_file_is_current(version: Literal["1", "2"]) -> None:
     written = (ROOT / "schema" / FILES[version]).read_text(encoding="utf-8")
     assert written == schema_text(json_schema(version)), "run: python -m eurdf.format.schema schema"
 
 
-def test_the_schema_files_are_written_into_the_folder_asked_for(tmp_path: Path) -> None:
+def test_schema_files_are_written_to_given_folder(tmp_path: Path) -> None:
     main(str(tmp_path))
     assert {path.name: json.loads(path.read_text()) for path in tmp_path.iterdir()} == {
         FILES[version]: json_schema(version) for version in VERSIONS
@@ -102,7 +102,7 @@ def test_the_schema_files_are_written_into_the_folder_asked_for(tmp_path: Path) 
 
 @pytest.mark.parametrize("names", [None, NAMES])
 @pytest.mark.parametrize("version", VERSIONS)
-def test_the_schema_is_one_of_draft_2020_12(version: Literal["1", "2"], names: Names | None) -> None:
+def test_schema_is_draft_2020_12(version: Literal["1", "2"], names: Names | None) -> None:
     schema = json_schema(version, names)
     assert schema["$schema"] == Draft202012Validator.META_SCHEMA["$id"]
     assert ("$id" in schema) == (names is None)
@@ -123,7 +123,7 @@ def properties(schema: Any, path: str = "") -> Iterator[tuple[str, dict[str, Any
 
 
 @pytest.mark.parametrize("version", VERSIONS)
-def test_every_property_has_a_title_a_description_and_examples_that_fit(version: Literal["1", "2"]) -> None:
+def test_properties_have_title_description_and_valid_examples(version: Literal["1", "2"]) -> None:
     schema = json_schema(version)
     found = dict(properties(schema))
     assert len(found) >= 5
@@ -136,7 +136,7 @@ def test_every_property_has_a_title_a_description_and_examples_that_fit(version:
             assert validator.is_valid(example), f"{path}: {example}"
 
 
-def test_what_has_a_dimension_says_its_unit() -> None:
+def test_dimensional_values_state_their_unit() -> None:
     units = {
         "xyz": "m.",
         "rpy": "rad.",
@@ -157,7 +157,7 @@ def test_what_has_a_dimension_says_its_unit() -> None:
 
 
 @pytest.mark.parametrize("version", VERSIONS)
-def test_a_whole_document_is_accepted(version: str) -> None:
+def test_complete_document_is_accepted(version: str) -> None:
     assert accepted(version, WHOLE[version])
 
 
@@ -218,7 +218,7 @@ def edited_pieces(version: str) -> Iterator[Any]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("version", VERSIONS)
-def test_model_and_schema_agree_on_every_document_that_is_one_edit_from_a_sound_one(version: str) -> None:
+def test_model_and_schema_agree_after_one_edit(version: str) -> None:
     verdicts = [accepted(version, document) for document in edited_pieces(version)]
     assert verdicts.count(True) > 100
     assert verdicts.count(False) > 200
@@ -344,18 +344,18 @@ seldom = settings(max_examples=150, derandomize=True, deadline=None, database=No
 @pytest.mark.parametrize("version", VERSIONS)
 @seldom
 @given(st.data())
-def test_every_sound_document_is_accepted_by_model_and_schema(version: str, data: st.DataObject) -> None:
+def test_valid_documents_pass_model_and_schema(version: str, data: st.DataObject) -> None:
     assert accepted(version, data.draw(DOCUMENTS[version]))
 
 
 @pytest.mark.parametrize("version", VERSIONS)
 @settings(max_examples=250, derandomize=True, deadline=None, database=None)
 @given(st.data())
-def test_model_and_schema_agree_on_documents_with_faults(version: str, data: st.DataObject) -> None:
+def test_model_and_schema_agree_on_invalid_documents(version: str, data: st.DataObject) -> None:
     accepted(version, data.draw(mutants(version)))
 
 
-def test_reading_refuses_what_the_schema_refuses_and_says_where() -> None:
+def test_reading_reports_what_schema_rejects() -> None:
     seen = 0
     for document in list(edited_pieces("2"))[::5]:
         if not isinstance(document, dict) or "extended_urdf" not in document:
@@ -392,7 +392,7 @@ KNOWN_TO_THE_ROBOT: list[tuple[Literal["1", "2"], str]] = [
 
 
 @pytest.mark.parametrize(("version", "text"), KNOWN_TO_THE_ROBOT)
-def test_the_schema_of_a_robot_takes_its_names_and_those_the_file_makes(version: Literal["1", "2"], text: str) -> None:
+def test_robot_schema_accepts_known_names(version: Literal["1", "2"], text: str) -> None:
     assert robot_errors(version, text) == []
 
 
@@ -412,13 +412,11 @@ UNKNOWN_TO_THE_ROBOT: list[tuple[Literal["1", "2"], str, str]] = [
 
 
 @pytest.mark.parametrize(("version", "text", "where"), UNKNOWN_TO_THE_ROBOT)
-def test_the_schema_of_a_robot_refuses_a_name_that_nothing_has(
-    version: Literal["1", "2"], text: str, where: str
-) -> None:
+def test_robot_schema_rejects_unknown_names(version: Literal["1", "2"], text: str, where: str) -> None:
     assert set(robot_errors(version, text)) == {where}
 
 
-def test_the_schema_of_a_robot_offers_the_names_for_completion() -> None:
+def test_robot_schema_offers_names_for_completion() -> None:
     schema = json_schema("2", NAMES)
     assert schema["$defs"]["FrameName"]["anyOf"][0] == {"enum": ["base", "rod", "foot", "hip", "knee", "weld"]}
     assert schema["$defs"]["MovingJointName"]["anyOf"][0] == {"enum": ["hip", "knee"]}
@@ -426,7 +424,7 @@ def test_the_schema_of_a_robot_offers_the_names_for_completion() -> None:
     assert list(schema["properties"]["configurations"]["additionalProperties"]["properties"]) == ["hip", "knee"]
 
 
-def test_the_schema_of_any_robot_is_not_changed_by_that_of_one() -> None:
+def test_robot_schema_leaves_general_schema_unchanged() -> None:
     before = json_schema("2")
     json_schema("2", NAMES)
     assert json_schema("2") == before

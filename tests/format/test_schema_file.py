@@ -36,7 +36,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @command
-def test_the_schema_is_written_beside_the_description_wherever_it_is(folder: Path, argv: list[str]) -> None:
+def test_schema_is_written_beside_description(folder: Path, argv: list[str]) -> None:
     (folder / "deep").mkdir()
     moved = [argument.replace("new.yaml", "deep/new.yaml") for argument in argv]
     assert main(moved) == 0
@@ -49,14 +49,14 @@ def test_the_schema_is_written_beside_the_description_wherever_it_is(folder: Pat
 
 
 @command
-def test_no_schema_is_written_where_none_is_wanted(folder: Path, argv: list[str]) -> None:
+def test_schema_none_writes_no_schema(folder: Path, argv: list[str]) -> None:
     assert main([*argv, "--schema", "none"]) == 0
     assert not list(folder.glob("*.json"))
     assert "$schema" not in (folder / "new.yaml").read_text(encoding="utf-8")
 
 
 @command
-def test_another_file_is_replaced_only_by_force(
+def test_other_file_is_replaced_only_with_force(
     folder: Path, argv: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     mine = folder / schema_file(argv)
@@ -73,7 +73,7 @@ def test_another_file_is_replaced_only_by_force(
 
 
 @command
-def test_the_same_schema_is_left_as_it_is(folder: Path, argv: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+def test_same_schema_is_unchanged(folder: Path, argv: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     path = folder / schema_file(argv)
     laid_out = json.dumps(json_schema("1" if "1" in argv else "2"), separators=(",", ":"))
     path.write_text(laid_out, encoding="utf-8")
@@ -83,7 +83,7 @@ def test_the_same_schema_is_left_as_it_is(folder: Path, argv: list[str], capsys:
 
 
 @command
-def test_a_description_that_is_there_keeps_the_schema_from_being_written(folder: Path, argv: list[str]) -> None:
+def test_existing_description_prevents_writing_schema(folder: Path, argv: list[str]) -> None:
     (folder / "new.yaml").write_text("mine", encoding="utf-8")
     assert main(argv) == 2
     assert not list(folder.glob("*.json"))
@@ -93,19 +93,19 @@ def test_a_description_that_is_there_keeps_the_schema_from_being_written(folder:
     ("output", "name"),
     [("leg.yaml", "leg"), ("leg.eurdf.yml", "leg"), ("left leg.yaml", "robot"), ("jambe_é.yaml", "robot")],
 )
-def test_the_schema_of_a_robot_is_named_after_its_description(folder: Path, output: str, name: str) -> None:
+def test_robot_schema_is_named_after_description(folder: Path, output: str, name: str) -> None:
     assert main(["generate", "robot.urdf", "-o", output, "--schema", "robot"]) == 0
     schema = json.loads((folder / f"{name}.schema.json").read_text(encoding="utf-8"))
     assert "motor_crank" in schema["$defs"]["UrdfJointName"]["enum"]
     assert f"$schema=./{name}.schema.json\n" in (folder / output).read_text(encoding="utf-8")
 
 
-def test_a_description_cannot_have_the_name_of_its_schema(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_description_cannot_have_name_of_schema(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["generate", "robot.urdf", "-o", FILES["2"]]) == 2
     assert "name of the schema" in capsys.readouterr().err
 
 
-def test_a_migrated_description_keeps_the_place_where_its_schema_is(folder: Path) -> None:
+def test_migrated_description_keeps_schema_path(folder: Path) -> None:
     old = folder / "old.yaml"
     old.write_text(
         f"# yaml-language-server: $schema=schemas/{FILES['1']}\n" + old.read_text(encoding="utf-8"), encoding="utf-8"
@@ -119,7 +119,7 @@ def test_a_migrated_description_keeps_the_place_where_its_schema_is(folder: Path
 
 
 @pytest.mark.parametrize("argv", [["generate", "robot.urdf"], ["migrate", "old.yaml"], ["schema"]])
-def test_a_dash_is_the_standard_output(folder: Path, argv: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+def test_dash_is_standard_output(folder: Path, argv: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(argv) == 0
     shown = capsys.readouterr()
     assert main([*argv, "-o", "-"]) == 0
@@ -128,9 +128,7 @@ def test_a_dash_is_the_standard_output(folder: Path, argv: list[str], capsys: py
 
 
 @pytest.mark.parametrize("argv", [["generate", "robot.urdf"], ["migrate", "old.yaml"]])
-def test_what_goes_to_the_standard_output_names_no_schema(
-    folder: Path, argv: list[str], capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_standard_output_names_no_schema(folder: Path, argv: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(argv) == 0
     out, err = capsys.readouterr()
     assert "$schema" not in out
@@ -142,7 +140,7 @@ def test_what_goes_to_the_standard_output_names_no_schema(
 
 
 @pytest.mark.parametrize("option", [[], ["--for", "robot.urdf"], ["--version", "1"]])
-def test_the_schema_command_writes_a_file_whole_and_over_nothing(
+def test_schema_command_writes_atomically_without_overwriting(
     folder: Path, option: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["schema", *option]) == 0

@@ -33,7 +33,7 @@ joint_type: [SPHERICAL, UJOINT_ZX, FIXED]
 """
 
 
-def test_closures_are_named_by_their_order_and_keep_where_their_frames_stand() -> None:
+def test_closures_are_named_by_order_with_places() -> None:
     first, second = sound(PUBLISHED).closures
     assert (first.name, first.type) == ("closure_1", "3d")
     assert (second.name, second.type) == ("closure_2", "6d")
@@ -41,12 +41,12 @@ def test_closures_are_named_by_their_order_and_keep_where_their_frames_stand() -
     assert second.b == FrameReference(("closed_loop", 1, 1), name="ankle_B")
 
 
-def test_closures_are_6d_where_the_key_type_is_left_out() -> None:
+def test_closures_are_6d_by_default() -> None:
     extension = sound("closed_loop: [[a, b], [c, d]]\n")
     assert [closure.type for closure in extension.closures] == ["6d", "6d"]
 
 
-def test_joint_types_become_those_of_the_format_and_a_universal_joint_keeps_its_letters() -> None:
+def test_joint_types_are_translated() -> None:
     joints = sound(PUBLISHED).joints
     assert [(joint.name, joint.type, joint.split) for joint in joints] == [
         ("hip_ball", "spherical", ""),
@@ -56,7 +56,7 @@ def test_joint_types_become_those_of_the_format_and_a_universal_joint_keeps_its_
     assert joints[1].pointer == ("joint_name", 1)
 
 
-def test_actuators_keep_their_order_and_place() -> None:
+def test_actuators_keep_order_and_place() -> None:
     actuators = sound(PUBLISHED).actuators
     assert [(actuator.joint, actuator.pointer) for actuator in actuators] == [
         ("motor_hip", ("name_mot", 0)),
@@ -64,19 +64,19 @@ def test_actuators_keep_their_order_and_place() -> None:
     ]
 
 
-def test_version_1_merges_revolutes_and_stands_on_a_fixed_root_beside_robot_urdf() -> None:
+def test_version_1_merges_and_has_fixed_root() -> None:
     extension = sound(PUBLISHED)
     assert extension.version == "1"
     assert extension.merges_revolutes
     assert (extension.urdf, extension.root) == ("robot.urdf", "fixed")
 
 
-def test_any_other_key_is_kept_as_the_users_own() -> None:
+def test_other_keys_are_user_data() -> None:
     extension = sound("closed_loop: []\nnotes: {mass: [1, 2]}\nx-type: any\n")
     assert extension.own_data == {("notes",): {"mass": [1, 2]}, ("x-type",): "any"}
 
 
-def test_a_file_may_say_nothing_of_the_format() -> None:
+def test_file_without_known_keys_is_accepted() -> None:
     extension = sound("notes: none\n")
     assert extension.closures == extension.joints == extension.actuators == ()
 
@@ -94,7 +94,7 @@ def test_a_file_may_say_nothing_of_the_format() -> None:
         ("extended-urdf", "extended_urdf"),
     ],
 )
-def test_a_near_miss_of_a_key_is_a_warning_and_is_kept(key: str, meant: str) -> None:
+def test_near_miss_key_is_warned_and_kept(key: str, meant: str) -> None:
     extension, diagnostics = read(f"closed_loop: [[a, b]]\n{key}: [1]\n")
     assert extension is not None
     assert extension.own_data == {(key,): [1]}
@@ -104,11 +104,11 @@ def test_a_near_miss_of_a_key_is_a_warning_and_is_kept(key: str, meant: str) -> 
 
 
 @pytest.mark.parametrize("key", ["name", "notes", "time", "joint", "loop", "metadata", "x-types", "mass"])
-def test_a_key_that_is_not_near_is_kept_without_a_word(key: str) -> None:
+def test_other_key_is_kept_silently(key: str) -> None:
     assert sound(f"closed_loop: []\n{key}: 1\n").own_data == {(key,): 1}
 
 
-def test_a_key_of_version_2_beside_one_of_version_1_is_warned_of() -> None:
+def test_version_2_key_in_version_1_is_warned() -> None:
     extension, diagnostics = read("closed_loop: []\nactuators: [motor]\n")
     assert extension is not None
     assert extension.actuators == ()
@@ -128,7 +128,7 @@ def test_a_key_of_version_2_beside_one_of_version_1_is_warned_of() -> None:
         ('Extended_URDF: "2.0"\n', "Extended_URDF"),
     ],
 )
-def test_a_file_of_version_2_without_its_version_is_not_read_as_version_1(text: str, key: str) -> None:
+def test_version_2_without_version_is_not_version_1(text: str, key: str) -> None:
     extension, diagnostics = read(text)
     assert extension is None
     (error,) = diagnostics
@@ -166,7 +166,7 @@ FAULTS = [
 
 
 @pytest.mark.parametrize(("text", "code", "pointer", "line", "column", "said"), FAULTS)
-def test_one_fault_gives_one_diagnostic_at_its_place(
+def test_one_error_gives_one_diagnostic(
     text: str, code: str, pointer: str, line: int, column: int | None, said: str
 ) -> None:
     extension, diagnostics = read(text)
@@ -177,12 +177,12 @@ def test_one_fault_gives_one_diagnostic_at_its_place(
     assert said in f"{found.message} ({found.hint})"
 
 
-def test_several_faults_are_all_told_in_file_order() -> None:
+def test_several_errors_are_reported_in_order() -> None:
     _, diagnostics = read("name_mot: 1\nclosed_loop: [[a]]\ntype: [x]\n")
     assert [found.code for found in diagnostics] == ["wrong-type", "wrong-length", "wrong-value"]
 
 
-def test_a_file_that_is_wrong_all_over_is_told_a_bounded_number_of_faults() -> None:
+def test_number_of_reported_errors_is_bounded() -> None:
     _, diagnostics = read("name_mot: [" + "1, " * 20_000 + "]\n")
     found = list(diagnostics)
     assert len(found) == 100

@@ -75,7 +75,7 @@ def full() -> Extension:
     return extension
 
 
-def test_the_top_of_the_file_is_read() -> None:
+def test_top_level_is_read() -> None:
     extension = full()
     assert (extension.version, extension.urdf, extension.root) == ("2.0", "leg.urdf", "floating")
     assert extension.metadata == {"license": "BSD-3-Clause", "anything": [1, None]}
@@ -83,13 +83,13 @@ def test_the_top_of_the_file_is_read() -> None:
     assert not extension.merges_revolutes
 
 
-def test_what_is_left_out_has_its_default() -> None:
+def test_defaults_are_applied() -> None:
     assert sound("") == Extension(
         read_yaml(Source("robot.yaml", "{}", b"{}")), version="2.0", urdf="robot.urdf", root="fixed"
     )
 
 
-def test_a_closure_joins_named_frames_or_poses() -> None:
+def test_closure_joins_named_frames_or_poses() -> None:
     rod, ankle, _ = full().closures
     assert (rod.name, rod.type, rod.pointer) == ("knee_rod", "6d", ("closures", 0))
     assert rod.b == FrameReference(("closures", 0, "frames", 1), name="knee_crank")
@@ -97,11 +97,11 @@ def test_a_closure_joins_named_frames_or_poses() -> None:
     assert ankle.b == FrameReference(("closures", 1, "frames", 1), joint="ankle", rpy=(0.0, 1.5, 0.0))
 
 
-def test_a_closure_may_be_of_a_type_of_the_users_own() -> None:
+def test_closure_can_have_user_defined_type() -> None:
     assert full().closures[2].type == "x-gear"
 
 
-def test_joints_are_read_in_all_their_forms() -> None:
+def test_joints_are_read_in_all_forms() -> None:
     joints = {joint.name: joint for joint in full().joints}
     assert {name: joint.type for name, joint in joints.items()} == {
         "hip_ball": "spherical",
@@ -138,7 +138,7 @@ def test_actuators_frames_and_configurations_are_read() -> None:
     assert (ready.name, ready.joints) == ("ready", {})
 
 
-def test_whole_numbers_are_read_as_numbers() -> None:
+def test_integers_are_read_as_numbers() -> None:
     knee = next(joint for joint in full().joints if joint.name == "motor_knee")
     assert isinstance(knee.effort, float)
 
@@ -155,7 +155,7 @@ def mappings(value: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[str
 
 
 @pytest.mark.parametrize("path", list(mappings(yaml.safe_load(FULL))), ids=str)
-def test_the_users_own_keys_may_stand_in_every_mapping_and_change_nothing(path: tuple[str | int, ...]) -> None:
+def test_user_keys_are_allowed_in_every_mapping(path: tuple[str | int, ...]) -> None:
     data = yaml.safe_load(FULL)
     mapping = data
     for step in path:
@@ -169,14 +169,14 @@ def test_the_users_own_keys_may_stand_in_every_mapping_and_change_nothing(path: 
         assert getattr(after, part) == getattr(before, part)
 
 
-def test_the_users_own_data_are_kept_at_every_level_and_nothing_is_sought_within_them() -> None:
+def test_user_data_are_kept_and_not_interpreted() -> None:
     text = "x-a: {x-b: 1}\nclosures: [{name: c, type: 3d, frames: [a, b], x-d: [1]}]\nmetadata: {x-e: 2}\n"
     extension = sound(text)
     assert extension.own_data == {("x-a",): {"x-b": 1}, ("closures", 0, "x-d"): [1], ("metadata", "x-e"): 2}
     assert extension.metadata == {"x-e": 2}
 
 
-def test_own_keys_among_names_of_joints_are_remembered_for_linking() -> None:
+def test_user_keys_among_joint_names_are_kept() -> None:
     extension = sound("joints: {x-rail: fixed}\nconfigurations: {x-old: {x-a: 1}, ready: {x-rail: 1, hip: 2}}\n")
     assert extension.joints == ()
     assert set(extension.own_data) == {
@@ -204,7 +204,7 @@ VERSIONS = [
 
 
 @pytest.mark.parametrize(("value", "code", "hint"), VERSIONS)
-def test_another_version_is_refused_with_what_to_write(value: str, code: str, hint: str) -> None:
+def test_other_version_is_refused_with_hint(value: str, code: str, hint: str) -> None:
     extension, diagnostics = read(f"extended_urdf: {value}\nclosures: []\n")
     assert extension is None
     (found,) = diagnostics
@@ -213,12 +213,12 @@ def test_another_version_is_refused_with_what_to_write(value: str, code: str, hi
     assert hint in found.hint
 
 
-def test_an_unquoted_version_does_not_hide_the_other_faults() -> None:
+def test_unquoted_version_hides_no_other_errors() -> None:
     _, diagnostics = read("extended_urdf: 2.0\nroot: loose\n")
     assert [found.code for found in diagnostics] == ["wrong-type", "wrong-value"]
 
 
-def test_a_version_that_is_not_known_is_the_only_finding() -> None:
+def test_unknown_version_is_the_only_diagnostic() -> None:
     _, diagnostics = read('extended_urdf: "3.0"\nroot: loose\nnew: 1\n')
     assert [found.code for found in diagnostics] == ["unsupported-version"]
 
@@ -328,9 +328,7 @@ FAULTS = [
 
 
 @pytest.mark.parametrize(("line", "code", "pointer", "column", "said"), FAULTS, ids=[fault[0] for fault in FAULTS])
-def test_one_fault_gives_one_diagnostic_at_its_place(
-    line: str, code: str, pointer: str, column: int | None, said: str
-) -> None:
+def test_one_error_gives_one_diagnostic(line: str, code: str, pointer: str, column: int | None, said: str) -> None:
     extension, diagnostics = read(f'extended_urdf: "2.0"\n{line}\n')
     assert extension is None
     (found,) = diagnostics
@@ -340,7 +338,7 @@ def test_one_fault_gives_one_diagnostic_at_its_place(
     assert not found.message.endswith(".")
 
 
-def test_a_key_that_is_wrong_and_one_that_lacks_are_two_faults_where_they_are_not_alike() -> None:
+def test_wrong_and_missing_keys_are_two_errors() -> None:
     _, diagnostics = read('extended_urdf: "2.0"\nclosures: [{names: rod, type: 3d}]\n')
     assert [(found.code, found.message) for found in diagnostics] == [
         ("missing-key", "item 1 of 'closures' lacks 'frames'"),
@@ -348,7 +346,7 @@ def test_a_key_that_is_wrong_and_one_that_lacks_are_two_faults_where_they_are_no
     ]
 
 
-def test_a_joint_named_like_a_form_of_the_format_is_pointed_at_rightly() -> None:
+def test_joint_named_like_a_keyword_has_right_place() -> None:
     text = 'extended_urdf: "2.0"\njoints: {"fixed joint": {type: fixed, "one number": 1, armature: x}}\n'
     _, diagnostics = read(text)
     assert [found.pointer for found in diagnostics] == [
@@ -357,19 +355,19 @@ def test_a_joint_named_like_a_form_of_the_format_is_pointed_at_rightly() -> None
     ]
 
 
-def test_reading_a_description_loads_no_simulator() -> None:
+def test_reading_loads_no_simulator() -> None:
     code = "import sys, eurdf.format.read_extension; sys.exit('pinocchio' in sys.modules or 'numpy' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
-def test_a_long_or_unprintable_name_is_quoted_short_and_escaped() -> None:
+def test_long_or_unprintable_name_is_escaped() -> None:
     _, diagnostics = read('extended_urdf: "2.0"\n? "' + "a" * 5000 + '"\n: 1\n"tab\\there": 1\n')
     long, tab = (found.message for found in diagnostics)
     assert len(long) < 120
     assert "'tab\\there'" in tab
 
 
-def test_reading_a_description_takes_well_under_a_millisecond() -> None:
+def test_reading_is_well_under_a_millisecond() -> None:
     document = read_yaml(Source("robot.yaml", FULL, FULL.encode()))
     read_extension(document, Diagnostics())  # the validators are built once
     assert min(timeit.repeat(lambda: read_extension(document, Diagnostics()), number=1, repeat=50)) < 1e-3

@@ -98,7 +98,7 @@ def tried(seed: int, first: int, count: int, *folders: Path) -> list[str]:
 
 
 @pytest.mark.parametrize("batch", [0, *(pytest.param(batch, marks=pytest.mark.slow) for batch in range(1, BATCHES))])
-def test_a_damaged_robot_gives_diagnostics_or_a_robot(request: pytest.FixtureRequest, batch: int) -> None:
+def test_damaged_robot_gives_diagnostics_or_robot(request: pytest.FixtureRequest, batch: int) -> None:
     count, seed = request.config.getoption("--mutations"), request.config.getoption("--mutation-seed")
     first, beyond = count * batch // BATCHES, count * (batch + 1) // BATCHES
     outcomes = tried(seed, first, beyond - first)
@@ -106,14 +106,14 @@ def test_a_damaged_robot_gives_diagnostics_or_a_robot(request: pytest.FixtureReq
         assert min(outcomes.count("refused"), outcomes.count("robot")) > len(outcomes) // 20
 
 
-def test_a_damaged_published_robot_gives_diagnostics_or_a_robot(request: pytest.FixtureRequest) -> None:
+def test_damaged_published_robot_gives_diagnostics_or_robot(request: pytest.FixtureRequest) -> None:
     folders = sorted(path.parent for path in WILD.glob("*/robot.urdf"))
     if not folders:
         pytest.skip("no published robots: put their folder at ../shared/wild, beside the checkout")
     tried(request.config.getoption("--mutation-seed"), 0, request.config.getoption("--mutations") // 20, *folders)
 
 
-def test_the_same_seed_damages_the_same_robots_in_the_same_way() -> None:
+def test_same_seed_gives_same_damage() -> None:
     robots = seeds()
     cases = [case_of(7, index, robots) for index in range(40)]
     assert cases == [case_of(7, index, robots) for index in range(40)]
@@ -133,7 +133,7 @@ def test_the_same_seed_damages_the_same_robots_in_the_same_way() -> None:
         ("time.sleep(1000)", "the process ended with hangs"),
     ],
 )
-def test_whatever_a_damaged_robot_might_do_would_be_noticed(harm: str, told: str) -> None:
+def test_misbehaviour_on_damaged_robot_is_detected(harm: str, told: str) -> None:
     script = f"""
 import os, time
 from support import mutation
@@ -153,7 +153,7 @@ mutation.work(0, 10, 4, attempt=attempt)
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="memory is measured and bounded as Linux does it")
 @pytest.mark.parametrize("part", [0, *(pytest.param(part, marks=pytest.mark.slow) for part in range(1, PARTS))])
-def test_a_hostile_file_is_judged_in_bounded_time_and_memory(part: int) -> None:
+def test_hostile_file_is_judged_within_bounds(part: int) -> None:
     names = list(HOSTILE)[part::PARTS]
     lines, end, log = run("support/hostile.py", *names)
     assert (end, [line["name"] for line in lines]) == (0, names), log
@@ -169,7 +169,7 @@ def test_a_hostile_file_is_judged_in_bounded_time_and_memory(part: int) -> None:
 
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(text=trees(), root=st.sampled_from(["fixed", "floating"]), mimic=st.booleans())
-def test_a_sound_urdf_is_loaded_as_pinocchio_reads_it(text: str, root: Root, mimic: bool) -> None:
+def test_valid_urdf_loads_as_in_pinocchio(text: str, root: Root, mimic: bool) -> None:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "robot.urdf"
         path.write_text(text, encoding="utf-8")
@@ -182,7 +182,7 @@ def test_a_sound_urdf_is_loaded_as_pinocchio_reads_it(text: str, root: Root, mim
 # -- what bounds diagnostics ----------------------------------------------------------------------------------------
 
 
-def test_of_a_fault_that_is_made_over_and_over_a_hundred_are_listed_and_the_others_counted() -> None:
+def test_repeated_error_is_listed_a_hundred_times() -> None:
     diagnostics = Diagnostics()
     for index in range(LISTED + 1234):
         diagnostics.report("unknown-frame", f"'x{index}' is no frame", Place("robot.yaml", index + 1), "name one")
@@ -194,7 +194,7 @@ def test_of_a_fault_that_is_made_over_and_over_a_hundred_are_listed_and_the_othe
     assert diagnostics.refused
 
 
-def test_a_hint_is_not_looked_for_where_the_finding_is_not_listed() -> None:
+def test_hint_of_unlisted_diagnostic_is_not_computed() -> None:
     asked: list[int] = []
     diagnostics = Diagnostics()
     for index in range(LISTED + 50):
@@ -202,7 +202,7 @@ def test_a_hint_is_not_looked_for_where_the_finding_is_not_listed() -> None:
     assert asked == list(range(LISTED))
 
 
-def test_a_message_keeps_its_sense_where_a_name_is_endless() -> None:
+def test_message_with_endless_name_stays_readable() -> None:
     diagnostics = Diagnostics()
     diagnostics.report("unknown-joint", f"'{'n' * 100_000}' is no joint of the robot", Place("robot.yaml"))
     (found,) = diagnostics
@@ -211,16 +211,14 @@ def test_a_message_keeps_its_sense_where_a_name_is_endless() -> None:
     assert found.message.endswith("nnnn' is no joint of the robot")
 
 
-def test_the_name_that_is_meant_is_found_among_very_many() -> None:
+def test_intended_name_is_found_among_many() -> None:
     known = [f"joint_number_{index}" for index in range(20_000)]
     assert did_you_mean("joint_nmber_12345", [*known[:5000], *known[12_345:]]) == "did you mean 'joint_number_12345'?"
     assert did_you_mean("Joint_Number_19999", known) == "did you mean 'joint_number_19999'?"
     assert did_you_mean("elbow", known) is None
 
 
-def test_loops_that_cannot_close_are_given_up_after_so_much_work(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_impossible_loops_are_given_up_in_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     robot = load_changed(tmp_path, '<origin xyz="0.6 -0.3 0.1"/>', '<origin xyz="60 -0.3 0.1"/>', assembled=False)
     whole = eurdf.assemble(robot)
     assert not whole.closes
@@ -246,11 +244,11 @@ def test_loops_that_cannot_close_are_given_up_after_so_much_work(
         ('multiplier="-1"', 'multiplier="1e308"'),
     ],
 )
-def test_numbers_of_any_size_are_taken_without_a_word_from_anything_below(tmp_path: Path, old: str, new: str) -> None:
+def test_numbers_of_any_size_print_nothing(tmp_path: Path, old: str, new: str) -> None:
     assert load_changed(tmp_path, old, new).model.njoints > 1
 
 
-def test_a_cycle_of_mimics_is_told_without_what_leads_to_it_and_cut_where_it_is_long(tmp_path: Path) -> None:
+def test_mimic_cycle_is_reported_alone_and_shortened(tmp_path: Path) -> None:
     links = "".join(f'<link name="l{index}"/>' for index in range(21))
     joints = "".join(
         f'<joint name="j{i}" type="continuous"><parent link="l0"/><child link="l{i + 1}"/>'

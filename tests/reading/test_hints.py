@@ -89,9 +89,7 @@ SYNTAX = [
 
 @pytest.mark.parametrize("break_", ["\n", "\r\n"])
 @pytest.mark.parametrize(("body", "position", "hint"), SYNTAX)
-def test_a_hint_says_where_a_line_that_continues_nothing_begins(
-    body: str, position: tuple[int, int], hint: str, break_: str
-) -> None:
+def test_hint_points_to_start_of_unfinished_line(body: str, position: tuple[int, int], hint: str, break_: str) -> None:
     (found,) = found_in((HEAD + body).replace("\n", break_))
     assert found.code == "yaml-syntax"
     assert (found.line, found.column) == position
@@ -99,7 +97,7 @@ def test_a_hint_says_where_a_line_that_continues_nothing_begins(
 
 
 @pytest.mark.parametrize(("body", "position", "hint"), SYNTAX)
-def test_the_hint_about_a_line_is_right(body: str, position: tuple[int, int], hint: str) -> None:
+def test_hint_about_a_line_is_right(body: str, position: tuple[int, int], hint: str) -> None:
     lines = (HEAD + body).splitlines()
     spaces = re.search(r"by (\d+) spaces", hint)
     assert spaces is not None
@@ -108,7 +106,7 @@ def test_the_hint_about_a_line_is_right(body: str, position: tuple[int, int], hi
 
 
 @pytest.mark.parametrize("text", [" a: 1\nb: 2\n", "# comment\n\n  'a': 1\nb: 2\n"])
-def test_a_first_line_that_is_indented_is_named(text: str) -> None:
+def test_indented_first_line_is_named(text: str) -> None:
     (found,) = found_in(text)
     assert re.fullmatch(r"begin 'a' on line [13] in the first column", found.hint or "")
 
@@ -121,7 +119,7 @@ def test_a_first_line_that_is_indented_is_named(text: str) -> None:
         ("x-a: 'b' c\n", "quote the value as a whole"),
     ],
 )
-def test_what_is_not_about_indentation_keeps_its_hint(text: str, hint: str | None) -> None:
+def test_other_errors_keep_their_hint(text: str, hint: str | None) -> None:
     (found,) = found_in(HEAD + text)
     assert found.hint is None if hint is None else (found.hint or "").startswith(hint)
 
@@ -171,7 +169,7 @@ SCHEMA = [
 
 
 @pytest.mark.parametrize(("body", "hint"), SCHEMA)
-def test_a_hint_says_where_a_key_that_is_one_level_off_begins(body: str, hint: str) -> None:
+def test_hint_points_to_key_one_level_off(body: str, hint: str) -> None:
     assert [found for found in found_in(HEAD + body) if (found.hint or "").startswith(hint)]
 
 
@@ -186,26 +184,26 @@ def test_a_hint_says_where_a_key_that_is_one_level_off_begins(body: str, hint: s
         "x-more: {frames: []}\nclosures:\n  - name: a\n    type: 3d\n",
     ],
 )
-def test_no_hint_is_about_indentation_where_another_reason_is_likelier(body: str) -> None:
+def test_likelier_reason_suppresses_indentation_hint(body: str) -> None:
     found = found_in(HEAD + body)
     assert found
     assert not [one for one in found if "indent" in (one.hint or "")]
 
 
-def test_an_item_that_is_indented_too_deep_is_seen_in_the_name_that_it_makes(tmp_path: Path) -> None:
+def test_too_deep_item_is_recognized_in_its_name(tmp_path: Path) -> None:
     (tmp_path / "robot.urdf").write_bytes(WORKBENCH.read_bytes())
     (tmp_path / "robot.yaml").write_text(HEAD + "actuators:\n  - motor\n    - grip\n", encoding="utf-8")
     (found,) = check(tmp_path).diagnostics
     assert found.code == "unknown-actuator"
     assert (
         found.hint
-        == "an item that is indented deeper than the one before continues it: indent each '-' of a list alike"
+        == "an item that is indented more than the one before continues it; indent each '-' of a list equally"
     )
 
 
 @settings(max_examples=200, deadline=None, derandomize=True)
 @given(st.text(st.sampled_from(" -:a'\"[{|#\n\r"), max_size=60), st.integers(1, 9))
-def test_any_text_is_looked_at_without_a_fault(text: str, line: int) -> None:
+def test_any_text_is_accepted_without_exception(text: str, line: int) -> None:
     for hint in (indentation_hint(text, line), first_line_hint(text)):
         assert hint is None or "\n" not in hint
 
@@ -240,9 +238,7 @@ def hint_of(folder: Path, urdfs: list[str], text: str, place: str = ".") -> str:
         (["leg.urdf"], VERSION2 + "urdf: nowhere/leg.urdf\n", ".", "leg.urdf"),
     ],
 )
-def test_the_urdf_that_is_there_is_what_to_write(
-    tmp_path: Path, urdfs: list[str], text: str, place: str, written: str
-) -> None:
+def test_existing_urdf_is_suggested(tmp_path: Path, urdfs: list[str], text: str, place: str, written: str) -> None:
     hint = hint_of(tmp_path, urdfs, text, place)
     assert hint.endswith(f": write urdf: {written}")
     fixed = VERSION2 + hint.partition("write ")[2] + "\n"
@@ -250,9 +246,7 @@ def test_the_urdf_that_is_there_is_what_to_write(
     assert "urdf-not-found" not in [found.code for found in check(tmp_path / place).diagnostics]
 
 
-def test_the_folder_urdf_beside_the_working_directory_is_looked_into(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_neighbouring_urdf_folder_is_searched(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "config").mkdir()
     (tmp_path / "urdf").mkdir()
     (tmp_path / "urdf" / "leg.urdf").write_bytes(WORKBENCH.read_bytes())
@@ -263,19 +257,19 @@ def test_the_folder_urdf_beside_the_working_directory_is_looked_into(
 
 
 @pytest.mark.parametrize("text", [VERSION2, "name_mot: []\n"], ids=["version 2", "version 1"])
-def test_a_xacro_nearby_is_given_by_the_option(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str) -> None:
+def test_nearby_xacro_is_suggested_with_option(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str) -> None:
     monkeypatch.chdir(tmp_path)
     assert (
         hint_of(Path(), ["leg.urdf.xacro"], text) == "there is 'leg.urdf.xacro': use the option --urdf leg.urdf.xacro"
     )
 
 
-def test_of_several_urdfs_none_is_taken_for_the_one(tmp_path: Path) -> None:
+def test_several_urdfs_suggest_none(tmp_path: Path) -> None:
     hint = hint_of(tmp_path, ["a.urdf", "b.urdf"], VERSION2)
     assert hint == "there are 'a.urdf', 'b.urdf': write urdf: a.urdf, or another of them"
 
 
-def test_without_a_urdf_nearby_the_key_and_the_option_are_named(tmp_path: Path) -> None:
+def test_missing_urdf_names_key_and_option(tmp_path: Path) -> None:
     hint = hint_of(tmp_path, [], VERSION2)
     assert hint == (
         "there is no URDF nearby: write its path from this file under the key 'urdf', or use the option --urdf FILE"
@@ -283,9 +277,7 @@ def test_without_a_urdf_nearby_the_key_and_the_option_are_named(tmp_path: Path) 
 
 
 @pytest.mark.parametrize("urdfs", [[], ["leg one.urdf"], ["a.urdf", "b.urdf"]])
-def test_version_1_is_not_told_to_write_a_key_that_it_does_not_have(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, urdfs: list[str]
-) -> None:
+def test_version_1_is_not_told_to_add_key(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, urdfs: list[str]) -> None:
     monkeypatch.chdir(tmp_path)
     hint = hint_of(Path(), urdfs, "name_mot: []\n")
     assert "key 'urdf'" not in hint

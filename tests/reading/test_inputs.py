@@ -52,24 +52,24 @@ def in_bash(line: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.parametrize("text", [URDF, URDF.encode(), "\ufeff" + URDF, "\n " + URDF, b"\xef\xbb\xbf" + URDF.encode()])
-def test_a_urdf_is_taken_as_text(text: str | bytes) -> None:
+def test_urdf_is_accepted_as_text(text: str | bytes) -> None:
     assert eurdf.load(text).model.names[1] == "shoulder"
     assert eurdf.check(text).ok
 
 
-def test_a_robot_of_two_texts_is_the_one_of_their_files() -> None:
+def test_two_texts_give_the_robot_of_their_files() -> None:
     texts = [(FOUR_BAR / name).read_text(encoding="utf-8") for name in ("robot.yaml", "robot.urdf")]
     robot, same = eurdf.load(*texts), eurdf.load(FOUR_BAR)
     assert robot.model == same.model
     assert robot.mechanism == same.mechanism
 
 
-def test_a_description_as_text_finds_its_urdf_in_the_working_directory(folder: Path) -> None:
+def test_description_text_finds_urdf_in_working_directory(folder: Path) -> None:
     (folder / "robot.urdf").write_text(URDF, encoding="utf-8")
     assert eurdf.load(DESCRIPTION).actuation.joints == ("shoulder",)
 
 
-def test_a_finding_in_a_text_shows_its_line_and_which_text_it_is_in() -> None:
+def test_diagnostic_in_text_shows_line_and_source() -> None:
     report = eurdf.check(MISSPELT, URDF.replace('value="2"', 'value="two"'))
     places = [(found.file, found.line) for found in report.diagnostics]
     assert places == [("<urdf>", 4)]
@@ -81,37 +81,37 @@ def test_a_finding_in_a_text_shows_its_line_and_which_text_it_is_in() -> None:
     assert location["region"]["startLine"] == 2
 
 
-def test_lines_of_a_text_end_as_those_of_a_file_do() -> None:
+def test_line_ends_of_text_match_files() -> None:
     text = MISSPELT.replace("\n", "\r", 1)
     report = eurdf.check(text + "\n# end", URDF)
     assert [found.line for found in report.diagnostics] == [2]
     assert any("actuators" in piece for line in report_lines(report) for piece, _ in line)
 
 
-def test_a_file_comes_before_a_text_that_looks_like_its_name(folder: Path) -> None:
+def test_existing_file_precedes_text(folder: Path) -> None:
     for name in ("<arm>", "two\nlines"):
         (folder / name).write_text(DESCRIPTION, encoding="utf-8")
         (folder / "robot.urdf").write_text(URDF, encoding="utf-8")
         assert eurdf.load(name).actuation.joints == ("shoulder",)
 
 
-def test_a_text_that_is_no_unicode_is_a_finding() -> None:
+def test_invalid_unicode_text_is_reported() -> None:
     assert [found.code for found in eurdf.check("<robot \ud800/>").diagnostics] == ["file-not-utf8"]
     assert [found.code for found in eurdf.check(b"<robot \xff/>").diagnostics] == ["file-not-utf8"]
     assert [found.code for found in eurdf.check(b"").diagnostics] == ["file-unreadable"]
 
 
-def test_a_text_beyond_the_limit_is_refused() -> None:
+def test_too_long_text_is_refused() -> None:
     with pytest.raises(Fault, match="more than 10 bytes"):
         source_of(URDF, limit=10)
 
 
-def test_a_urdf_is_no_description_to_use_with_another_urdf() -> None:
+def test_urdf_is_not_a_description() -> None:
     with pytest.raises(eurdf.RobotNotFound, match="is a URDF itself"):
         eurdf.check(URDF, URDF)
 
 
-def test_a_urdf_given_beside_a_folder_without_a_description_is_not_left_out(folder: Path) -> None:
+def test_urdf_beside_folder_without_description_is_used(folder: Path) -> None:
     (folder / "robot.urdf").write_text(URDF, encoding="utf-8")
     with pytest.raises(eurdf.RobotNotFound, match="no YAML file to use with"):
         eurdf.check(folder, "other.urdf")
@@ -120,13 +120,13 @@ def test_a_urdf_given_beside_a_folder_without_a_description_is_not_left_out(fold
 # --- standard input --------------------------------------------------------------------------------------------------
 
 
-def test_a_urdf_comes_from_standard_input() -> None:
+def test_urdf_is_read_from_standard_input() -> None:
     done = eurdf_with(URDF, "check", "-")
     assert (done.returncode, done.stdout, done.stderr) == (0, "<stdin>: sound\n", "")
     assert eurdf_with(URDF, "info", "-").stdout.startswith("arm ")
 
 
-def test_a_description_from_standard_input_shows_the_line_at_fault(folder: Path) -> None:
+def test_piped_description_shows_wrong_line(folder: Path) -> None:
     (folder / "robot.urdf").write_text(URDF, encoding="utf-8")
     done = eurdf_with(MISSPELT, "check", "-")
     assert done.returncode == 1
@@ -135,7 +135,7 @@ def test_a_description_from_standard_input_shows_the_line_at_fault(folder: Path)
     assert done.stdout.endswith("<stdin>: 1 error\n")
 
 
-def test_the_urdf_of_a_description_comes_from_standard_input(folder: Path) -> None:
+def test_urdf_of_description_is_read_from_stdin(folder: Path) -> None:
     (folder / "arm.yaml").write_text(DESCRIPTION, encoding="utf-8")
     assert eurdf_with(URDF, "check", "arm.yaml", "--urdf", "-").stdout == "arm.yaml: sound\n"
     done = eurdf_with(URDF.replace('"2"', '"two"'), "check", "arm.yaml", "--urdf", "-")
@@ -147,13 +147,13 @@ def test_the_urdf_of_a_description_comes_from_standard_input(folder: Path) -> No
     ("stdin", "said"),
     [("", "<stdin> is empty"), (" \n", "<stdin> is empty"), ("<robot", "<stdin>:1:1: error"), ("a: [", "<stdin>:")],
 )
-def test_a_bad_standard_input_is_an_error_of_the_robot(stdin: str, said: str) -> None:
+def test_bad_standard_input_is_robot_error(stdin: str, said: str) -> None:
     done = eurdf_with(stdin, "check", "-")
     assert done.returncode == 1
     assert said in done.stdout
 
 
-def test_a_closed_standard_input_is_an_error(folder: Path) -> None:
+def test_closed_standard_input_is_error(folder: Path) -> None:
     done = in_bash("eurdf check - <&-")
     assert (done.returncode, done.stderr) == (1, "")
     assert "standard input is closed" in done.stdout
@@ -169,7 +169,7 @@ def test_standard_input_is_read_once(folder: Path, argv: tuple[str, ...]) -> Non
     assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
 
 
-def test_no_more_of_standard_input_is_read_than_a_file_may_have(folder: Path) -> None:
+def test_standard_input_is_read_up_to_limit(folder: Path) -> None:
     done = in_bash("(printf '<robot>'; yes) | eurdf check -")  # yes never ends by itself
     assert done.returncode == 1
     assert "file-too-large" in done.stdout
@@ -178,7 +178,7 @@ def test_no_more_of_standard_input_is_read_than_a_file_may_have(folder: Path) ->
 # --- pipes -----------------------------------------------------------------------------------------------------------
 
 
-def test_both_files_come_by_process_substitution(folder: Path) -> None:
+def test_both_files_come_from_process_substitution(folder: Path) -> None:
     (folder / "arm").mkdir()
     (folder / "arm" / "a.urdf").write_text(URDF, encoding="utf-8")
     (folder / "arm" / "a.yaml").write_text(MISSPELT, encoding="utf-8")
@@ -188,21 +188,19 @@ def test_both_files_come_by_process_substitution(folder: Path) -> None:
     assert SHOWN in done.stdout
 
 
-def test_the_urdf_that_a_piped_description_lacks_is_named_from_the_working_directory(folder: Path) -> None:
+def test_missing_urdf_of_pipe_is_in_working_directory(folder: Path) -> None:
     (folder / "a.yaml").write_text(DESCRIPTION, encoding="utf-8")
     (folder / "a.urdf").write_text(URDF, encoding="utf-8")
     assert "hint: there is 'a.urdf': write urdf: a.urdf\n" in in_bash("eurdf check <(cat a.yaml)").stdout
 
 
-def test_a_program_that_writes_nothing_is_an_error() -> None:
+def test_silent_program_is_error() -> None:
     done = in_bash("eurdf check <(false)")
     assert done.returncode == 1
     assert "is empty" in done.stdout
 
 
-def test_a_slow_writer_of_a_named_pipe_is_waited_for_and_none_is_not(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_slow_pipe_writer_is_awaited(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     os.mkfifo("pipe")
     monkeypatch.setattr(given, "PATIENCE", 0.2)
     assert "nobody writes" in str(eurdf.check("pipe").diagnostics[0])
@@ -213,13 +211,13 @@ def test_a_slow_writer_of_a_named_pipe_is_waited_for_and_none_is_not(
     assert writer.wait(timeout=10) == 0
 
 
-def test_a_pipe_that_a_description_names_is_not_read(folder: Path) -> None:
+def test_pipe_named_by_description_is_not_read(folder: Path) -> None:
     os.mkfifo("pipe.urdf")
     (folder / "arm.yaml").write_text(DESCRIPTION + "urdf: pipe.urdf\n", encoding="utf-8")
     assert [found.code for found in eurdf.check("arm.yaml").diagnostics] == ["file-unreadable"]
 
 
-def test_no_more_of_a_pipe_is_read_than_the_limit(folder: Path) -> None:
+def test_pipe_is_read_up_to_limit(folder: Path) -> None:
     os.mkfifo("pipe")
     writer = subprocess.Popen(["sh", "-c", "yes > pipe"], stderr=subprocess.DEVNULL)
     with pytest.raises(Fault, match="more than 100,000 bytes"):
@@ -244,7 +242,7 @@ def test_no_more_of_a_pipe_is_read_than_the_limit(folder: Path) -> None:
         ("a\0b", None),
     ],
 )
-def test_a_path_that_leads_nowhere_suggests_a_near_one(folder: Path, path: str, near: str | None) -> None:
+def test_missing_path_suggests_a_similar_one(folder: Path, path: str, near: str | None) -> None:
     leg = folder / "robots" / "left_leg"
     leg.mkdir(parents=True)
     (leg / "arm.yml").write_text(DESCRIPTION, encoding="utf-8")
@@ -257,7 +255,7 @@ def test_a_path_that_leads_nowhere_suggests_a_near_one(folder: Path, path: str, 
     assert "cassie" not in said
 
 
-def test_of_files_with_one_name_the_one_with_the_nearest_ending_is_suggested(folder: Path) -> None:
+def test_nearest_file_ending_is_suggested(folder: Path) -> None:
     for name in ("arm.urdf", "arm.yaml", "arm.urdf.xacro"):
         (folder / name).touch()
     assert [near_path(name) for name in ("arm.yml", "arm.urd", "arm.xacro")] == [
@@ -267,14 +265,14 @@ def test_of_files_with_one_name_the_one_with_the_nearest_ending_is_suggested(fol
     ]
 
 
-def test_an_empty_path_is_not_the_working_directory(folder: Path) -> None:
+def test_empty_path_is_not_working_directory(folder: Path) -> None:
     (folder / "robot.urdf").write_text(URDF, encoding="utf-8")
     with pytest.raises(eurdf.RobotNotFound, match="is empty"):
         eurdf.check("")
 
 
 @pytest.mark.parametrize("command", ["check", "info", "assemble"])
-def test_a_urdf_or_a_folder_that_is_not_there_suggests_a_near_one(
+def test_missing_urdf_or_folder_suggests_similar_one(
     folder: Path, command: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     from eurdf.commands.main import main
@@ -291,7 +289,7 @@ def test_a_urdf_or_a_folder_that_is_not_there_suggests_a_near_one(
 # --- commands that write a description -------------------------------------------------------------------------------
 
 
-def test_a_description_is_generated_from_standard_input(folder: Path) -> None:
+def test_description_is_generated_from_standard_input(folder: Path) -> None:
     done = eurdf_with(URDF, "generate", "-", "--motor", "shoulder", "-o", "arm.yaml")
     assert done.returncode == 0
     assert "the URDF came from <stdin>: write it to 'robot.urdf'" in done.stderr
@@ -299,7 +297,7 @@ def test_a_description_is_generated_from_standard_input(folder: Path) -> None:
     assert eurdf.load("arm.yaml").actuation.joints == ("shoulder",)
 
 
-def test_a_description_from_standard_input_is_migrated(folder: Path) -> None:
+def test_standard_input_is_migrated(folder: Path) -> None:
     (folder / "leg").mkdir()
     shutil.copy(FOUR_BAR / "robot.urdf", folder / "leg" / "leg.urdf")
     text = (FOUR_BAR / "robot.v1.yaml").read_text(encoding="utf-8")
@@ -311,14 +309,14 @@ def test_a_description_from_standard_input_is_migrated(folder: Path) -> None:
     assert "write it to 'robot.urdf'" in done.stderr
 
 
-def test_the_schema_for_a_urdf_from_standard_input_knows_its_joints() -> None:
+def test_schema_for_urdf_from_stdin_contains_joints() -> None:
     assert '"shoulder"' in eurdf_with(URDF, "schema", "--for", "-").stdout
     done = eurdf_with("<robot", "schema", "--for", "-")
     assert (done.returncode, done.stdout) == (1, "")
     assert "<stdin>:1:1: error" in done.stderr
 
 
-def test_a_configuration_is_not_written_to_standard_input(folder: Path) -> None:
+def test_configuration_is_not_written_to_standard_input(folder: Path) -> None:
     text = (FOUR_BAR / "robot.yaml").read_text(encoding="utf-8")
     done = eurdf_with(text, "assemble", "-", "--urdf", str(FOUR_BAR / "robot.urdf"), "--write")
     assert (done.returncode, done.stdout) == (2, "")

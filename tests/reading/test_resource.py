@@ -26,7 +26,7 @@ def _found(uri: str, folder: Path, package_dirs: tuple[Path, ...] = ()) -> Path 
     return None if found is None else Path(found).resolve()
 
 
-def test_a_path_is_relative_to_the_folder_of_the_urdf_or_absolute(tmp_path: Path) -> None:
+def test_path_is_absolute_or_relative_to_urdf(tmp_path: Path) -> None:
     mesh = _file(tmp_path / "meshes" / "a.stl")
     folder = tmp_path / "urdf"
     folder.mkdir()
@@ -36,14 +36,14 @@ def test_a_path_is_relative_to_the_folder_of_the_urdf_or_absolute(tmp_path: Path
     assert _found("meshes/a.stl", folder) is None
 
 
-def test_a_file_uri_is_a_path_with_its_escapes_undone(tmp_path: Path) -> None:
+def test_escapes_in_file_uri_are_decoded(tmp_path: Path) -> None:
     mesh = _file(tmp_path / "my mesh.stl")
     assert _found(f"file://{tmp_path}/my%20mesh.stl", Path("/")) == mesh
     assert _found("file://my%20mesh.stl", tmp_path) == mesh
 
 
 @pytest.mark.parametrize("scheme", ["package", "model"])
-def test_a_package_is_looked_for_beside_the_urdf_and_above_it(tmp_path: Path, scheme: str) -> None:
+def test_package_is_searched_beside_and_above_urdf(tmp_path: Path, scheme: str) -> None:
     mesh = _file(tmp_path / "arm_description" / "meshes" / "a.stl")
     urdf = tmp_path / "arm_description" / "urdf"
     urdf.mkdir()
@@ -53,15 +53,13 @@ def test_a_package_is_looked_for_beside_the_urdf_and_above_it(tmp_path: Path, sc
 
 
 @pytest.mark.parametrize("name", ["a#1.stl", "a?b.stl", "a b.stl", "é.stl", "[x].stl", "100%.stl"])
-def test_a_name_is_taken_as_it_is_written(tmp_path: Path, name: str) -> None:
+def test_name_is_used_literally(tmp_path: Path, name: str) -> None:
     mesh = _file(tmp_path / "arm" / name)
     assert _found(name, tmp_path / "arm") == mesh
     assert _found(f"package://arm/{name}", tmp_path) == mesh
 
 
-def test_the_folders_given_come_before_the_environment_and_that_before_the_urdfs(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_search_order_is_option_environment_urdf(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     uri = "package://arm/a.stl"
     beside = _file(tmp_path / "here" / "arm" / "a.stl")
     folder = tmp_path / "here"
@@ -78,7 +76,7 @@ def test_the_folders_given_come_before_the_environment_and_that_before_the_urdfs
     assert _found(uri, folder, (tmp_path / "none", tmp_path / "given")) == given
 
 
-def test_a_folder_given_may_be_the_package_itself(tmp_path: Path) -> None:
+def test_given_folder_can_be_the_package(tmp_path: Path) -> None:
     mesh = _file(tmp_path / "ws" / "arm" / "a.stl")
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
@@ -105,11 +103,11 @@ def test_a_folder_given_may_be_the_package_itself(tmp_path: Path) -> None:
         "file://%ff",
     ],
 )
-def test_what_names_no_file_is_not_found_whatever_it_is(tmp_path: Path, uri: str) -> None:
+def test_non_file_is_not_found(tmp_path: Path, uri: str) -> None:
     assert resolve(uri, tmp_path) is None
 
 
-def test_a_folder_is_no_mesh(tmp_path: Path) -> None:
+def test_folder_is_not_a_mesh(tmp_path: Path) -> None:
     (tmp_path / "arm" / "meshes").mkdir(parents=True)
     assert resolve("arm", tmp_path) is None
     assert resolve("package://arm/meshes", tmp_path) is None

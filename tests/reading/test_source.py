@@ -27,30 +27,30 @@ def write(folder: Path, data: bytes) -> Path:
     return path
 
 
-def test_the_text_is_what_the_file_holds_line_breaks_included(tmp_path: Path) -> None:
+def test_text_is_file_content_with_line_breaks(tmp_path: Path) -> None:
     data = "é: 1\r\nb: 日本\rc: 🤖\n".encode()
     source = read_source(write(tmp_path, data))
     assert source == Source(str(tmp_path / "robot.yaml"), data.decode(), data)
 
 
-def test_a_byte_order_mark_is_no_part_of_the_text(tmp_path: Path) -> None:
+def test_byte_order_mark_is_not_part_of_text(tmp_path: Path) -> None:
     source = read_source(write(tmp_path, b"\xef\xbb\xbfa: 1"))
     assert (source.text, source.data) == ("a: 1", b"a: 1")
 
 
-def test_the_file_is_named_as_the_user_gave_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_file_is_named_as_given(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     write(tmp_path, b"a: 1")
     monkeypatch.chdir(tmp_path)
     assert read_source("./robot.yaml").file == "./robot.yaml"
 
 
-def test_a_file_as_large_as_the_limit_is_read_and_one_byte_more_is_refused(tmp_path: Path) -> None:
+def test_file_size_limit_is_exact(tmp_path: Path) -> None:
     path = write(tmp_path, b"x" * 100_000)
     assert len(read_source(path, limit=100_000).data) == 100_000
     assert fault_of(path, limit=99_999).diagnostic.code == "file-too-large"
 
 
-def test_a_file_of_100_megabytes_is_refused_without_being_read(tmp_path: Path) -> None:
+def test_file_of_100_megabytes_is_not_read(tmp_path: Path) -> None:
     path = tmp_path / "robot.urdf"
     with path.open("wb") as file:
         file.truncate(100_000_000)
@@ -60,36 +60,36 @@ def test_a_file_of_100_megabytes_is_refused_without_being_read(tmp_path: Path) -
 
 
 @pytest.mark.skipif(not os.path.exists("/proc/self/status"), reason="there is no /proc here")
-def test_a_file_whose_size_is_not_known_beforehand_is_read_up_to_the_limit() -> None:
+def test_unknown_size_is_read_up_to_limit() -> None:
     assert read_source("/proc/self/status").text.startswith("Name:")
     assert fault_of("/proc/self/status", limit=10).diagnostic.code == "file-too-large"
 
 
-def test_a_missing_file_is_a_fault_that_says_so(tmp_path: Path) -> None:
+def test_missing_file_is_reported(tmp_path: Path) -> None:
     diagnostic = fault_of(tmp_path / "robot.yaml").diagnostic
     assert diagnostic.code == "file-unreadable"
     assert diagnostic.message == f"'{tmp_path / 'robot.yaml'}' cannot be read: no such file or directory"
 
 
-def test_a_folder_is_a_fault_that_says_so(tmp_path: Path) -> None:
+def test_folder_is_reported(tmp_path: Path) -> None:
     diagnostic = fault_of(tmp_path).diagnostic
     assert (diagnostic.code, diagnostic.message) == ("file-unreadable", f"'{tmp_path}' is a folder, not a file")
 
 
-def test_a_pipe_that_nobody_writes_into_does_not_block(tmp_path: Path) -> None:
+def test_unwritten_pipe_does_not_block(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "robot.yaml")
     assert fault_of(tmp_path / "robot.yaml").diagnostic.code == "file-unreadable"
 
 
-def test_an_endless_device_is_refused() -> None:
+def test_endless_device_is_refused() -> None:
     assert fault_of("/dev/zero").diagnostic.code == "file-unreadable"
 
 
-def test_a_path_with_a_nul_in_it_is_a_fault() -> None:
+def test_path_with_nul_is_reported() -> None:
     assert fault_of("robot\0.yaml").diagnostic.code == "file-unreadable"
 
 
-def test_refusing_files_leaves_no_file_open(tmp_path: Path) -> None:
+def test_refused_files_are_closed(tmp_path: Path) -> None:
     before = len(os.listdir("/dev/fd"))
     for path in (tmp_path, "/dev/zero", tmp_path / "missing"):
         fault_of(path)
@@ -98,7 +98,7 @@ def test_refusing_files_leaves_no_file_open(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be", "utf-32", "utf-32-le", "utf-32-be"])
-def test_utf_16_and_utf_32_are_refused_with_what_to_do(tmp_path: Path, encoding: str) -> None:
+def test_utf_16_and_utf_32_are_refused_with_hint(tmp_path: Path, encoding: str) -> None:
     diagnostic = fault_of(write(tmp_path, "a: 1\n".encode(encoding))).diagnostic
     assert diagnostic.code == "file-not-utf8"
     assert "UTF-16" in diagnostic.message
@@ -115,15 +115,13 @@ def test_utf_16_and_utf_32_are_refused_with_what_to_do(tmp_path: Path, encoding:
         (b"\x89PNG\r\n\x1a\n\0\0", (1, 1)),
     ],
 )
-def test_what_is_not_utf_8_is_refused_at_its_first_wrong_byte(
-    tmp_path: Path, data: bytes, position: tuple[int, int]
-) -> None:
+def test_non_utf_8_is_refused_at_first_byte(tmp_path: Path, data: bytes, position: tuple[int, int]) -> None:
     diagnostic = fault_of(write(tmp_path, data)).diagnostic
     assert (diagnostic.code, diagnostic.line, diagnostic.column) == ("file-not-utf8", *position)
 
 
 @given(st.text(alphabet="ab\n\ré\x85\x0b\x0c\x1c\u2028🤖"))
-def test_lines_are_those_of_an_editor_and_columns_count_characters(text: str) -> None:
+def test_lines_and_columns_match_editors(text: str) -> None:
     source = Source("robot.yaml", text, text.encode())
     for index in range(len(text) + 1):
         if text[index - 1 : index + 1] != "\r\n":
@@ -131,7 +129,7 @@ def test_lines_are_those_of_an_editor_and_columns_count_characters(text: str) ->
             assert source.position(index) == (len(lines), len(lines[-1]) + 1)
 
 
-def test_a_place_that_ends_on_another_line_has_no_end_column() -> None:
+def test_multi_line_place_has_no_end_column() -> None:
     source = Source("robot.yaml", "ab\ncd", b"ab\ncd")
     place = source.place(1, 2, "/a")
     assert (place.line, place.column, place.end_column, place.pointer) == (1, 2, 3, "/a")

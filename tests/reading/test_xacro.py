@@ -49,7 +49,7 @@ def robot_with(content: str) -> str:
     return f'<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">{content}</robot>'
 
 
-def test_a_xacro_is_expanded_with_its_arguments() -> None:
+def test_xacro_is_expanded_with_arguments() -> None:
     robot = eurdf.load("arm.urdf.xacro")
     assert robot.model.names[1] == "shoulder"
     assert robot.model.jointPlacements[1].translation[2] == 1
@@ -58,21 +58,21 @@ def test_a_xacro_is_expanded_with_its_arguments() -> None:
     assert eurdf.check("arm.urdf.xacro", xacro_args={"mass": "5"}).ok
 
 
-def test_a_xacro_is_the_urdf_of_a_description_where_the_caller_says_so(folder: Path) -> None:
+def test_given_xacro_is_urdf_of_description(folder: Path) -> None:
     (folder / "arm.yaml").write_text(DESCRIPTION, encoding="utf-8")
     robot = eurdf.load("arm.yaml", "arm.urdf.xacro", xacro_args={"mass": "5"})
     assert robot.actuation.joints == ("shoulder",)
     assert robot.model.inertias[1].mass == 5
 
 
-def test_a_xacro_that_a_description_names_is_not_expanded(folder: Path) -> None:
+def test_xacro_named_by_description_is_not_expanded(folder: Path) -> None:
     (folder / "arm.yaml").write_text(DESCRIPTION + "urdf: arm.urdf.xacro\n", encoding="utf-8")
     report = eurdf.check("arm.yaml")
     assert "urdf-bad-number" in {found.code for found in report.errors}
     assert any("xacro" in str(found.hint) for found in report.errors)
 
 
-def test_places_are_those_of_the_expanded_text_and_say_so(folder: Path) -> None:
+def test_places_are_in_expanded_text(folder: Path) -> None:
     (folder / "arm.urdf.xacro").write_text(ARM.replace('"1"/></inertial>', '"one"/></inertial>'), encoding="utf-8")
     report = eurdf.check("arm.urdf.xacro")
     (found,) = report.diagnostics
@@ -94,7 +94,7 @@ def test_places_are_those_of_the_expanded_text_and_say_so(folder: Path) -> None:
         ("${__import__('os')}", "__import__"),
     ],
 )
-def test_a_xacro_with_an_error_is_refused_in_one_line(
+def test_xacro_error_is_refused_in_one_line(
     folder: Path, content: str, said: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (folder / "wrong.xacro").write_text(robot_with(content), encoding="utf-8")
@@ -109,19 +109,19 @@ def test_a_xacro_with_an_error_is_refused_in_one_line(
     assert captured.err.count("\n") == 1
 
 
-def test_the_file_with_the_error_is_named(folder: Path) -> None:
+def test_file_with_error_is_named(folder: Path) -> None:
     (folder / "legs.xacro").write_text(robot_with('<link name="${lenght}"/>'), encoding="utf-8")
     (folder / "robot.xacro").write_text(robot_with('<xacro:include filename="legs.xacro"/>'), encoding="utf-8")
     with pytest.raises(eurdf.CannotExpand, match=r"lenght.*in 'legs\.xacro'"):
         eurdf.check("robot.xacro")
 
 
-def test_an_argument_that_the_xacro_does_not_have_is_refused() -> None:
+def test_unknown_argument_is_refused() -> None:
     with pytest.raises(eurdf.CannotExpand, match=r"no argument 'mas'.*did you mean 'mass'"):
         eurdf.load("arm.urdf.xacro", xacro_args={"mas": "5"})
 
 
-def test_arguments_without_a_xacro_are_refused(folder: Path) -> None:
+def test_arguments_without_xacro_are_refused(folder: Path) -> None:
     (folder / "robot.urdf").write_text('<robot name="r"><link name="base"/></robot>', encoding="utf-8")
     (folder / "robot.yaml").write_text('extended_urdf: "2.0"\n', encoding="utf-8")
     for path in ("robot.urdf", "robot.yaml", '<robot name="r"><link name="base"/></robot>'):
@@ -129,7 +129,7 @@ def test_arguments_without_a_xacro_are_refused(folder: Path) -> None:
             eurdf.check(path, xacro_args={"mass": "1"})
 
 
-def test_files_of_packages_are_found_as_meshes_are(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_package_files_are_found_like_meshes(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     package = folder / "install" / "share" / "legs"
     package.mkdir(parents=True)
     (package / "leg.xacro").write_text(robot_with('<link name="foot"/>'), encoding="utf-8")
@@ -143,14 +143,14 @@ def test_files_of_packages_are_found_as_meshes_are(folder: Path, monkeypatch: py
     assert eurdf.check("robot.xacro").ok
 
 
-def test_what_xacro_warns_of_is_a_warning(folder: Path) -> None:
+def test_xacro_warning_is_a_warning(folder: Path) -> None:
     (folder / "robot.xacro").write_text(robot_with("<link name=\"${xacro.warning('old')}base\"/>"), encoding="utf-8")
     (found,) = eurdf.check("robot.xacro").diagnostics
     assert (found.code, found.file, found.line) == ("x-xacro-warning", "robot.xacro", None)
     assert "old" in found.message
 
 
-def test_the_commands_take_a_xacro_with_arguments(capsys: pytest.CaptureFixture[str]) -> None:
+def test_commands_accept_xacro_with_arguments(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", "arm.urdf.xacro", "--xacro-arg", "mass:=3"]) == 0
     assert capsys.readouterr().out == "arm.urdf.xacro: sound\n"
     assert main(["info", "arm.urdf.xacro", "--xacro-arg", "mass:=3"]) == 0
@@ -160,7 +160,7 @@ def test_the_commands_take_a_xacro_with_arguments(capsys: pytest.CaptureFixture[
     assert "NAME:=VALUE" in capsys.readouterr().err
 
 
-def test_without_the_extra_the_message_has_the_command_that_installs_it(
+def test_missing_extra_shows_install_command(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(xacro, "find_spec", lambda name: None)
@@ -173,7 +173,7 @@ def test_without_the_extra_the_message_has_the_command_that_installs_it(
     assert said.endswith('pip install "eurdf[xacro]"\n')
 
 
-def test_a_module_of_that_name_beside_the_robot_is_not_run(folder: Path) -> None:
+def test_module_beside_robot_is_not_run(folder: Path) -> None:
     (folder / "xacro.py").write_text("raise RuntimeError('not mine')\n", encoding="utf-8")
     assert eurdf.check("arm.urdf.xacro").ok
 
@@ -185,7 +185,7 @@ def test_a_module_of_that_name_beside_the_robot_is_not_run(folder: Path) -> None
         ("import os; os.abort()", "exit code -6: it printed no reason"),
     ],
 )
-def test_a_process_that_fails_gives_its_reason(
+def test_failed_process_gives_its_reason(
     folder: Path, monkeypatch: pytest.MonkeyPatch, program: str, reason: str
 ) -> None:
     (folder / "program.py").write_text(program, encoding="utf-8")
@@ -194,7 +194,7 @@ def test_a_process_that_fails_gives_its_reason(
         eurdf.check("arm.urdf.xacro")
 
 
-def test_an_expansion_is_bounded_in_time_and_size(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_expansion_is_bounded_in_time_and_size(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     doubled = "".join(f'<xacro:macro name="m{i + 1}"><xacro:m{i}/><xacro:m{i}/></xacro:macro>' for i in range(40))
     text = robot_with(f'<xacro:macro name="m0"><link name="l"/></xacro:macro>{doubled}<xacro:m40/>')
     (folder / "bomb.xacro").write_text(text, encoding="utf-8")
@@ -207,9 +207,7 @@ def test_an_expansion_is_bounded_in_time_and_size(folder: Path, monkeypatch: pyt
     assert [found.code for found in eurdf.check("arm.urdf.xacro").diagnostics] == ["file-too-large"]
 
 
-def test_a_description_is_generated_from_a_xacro_and_names_the_urdf_to_be_written(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_generating_from_xacro_names_urdf_to_write(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     options = ("--motor", "shoulder", "--xacro-arg", "mass:=3", "-o", "arm.yaml")
     assert main(["generate", "arm.urdf.xacro", *options]) == 0
     assert "write it to 'robot.urdf'" in capsys.readouterr().err

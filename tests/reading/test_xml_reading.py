@@ -146,9 +146,7 @@ class Writer:
 @given(
     chance=st.randoms(use_true_random=False), line_break=st.sampled_from(["\n", "\r\n", "\r"]), declared=st.booleans()
 )
-def test_every_element_and_attribute_has_the_place_where_it_was_written(
-    chance: random.Random, line_break: str, declared: bool
-) -> None:
+def test_elements_and_attributes_have_their_places(chance: random.Random, line_break: str, declared: bool) -> None:
     writer = Writer(chance, line_break)
     writer.text = chance.choice(["", '<?xml version="1.0"?>' + line_break, "<!-- <a> -->", line_break])
     if declared:
@@ -180,7 +178,7 @@ def test_every_element_and_attribute_has_the_place_where_it_was_written(
 
 @settings(deadline=None)
 @given(st.randoms(use_true_random=False))
-def test_the_pointer_is_an_xpath_that_leads_to_the_element(chance: random.Random) -> None:
+def test_pointer_is_xpath_of_element(chance: random.Random) -> None:
     writer = Writer(chance, "\n", "<robot xmlns:x='http://example.org'>")
     writer.element(3)
     document = read(writer.text + "</robot>")
@@ -192,7 +190,7 @@ def test_the_pointer_is_an_xpath_that_leads_to_the_element(chance: random.Random
 # Namespaces, of which URDF knows nothing
 
 
-def test_prefixes_that_are_not_declared_become_part_of_the_name() -> None:
+def test_undeclared_prefix_becomes_part_of_name() -> None:
     text = '<robot name="r"><xacro:macro x:size="2"><link name="a"/></xacro:macro></robot>'
     document = read(text)
     [macro] = document.root
@@ -200,47 +198,47 @@ def test_prefixes_that_are_not_declared_become_part_of_the_name() -> None:
     assert document.place(macro, "x:size") == Place("robot.urdf", 1, 38, 39, "/robot/xacro:macro/@x:size")
 
 
-def test_an_undeclared_prefix_hides_no_other_fault() -> None:
+def test_undeclared_prefix_hides_no_other_error() -> None:
     assert fault_of('<robot><xacro:macro/><link name="a"></robot>').code == "xml-syntax"
     deep = "<a>" * DEPTH_LIMIT + "</a>" * DEPTH_LIMIT
     assert fault_of(f"<robot><xacro:macro/>{deep}</robot>").code == "file-too-large"
     assert fault_of(f"<robot><xacro:macro/><a b='{'x' * 11_000_000}'/></robot>").code == "file-too-large"
 
 
-def test_default_namespaces_are_taken_away_and_those_of_prefixes_are_kept() -> None:
+def test_default_namespace_is_removed_prefixes_are_kept() -> None:
     text = '<robot xmlns="http://www.ros.org" xmlns:g="urn:g"><link name="a"/><g:x/><y xmlns="urn:y"/></robot>'
     document = read(text)
     assert [element.tag for element in document.root.iter()] == ["robot", "link", "{urn:g}x", "y"]
     assert document.place(document.root[0], "name").pointer == "/robot/link/@name"
 
 
-def test_a_prefix_that_is_not_declared_may_stand_in_a_default_namespace() -> None:
+def test_undeclared_prefix_in_default_namespace_is_accepted() -> None:
     document = read('<robot xmlns="urn:a"><xacro:b/><link xmlns="" name="a"/></robot>')
     assert [str(element.tag).rpartition("}")[2] for element in document.root.iter()] == ["robot", "xacro:b", "link"]
     assert document.place(document.root[0]).pointer == "/robot/xacro:b"
 
 
-def test_a_namespace_that_is_no_uri_does_no_harm() -> None:
+def test_invalid_namespace_uri_is_harmless() -> None:
     assert read('<robot xmlns:x="not a uri"/>').root.tag == "robot"
 
 
 # What the tree holds
 
 
-def test_comments_instructions_and_cdata_leave_only_elements_and_text() -> None:
+def test_comments_instructions_and_cdata_are_transparent() -> None:
     root = read("<robot><!-- a --><?b c?><link>x<!-- d -->y<![CDATA[<z>]]></link></robot>").root
     assert [element.tag for element in root.iter()] == ["robot", "link"]
     assert root[0].text == "xy<z>"
 
 
 @pytest.mark.parametrize("declaration", ["", "utf-8", "UTF-8", "utf8", "us-ascii"])
-def test_a_file_may_declare_that_it_is_utf_8(declaration: str) -> None:
+def test_utf_8_declaration_is_accepted(declaration: str) -> None:
     encoding = f" encoding='{declaration}'" if declaration else ""
     assert read(f"<?xml version='1.0'{encoding}?><robot name='r'/>").root.get("name") == "r"
 
 
 @pytest.mark.parametrize("encoding", ["latin-1", "ISO-8859-1", "utf-16", "us-ascii", "no-such"])
-def test_a_file_that_declares_another_encoding_is_refused(encoding: str) -> None:
+def test_other_encoding_declaration_is_refused(encoding: str) -> None:
     text = f"<?xml version='1.0' encoding='{encoding}'?><robot name='é'/>"
     diagnostic = fault_of(text)
     assert diagnostic.code == "file-not-utf8"
@@ -267,7 +265,7 @@ BOMB = (
         "<!DOCTYPE",
     ],
 )
-def test_a_document_type_declaration_is_refused_before_it_is_parsed(text: str) -> None:
+def test_doctype_is_refused_before_parsing(text: str) -> None:
     diagnostic = fault_of(text)
     assert (diagnostic.code, meant(text, diagnostic.place)) == ("xml-doctype", "<!DOCTYPE")
 
@@ -275,26 +273,26 @@ def test_a_document_type_declaration_is_refused_before_it_is_parsed(text: str) -
 @pytest.mark.parametrize(
     "before", ["\x01", "<?xml?", "<!--", "<!-- -- -->", "text", "<robot/>", "<?xml version='1.0'?x>"]
 )
-def test_an_entity_bomb_behind_another_fault_does_not_go_off(before: str) -> None:
+def test_entity_bomb_behind_other_error_is_harmless(before: str) -> None:
     assert fault_of(before + BOMB).code in ("xml-syntax", "xml-doctype")
 
 
-def test_what_only_looks_like_a_document_type_is_read() -> None:
+def test_text_like_doctype_is_accepted() -> None:
     read("<!-- <!DOCTYPE robot> --><robot><![CDATA[<!DOCTYPE robot>]]></robot>")
 
 
 # Hostile files
 
 
-def test_256_levels_are_read_and_257_are_refused_where_they_begin() -> None:
+def test_nesting_limit_is_256_levels() -> None:
     read("<a>" * DEPTH_LIMIT + "</a>" * DEPTH_LIMIT)
     diagnostic = fault_of("<a>" * (DEPTH_LIMIT + 1) + "</a>" * (DEPTH_LIMIT + 1))
     assert (diagnostic.code, diagnostic.column) == ("file-too-large", 3 * DEPTH_LIMIT + 1)
 
 
-def test_the_bound_is_the_same_where_libxml2_takes_more(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_nesting_limit_is_independent_of_libxml2(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(xml_reader, "_parser", lambda: etree.XMLParser(huge_tree=True))
-    test_256_levels_are_read_and_257_are_refused_where_they_begin()
+    test_nesting_limit_is_256_levels()
 
 
 @pytest.mark.parametrize(
@@ -309,11 +307,11 @@ def test_the_bound_is_the_same_where_libxml2_takes_more(monkeypatch: pytest.Monk
     ],
     ids=["nesting", "attributes", "elements", "text", "value", "name"],
 )
-def test_more_than_a_description_may_have_is_refused(text: str) -> None:
+def test_size_limit_is_enforced(text: str) -> None:
     assert fault_of(text).code == "file-too-large"
 
 
-def test_a_hundred_thousand_siblings_are_read_and_each_has_its_place() -> None:
+def test_hundred_thousand_siblings_have_places() -> None:
     source = source_of("<robot>\n" + '<link name="a"/>\n' * 100_000 + "</robot>")
     with watchdog():
         document = read_xml(source)
@@ -337,14 +335,14 @@ def test_a_hundred_thousand_siblings_are_read_and_each_has_its_place() -> None:
         "<a " + " ".join(f"xmlns:b{n}='u{n}'" for n in range(100_000)) + "/>",
     ],
 )
-def test_no_text_within_the_limits_takes_long(text: str) -> None:
+def test_any_text_within_limits_is_fast(text: str) -> None:
     source = source_of(text)
     with watchdog(), contextlib.suppress(Fault):
         document = read_xml(source)
         document.place(document.root)
 
 
-def test_damaged_files_give_a_document_or_a_fault_and_nothing_else() -> None:
+def test_damaged_file_gives_document_or_error() -> None:
     chance = random.Random(1)
     junk = [
         *"\0\x01\t\n\r <>/=&;'\"?!-[]é\u2028\ufffe:",
@@ -390,7 +388,7 @@ def test_damaged_files_give_a_document_or_a_fault_and_nothing_else() -> None:
         )
     )
 )
-def test_any_text_gives_a_document_or_a_fault(pieces: list[str]) -> None:
+def test_any_text_gives_document_or_error(pieces: list[str]) -> None:
     try:
         document = read("".join(pieces))
     except Fault as fault:
@@ -435,7 +433,7 @@ def test_any_text_gives_a_document_or_a_fault(pieces: list[str]) -> None:
         ("<robot>\n<a:b/>\n<a:b:c/></robot>", (3, None), "'a:b:c'", None),
     ],
 )
-def test_a_syntax_error_is_told_in_plain_words_at_its_place(
+def test_syntax_error_is_reported_plainly_at_its_place(
     text: str, position: tuple[int, int | None], message: str, hint: str | None
 ) -> None:
     diagnostic = fault_of(text)

@@ -1,4 +1,4 @@
-"""``eurdf assemble``: a configuration in which every loop is closed, shown and written to the description."""
+"""``eurdf assemble``: find a configuration that closes the loops, show it, and write it to the description."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eurdf.commands.cannot_run import CannotRun
-from eurdf.commands.migrate import show_refusal, tell
+from eurdf.commands.migrate import print_notes, show_refusal
 from eurdf.commands.output import cell, new_table, write_json, write_rendered
 from eurdf.commands.output_file import write_new
 from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
@@ -25,23 +25,23 @@ if TYPE_CHECKING:
     from eurdf.writing.assembled import BeyondLimit
 
 _DESCRIPTION = """\
-Find a configuration in which every loop is closed, and show it: for each joint its coordinates as files have them.
+Find a configuration in which every loop is closed, and show the coordinates of each joint as in files.
 
-The search begins at the configuration 'assembled', or else at the neutral one. It stays within the limits of the joints
-where it can. With --write, the configuration goes into the description as 'assembled'; comments and all else stay.
+The search starts at the configuration 'assembled', or at the neutral one if there is none. It respects the joint limits
+if possible. --write writes the configuration to the description as 'assembled'; comments and everything else are kept.
 """
 _EPILOG = ending(
     "0 the loops close, 1 they do not or the robot has errors, 2 the command cannot run.",
     "eurdf assemble my_robot --hold motor_knee --write",
 )
 
-#: Where to start, where no configuration of that name is in the file.
+#: Start here if the file has no configuration of this name.
 _NEUTRAL = "neutral"
 
-# What each row of the residual is brought to, m or rad; a file is to be closed to 1e-12.
+# Tolerance of each row of the residual, m or rad.
 _TOLERANCE = 1e-13
 
-# Open closures that are listed beside the table.
+# Maximum number of open closures in a message.
 _MOST_OPEN = 4
 
 
@@ -57,11 +57,11 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     add_robot_path(parser)
     add_robot_options(parser)
     parser.add_argument("--write", action="store_true", help="write it to the description as 'assembled'")
-    parser.add_argument("--force", action="store_true", help="replace a different 'assembled' that is there already")
+    parser.add_argument("--force", action="store_true", help="replace an existing, different 'assembled'")
     parser.add_argument(
-        "--hold", metavar="JOINT", action="append", default=[], help="keep a joint where it is (repeatable)"
+        "--hold", metavar="JOINT", action="append", default=[], help="do not move this joint (repeatable)"
     )
-    parser.add_argument("--limits", action="store_true", help="never leave the limits of the joints")
+    parser.add_argument("--limits", action="store_true", help="never exceed the joint limits")
     parser.add_argument(
         "--from",
         dest="start",
@@ -78,14 +78,14 @@ def run(args: argparse.Namespace) -> int:
 
     path = select_one(args.path)
     if args.force and not args.write:
-        raise CannotRun("--force replaces what --write would write: give --write too")
+        raise CannotRun("--force has no effect without --write; add --write")
     description = describe(path, geometry=False, **robot_options(args))
     if isinstance(description, Unlinked) or description.diagnostics.refused:
         show_refusal(description.path, tuple(description.diagnostics), args.json)
         return 1
     if not isinstance(description, Described):
         raise CannotRun(
-            f"'{description.path}' is a bare URDF, which has no loops; `eurdf generate` writes a description with them"
+            f"'{description.path}' is a plain URDF, without loops; `eurdf generate` writes a description with closures"
         )
     file = _file_to_write(args.path, description) if args.write else None
 
@@ -109,22 +109,24 @@ def run(args: argparse.Namespace) -> int:
             code = 1
     if args.json:
         write_json(info.model_dump(mode="json"))
-    tell(_messages(info, assembly, beyond))
+    print_notes(_messages(info, assembly, beyond))
     return code
 
 
 def _file_to_write(path: str, description: Described) -> str:
-    """The file that can have a configuration."""
+    """The file to write the configuration to."""
     source = description.extension.document.source
     file = source.file
     if not source.is_file:
-        raise CannotRun(f"--write needs a file to write to, and the description came from {file}")
+        raise CannotRun(f"--write needs a file, but the description came from {file}")
     if description.extension.version == "1":
         raise CannotRun(
-            f"'{file}' is of version 1, which has no configurations; `eurdf migrate` writes it in version 2"
+            f"'{file}' has version 1, which has no configurations; `eurdf migrate` converts it to version 2"
         )
     if not os.path.lexists(path):
-        raise CannotRun(f"'{path}' is a robot of the collection: copy its folder '{Path(file).parent}' to change it")
+        raise CannotRun(
+            f"'{path}' is a robot of the collection; copy its folder '{Path(file).parent}' and change the copy"
+        )
     return file
 
 
@@ -142,12 +144,12 @@ def _start(robot: Robot, name: str | None) -> tuple[str, Vector]:
     if name == _NEUTRAL:
         return name, pin.neutral(robot.model)
     known = [*robot.configurations, _NEUTRAL]
-    hint = did_you_mean(name, known) or f"there are: {', '.join(known)}"
+    hint = did_you_mean(name, known) or f"the configurations are: {', '.join(known)}"
     raise CannotRun(f"there is no configuration '{name}'; {hint}")
 
 
 def _assemble(robot: Robot, q0: Vector, hold: list[str], limits: bool) -> Assembly:
-    """A closed configuration, within the limits of the joints where there is one."""
+    """A closed configuration, within the joint limits if possible."""
     from eurdf.kinematics.assembly import assemble
     from eurdf.writing.assembled import beyond_limits
 
@@ -163,7 +165,7 @@ def _assemble(robot: Robot, q0: Vector, hold: list[str], limits: bool) -> Assemb
 
 
 def _write(file: str, description: Described, robot: Robot, q: Vector, force: bool) -> bool:
-    """Write the configuration to the description; return whether that changed the file."""
+    """Write the configuration to the description; return whether the file changed."""
     from eurdf.reading.source import BOM
     from eurdf.writing.assembled import NAME, is_stated, with_assembled
     from eurdf.writing.edit_configuration import NotEditable
@@ -171,43 +173,46 @@ def _write(file: str, description: Described, robot: Robot, q: Vector, force: bo
     if is_stated(robot, q):
         return False
     if NAME in robot.configurations and not force:
-        raise CannotRun(f"'{file}' has a different configuration '{NAME}' already; --force replaces it")
+        raise CannotRun(f"'{file}' already has a different configuration '{NAME}'; --force replaces it")
     source = description.extension.document.source
     try:
         text, diagnostics = with_assembled(description, robot, q)
     except NotEditable as reason:
-        raise CannotRun(f"cannot write to '{file}': {reason}; write it by hand") from None
+        raise CannotRun(f"cannot write to '{file}': {reason}; edit the file by hand") from None
     errors = diagnostics.errors
     if errors:
         raise CannotRun(f"cannot write to '{file}': {errors[0]}")
     before = Path(file).read_bytes()
     if before.removeprefix(BOM) != source.data:
-        raise CannotRun(f"'{file}' was changed by another program in the meantime; nothing was written")
+        raise CannotRun(f"another program changed '{file}' in the meantime; nothing was written, run the command again")
     write_new(file, text if before == source.data else BOM.decode() + text, force=True)
     return True
 
 
 def _messages(info: AssemblyInfo, assembly: Assembly, beyond: list[BeyondLimit]) -> list[str]:
-    """The messages beside the table."""
+    """The messages after the table."""
     nothing_written = [f"nothing was written to '{info.file}'"] if info.file is not None else []
     if not info.closes:
         held = ", ".join(f"'{joint.name}'" for joint in info.joints if joint.held)
         found = f"no configuration was found that closes the loops{held and f' with {held} held'}"
-        messages = [f"{found}; at the best, {_widest(assembly)}"]
+        messages = [f"{found}; least open: {_widest(assembly)}"]
         if assembly.at_limits:
-            messages.append(f"at their limits: {', '.join(map(str, assembly.at_limits))}")
+            messages.append(f"joints at their limits: {', '.join(map(str, assembly.at_limits))}")
         return [*messages, *nothing_written]
     if beyond:
-        return [f"the loops close only beyond the limits of joints: {'; '.join(map(str, beyond))}", *nothing_written]
+        return [
+            f"the loops close only with joints beyond their limits: {'; '.join(map(str, beyond))}",
+            *nothing_written,
+        ]
     if info.written:
         return [f"wrote the configuration 'assembled' to '{info.file}'"]
     if info.file is not None:
-        return [f"'{info.file}' has this configuration as 'assembled' already: nothing to do"]
+        return [f"'{info.file}' already has this configuration as 'assembled': nothing to do"]
     return []
 
 
 def _widest(assembly: Assembly) -> str:
-    """The closures that are open the widest; the table has all."""
+    """The closures that are open the most; the table shows all."""
     wide = [opening for opening in assembly.open if opening.is_open]
     wide.sort(key=lambda opening: max(opening.position, opening.angle), reverse=True)
     more = f"; and {len(wide) - _MOST_OPEN} more" if len(wide) > _MOST_OPEN else ""
@@ -244,13 +249,13 @@ def _joints(info: AssemblyInfo) -> Table:
 
 
 def _number(value: float) -> str:
-    """A coordinate to 9 decimals, which is closer than a closure in a file has to be closed."""
+    """A coordinate to 9 decimals, more accurate than the tolerance of a closure in a file."""
     rounded = round(value, 9) + 0.0  # no negative zero
     return f"{rounded:.9f}".rstrip("0").rstrip(".") if abs(rounded) < 1e9 else repr(rounded)
 
 
 def _units(joint: JointPosition) -> str:
-    """The unit of each coordinate, once where all have the same; of a quaternion the order of its numbers."""
+    """The unit of the coordinates, once if all are equal; for a quaternion the order of its numbers."""
     units = [coordinate.unit for coordinate in joint.coordinates if coordinate.unit]
     words = list(dict.fromkeys(units)) if len(set(units)) == 1 else units
     quaternion = [coordinate.name for coordinate in joint.coordinates if not coordinate.unit]

@@ -1,4 +1,4 @@
-"""The object that ``eurdf assemble --json`` writes, and its JSON Schema."""
+"""The output of ``eurdf assemble --json``, and its JSON Schema."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 Unit = Literal["rad", "m", ""]
 
-# The unit of each coordinate but those of a quaternion, which have none.
+# The unit of each coordinate; quaternions have none.
 _UNITS: dict[str, Unit] = {"angle": "rad", "length": "m", "x": "m", "y": "m", "z": "m"}
 
 
@@ -29,50 +29,50 @@ class CoordinateInfo(_Entry):
     """One number of a joint's configuration."""
 
     name: str
-    """What it is: angle, length, x, y, z; qx, qy, qz and qw of a quaternion."""
+    """Kind of the number: angle, length, x, y, z, or qx, qy, qz, qw of a quaternion."""
     unit: Unit
-    """Its unit; empty for the numbers of a quaternion."""
+    """Unit; empty for the numbers of a quaternion."""
     value: float
-    """Its value."""
+    """Value."""
 
 
 class JointPosition(_Entry):
-    """A joint that has coordinates of its own."""
+    """A joint with its own coordinates (not a mimic joint)."""
 
     name: str
-    """Name of the joint; root_joint for the one of a floating root."""
+    """Name of the joint; root_joint for a floating root."""
     type: JointType
     """Type of the joint."""
     coordinates: tuple[CoordinateInfo, ...]
-    """Its coordinates, in the order in which a file states them."""
+    """Its coordinates, in the order used in files."""
     actuated: bool
     """Whether it is actuated."""
     held: bool
     """Whether it was held by --hold."""
     beyond_limits: bool
-    """Whether it is beyond its limits, so that no file may state it."""
+    """Whether it is beyond its limits, which a file must not state."""
 
 
 class OpeningInfo(_Entry):
-    """A closure and how far it is open."""
+    """How far a closure is open."""
 
     name: str
     """Name of the closure."""
     position: float | None
-    """Distance between the origins of its frames, m; null where it is no finite number."""
+    """Distance between the origins of its frames, m; null if it is not finite."""
     angle: float | None
-    """Angle between its frames, rad; 0 for a 3d closure, which leaves it free."""
+    """Angle between its frames, rad; 0 for a 3d closure."""
     closed: bool
     """Whether it is open by at most 1e-6 (m, rad)."""
 
 
 class AssemblyInfo(_Entry):
-    """What 'eurdf assemble --json' writes."""
+    """The output of 'eurdf assemble --json'."""
 
     name: str
     """Name of the robot in the URDF."""
     start: str
-    """Name of the configuration started from; neutral where it is that of no file."""
+    """Name of the configuration at which the search started; neutral if it is not from the file."""
     closes: bool
     """Whether each closure is open by at most 1e-6 (m, rad)."""
     residual: float | None
@@ -82,26 +82,26 @@ class AssemblyInfo(_Entry):
     within_limits: bool
     """Whether no joint is beyond its limits."""
     joints: tuple[JointPosition, ...]
-    """The configuration found, the least open one where the loops do not close."""
+    """The configuration found; the least open one if the loops do not close."""
     closures: tuple[OpeningInfo, ...]
     """The closures, in file order."""
     file: str | None
-    """The description, where --write was asked for."""
+    """The description, if --write is given; else null."""
     written: bool
-    """Whether the configuration was written to it; not so where it is there already."""
+    """Whether the configuration was written; false if the file already has it."""
 
 
 def assembly_info(
     robot: Robot, assembly: Assembly, start: str, held: Collection[str], beyond: Collection[str]
 ) -> AssemblyInfo:
-    """An assembly as ``eurdf assemble`` shows it, before anything is written.
+    """An assembly as ``eurdf assemble`` shows it.
 
     Args:
         robot: The robot.
-        assembly: What `eurdf.assemble` found on it.
-        start: Name of the configuration that it started from.
-        held: Names of the joints held.
-        beyond: Names of the joints beyond their limits.
+        assembly: The result of `eurdf.assemble`.
+        start: Name of the configuration at which it started.
+        held: Names of the held joints.
+        beyond: Names of joints beyond their limits.
     """
     types = {ROOT_JOINT: JointType.FLOATING} | {joint.name: joint.type for joint in robot.mechanism.joints}
     return AssemblyInfo(

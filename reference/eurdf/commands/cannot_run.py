@@ -1,5 +1,5 @@
-"""What keeps a command from running at all, as against what it finds."""
+"""Errors that prevent a command from running, as opposed to errors in a robot."""
 
 
-class CannotRun(Exception):  # noqa: N818 - said to the user as it stands
-    """The command cannot do what it was asked; its text says why. Exit code 2."""
+class CannotRun(Exception):  # noqa: N818 - shown to the user as it is
+    """The command cannot run; the text says why. Exit code 2."""

@@ -1,4 +1,4 @@
-"""``eurdf check``: whether robots are sound, and where they are not."""
+"""``eurdf check``: report the errors of robots, with their places."""
 
 from __future__ import annotations
 
@@ -19,11 +19,12 @@ if TYPE_CHECKING:
 _DESCRIPTION = """\
 Check robots: the description, the URDF it extends, and whether the loops close.
 
-In a folder that is searched, each folder with a robot.yaml is a robot; elsewhere each YAML file is one that is named
-*.eurdf.yaml, or has extended_urdf or closed_loop at its top level. From standard input, as from a pipe, comes one
-text: a URDF, which begins with <, or a description, whose paths are relative to the working directory.
+A folder without a robot.yaml is searched: each folder in it with a robot.yaml is a robot. In the others, a YAML file is
+a robot if its name is *.eurdf.yaml, or if it has the top-level key extended_urdf or closed_loop. Standard input or a
+pipe contains one text: a URDF, which begins with <, or a description, whose paths are relative to the working
+directory.
 
-A warning whose code begins with x- is advice: the file follows the rules, but is likely not what is meant.
+A warning whose code begins with x- is advice: the file conforms, but is probably not what you intended.
 """
 _EPILOG = ending(
     "0 all robots pass, 1 errors found, 2 the check cannot run.",
@@ -32,7 +33,7 @@ _EPILOG = ending(
     "xacro leg.urdf.xacro side:=left | eurdf check -",
 )
 
-# From how many robots on a person is shown how far the check is.
+# Show progress from this number of robots on.
 _MANY = 4
 
 
@@ -40,7 +41,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Add the command to the parser."""
     parser = subparsers.add_parser(
         "check",
-        help="tell which line of a robot's description is wrong, and why",
+        help="check robots and report errors with file, line and hint",
         description=_DESCRIPTION,
         epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -48,21 +49,23 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     add_robot_path(parser, several=True)
     add_robot_options(parser)
     parser.add_argument("--format", choices=("text", "json", "sarif"), default="text", help="default: text")
-    parser.add_argument("--strict", action="store_true", help="let warnings count as errors")
+    parser.add_argument("--strict", action="store_true", help="treat warnings as errors")
     parser.add_argument(
         "--allow-none",
         action="store_true",
-        help="succeed where a folder holds no robot (for hooks)",
+        help="succeed if a folder contains no robot (for hooks)",
     )
     parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
-    """Check, write what was found, and return the exit code."""
+    """Check, write the diagnostics, and return the exit code."""
     robots = select(args.paths, args.allow_none)
     options = robot_options(args)
     if len(robots) > 1 and args.urdf is not None and is_stream(args.urdf):
-        raise CannotRun(f"--urdf {args.urdf} can be read only once, but there are {len(robots)} robots")
+        raise CannotRun(
+            f"--urdf {args.urdf} can be read only once, but there are {len(robots)} robots; check them one by one"
+        )
     reports = [_check(robot, options) for robot in _with_progress(robots)]
     if args.format == "json":
         from eurdf.diagnostics.report import reports_to_json
@@ -83,7 +86,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def write_reports(reports: Sequence[Report], strict: bool = False, stream: TextIO | None = None) -> None:
-    """Write findings and verdicts for a person, to the standard output by default."""
+    """Write diagnostics and verdicts as text, to the standard output by default."""
     from eurdf.diagnostics.text import SOURCE_WIDTH, report_lines, summary_line, total_line
 
     stream = stream or sys.stdout

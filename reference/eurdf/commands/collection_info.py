@@ -1,4 +1,4 @@
-"""What ``eurdf robots`` says of the collection: the object that ``--json`` writes, and its JSON Schema."""
+"""The output of ``eurdf robots --json``, and its JSON Schema."""
 
 from __future__ import annotations
 
@@ -16,39 +16,39 @@ class _Entry(BaseModel):
 
 
 class CollectedRobot(_Entry):
-    """A robot of the collection; dimensions are of the root that its description states."""
+    """A robot of the collection; dimensions are for the root that its description states."""
 
     name: str
-    """Name by which it is loaded."""
+    """Name of the robot, for eurdf.load."""
     description: str | None
-    """What its metadata say it is; null where they do not, or where it cannot be built."""
+    """Description from its metadata; null if it has none or cannot be built."""
     root: Literal["fixed", "floating"] | None
-    """Whether its root link is fixed to the world or floats in it; null where it cannot be built."""
+    """Whether its root link is fixed to the world or floats in it; null if it cannot be built."""
     nv: Count | None
-    """Number of velocities of the spanning tree; null where it cannot be built."""
+    """Number of velocities of the spanning tree; null if it cannot be built."""
     closures: Count | None
-    """Number of loop closures; null where it cannot be built."""
+    """Number of loop closures; null if it cannot be built."""
     nc: Count | None
-    """Number of constraint rows of all closures; null where it cannot be built."""
+    """Number of constraint rows of all closures; null if it cannot be built."""
     mobility: Count | None
-    """Motions left by the closures; null where the loops do not close, or where it cannot be built."""
+    """Degrees of freedom of the closed mechanism; null if the loops do not close or it cannot be built."""
     actuated: Count | None
-    """Number of actuated velocities; null where it cannot be built."""
+    """Number of actuated velocities; null if it cannot be built."""
     uncontrolled: Count | None
-    """Motions left with every actuator held; null where the loops do not close, or where it cannot be built."""
+    """Degrees of freedom left with every actuator held; null if the loops do not close or it cannot be built."""
     error: str | None
     """Why it cannot be built, or null."""
 
 
 class Collection(_Entry):
-    """What 'eurdf robots --json' writes."""
+    """The output of 'eurdf robots --json'."""
 
     robots: tuple[CollectedRobot, ...]
-    """Every robot of the collection, by name."""
+    """All robots of the collection, by name."""
 
 
 def collection_info() -> Collection:
-    """What there is to say of the robots that come with the package, broken ones too."""
+    """The robots of the package, including those that cannot be built."""
     return Collection(robots=tuple(map(_collected, eurdf.collection_names())))
 
 

@@ -1,4 +1,4 @@
-"""The schema that an editor completes a written description with: a file beside the description."""
+"""The schema file beside a description, with which editors complete the description."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from eurdf.commands.output_file import write_new
 if TYPE_CHECKING:
     from eurdf.format.urdf import Urdf
 
-#: The message where a description goes to the standard output.
-NOT_BESIDE = "the text names no schema; with -o FILE, the schema that editors complete it with is written beside it"
+#: The message if a description goes to the standard output.
+NOT_BESIDE = "the output names no schema; use -o FILE to write the schema for editors beside it"
 
-# What the YAML language server reads in its comment as it is written.
+# Paths that the YAML language server reads without escapes.
 _PLAIN_NAME = re.compile(r"[\w.-]+", re.ASCII)
 
 
@@ -28,9 +28,9 @@ class EditorSchema:
     """A schema to write beside a description.
 
     Attributes:
-        path: Of its file.
-        text: Of its file.
-        is_new: Whether the file is to be written; else it is there already.
+        path: Path of its file.
+        text: Content of its file.
+        is_new: Whether to write the file; False if it already exists.
     """
 
     path: Path
@@ -39,7 +39,7 @@ class EditorSchema:
 
     @property
     def reference(self) -> str:
-        """Path from the description, for its first line."""
+        """Path relative to the description, for its first line."""
         return f"./{self.path.name}"
 
 
@@ -49,7 +49,7 @@ def add_schema_option(parser: argparse.ArgumentParser) -> None:
         "--schema",
         choices=("format", "robot", "none"),
         default="format",
-        help="the schema written beside OUT and named in its first line, for completion in an editor: format, that of "
+        help="the schema to write beside OUT and name in its first line, for editors: format, that of "
         "the format (the default); robot, with the names of this robot; none, neither file nor line",
     )
 
@@ -57,17 +57,17 @@ def add_schema_option(parser: argparse.ArgumentParser) -> None:
 def schema_beside(
     output: str | os.PathLike[str], version: Literal["1", "2"], choice: str, urdf: Urdf, force: bool = False
 ) -> EditorSchema | None:
-    """The schema to write beside a description, or None where none is wanted; nothing is written yet.
+    """The schema to write beside a description, or None; nothing is written yet.
 
     Args:
         output: Path of the description.
         version: Its version.
         choice: ``format``, ``robot`` or ``none``.
-        urdf: The URDF whose names the schema of the robot has.
-        force: Whether another file of its name is replaced.
+        urdf: The URDF whose names the schema of the robot contains.
+        force: Whether to replace a different file of the same name.
 
     Raises:
-        CannotRun: Another file has its name and is not to be replaced, or the description itself would have it.
+        CannotRun: A different file of the same name exists and ``force`` is False, or it is the description.
     """
     from eurdf.format.schema import FILES, json_schema, names_of, schema_text
 
@@ -79,23 +79,23 @@ def schema_beside(
         stem = re.sub(r"(\.eurdf)?\.ya?ml$", "", file)
         name = f"{stem if _PLAIN_NAME.fullmatch(stem) else 'robot'}.schema.json"
     if name == file:
-        raise CannotRun(f"'{output}' is the name of the schema that is written beside it; choose another")
+        raise CannotRun(f"'{output}' is also the name of the schema file; choose another name")
     schema = json_schema(version, names_of(urdf) if choice == "robot" else None)
     path, text = Path(folder, name), schema_text(schema)
     is_new = not _is_there(path, text)
     if is_new and not force and os.path.lexists(path):
-        raise CannotRun(f"'{path}' exists already and is another; --force replaces it, --schema none leaves it")
+        raise CannotRun(f"'{path}' already exists and differs; --force replaces it, --schema none keeps it")
     return EditorSchema(path, text, is_new)
 
 
 def write_schema(schema: EditorSchema) -> None:
-    """Write the schema where it is not there yet."""
+    """Write the schema if it does not exist yet."""
     if schema.is_new:
         write_new(schema.path, schema.text, force=True)
 
 
 def _is_there(path: Path, text: str) -> bool:
-    """Whether a file has this schema, however it is laid out."""
+    """Whether a file contains this schema, in any layout."""
     try:
         return bool(json.loads(path.read_text(encoding="utf-8")) == json.loads(text))
     except (OSError, ValueError):

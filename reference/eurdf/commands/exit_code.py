@@ -1,9 +1,9 @@
-"""What a shell reports of a program that a signal ended: 128 and the signal's number."""
+"""Exit codes of programs ended by a signal: 128 plus the number of the signal."""
 
 from __future__ import annotations
 
 #: SIGINT, from Ctrl-C.
 INTERRUPTED = 130
 
-#: SIGPIPE: nobody reads the output any more.
+#: SIGPIPE: the reader of the output is gone.
 BROKEN_PIPE = 141

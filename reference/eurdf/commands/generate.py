@@ -1,4 +1,4 @@
-"""``eurdf generate``: a description from the names in a URDF."""
+"""``eurdf generate``: write a description from the names in a URDF."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.editor_schema import NOT_BESIDE, EditorSchema, add_schema_option, schema_beside, write_schema
-from eurdf.commands.migrate import not_in_a_file, show_refusal, tell, tell_schema, urdf_named, write_yaml
+from eurdf.commands.migrate import not_in_a_file, print_notes, report_schema, show_refusal, urdf_named, write_yaml
 from eurdf.commands.output import write_json
 from eurdf.commands.output_file import add_output_option, refuse_to_replace, write_new
 from eurdf.commands.robot_options import add_urdf_options, add_urdf_path, ending, require_urdf, urdf_options
@@ -25,15 +25,15 @@ Write a description from the names in a URDF.
               3d or 6d in the name is the type: closedloop3D_1A, closedloop1_A_3D. closing_knee_1_z and
               closing_knee_2_z, which onshape-to-robot adds on the axis of a revolute mate, make it two 3d closures.
   motors      joints whose name begins or ends with the word mot or motor: motor_knee, mot1, left_motor_hip, hip_motor.
-  sphericals  joints that have spherical in their name.
+  sphericals  joints with spherical in their name.
 
 A closure whose name does not state its type is 6d. It is 3d if with 6d the loops cannot close or move, or motors
 depend on one another, and with 3d they do not. A note gives the reason; --type sets the type of all closures.
 
-Three revolute joints whose axes meet, with nothing between them, are one spherical joint.
+Three consecutive revolute joints whose axes intersect, with massless links between them, become one spherical joint.
 
-PATTERNs are regular expressions in place of these. That of a closure matches a whole name, and has the group
-side, which tells its two frames apart; a group loop is what they have in common, a group type is 3d or 6d.
+PATTERNs are regular expressions that replace these conventions. A closure pattern matches a whole name. Its group side
+distinguishes the two frames, the group loop (optional) is their common part, and the group type (optional) is 3d or 6d.
 """
 
 
@@ -44,7 +44,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="write a description from the names in a URDF",
         description=_DESCRIPTION,
         epilog=ending(
-            "0 written, 1 the URDF has errors, or its names say what cannot be, 2 the command cannot run.",
+            "0 written, 1 the URDF has errors or its names contradict each other, 2 the command cannot run.",
             "eurdf generate arm.urdf -o arm.yaml",
             "eurdf generate arm.urdf --closure '(?P<loop>rod\\d+)_(?P<side>top|bottom)' --motor 'drive$'",
         ),
@@ -53,7 +53,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     add_urdf_path(parser)
     add_urdf_options(parser)
     add_output_option(parser)
-    parser.add_argument("--force", action="store_true", help="replace OUT, and its schema, if they are there already")
+    parser.add_argument("--force", action="store_true", help="replace OUT and its schema if they exist")
     add_schema_option(parser)
     for option, what in (
         ("--closure", "the frames of closures"),
@@ -63,7 +63,9 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         parser.add_argument(
             option, metavar="PATTERN", action="append", default=[], help=f"names of {what} (repeatable)"
         )
-    parser.add_argument("--type", choices=("3d", "6d"), help="type of every closure, whatever its name or motion says")
+    parser.add_argument(
+        "--type", choices=("3d", "6d"), help="type of all closures, instead of the type from name or motion"
+    )
     parser.add_argument("--root", choices=("fixed", "floating"), default="fixed", help="default: fixed")
     parser.add_argument("--version", choices=("1", "2"), default="2", help="version of the format; default: 2")
     parser.add_argument("--json", action="store_true", help="write one JSON object: the text, and what was found")
@@ -71,14 +73,14 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def run(args: argparse.Namespace) -> int:
-    """Generate, write, tell what was found, and return the exit code."""
+    """Generate and write a description, print notes, and return the exit code."""
     from eurdf.diagnostics import Diagnostics
     from eurdf.linking.description import read_urdf_alone
     from eurdf.writing.generation import generate
     from eurdf.writing.naming_conventions import BadPattern, conventions, hints
 
     if args.version == "1" and args.root != "fixed":
-        raise CannotRun("version 1 cannot say that the root floats")
+        raise CannotRun("version 1 cannot state a floating root; use version 2")
     require_urdf(args.urdf)
     options = urdf_options(args)
     try:
@@ -100,7 +102,7 @@ def run(args: argparse.Namespace) -> int:
     advice = hints(urdf, generation.found, convention)
     if generation.mechanism is None:
         show_refusal(shown(args.urdf), tuple(generation.diagnostics), args.json)
-        tell(["nothing was written: what the names say cannot be"])
+        print_notes(["nothing was written: the names contradict each other"])
         return 1
     if args.output is not None:
         write_new(args.output, generation.text, args.force)
@@ -111,13 +113,13 @@ def run(args: argparse.Namespace) -> int:
     if not source.is_file:
         warnings.append(not_in_a_file(source, urdf_path))
     if args.version == "1" and urdf_path != "robot.urdf":
-        warnings.append(f"version 1 cannot name its URDF: it is robot.urdf beside the description, not '{urdf_path}'")
+        warnings.append(f"version 1 cannot name its URDF; rename '{urdf_path}' to robot.urdf, beside the description")
     if args.json:
         write_json(_result(generation, args.output, schema, warnings, advice))
         return 0
     if args.output is None:
         write_yaml(generation.text)
-    tell(
+    print_notes(
         [
             *_summary(generation),
             *(f"note: {note}" for note in generation.notes),
@@ -126,11 +128,11 @@ def run(args: argparse.Namespace) -> int:
         ]
     )
     if args.output is not None:
-        tell([f"wrote '{args.output}'"])
+        print_notes([f"wrote '{args.output}'"])
     elif args.schema != "none":
-        tell([NOT_BESIDE])
+        print_notes([NOT_BESIDE])
     if schema is not None:
-        tell_schema(schema)
+        report_schema(schema)
     return 0
 
 
@@ -141,7 +143,11 @@ def _summary(generation: Generation) -> list[str]:
     if found.sphericals:
         lines.append(_count("spherical joint", found.sphericals))
     if generation.merges:
-        lines.append(_count("spherical joint", generation.merges, ", each merged from three revolutes whose axes meet"))
+        lines.append(
+            _count(
+                "spherical joint", generation.merges, ", each merged from three revolute joints whose axes intersect"
+            )
+        )
     return lines
 
 

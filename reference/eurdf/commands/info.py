@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from eurdf.commands.robot_info import RobotInfo
 
-# More motions than these are counted, not named.
+# Maximum number of motions that are named.
 _MOST_MOTIONS = 12
 
 
@@ -42,7 +42,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def run(args: argparse.Namespace) -> int:
-    """Load, analyse, show, and return the exit code."""
+    """Load, analyse and show a robot, and return the exit code."""
     path = select_one(args.path)
     options = robot_options(args)
 
@@ -85,7 +85,7 @@ def _show(info: RobotInfo) -> None:
         shown.append(_closures(info))
     if len(info.loop_list) > 1:
         shown.append(_loops(info))
-    if info.motion_list and info.actuated:  # without actuators, that is every motion
+    if info.motion_list and info.actuated:  # without actuators, all motions are uncontrolled
         shown.append(_motions(info))
     if info.dependent_list:
         shown.append(_dependent(info))
@@ -133,14 +133,14 @@ def _dimensions(info: RobotInfo) -> Table:
         verdict,
         ("nc", info.nc, "constraint rows"),
         ("rank", info.rank, "of the constraint Jacobian"),
-        ("redundant", info.redundant, "constraint rows that say nothing new, nc - rank"),
-        ("mobility", info.mobility, "motions that the closures leave, nv - rank"),
+        ("redundant", info.redundant, "redundant constraint rows, nc - rank"),
+        ("mobility", info.mobility, "degrees of freedom of the closed mechanism, nv - rank"),
         ("actuated", info.actuated, "velocities"),
-        ("uncontrolled", info.uncontrolled, "motions left with every actuator held"),
+        ("uncontrolled", info.uncontrolled, "degrees of freedom left with every actuator held"),
         ("dependent", info.dependent, "actuated velocities that depend on the others"),
     ]
     if info.singularity is not None:
-        rows.append(("singularity", f"{info.singularity:.2g}", "distance to it: 0 where the closures lose rank"))
+        rows.append(("singularity", f"{info.singularity:.2g}", "distance to singularity; 0 if the closures lose rank"))
     if info.actuation_singularity is not None:
         rows.append(("", f"{info.actuation_singularity:.2g}", "the same with every actuator held"))
     for name, value, meaning in rows:

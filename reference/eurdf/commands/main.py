@@ -1,7 +1,7 @@
 """The command line ``eurdf``.
 
-Every command is a module with ``register``, which adds it to the parser, and ``run``, which does it and returns the
-exit code. What is slow to import, they import when they run.
+Every command is a module with ``register``, which adds it to the parser, and ``run``, which runs it and returns the
+exit code. Modules that are slow to import are imported in ``run``.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from eurdf.exceptions import CannotExpand, MissingExtra
 #: The commands, in the order in which the help shows them.
 COMMANDS = (check, info, assemble, robots, migrate, generate, schema, certify)
 
-# Half of the time of a check is start-up. The matrices are too small for a pool of threads to pay, and no plugin of
-# pydantic has a part in it.
+# Half of the time of a check is start-up. The matrices are too small for a thread pool, and pydantic plugins are not
+# needed.
 _START_FASTER = {"OPENBLAS_NUM_THREADS": "1", "PYDANTIC_DISABLE_PLUGINS": "__all__"}
 
 
@@ -35,13 +35,13 @@ def main(argv: Sequence[str] | None = None) -> int:
         argv: The arguments; those of the process by default.
 
     Returns:
-        The exit code: 0 all well, 1 errors found in a robot, 2 the command cannot run.
+        The exit code: 0 success, 1 a robot has errors, 2 the command cannot run.
     """
     for name, value in _START_FASTER.items():
         os.environ.setdefault(name, value)
     for name in ("stdout", "stderr"):
-        if getattr(sys, name) is None:  # closed by who started the command
-            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115 - to the end of the process
+        if getattr(sys, name) is None:  # closed by the parent process
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115 - open until the process ends
     _write_any_character(sys.stdout)
     _write_any_character(sys.stderr)
     try:
@@ -51,7 +51,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return INTERRUPTED
     except BrokenPipeError:
-        # Nobody reads any more. The interpreter flushes once more at its end: let that go nowhere.
+        # The reader is gone. Redirect the final flush of the interpreter to nowhere.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return BROKEN_PIPE
     except (CannotRun, CannotExpand, MissingExtra, OSError) as reason:  # OSError: also RobotNotFound
@@ -60,9 +60,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         sys.stderr.write(f"eurdf: {visible(str(reason))}\n")
         return 2
     except Exception:
-        # Left alone it would exit with 1, which says that the robot has errors.
+        # Uncaught, it would exit with 1, which means that the robot has errors.
         traceback.print_exc()
-        sys.stderr.write("eurdf: this is a fault of eurdf itself, not of the robot\n")
+        sys.stderr.write("eurdf: this is a bug in eurdf, not an error of the robot; please report it\n")
         return 2
     return code
 
@@ -79,6 +79,6 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _write_any_character(stream: TextIO) -> None:
-    """Let a character that the locale cannot write be written as its escape rather than end the command."""
+    """Write characters that the locale cannot encode as escapes."""
     if isinstance(stream, io.TextIOWrapper):
         stream.reconfigure(errors="backslashreplace")

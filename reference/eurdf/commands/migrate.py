@@ -1,4 +1,4 @@
-"""``eurdf migrate``: a description of version 1 in version 2."""
+"""``eurdf migrate``: convert a description from version 1 to version 2."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from eurdf.reading.source import Source
 
 _DESCRIPTION = """\
-Write a description of version 1 in version 2, with the same model.
+Convert a description from version 1 to version 2, with the same model.
 
-What version 1 does by itself is said in version 2: three revolutes that it merges, closures that it counts.
-Comments and data of your own are kept; a key of your own gets the prefix x-. The result is read once more
-before it is written: it makes the same model, or nothing is written.
+Version 2 states explicitly what version 1 implies: merged revolute joints, names of closures. Comments and your own
+data are kept; your own keys get the prefix x-. Before the result is written, it is read and checked: if its model
+differs, nothing is written.
 """
 
 
@@ -33,7 +33,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Add the command to the parser."""
     parser = subparsers.add_parser(
         "migrate",
-        help="write a description of version 1 in version 2",
+        help="convert a description from version 1 to version 2",
         description=_DESCRIPTION,
         epilog=ending(
             "0 written or nothing to do, 1 the robot has errors, 2 the command cannot run.",
@@ -44,14 +44,14 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     add_robot_path(parser)
     add_robot_options(parser)
     add_output_option(parser)
-    parser.add_argument("--force", action="store_true", help="replace OUT, and its schema, if they are there already")
+    parser.add_argument("--force", action="store_true", help="replace OUT and its schema if they exist")
     add_schema_option(parser)
     parser.add_argument("--json", action="store_true", help="write one JSON object: the text, and what was done")
     parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
-    """Migrate, write, tell what was done, and return the exit code."""
+    """Migrate and write a description, print notes, and return the exit code."""
     from eurdf.linking.description import Described, Unlinked, describe
     from eurdf.writing.migrated_text import NotMigratable, schema_named
     from eurdf.writing.migration import migrate
@@ -63,13 +63,15 @@ def run(args: argparse.Namespace) -> int:
         show_refusal(path, tuple(description.diagnostics), args.json)
         return 1
     if not isinstance(description, Described):
-        raise CannotRun(f"'{path}' is a bare URDF, which has nothing to migrate; `eurdf generate` writes a description")
+        raise CannotRun(
+            f"'{path}' is a plain URDF, which has nothing to migrate; `eurdf generate` writes a description"
+        )
     document = description.extension.document
     source, urdf = document.source, description.urdf.document.source
     schema: EditorSchema | None = None
     if description.extension.version != "1":
         text, output = source.text, None
-        notes: tuple[str, ...] = (f"'{source.file}' is of version 2.0 already: nothing to do",)
+        notes: tuple[str, ...] = (f"'{source.file}' already has version 2.0: nothing to do",)
     else:
         output = args.output
         reference = schema_named(document) if args.schema == "format" else None
@@ -98,49 +100,49 @@ def run(args: argparse.Namespace) -> int:
         return 0
     if args.output is None:
         write_yaml(text)
-    tell(notes)
-    tell([str(found) for found in description.diagnostics if found.code == "near-miss-key"])
+    print_notes(notes)
+    print_notes([str(found) for found in description.diagnostics if found.code == "near-miss-key"])
     if output is not None:
-        tell([f"wrote '{output}'"])
+        print_notes([f"wrote '{output}'"])
     if schema is not None:
-        tell_schema(schema)
+        report_schema(schema)
     return 0
 
 
-def tell_schema(schema: EditorSchema) -> None:
-    """Say that a schema was written, where it was."""
+def report_schema(schema: EditorSchema) -> None:
+    """Report the schema, if one was written."""
     if schema.is_new:
-        tell([f"wrote '{schema.path}', the schema that editors complete it with"])
+        print_notes([f"wrote '{schema.path}', the schema for editors"])
 
 
 def _leads_to_a_schema(reference: str | None, output: str) -> bool:
-    """Whether a schema is where the first line of a description looks for it."""
+    """Whether the schema that the first line of a description names exists."""
     if reference is None:
         return False
     return reference.startswith(("http://", "https://")) or os.path.isfile(os.path.join(Path(output).parent, reference))
 
 
 def write_yaml(text: str) -> None:
-    """Write to the standard output, in UTF-8 whatever the locale: it is a file."""
+    """Write to the standard output in UTF-8, whatever the locale."""
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(encoding="utf-8")
     write_text(text)
 
 
 def urdf_named(description: str | os.PathLike[str], urdf: Source) -> str:
-    """What a description names its URDF; ``robot.urdf`` where that is in no file."""
+    """The name of the URDF in a description; ``robot.urdf`` if the URDF is not a file."""
     return urdf_from(description, urdf.file) if urdf.is_file else "robot.urdf"
 
 
 def not_in_a_file(urdf: Source, name: str) -> str:
-    """What is to be done where the URDF of a description came from elsewhere than a file."""
-    return f"the URDF came from {urdf.file}: write it to '{name}', which the description names, or use --urdf each time"
+    """The note if the URDF of a description did not come from a file."""
+    return f"the URDF came from {urdf.file}; write it to '{name}', which the description names, or use --urdf each time"
 
 
 def urdf_from(description: str | os.PathLike[str], urdf: str | os.PathLike[str]) -> str:
-    """Path of a URDF from the folder of a description, as the description names it."""
+    """Path of a URDF relative to the folder of a description."""
     home = os.path.realpath(Path(description).parent)
-    # The folder is resolved, since '..' leads out of where a link leads to; the file may stay a link.
+    # Resolve the folder, because '..' is relative to the target of a link; the file can stay a link.
     place = Path(os.path.realpath(Path(urdf).parent)) / Path(urdf).name
     try:
         return Path(os.path.relpath(place, home)).as_posix()
@@ -149,7 +151,7 @@ def urdf_from(description: str | os.PathLike[str], urdf: str | os.PathLike[str])
 
 
 def show_refusal(path: str, diagnostics: tuple[Any, ...], as_json: bool) -> None:
-    """Tell why there is nothing to write: as text where it cannot be taken for a description."""
+    """Show why nothing is written, on the standard error if the output is a description."""
     from eurdf.commands.check import write_reports
     from eurdf.diagnostics.report import Report, reports_to_json
 
@@ -161,7 +163,7 @@ def show_refusal(path: str, diagnostics: tuple[Any, ...], as_json: bool) -> None
         write_reports([report])
 
 
-def tell(sentences: tuple[str, ...] | list[str]) -> None:
+def print_notes(sentences: tuple[str, ...] | list[str]) -> None:
     """Write to the standard error, a line each."""
     from eurdf.diagnostics.text import visible
 

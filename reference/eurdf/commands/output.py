@@ -1,4 +1,4 @@
-"""Writing to the standard streams: styled on a terminal, bare text anywhere else."""
+"""Writing to the standard streams: styled on a terminal, plain text elsewhere."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
     from eurdf.diagnostics.text import Line
 
-# A table that goes into a file is as wide as it needs to be.
+# A table in a file is as wide as it needs to be.
 _UNBOUNDED = 10_000
 
 
 def is_terminal(stream: TextIO) -> bool:
-    """Whether what is written is seen by a person; FORCE_COLOR says so of a pipe, TERM=dumb denies it of a terminal."""
+    """Whether to style the output: on a terminal or with FORCE_COLOR, but not with TERM=dumb."""
     if os.environ.get("FORCE_COLOR"):
         return True
     return stream.isatty() and os.environ.get("TERM") != "dumb"
@@ -39,7 +39,7 @@ def columns() -> int:
 
 
 def write_text(text: str) -> None:
-    """Write what is to become a file to the standard output, in UTF-8 whatever the locale."""
+    """Write the text of a file to the standard output in UTF-8, whatever the locale."""
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(encoding="utf-8")
     sys.stdout.write(text)
@@ -51,7 +51,7 @@ def write_json(value: dict[str, Any]) -> None:
 
 
 def write_lines(lines: Iterable[Line], stream: TextIO) -> None:
-    """Write styled lines, each as one line however long."""
+    """Write styled lines without wrapping."""
     if not is_terminal(stream):
         for line in lines:
             stream.write("".join(piece for piece, _ in line).rstrip() + "\n")
@@ -66,7 +66,7 @@ def write_lines(lines: Iterable[Line], stream: TextIO) -> None:
 
 
 def write_rendered(*renderables: RenderableType) -> None:
-    """Write what rich renders to the standard output: tables, styled text, with an empty line between any two."""
+    """Write rich renderables to the standard output, separated by empty lines."""
     console = _console(sys.stdout)
     with console.capture() as captured:
         console.print(renderables[0])
@@ -77,7 +77,7 @@ def write_rendered(*renderables: RenderableType) -> None:
 
 
 def new_table(*headings: str) -> Table:
-    """An empty table for the standard output, with lines where a person sees them."""
+    """An empty table for the standard output, with lines on a terminal."""
     from rich import box
     from rich.table import Table
 
@@ -94,7 +94,7 @@ def new_table(*headings: str) -> Table:
 
 
 def cell(text: str, style: str = "") -> Text:
-    """What stands in a table: as it is, without markup, and with controls made visible."""
+    """A table cell: text without markup, with control characters made visible."""
     from rich.text import Text
 
     from eurdf.diagnostics.text import visible
@@ -103,7 +103,7 @@ def cell(text: str, style: str = "") -> Text:
 
 
 def _console(stream: TextIO) -> Console:
-    # It only renders, into its capture: a broken pipe is then ours to meet, not rich's, which would exit with code 1.
+    # Render into a capture: on a broken pipe, rich would exit with code 1.
     from rich.console import Console
 
     terminal = is_terminal(stream)

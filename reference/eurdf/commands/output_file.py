@@ -1,4 +1,4 @@
-"""Writing a file whole or not at all."""
+"""Atomic writing of files."""
 
 from __future__ import annotations
 
@@ -13,32 +13,32 @@ STDOUT = "-"
 
 
 def add_output_option(parser: argparse.ArgumentParser) -> None:
-    """Add ``--output`` to the parser of a command that writes one file; None where it is the standard output."""
+    """Add ``--output`` to the parser of a command that writes one file; None means the standard output."""
     parser.add_argument(
         "-o",
         "--output",
         metavar="OUT",
         type=lambda path: None if path == STDOUT else path,
-        help="the file to write; default, and for -: the standard output",
+        help="the file to write; default, or -: the standard output",
     )
 
 
 def refuse_to_replace(path: str | os.PathLike[str], force: bool) -> None:
-    """Raise `CannotRun` where a file is there already and not to be replaced."""
+    """Raise `CannotRun` if a file exists and ``force`` is False."""
     if not force and os.path.exists(path):
-        raise CannotRun(f"'{os.fspath(path)}' exists already; --force replaces it")
+        raise CannotRun(f"'{os.fspath(path)}' already exists; --force replaces it")
 
 
 def write_new(path: str | os.PathLike[str], text: str, force: bool = False) -> None:
-    """Write a text file in UTF-8, whole or not at all.
+    """Write a text file in UTF-8, completely or not at all.
 
     Args:
-        path: Where to; a symbolic link is followed.
-        text: What.
-        force: Whether a file that is there already is replaced.
+        path: Path of the file; a symbolic link is followed.
+        text: Content of the file.
+        force: Whether to replace an existing file.
 
     Raises:
-        CannotRun: The file is there already and not to be replaced, or it cannot be written.
+        CannotRun: The file exists and ``force`` is False, or it cannot be written.
     """
     target = Path(os.path.realpath(path))
     refuse_to_replace(path, force)

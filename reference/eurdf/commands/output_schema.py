@@ -1,4 +1,4 @@
-"""The schemas of what the commands write: ``python -m eurdf.commands.output_schema FOLDER`` writes the files."""
+"""Schemas of the JSON outputs of the commands; ``python -m eurdf.commands.output_schema FOLDER`` writes them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def output_schemas() -> dict[str, dict[str, Any]]:
 
 
 def schema_text(schema: dict[str, Any]) -> str:
-    """The schema as its file holds it."""
+    """The text of the schema file."""
     return json.dumps(schema, indent=2, ensure_ascii=False) + "\n"
 
 

@@ -1,4 +1,4 @@
-"""What ``eurdf info`` says of a robot: the object that ``--json`` writes, and its JSON Schema."""
+"""The output of ``eurdf info --json``, and its JSON Schema."""
 
 from __future__ import annotations
 
@@ -27,21 +27,21 @@ class JointInfo(_Entry):
     """A moving joint of the spanning tree."""
 
     name: str
-    """Name of the joint; root_joint for the one of a floating root."""
+    """Name of the joint; root_joint for a floating root."""
     type: JointType
     """Type of the joint."""
     parent: str
-    """Link it hangs from; world for the joint of a floating root."""
+    """Parent link; world for the joint of a floating root."""
     child: str
-    """Link it carries."""
+    """Child link."""
     nq: Count
-    """Number of its own coordinates in Pinocchio's configuration vector; 0 for one that mimics."""
+    """Number of its own coordinates in Pinocchio's configuration vector; 0 for a mimic joint."""
     nv: Count
-    """Number of its own velocities; 0 for one that mimics."""
+    """Number of its own velocities; 0 for a mimic joint."""
     actuated: bool
     """Whether it is actuated."""
     mimics: str | None
-    """Joint that it follows, or null."""
+    """Leader of a mimic joint, or null."""
 
 
 class ClosureInfo(_Entry):
@@ -50,15 +50,15 @@ class ClosureInfo(_Entry):
     name: str
     """Name of the closure."""
     type: Annotated[str, Field(json_schema_extra={"enum": sorted(CLOSURES)})]
-    """Whether it holds the position alone or the orientation too."""
+    """Kind of the closure: 3d for position, 6d for position and orientation."""
     rows: Count
     """Number of its constraint rows."""
     frames: tuple[str | None, str | None]
-    """Names of frame A and frame B; null for a pose written in place."""
+    """Names of frame A and frame B; null for an inline pose."""
     bodies: tuple[str, str]
     """Links that frame A and frame B are fixed to."""
     residual: float | None
-    """Norm of its rows at the configuration analysed, m and rad."""
+    """Norm of its residual at the analysed configuration, m and rad."""
 
 
 class ActuatorInfo(_Entry):
@@ -73,7 +73,7 @@ class ActuatorInfo(_Entry):
 
 
 class FrameInfo(_Entry):
-    """A frame that the description adds to those of links and joints."""
+    """A frame that the description adds."""
 
     name: str
     """Name of the frame."""
@@ -87,11 +87,11 @@ class ConfigurationInfo(_Entry):
     name: str
     """Name of the configuration."""
     residual: float | None
-    """Norm of the residual of all closures at it, m and rad."""
+    """Norm of the residual of all closures at the configuration, m and rad."""
 
 
 class LoopInfo(_Entry):
-    """A group of loops that share joints with one another and with no other loop."""
+    """An independent group of loops: they share joints with one another and with no other loop."""
 
     closures: tuple[str, ...]
     """Names of its closures."""
@@ -104,19 +104,19 @@ class LoopInfo(_Entry):
     rank: Count
     """Rank of its constraint Jacobian."""
     mobility: Count
-    """Motions that its closures leave, nv - rank."""
+    """Degrees of freedom of the closed loops, nv - rank."""
     redundant: Count
-    """Its constraint rows that say nothing new, nc - rank."""
+    """Number of its redundant constraint rows, nc - rank."""
     uncontrolled: Count
-    """Its motions left with every actuator held."""
+    """Degrees of freedom left with every actuator held."""
     actuated: Count
     """Number of its velocities that are actuated."""
     controlled: Count
-    """Motions that its actuators decide, mobility - uncontrolled."""
+    """Degrees of freedom that its actuators control, mobility - uncontrolled."""
     singularity: float | None
-    """Its distance to singularity, as of the whole."""
+    """Its distance to singularity, as for the whole robot."""
     actuation_singularity: float | None
-    """Its distance to a singularity of its actuation, as of the whole."""
+    """Its distance to a singularity of the actuation, as for the whole robot."""
 
 
 class MotionInfo(_Entry):
@@ -127,20 +127,20 @@ class MotionInfo(_Entry):
 
 
 class RobotInfo(_Entry):
-    """What 'eurdf info --json' writes of one robot; dimensions are of the root asked for."""
+    """The output of 'eurdf info --json' for one robot; dimensions are for the chosen root."""
 
     name: str
     """Name of the robot in the URDF."""
     version: Literal["1", "2.0", ""]
-    """Version of Extended URDF the description is written in; empty for a bare URDF."""
+    """Extended URDF version of the description; empty for a plain URDF."""
     root: Literal["fixed", "floating"]
-    """Whether the root link is fixed to the world or floats in it."""
+    """Whether the root link is fixed to the world or floating."""
     nq: Count
     """Length of Pinocchio's configuration vector."""
     nv: Count
     """Number of velocities of the spanning tree."""
     joints: Count
-    """Number of moving joints, that of a floating root included."""
+    """Number of moving joints, including that of a floating root."""
     closures: Count
     """Number of loop closures."""
     nc: Count
@@ -164,7 +164,7 @@ class RobotInfo(_Entry):
     actuation_singularity: float | None
     """The same for the constraint Jacobian stacked with the rows that select the actuated velocities."""
     mass: float | None
-    """Mass of all links, the root included, kg."""
+    """Mass of all links, including the root, kg."""
     residual: float | None
     """Norm of the residual of all closures at the configuration found, m and rad."""
     closes: bool
@@ -190,11 +190,11 @@ class RobotInfo(_Entry):
 
 
 def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
-    """What there is to say of a robot.
+    """The output for one robot.
 
     Args:
         robot: The robot.
-        analysis: What `eurdf.analyze` found on it.
+        analysis: The result of `eurdf.analyze`.
     """
     from eurdf.kinematics.residual import residual
 

@@ -1,4 +1,4 @@
-"""The options that say which robot a command reads, the same for every command, and the end of its help."""
+"""Common options of all commands: the robot to read; and the end of the help text."""
 
 from __future__ import annotations
 
@@ -15,37 +15,37 @@ _URDF_ENDINGS = (".urdf", ".xml", ".xacro")
 
 
 def add_robot_path(parser: argparse.ArgumentParser, *, several: bool = False) -> None:
-    """Add the path of a robot, or those of several."""
+    """Add the argument for one robot or for several."""
     if several:
-        parser.add_argument("paths", nargs="+", metavar="PATH", help=f"{_PATH}; a folder may hold several")
+        parser.add_argument("paths", nargs="+", metavar="PATH", help=f"{_PATH}; a folder can contain several robots")
     else:
         parser.add_argument("path", metavar="PATH", help=_PATH)
 
 
 def add_urdf_path(parser: argparse.ArgumentParser) -> None:
-    """Add the path of a URDF."""
+    """Add the argument for a URDF."""
     parser.add_argument("urdf", metavar="URDF", help="a .urdf or .xacro file, or - for standard input")
 
 
 def add_robot_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options that go with the path of a robot."""
+    """Add the options for a robot."""
     parser.add_argument(
         "--urdf",
         metavar="FILE",
-        help="the URDF, where it is not the one that the description names; - for standard input",
+        help="the URDF, instead of the one that the description names; - for standard input",
     )
     add_urdf_options(parser)
 
 
 def add_urdf_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options that go with the path of a URDF."""
+    """Add the options for a URDF."""
     parser.add_argument(
         "--package-dir",
         metavar="DIR",
         dest="package_dirs",
         action="append",
         default=[],
-        help="a folder that holds ROS packages, which meshes and xacro files are found in (repeatable)",
+        help="a folder with ROS packages, to find meshes and xacro files (repeatable)",
     )
     parser.add_argument(
         "--xacro-arg",
@@ -59,7 +59,7 @@ def add_urdf_options(parser: argparse.ArgumentParser) -> None:
 
 
 def robot_options(args: argparse.Namespace) -> dict[str, Any]:
-    """What `add_robot_options` was given, as keyword arguments of `eurdf.load` and `eurdf.check`.
+    """The values of `add_robot_options`, as keyword arguments of `eurdf.load` and `eurdf.check`.
 
     Raises:
         CannotRun: A file or a folder does not exist.
@@ -70,32 +70,32 @@ def robot_options(args: argparse.Namespace) -> dict[str, Any]:
 
 
 def urdf_options(args: argparse.Namespace) -> dict[str, Any]:
-    """What `add_urdf_options` was given, as keyword arguments.
+    """The values of `add_urdf_options`, as keyword arguments.
 
     Raises:
         CannotRun: A folder does not exist.
     """
     for folder in args.package_dirs:
         if not os.path.isdir(folder):
-            raise CannotRun(f"--package-dir: '{folder}' is no folder{_hint(near_path(folder, endings=()))}")
+            raise CannotRun(f"--package-dir: '{folder}' is not a folder{_hint(near_path(folder, endings=()))}")
     return {"package_dirs": tuple(args.package_dirs), "xacro_args": dict(args.xacro_args)}
 
 
 def require_urdf(path: str) -> None:
-    """Refuse the path of a URDF that does not exist.
+    """Check that a URDF exists.
 
     Raises:
-        CannotRun: It does not.
+        CannotRun: It does not exist.
     """
     if not (os.path.exists(path) or is_stream(path) or is_text(path)):
         raise CannotRun(f"the URDF '{path}' does not exist{_hint(near_path(path, endings=_URDF_ENDINGS))}")
 
 
 def ending(exit_codes: str, *examples: str) -> str:
-    """The end of the help of a command.
+    """The end of the help text of a command.
 
     Args:
-        exit_codes: What each of them means.
+        exit_codes: Their meanings.
         examples: Command lines.
     """
     shown = "\n".join(f"  {example}" for example in examples)
@@ -109,5 +109,5 @@ def _hint(near: str | None) -> str:
 def _xacro_arg(text: str) -> tuple[str, str]:
     name, separator, value = text.partition(":=")
     if not (separator and name.strip()):
-        raise argparse.ArgumentTypeError(f"'{text}' is not of the form NAME:=VALUE")
+        raise argparse.ArgumentTypeError(f"'{text}' does not have the form NAME:=VALUE")
     return name.strip(), value.strip()

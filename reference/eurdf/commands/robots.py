@@ -1,4 +1,4 @@
-"""``eurdf robots``: the robots that come with the package."""
+"""``eurdf robots``: list the robots of the package."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from eurdf.commands.robot_options import ending
 if TYPE_CHECKING:
     from eurdf.commands.collection_info import Collection
 
-# In a narrower window, beside the numbers there is no room for descriptions.
+# A narrower terminal has no space for descriptions.
 _WIDE = 120
 
 
@@ -21,7 +21,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser = subparsers.add_parser(
         "robots",
         help="list the robots of the collection",
-        description="List the robots that come with this package. Each can be loaded, checked and shown by its name.",
+        description="List the robots of this package. All commands and eurdf.load accept their names.",
         epilog=ending("0 listed, 1 a robot cannot be built, 2 the command cannot run.", "eurdf robots --json"),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )

@@ -1,4 +1,4 @@
-"""``eurdf schema``: the JSON Schema of the format, for an editor."""
+"""``eurdf schema``: write the JSON Schema of the format, for editors."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import sys
 
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.check import write_reports
-from eurdf.commands.migrate import tell
+from eurdf.commands.migrate import print_notes
 from eurdf.commands.output import write_text
 from eurdf.commands.output_file import add_output_option, write_new
 from eurdf.commands.robot_options import add_urdf_options, ending, require_urdf, urdf_options
@@ -18,7 +18,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     """Add the command to the parser."""
     parser = subparsers.add_parser(
         "schema",
-        help="write the JSON Schema that an editor completes and checks a description with",
+        help="write the JSON Schema of a description, for editors",
         description="Write the JSON Schema (2020-12) of Extended URDF. The first line of a description names it:\n\n"
         "  # yaml-language-server: $schema=./robot.schema.json",
         epilog=ending(
@@ -32,11 +32,11 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--for",
         dest="urdf",
         metavar="URDF",
-        help="name the links and joints of this robot, so that an editor completes them",
+        help="include the names of the links and joints of this robot, so that editors complete them",
     )
     add_urdf_options(parser)
     add_output_option(parser)
-    parser.add_argument("--force", action="store_true", help="replace OUT if it is there already")
+    parser.add_argument("--force", action="store_true", help="replace OUT if it exists")
     parser.set_defaults(run=run)
 
 
@@ -46,7 +46,7 @@ def run(args: argparse.Namespace) -> int:
 
     names = None
     if args.urdf is None and (args.package_dirs or args.xacro_args):
-        raise CannotRun("--package-dir and --xacro-arg go with --for")
+        raise CannotRun("--package-dir and --xacro-arg need --for")
     if args.urdf is not None:
         from eurdf.diagnostics import Diagnostics
         from eurdf.diagnostics.report import Report
@@ -56,7 +56,7 @@ def run(args: argparse.Namespace) -> int:
         diagnostics = Diagnostics()
         urdf = read_urdf_alone(args.urdf, diagnostics, **urdf_options(args))
         if urdf is None:
-            # The standard output is for a schema.
+            # The standard output is reserved for the schema.
             write_reports([Report(shown(args.urdf), tuple(diagnostics))], stream=sys.stderr)
             return 1
         names = names_of(urdf)
@@ -65,5 +65,5 @@ def run(args: argparse.Namespace) -> int:
         write_text(text)
     else:
         write_new(args.output, text, args.force)
-        tell([f"wrote '{args.output}'"])
+        print_notes([f"wrote '{args.output}'"])
     return 0

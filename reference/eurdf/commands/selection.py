@@ -1,4 +1,4 @@
-"""Which robots a path on the command line stands for."""
+"""The robots that a path on the command line selects."""
 
 from __future__ import annotations
 
@@ -15,42 +15,43 @@ from eurdf.reading.source import FILE_LIMIT
 
 _DESCRIPTIONS = ("robot.yaml", "robot.yml")
 _YAML_SUFFIXES = (".yaml", ".yml")
-# The ending of a description in a folder with other YAML files, which catalogues of schemas know.
+# The file name ending of descriptions in a folder with other YAML files; schema catalogs know it.
 _OWN_SUFFIXES = (".eurdf.yaml", ".eurdf.yml")
 
-# A key at the top level that only a description of a robot has, in version 2 or in version 1.
+# Top-level keys that only descriptions of robots have, in version 2 or version 1.
 _FORMAT_KEY = re.compile(rb"""^(["']?)(?:extended_urdf|closed_loop)\1[ \t]*:""", re.MULTILINE)
 
 
 def select(paths: Iterable[str], allow_none: bool = False) -> list[str]:
-    """The robots that paths stand for, each once, in the order given.
+    """The robots that paths select, each once, in the given order.
 
     A folder with a ``robot.yaml`` or ``robot.yml`` is one robot. Any other folder is searched: each folder in it with
-    such a file is a robot; in the others, each YAML file is one that is named ``*.eurdf.yaml``, or that has
-    ``extended_urdf`` or ``closed_loop`` at its top level. Hidden folders and links to folders are not entered. What is
-    no folder, or a folder in which nothing is found so, is what it is to `eurdf.load`.
+    such a file is a robot; in the others, a YAML file is a robot if its name is ``*.eurdf.yaml``, or if it has the
+    top-level key ``extended_urdf`` or ``closed_loop``. Hidden folders and links to folders are skipped. Any other path,
+    and a folder in which no robot is found, is passed to `eurdf.load`.
 
     Args:
-        paths: As the user gave them.
-        allow_none: Whether a folder may hold no robot. Its only YAML file is then one as those of any other folder are.
+        paths: The paths that the user gave.
+        allow_none: Whether a folder can contain no robot. Its only YAML file is then treated like one of any other
+            folder.
 
     Raises:
-        RobotNotFound: There is no such path, or no robot in it.
+        RobotNotFound: A path does not exist, or contains no robot.
         CannotRun: A folder cannot be read.
     """
     return list(dict.fromkeys(robot for path in paths for robot in _robots_at(path, allow_none)))
 
 
 def select_one(path: str) -> str:
-    """The one robot that a path stands for.
+    """The single robot that a path selects.
 
     Raises:
-        RobotNotFound: There is none.
-        CannotRun: There are several.
+        RobotNotFound: There is no robot.
+        CannotRun: There are several robots.
     """
     robots = select([path])
     if len(robots) > 1:
-        raise CannotRun(f"'{path}' holds {len(robots)} robots, such as '{robots[0]}'; name one of them")
+        raise CannotRun(f"'{path}' contains {len(robots)} robots, such as '{robots[0]}'; give one of them")
     return robots[0]
 
 
@@ -61,13 +62,13 @@ def _robots_at(path: str, allow_none: bool) -> list[str]:
             return found
         if allow_none:
             return [path] if _holds_urdf(path) else []
-    if not (is_stream(path) or is_text(path)):  # what is in them is found when they are checked, and read once
+    if not (is_stream(path) or is_text(path)):  # their content is read once, when they are checked
         find_robot(path)
     return [path]
 
 
 def _holds_urdf(folder: str) -> bool:
-    """Whether a folder without a description is a robot, for the URDF in it."""
+    """Whether a folder without a description is a robot because of a URDF in it."""
     try:
         return find_robot(folder).description is None
     except RobotNotFound:

@@ -1,7 +1,7 @@
-"""Where the process of a command starts, and how an interrupt (Ctrl-C, SIGINT) ends it: quietly, at any moment.
+"""Start of a command; an interrupt (Ctrl-C, SIGINT) ends it quietly at any time.
 
-This module imports nothing that takes time: it handles an interrupt before the command itself is imported. A process
-that was started with interrupts ignored, such as a background job of a script, keeps ignoring them.
+This module imports nothing slow, so it can handle an interrupt before the command is imported. A process that was
+started with interrupts ignored, such as a background job of a script, keeps ignoring them.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def start() -> int:
 
         code = main()
         if handled:
-            signal.signal(signal.SIGINT, signal.SIG_DFL)  # nothing is left to clean up
+            signal.signal(signal.SIGINT, signal.SIG_DFL)  # nothing to clean up
     except KeyboardInterrupt:
         return INTERRUPTED
     return code

@@ -1,4 +1,4 @@
-"""Findings: codes, places, messages, and how they are shown."""
+"""Diagnostics: codes, places, messages, and how they are shown."""
 
 from eurdf.diagnostics.diagnostic import Diagnostic, Diagnostics, Fault, Hint, Place, did_you_mean, quoted
 from eurdf.diagnostics.registry import REGISTRY, Phase, Rule, Severity

@@ -1,4 +1,4 @@
-"""What is found wrong, where, and what would be right."""
+"""A diagnostic: what is wrong, where, and what to do."""
 
 from __future__ import annotations
 
@@ -11,27 +11,27 @@ from functools import cached_property
 
 from eurdf.diagnostics.registry import REFUSED_PHASES, REGISTRY, Phase, Severity
 
-#: So many findings of one code are listed; the last of them says how many more there are.
+#: Maximum number of listed diagnostics of one code; the last one says how many more there are.
 LISTED = 100
 
-#: Characters that a message or a hint may have before the long names in it are cut.
+#: Length of a message or hint above which long names in it are shortened.
 LONGEST = 1000
 
-#: Characters of a name that is cut: as many at its beginning, and half as many at its end, are kept.
+#: Characters kept at the start of a shortened name; half as many are kept at its end.
 NAME_KEPT = 60
 
-#: Names near a wrong one that are compared with the name beside it.
+#: Number of similar names that are compared with the name of the element.
 _CLOSE = 20
 
-#: The ratio of difflib of a name that is about as near as another may be smaller by this much.
+#: Names whose difflib ratios differ by at most this are about equally similar.
 _ABOUT = 0.1
 
-#: Pairs of letters that the search for the name that is meant may compare.
+#: Maximum number of pairs of letters that the search for the intended name compares.
 COMPARED = 40_000
 
 _LONG_NAME = re.compile(rf"'([^']{{{NAME_KEPT}}})[^']*([^']{{{NAME_KEPT // 2}}})'")
 
-#: A hint, or how to find one where that takes time.
+#: A hint, or a function that finds it if that takes time.
 Hint = str | None | Callable[[], str | None]
 
 
@@ -41,11 +41,11 @@ class Place:
 
     Attributes:
         file: Path as the user gave it.
-        line: Line, from 1; None for the file as a whole (EU-DIA-010).
-        column: Column, from 1, in characters; None where only the line is known.
-        end_column: Column just after the last character meant, on the same line; None if not known.
+        line: Line, from 1; None for the whole file (EU-DIA-010).
+        column: Column, from 1, in characters; None if only the line is known.
+        end_column: Column after the last character of the place, on the same line; None if unknown.
         pointer: JSON pointer of the value in a YAML file, XPath of the element or attribute in a URDF.
-        text: The whole text that the place is in, where it is not that of a file, which can be read again.
+        text: The whole text that contains the place, if it does not come from a file that can be read again.
     """
 
     file: str
@@ -57,12 +57,12 @@ class Place:
 
 
 class Diagnostic:
-    """One finding: a code of the registry, what is wrong, where, and what would be right (EU-DIA-008).
+    """One diagnostic: a code of the registry, what is wrong, where, and what to do (EU-DIA-008).
 
     Attributes:
         code: Its code in the registry.
-        message: What is wrong, in one sentence; names that would make it longer than `LONGEST` are cut.
-        hint: What would be right, or None; likewise.
+        message: What is wrong, in one sentence; names are shortened if it is longer than `LONGEST`.
+        hint: What to do about it, or None; shortened likewise.
     """
 
     def __init__(self, code: str, message: str, place: Place | Callable[[], Place], hint: str | None = None) -> None:
@@ -73,27 +73,27 @@ class Diagnostic:
 
     @cached_property
     def place(self) -> Place:
-        """Where it is; computed when first asked, since a line in an XML file takes another pass over it."""
+        """The place, computed on first use: the line in an XML file needs a second pass over the file."""
         return self._place() if callable(self._place) else self._place
 
     def followed_by(self, more: int) -> Diagnostic:
-        """The same finding, saying that more like it are not listed."""
+        """The same diagnostic, with a hint that more like it are not listed."""
         untold = f"{more:,} more like it are not listed"
         return Diagnostic(self.code, self.message, self._place, f"{self.hint}; {untold}" if self.hint else untold)
 
     @property
     def severity(self) -> Severity:
-        """Error or warning, as the registry says (EU-DIA-004)."""
+        """Error or warning, from the registry (EU-DIA-004)."""
         return REGISTRY[self.code].severity
 
     @property
     def phase(self) -> Phase:
-        """Phase of the pipeline that found it."""
+        """Phase of the pipeline that reports it."""
         return REGISTRY[self.code].phase
 
     @property
     def clause(self) -> str | None:
-        """Id of the clause of the specification that is not met; None for advice of this parser (EU-DIA-006)."""
+        """Id of the violated clause of the specification; None for advice of this parser (EU-DIA-006)."""
         return REGISTRY[self.code].clause
 
     @property
@@ -134,8 +134,8 @@ class Diagnostic:
         return hash((self.code, self.message, self.hint))
 
 
-class Fault(Exception):  # noqa: N818 - it carries one finding; whether that is an error, the registry says
-    """Ends the reading of a file at once, with the one diagnostic that says why."""
+class Fault(Exception):  # noqa: N818 - it carries one diagnostic; the registry says whether it is an error
+    """Stops reading a file; carries the diagnostic that says why."""
 
     def __init__(self, code: str, message: str, place: Place, hint: str | None = None) -> None:
         self.diagnostic = Diagnostic(code, message, place, hint)
@@ -143,9 +143,9 @@ class Fault(Exception):  # noqa: N818 - it carries one finding; whether that is 
 
 
 class Diagnostics:
-    """The findings on one robot, in the order found; of each code, as many as `LISTED` (EU-DIA-007).
+    """The diagnostics of one robot, in the order found; at most `LISTED` of each code (EU-DIA-007).
 
-    A file can have a hundred thousand times the same fault: nobody reads them all, and telling them would take more
+    A file can have the same error a hundred thousand times: nobody reads them all, and listing them would take more
     time and memory than reading the file.
     """
 
@@ -155,19 +155,19 @@ class Diagnostics:
         self._last: dict[str, int] = {}  # by code, the index in `_found` of the last one listed
 
     def report(self, code: str, message: str, place: Place | Callable[[], Place], hint: Hint = None) -> None:
-        """Add a finding; ``code`` is one of the registry (EU-DIA-005). A hint to be found is so only where listed."""
+        """Add a diagnostic with a code of the registry (EU-DIA-005). A hint function is called only if it is listed."""
         if code not in REGISTRY:
             raise KeyError(code)
         if self._counts_in(code):
             self._found.append(Diagnostic(code, message, place, hint() if callable(hint) else hint))
 
     def add(self, diagnostic: Diagnostic) -> None:
-        """Add a finding made elsewhere."""
+        """Add an existing diagnostic."""
         if self._counts_in(diagnostic.code):
             self._found.append(diagnostic)
 
     def _counts_in(self, code: str) -> bool:
-        """Count a finding; whether it is to be listed."""
+        """Count a diagnostic; return whether to list it."""
         self._count[code] += 1
         if self._count[code] > LISTED:
             return False
@@ -180,28 +180,28 @@ class Diagnostics:
             yield found.followed_by(more[index]) if index in more else found
 
     def __len__(self) -> int:
-        """Number of findings, listed or not."""
+        """Number of diagnostics, listed or not."""
         return self._count.total()
 
     @property
     def error_count(self) -> int:
-        """Number of findings of severity error, listed or not."""
+        """Number of errors, listed or not."""
         return sum(count for code, count in self._count.items() if REGISTRY[code].severity is Severity.ERROR)
 
     @property
     def errors(self) -> list[Diagnostic]:
-        """The findings of severity error that are listed."""
+        """The listed errors."""
         return [found for found in self if found.severity is Severity.ERROR]
 
     @property
     def refused(self) -> bool:
-        """Whether an error leaves nothing that could be built without guessing."""
+        """Whether a robot with these errors could only be built by guessing."""
         rules = (REGISTRY[code] for code in self._count)
         return any(rule.phase in REFUSED_PHASES and rule.severity is Severity.ERROR for rule in rules)
 
 
 def _bounded(text: str) -> str:
-    """The text, its long names cut where it is long; and cut itself where that does not do."""
+    """The text, with long names shortened if it is too long, and truncated if that is not enough."""
     if len(text) <= LONGEST:
         return text
     text = _LONG_NAME.sub(r"'\1...\2'", text)
@@ -209,30 +209,30 @@ def _bounded(text: str) -> str:
 
 
 def quoted(names: Sequence[str], most: int = 3) -> str:
-    """Names in quotes for a message: the first ones, and dots where there are more than ``most``."""
+    """Quoted names for a message: the first ones, and dots if there are more than ``most``."""
     return ", ".join(f"'{name}'" for name in names[:most]) + (", ..." if len(names) > most else "")
 
 
 def did_you_mean(wrong: str, known: Iterable[str], beside: str = "") -> str | None:
-    """The hint for a misspelt name: the nearest of the known ones, or None if none is near.
+    """The hint for a misspelt name: the most similar known name, or None if none is similar.
 
-    Where several names are about as near, it is the one most like the name beside it: joint 'right_knee' that mimics
-    'hip' means 'right_hip', although 'left_hip' has fewer letters to add.
+    If several names are about equally similar, it is the one most similar to ``beside``: if joint 'right_knee' mimics
+    'hip', the hint is 'right_hip', although 'left_hip' needs fewer added letters.
 
-    The time is bounded. Where there are too many names to compare with, those that share its first or second half are,
-    as every name does that differs in one place.
+    The time is bounded. If there are too many names, only those that share the first or second half of the wrong name
+    are compared; this includes every name that differs in one place.
 
     Args:
-        wrong: The name that is not known.
-        known: The names that are.
-        beside: Name of the element that has the wrong name.
+        wrong: The unknown name.
+        known: The known names.
+        beside: Name of the element that contains the wrong name.
     """
     if " - " in wrong:
         known = list(known)
         if wrong.partition(" - ")[0] in known:
-            return "an item that is indented deeper than the one before continues it: indent each '-' of a list alike"
+            return "an item that is indented more than the one before continues it; indent each '-' of a list equally"
     size = len(wrong)
-    # A name of less than 3/7 of the length of another cannot be near it, as difflib counts.
+    # By difflib's ratio, a name shorter than 3/7 of another cannot be similar to it.
     candidates = [name for name in known if 3 * len(name) <= 7 * size and 3 * size <= 7 * len(name)]
     folded = wrong.casefold()
     nearest = next((name for name in candidates if name.casefold() == folded), None)
@@ -248,7 +248,7 @@ def did_you_mean(wrong: str, known: Iterable[str], beside: str = "") -> str | No
 
 
 def _about_as_near(wrong: str, close: list[str]) -> list[str]:
-    """Of names near a wrong one, the nearest first, those about as near as the first."""
+    """Of similar names, sorted by similarity, those about as similar as the first."""
     ratios = [_ratio(wrong, name) for name in close]
     return [name for name, ratio in zip(close, ratios, strict=True) if ratio >= ratios[0] - _ABOUT]
 

@@ -5,15 +5,15 @@ from __future__ import annotations
 from functools import cache
 from importlib.metadata import PackageNotFoundError, metadata
 
-# The page of the specification's site that has every code, each at the anchor of its name.
+# The page of the specification's site that lists all codes, each at the anchor of its name.
 _PAGE = "diagnostics.html"
 
 
 def help_uri(code: str) -> str:
-    """The page of a code on the site that the package names as its documentation, or else the code's URN.
+    """The page of a code on the documentation site of the package, or else the code's URN.
 
-    The site is the URL ``Documentation`` of the package's metadata (``[project.urls]`` in pyproject.toml). A package
-    without one names its codes as it names its schemas, ``urn:extended-urdf:…``.
+    The site is the URL ``Documentation`` of the package's metadata (``[project.urls]`` in pyproject.toml). Without it,
+    the result is ``urn:extended-urdf:…``, as for schemas.
     """
     site = _site()
     return f"{site}/{_PAGE}#{code}" if site else f"urn:extended-urdf:diagnostic:{code}"

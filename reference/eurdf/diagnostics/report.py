@@ -1,4 +1,4 @@
-"""What a check found on one robot, and its form in JSON."""
+"""The result of a check of one robot, and its JSON form."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from typing import Any
 from eurdf.diagnostics.diagnostic import Diagnostic
 from eurdf.diagnostics.registry import OWN_PREFIX, Phase, Severity
 
-#: Version of the JSON form; it grows by one when a field changes its meaning or goes.
+#: Version of the JSON form; it increases by one when a field changes its meaning or is removed.
 REPORT_VERSION = 1
 
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """The findings on one robot.
+    """The diagnostics of one robot.
 
     Attributes:
-        path: The robot, as the user named it: a folder, a file, or a name of the collection.
+        path: The robot as the user gave it: a folder, a file, or a name of the collection.
         diagnostics: In the order found.
     """
 
@@ -27,12 +27,12 @@ class Report:
 
     @property
     def errors(self) -> tuple[Diagnostic, ...]:
-        """The findings of severity error."""
+        """The errors."""
         return tuple(found for found in self.diagnostics if found.severity is Severity.ERROR)
 
     @property
     def warnings(self) -> tuple[Diagnostic, ...]:
-        """The findings of severity warning."""
+        """The warnings."""
         return tuple(found for found in self.diagnostics if found.severity is Severity.WARNING)
 
     @property
@@ -41,11 +41,11 @@ class Report:
         return not self.errors
 
     def passes(self, strict: bool = False) -> bool:
-        """Whether there is no error and, when strict, no warning either."""
+        """Whether there is no error and, if strict, no warning."""
         return not (self.diagnostics if strict else self.errors)
 
     def to_json(self, strict: bool = False) -> dict[str, Any]:
-        """One entry of ``robots`` in `reports_to_json`; ``ok`` is what `passes` says."""
+        """One entry of ``robots`` in `reports_to_json`; ``ok`` is the result of `passes`."""
         return {
             "path": encodable(self.path),
             "ok": self.passes(strict),
@@ -54,11 +54,11 @@ class Report:
 
 
 def reports_to_json(reports: Iterable[Report], strict: bool = False) -> dict[str, Any]:
-    """The findings on any number of robots as one object, which `report_schema` describes.
+    """The diagnostics of any number of robots as one object; `report_schema` describes it.
 
     Args:
-        reports: One a robot, in the order to show them.
-        strict: Whether a warning makes ``ok`` false too; severities stay as they are.
+        reports: One for each robot, in the order to show.
+        strict: Whether a warning makes ``ok`` false, too; severities do not change.
     """
     robots = [report.to_json(strict) for report in reports]
     return {"version": REPORT_VERSION, "ok": all(robot["ok"] for robot in robots), "robots": robots}
@@ -82,7 +82,7 @@ def _diagnostic_to_json(found: Diagnostic) -> dict[str, Any]:
 
 
 def encodable(text: str) -> str:
-    """The text with a lone surrogate (half a character, as in an undecodable file name) spelled out as an escape."""
+    """The text with lone surrogates (as in an undecodable file name) replaced by escapes."""
     return text.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
@@ -90,27 +90,27 @@ def report_schema() -> dict[str, Any]:
     """The JSON Schema (2020-12) of `reports_to_json`."""
     position = {"type": ["integer", "null"], "minimum": 1}
     diagnostic = _closed_object(
-        "One finding.",
+        "One diagnostic.",
         {
             "code": {
                 "type": "string",
                 "pattern": "^[a-z0-9]+(-[a-z0-9]+)*$",
-                "description": "What is wrong: a permanent name, never used for anything else. One that begins with "
-                f"'{OWN_PREFIX}' is advice of this parser, which no clause of the specification asks for.",
+                "description": "A permanent name of the error, never used for anything else. A code that begins with "
+                f"'{OWN_PREFIX}' is advice of this parser, which no clause of the specification requires.",
                 "examples": ["unknown-frame"],
             },
             "severity": {
                 "enum": [severity.value for severity in Severity],
-                "description": "An error is against a MUST of the specification, a warning against a SHOULD or advice.",
+                "description": "An error violates a MUST of the specification; a warning, a SHOULD, or it is advice.",
             },
             "phase": {
                 "enum": [phase.value for phase in Phase],
-                "description": "Where in the reading it was found; an error keeps later phases from being judged.",
+                "description": "The phase that reports it; an error can prevent later phases from running.",
             },
             "clause": {
                 "type": ["string", "null"],
                 "pattern": "^EU-[A-Z]{3}-[0-9]{3}$",
-                "description": "Id of the clause of the specification that is not met; null for advice.",
+                "description": "Id of the violated clause of the specification; null for advice.",
                 "examples": ["EU-FRM-001"],
             },
             "message": {
@@ -120,19 +120,19 @@ def report_schema() -> dict[str, Any]:
             },
             "hint": {
                 "type": ["string", "null"],
-                "description": "What would be right, where that can be told.",
+                "description": "What to do about it; null if unknown.",
                 "examples": ["did you mean 'rod_tip'?"],
             },
             "file": {
                 "type": "string",
-                "description": "Path of the file the finding is in, as given or relative to the working directory.",
+                "description": "Path of the file, as given or relative to the working directory.",
                 "examples": ["robots/four_bar/robot.yaml"],
             },
-            "line": {**position, "description": "Line, from 1; null for the file as a whole."},
-            "column": {**position, "description": "Column, from 1, in Unicode code points; null where not known."},
+            "line": {**position, "description": "Line, from 1; null for the whole file."},
+            "column": {**position, "description": "Column, from 1, in Unicode code points; null if unknown."},
             "end_column": {
                 **position,
-                "description": "Column just after the last character meant, on the same line; null where not known.",
+                "description": "Column after the last character of the place, on the same line; null if unknown.",
             },
             "pointer": {
                 "type": "string",
@@ -142,18 +142,22 @@ def report_schema() -> dict[str, Any]:
         },
     )
     robot = _closed_object(
-        "The findings on one robot.",
+        "The diagnostics of one robot.",
         {
             "path": {
                 "type": "string",
-                "description": "The robot, as it was named: a folder, a file, or a name of the collection.",
+                "description": "The robot as given: a folder, a file, or a name of the collection.",
                 "examples": ["robots/four_bar"],
             },
             "ok": {
                 "type": "boolean",
-                "description": "Whether the robot passes: no error and, in a strict check, no warning either.",
+                "description": "Whether the robot passes: no error and, in a strict check, no warning.",
             },
-            "diagnostics": {"type": "array", "items": diagnostic, "description": "The findings, in the order found."},
+            "diagnostics": {
+                "type": "array",
+                "items": diagnostic,
+                "description": "The diagnostics, in the order found.",
+            },
         },
     )
     return {
@@ -164,7 +168,7 @@ def report_schema() -> dict[str, Any]:
             {
                 "version": {"const": REPORT_VERSION, "description": "Version of this form."},
                 "ok": {"type": "boolean", "description": "Whether every robot passes."},
-                "robots": {"type": "array", "items": robot, "description": "One entry a robot."},
+                "robots": {"type": "array", "items": robot, "description": "One entry for each robot."},
             },
         ),
     }

@@ -1,4 +1,4 @@
-"""Findings as a SARIF 2.1.0 log, the form in which code hosts and editors take them."""
+"""Diagnostics as a SARIF 2.1.0 log, for code hosts and editors."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from eurdf.diagnostics.report import Report, encodable
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 
-# What a viewer would take for a link, "[text](target)", or for a placeholder, "{0}".
+# Characters that a viewer would read as a link, "[text](target)", or as a placeholder, "{0}".
 _LINK = re.compile(r"\[(?=[^\[\]]*\]\()")
 _BRACE = re.compile(r"[{}]")
 
 
 def sarif_log(reports: Iterable[Report], version: str, folder: str | None = None) -> dict[str, Any]:
-    """One log with one run that holds the findings on all robots.
+    """One log with one run that contains the diagnostics of all robots.
 
     Args:
-        reports: One a robot. A finding that several of them share (on a URDF that they have in common) stands once.
+        reports: One for each robot. A diagnostic of a URDF that several robots share occurs once.
         version: Version of eurdf.
-        folder: Folder that paths are made relative to; the working directory by default. A file outside of it keeps
-            its absolute path.
+        folder: Paths are relative to this folder; the working directory by default. A file outside of it has an
+            absolute path.
     """
     found = list(dict.fromkeys(found for report in reports for found in report.diagnostics))
     used = {one.code for one in found}

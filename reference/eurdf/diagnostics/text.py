@@ -1,6 +1,6 @@
-"""Findings as a person reads them: where, what, the line itself with the place marked, and what would be right.
+"""Diagnostics as text: place, message, the source line with the place marked, and the hint.
 
-Everything is made as lines of styled pieces; whoever writes them decides whether the styles are kept.
+The result is lines of styled pieces; the caller decides whether to keep the styles.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from eurdf.diagnostics.report import Report
 #: The pieces of one line, each with a rich style (empty for none).
 Line = list[tuple[str, str]]
 
-#: Columns given to the text of a source line where no terminal says how many there are.
+#: Columns for the text of a source line if there is no terminal.
 SOURCE_WIDTH = 96
 
 _LONGEST_MESSAGE = 1000
-# Files are read once more to show their lines. No reader takes a larger one than this.
+# Files are read again to show their lines. Larger files than this are never accepted.
 _LARGEST_FILE = 64 * 2**20
 _BREAK = re.compile("\r\n?|\n")
 _ELLIPSIS = "..."
@@ -32,12 +32,12 @@ _COLOR = {Severity.ERROR: "red", Severity.WARNING: "yellow"}
 
 
 def report_lines(report: Report, width: int = SOURCE_WIDTH, bar: str = "|") -> Iterator[Line]:
-    """The findings on one robot, by file and position.
+    """The diagnostics of one robot, by file and position.
 
     Args:
-        report: What was found.
-        width: Columns given to the text of a source line.
-        bar: What stands between line numbers and lines.
+        report: The diagnostics.
+        width: Columns for the text of a source line.
+        bar: Separator between line numbers and lines.
     """
     texts: dict[str, list[str]] = {}
     for found in _by_position(report.diagnostics):
@@ -67,14 +67,14 @@ def total_line(reports: Sequence[Report], strict: bool = False) -> Line:
 
 
 def visible(text: str) -> str:
-    r"""The text with every character that is not seen, or that steers a terminal, as its escape (``\x1b``)."""
+    r"""The text with invisible and control characters replaced by escapes (``\x1b``)."""
     if text.isprintable():
         return text
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
 
 
 def cells(text: str) -> int:
-    """Number of terminal columns that a text without control characters takes."""
+    """Number of terminal columns of a text without control characters."""
     if text.isascii():
         return len(text)
     return sum(_cells_of(c) for c in text)
@@ -129,20 +129,20 @@ def _excerpt_lines(found: Diagnostic, texts: dict[str, list[str]], width: int, b
 
 
 def _clip(text: str, start: int | None, end: int | None, width: int) -> tuple[str, int, int]:
-    """The part of a line that is shown.
+    """The part of a line to show.
 
     Args:
         text: The line.
-        start: Index of the first character meant; None for the line as a whole.
-        end: Index after the last one; None where only the first is known.
-        width: Columns there are.
+        start: Index of the first character of the place; None for the whole line.
+        end: Index after its last character; None if only the first is known.
+        width: Available columns.
 
     Returns:
-        The text shown, the column in it at which the place starts (from 0), the columns that the place takes.
+        The text to show, the column in it at which the place starts (from 0), and the width of the place in columns.
     """
     start = min(max(start or 0, 0), len(text))
     end = min(max(end or 0, start + 1), len(text))
-    # No character shown takes less than a column, but for combining marks: the rest of a huge line is never looked at.
+    # Each visible character except combining marks takes at least one column, so the rest of a huge line is ignored.
     low, high = max(0, start - width), min(len(text), start + width)
     pieces = [_TAB if c == "\t" else visible(c) for c in text[low:high]]
     sizes = [cells(piece) for piece in pieces]
