@@ -11,7 +11,7 @@ from eurdf.kinematics.array import Indices, Matrix, Vector
 from eurdf.kinematics.constraints import KINDS
 from eurdf.kinematics.constraints.kind import Kind, State
 from eurdf.kinematics.derived import derived
-from eurdf.kinematics.tree_kinematics import FramePairs, RelativeMotions, TreeKinematics
+from eurdf.kinematics.tree_kinematics import PairMemory, RelativeMotions, TreeKinematics
 from eurdf.mechanism.constraint import Constraint
 
 if TYPE_CHECKING:
@@ -33,19 +33,18 @@ class ConstraintStack:
         self, tree: TreeKinematics, constraints: Sequence[Constraint], velocities: Indices | None = None
     ) -> None:
         """Stack the constraints of a tree; ``velocities`` (n,) are indices in v, all if None."""
-        self._tree = tree
         self.constraints = tuple(constraints)
-        self._velocities = velocities
         self.n = tree.nv if velocities is None else len(velocities)
-        self._anchors: list[Any] = []
+        anchors: list[Any] = []
         members: dict[type[Constraint], list[tuple[Any, Any, Any]]] = {}  # index, pair and rows of each
         self.m = 0
         for index, constraint in enumerate(constraints):
             rows = slice(self.m, self.m + constraint.rows)
-            members.setdefault(type(constraint), []).append((index, len(self._anchors), rows))
+            members.setdefault(type(constraint), []).append((index, len(anchors), rows))
             self.m = rows.stop
             if constraint.anchors:
-                self._anchors.append(constraint.anchors)
+                anchors.append(constraint.anchors)
+        self._pairs = tree.pairs(anchors, velocities)
         columns = np.arange(tree.nv) if velocities is None else velocities
         #: Each kind, the indices of its constraints, and its rows (k r,).
         self._kinds: list[tuple[Kind[Any], list[int], Indices]] = []
@@ -55,11 +54,11 @@ class ConstraintStack:
             of_kind = np.concatenate([np.arange(each.start, each.stop) for each in slices])
             self._kinds.append((kind, indices, of_kind))
 
-    def memory(self, data: Any = None) -> FramePairs:
-        """Memory to evaluate the constraints in; ``data`` as in `TreeKinematics.pairs`."""
-        return self._tree.pairs(self._anchors, self._velocities, data)
+    def memory(self, data: Any = None) -> PairMemory:
+        """Memory to evaluate the constraints in; ``data`` as in `FramePairs.memory`."""
+        return self._pairs.memory(data)
 
-    def at(self, q: Vector, memory: FramePairs) -> State:
+    def at(self, q: Vector, memory: PairMemory) -> State:
         """The constraints at q (nq,); another configuration in the same memory makes the state invalid."""
         return State(q, memory.placements(q), memory)
 
@@ -78,7 +77,7 @@ class ConstraintStack:
 
     def drift(self, q: Vector, v: Vector, data: Any) -> Vector:
         """K̇ v (m,) at q (nq,) and v (nv,); ``data`` is memory of the whole tree."""
-        motions = RelativeMotions(*self._tree.relative_motions(self._anchors, q, v, data))
+        motions = RelativeMotions(*self._pairs.motions(q, v, data))
         return self._stacked([kind.drift(motions).ravel() for kind, _, _ in self._kinds])
 
     def scale(self, length: float) -> Vector:

@@ -36,7 +36,7 @@ class Evaluation:
             group: The group.
             row_scale: Factors (nc,) that make the rows of the residual of the whole robot free of unit.
             velocity_scale: Unit (nv,) of each velocity of the robot.
-            data: Memory as in `TreeKinematics.pairs`. Groups that go from one configuration to the next together may
+            data: Memory as in `FramePairs.memory`. Groups that go from one configuration to the next together may
                 share it.
         """
         self.group = group

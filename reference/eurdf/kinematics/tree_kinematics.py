@@ -52,11 +52,8 @@ class RelativeMotions(NamedTuple):
     alpha: Matrix
 
 
-class FramePairs(Protocol):
-    """Memory in which the relative poses of pairs of frames A, B are computed, at one configuration after the other.
-
-    Different threads take different ones.
-    """
+class PairMemory(Protocol):
+    """Memory in which the relative poses of pairs of frames A, B are computed, at one configuration after the other."""
 
     def placements(self, q: Vector) -> Sequence[Any]:
         """ᴬM_B of each pair at q (nq,), as `pin.SE3`."""
@@ -70,6 +67,24 @@ class FramePairs(Protocol):
 
         Returns:
             The derivative (k r, n) of all rows, stacked, by the velocities that the pairs were asked for with.
+        """
+
+
+class FramePairs(Protocol):
+    """Pairs of frames A, B. Threads may share it, each with memory of its own."""
+
+    def memory(self, data: Any = None) -> PairMemory:
+        """Memory to compute in.
+
+        Args:
+            data: Memory of the whole tree, as `TreeKinematics.memory` makes; without it, time and memory are linear in
+                the joints between the frames.
+        """
+
+    def motions(self, q: Vector, v: Vector, data: Any) -> tuple[Matrix, Matrix, Matrix, Matrix, Matrix, Matrix]:
+        """How the pairs move at q (nq,) while every joint keeps its velocity v (nv,): see `RelativeMotions`.
+
+        ``data`` is memory of the whole tree.
         """
 
 
@@ -120,22 +135,8 @@ class TreeKinematics(Protocol):
             ValueError: The joint has none, or several.
         """
 
-    def pairs(
-        self, anchors: Sequence[tuple[Anchor, Anchor]], velocities: Indices | None, data: Any = None
-    ) -> FramePairs:
-        """Memory to compute the relative poses of pairs of frames in.
-
-        Args:
-            anchors: The pairs.
-            velocities: Indices in v of the columns of the Jacobian; all if None.
-            data: Memory of the whole tree, as `memory` makes; without it, time and memory are linear in the joints
-                between the frames.
-        """
+    def pairs(self, anchors: Sequence[tuple[Anchor, Anchor]], velocities: Indices | None) -> FramePairs:
+        """Pairs of frames; ``velocities`` (n,) are the indices in v of the columns of their Jacobian, all if None."""
 
     def memory(self) -> Any:
         """Memory of the whole tree, which takes some 8 nv³ numbers, and saves time for small trees."""
-
-    def relative_motions(
-        self, anchors: Sequence[tuple[Anchor, Anchor]], q: Vector, v: Vector, data: Any
-    ) -> tuple[Matrix, Matrix, Matrix, Matrix, Matrix, Matrix]:
-        """How pairs of frames move at q (nq,) while every joint keeps its velocity v (nv,): see `RelativeMotions`."""

@@ -6,6 +6,7 @@ in time and memory linear in their number.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -34,21 +35,121 @@ class Site(NamedTuple):
 Pair = tuple[Site, Site]
 
 
-class DataPairs:
-    """Through a `pin.Data`, for small models without mimic joints: nearly all is done by Pinocchio."""
+class FramePairs:
+    """Pairs of frames A, B of one model, and what does not depend on a configuration. Threads may share it."""
 
-    def __init__(self, model: pin.Model, pairs: Sequence[Pair], velocities: Indices | None, data: pin.Data) -> None:
-        """``velocities`` (n,) are indices in v, all if None; ``data`` is of the model."""
-        self._model, self._data = model, data
-        self._constraints, self._datas = pin.StdVec_RigidConstraintModel(), pin.StdVec_RigidConstraintData()
-        for a, b in pairs:
-            # Also where only positions matter all six rows: they turn with A.
-            self._constraints.append(
-                pin.RigidConstraintModel(pin.ContactType.CONTACT_6D, model, *a, *b, pin.ReferenceFrame.LOCAL)
+    def __init__(self, model: pin.Model, pairs: Sequence[Pair], velocities: Indices | None) -> None:
+        """``velocities`` (n,) are the indices in v of the columns of the Jacobian, all if None."""
+        self.model = model
+        self.pairs = pairs
+        self.velocities = velocities
+
+    def memory(self, data: pin.Data | None = None) -> DataMemory | PathMemory:
+        """Memory to compute in: ``data``, of the whole model, or without it the joints between the frames alone."""
+        # Mimic joints have columns of their own in Pinocchio's Jacobians, which only the paths add to their leaders'.
+        if data is None or self.model.nv < self.model.nvExtended:
+            return PathMemory(self)
+        return DataMemory(self, data)
+
+    def motions(self, q: Vector, v: Vector, data: pin.Data) -> tuple[Matrix, Matrix, Matrix, Matrix, Matrix, Matrix]:
+        """See `eurdf.kinematics.tree_kinematics.FramePairs`.
+
+        With V and A the twists and spatial accelerations of the frames, each in its own axes, and M = ᴬM_B, the twist
+        of B in A is ξ = V_B - Ad(M⁻¹) V_A, and ξ̇ = A_B - Ad(M⁻¹) A_A + ξ × Ad(M⁻¹) V_A.
+        """
+        pin.forwardKinematics(self.model, data, q, v, np.zeros(self.model.nv))
+        k = len(self.pairs)
+        R, p, own = np.empty((k, 3, 3)), np.empty((k, 3)), np.empty((k, 4, 3))
+        for index, (a, b) in enumerate(self.pairs):
+            oMa, twist_a, acceleration_a = _motion(data, a)
+            oMb, twist_b, acceleration_b = _motion(data, b)
+            aMb = oMa.actInv(oMb)
+            carried = aMb.actInv(twist_a)
+            twist = twist_b - carried
+            acceleration = acceleration_b - aMb.actInv(acceleration_a) + twist.cross(carried)
+            R[index], p[index] = aMb.rotation, aMb.translation
+            # The linear part of ξ̇ lacks what turns with B.
+            linear = acceleration.linear + pin.skew(twist.angular) @ twist.linear
+            own[index] = twist.linear, twist.angular, linear, acceleration.angular
+        velocity, omega, acceleration, alpha = np.swapaxes(own @ np.swapaxes(R, 1, 2), 0, 1)
+        return R, p, velocity, omega, acceleration, alpha
+
+    @cached_property
+    def constraints(self) -> Any:
+        """For each pair a constraint model of all six rows, also where only positions matter: they turn with A."""
+        constraints = pin.StdVec_RigidConstraintModel()
+        for a, b in self.pairs:
+            constraints.append(
+                pin.RigidConstraintModel(pin.ContactType.CONTACT_6D, self.model, *a, *b, pin.ReferenceFrame.LOCAL)
             )
-            self._datas.append(self._constraints[-1].createData())
+        return constraints
+
+    @cached_property
+    def joints(self) -> list[tuple[int, int, Any, Any, slice]]:
+        """Of each joint between frames: its index, its parent, its placement, itself, and its columns in J."""
+        model, found, first = self.model, [], 0
+        for joint in sorted(set().union(*self._signs)):
+            moving = model.joints[joint]
+            columns = slice(first, first + moving.nvExtended)
+            found.append((joint, self._parents[joint], pin.SE3(model.jointPlacements[joint]), moving, columns))
+            first = columns.stop
+        return found
+
+    @cached_property
+    def columns(self) -> list[tuple[Indices, Vector, Indices, bool]]:
+        """Of each pair its columns in J, their signs, their columns in K, and whether one of these occurs twice.
+
+        Columns of velocities that were not asked for are left out.
+        """
+        wanted = range(self.model.nv) if self.velocities is None else self.velocities.tolist()
+        column = {velocity: index for index, velocity in enumerate(wanted)}
+        moved_by = {
+            joint: list(zip(range(columns.start, columns.stop), itertools.count(moving.idx_v)))
+            for joint, _, _, moving, columns in self.joints
+        }
+        found = []
+        for signs in self._signs:
+            entries = [
+                (in_J, sign, column[velocity])
+                for joint, sign in sorted(signs.items())
+                for in_J, velocity in moved_by[joint]
+                if velocity in column
+            ]
+            in_J, sign, in_K = ([entry[k] for entry in entries] for k in range(3))
+            twice = len(set(in_K)) < len(in_K)  # where a joint mimics another one of the path
+            found.append((np.array(in_J, np.intp), np.array(sign), np.array(in_K, np.intp), twice))
+        return found
+
+    @cached_property
+    def _parents(self) -> list[int]:
+        return list(self.model.parents.tolist())
+
+    @cached_property
+    def _signs(self) -> list[dict[int, float]]:
+        """Of each pair the joints between the frames: +1 for those that move B against A, -1 for the others."""
+        parents, found = self._parents, []
+        for (joint_a, _), (joint_b, _) in self.pairs:
+            signs = {}
+            while joint_a != joint_b:
+                if joint_a > joint_b:  # a parent has a lower index than its child
+                    signs[joint_a], joint_a = -1.0, parents[joint_a]
+                else:
+                    signs[joint_b], joint_b = 1.0, parents[joint_b]
+            found.append(signs)
+        return found
+
+
+class DataMemory:
+    """A `pin.Data`, for small models without mimic joints: nearly all is done by Pinocchio."""
+
+    def __init__(self, pairs: FramePairs, data: pin.Data) -> None:
+        self._model, self._data, self._constraints = pairs.model, data, pairs.constraints
+        self._datas = pin.StdVec_RigidConstraintData()
+        for constraint in self._constraints:
+            self._datas.append(constraint.createData())
         self._each = list(zip(self._constraints, self._datas, strict=True))
-        self._velocities = None if velocities is None or len(velocities) == model.nv else velocities
+        everything = pairs.velocities is None or len(pairs.velocities) == self._model.nv
+        self._velocities = None if everything else pairs.velocities
         self._J: Matrix | None = None
 
     def placements(self, q: Vector) -> list[Any]:
@@ -60,7 +161,7 @@ class DataPairs:
         return [data.c1Mc2 for _, data in self._each]
 
     def jacobian(self, rows: Matrix, which: Sequence[int]) -> Matrix:
-        """See `eurdf.kinematics.tree_kinematics.FramePairs`."""
+        """See `eurdf.kinematics.tree_kinematics.PairMemory`."""
         if self._J is None:
             J = pin.getConstraintsJacobian(self._model, self._data, self._constraints, self._datas)
             self._J = J.reshape(len(self._each), 6, -1)  # of the twist of A against B
@@ -70,81 +171,44 @@ class DataPairs:
         return K if self._velocities is None else np.asarray(K[:, self._velocities])
 
 
-class PathPairs:
-    """Along the joints between the frames, seen from where they leave the rest of the tree."""
+class PathMemory:
+    """The joints between the frames alone, seen from where they leave the rest of the tree."""
 
-    def __init__(self, model: pin.Model, pairs: Sequence[Pair], velocities: Indices | None) -> None:
-        """``velocities`` (n,) are indices in v, all if None."""
-        parents = model.parents.tolist()
+    def __init__(self, pairs: FramePairs) -> None:
         self._pairs = pairs
-        self._signs = [_signs(a.joint, b.joint, parents) for a, b in pairs]
-        self._joints: list[tuple[int, int, Any, Any, Any, slice]] = []
-        self._moved_by: dict[int, tuple[range, range]] = {}  # columns in J and velocities, by joint
-        first = 0
-        for joint in sorted(set().union(*self._signs)):
-            moving = model.joints[joint]
-            columns = slice(first, first + moving.nvExtended)
-            placement = pin.SE3(model.jointPlacements[joint])
-            self._joints.append((joint, parents[joint], placement, moving, moving.createData(), columns))
-            self._moved_by[joint] = range(first, columns.stop), range(moving.idx_v, moving.idx_v + moving.nvExtended)
-            first = columns.stop
-        self._J = np.zeros((6, first))
+        self._datas = [moving.createData() for _, _, _, moving, _ in pairs.joints]
+        self._J = np.zeros((6, pairs.joints[-1][-1].stop if pairs.joints else 0))
         self._oMa: list[Any] = []
-        self._velocities = range(model.nv) if velocities is None else velocities.tolist()
-
-    @cached_property
-    def _columns(self) -> list[tuple[Indices, Vector, Indices, bool]]:
-        """Of each pair its columns in J, their signs, their columns in K, and whether one of these occurs twice.
-
-        Columns of velocities that were not asked for are left out.
-        """
-        column = {velocity: index for index, velocity in enumerate(self._velocities)}
-        found = []
-        for signs in self._signs:
-            entries = [
-                (in_J, sign, column[velocity])
-                for joint, sign in sorted(signs.items())
-                for in_J, velocity in zip(*self._moved_by[joint], strict=True)
-                if velocity in column
-            ]
-            in_J, sign, in_K = ([entry[k] for entry in entries] for k in range(3))
-            twice = len(set(in_K)) < len(in_K)  # where a joint mimics another one of the path
-            found.append((np.array(in_J, np.intp), np.array(sign), np.array(in_K, np.intp), twice))
-        return found
 
     def placements(self, q: Vector) -> list[Any]:
         """ᴬM_B of each pair at q (nq,)."""
         placements: dict[int, Any] = {}
         still = pin.SE3.Identity()
-        for joint, parent, placement, moving, data, columns in self._joints:
+        for (joint, parent, placement, moving, columns), data in zip(self._pairs.joints, self._datas, strict=True):
             moving.calc(data, q)
             oMi = placements[joint] = placements.get(parent, still) * placement * data.M
             self._J[:, columns] = oMi.toActionMatrix() @ data.S.reshape(6, -1)
-        self._oMa = [placements.get(a.joint, still) * a.placement for a, _ in self._pairs]
+        self._oMa = [placements.get(a.joint, still) * a.placement for a, _ in self._pairs.pairs]
         return [
             oMa.actInv(placements.get(b.joint, still) * b.placement)
-            for oMa, (_, b) in zip(self._oMa, self._pairs, strict=True)
+            for oMa, (_, b) in zip(self._oMa, self._pairs.pairs, strict=True)
         ]
 
     def jacobian(self, rows: Matrix, which: Sequence[int]) -> Matrix:
-        """See `eurdf.kinematics.tree_kinematics.FramePairs`."""
-        K = np.zeros((*rows.shape[:2], len(self._velocities)))
+        """See `eurdf.kinematics.tree_kinematics.PairMemory`."""
+        n = self._pairs.model.nv if self._pairs.velocities is None else len(self._pairs.velocities)
+        K = np.zeros((*rows.shape[:2], n))
         for own, index, part in zip(rows, which, K, strict=True):
-            in_J, signs, in_K, twice = self._columns[index]
+            in_J, signs, in_K, twice = self._pairs.columns[index]
             block = own @ self._oMa[index].toActionMatrixInverse() @ (self._J[:, in_J] * signs)
             if twice:
                 np.add.at(part.T, in_K, block.T)
             else:
                 part[:, in_K] = block
-        return K.reshape(K.shape[0] * K.shape[1], K.shape[2])
+        return K.reshape(K.shape[0] * K.shape[1], n)
 
 
-def _signs(joint_a: int, joint_b: int, parents: Sequence[int]) -> dict[int, float]:
-    """The joints between two, without the common ancestor: +1 for those that move B against A, -1 for the others."""
-    signs = {}
-    while joint_a != joint_b:
-        if joint_a > joint_b:  # a parent has a lower index than its child
-            signs[joint_a], joint_a = -1.0, parents[joint_a]
-        else:
-            signs[joint_b], joint_b = 1.0, parents[joint_b]
-    return signs
+def _motion(data: pin.Data, site: Site) -> tuple[Any, Any, Any]:
+    """Placement in the world of a frame, and its twist and spatial acceleration in its own axes."""
+    joint, placement = site
+    return data.oMi[joint] * placement, placement.actInv(data.v[joint]), placement.actInv(data.a[joint])

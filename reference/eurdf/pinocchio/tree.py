@@ -14,11 +14,9 @@ import pinocchio as pin
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.coordinates import slots
-from eurdf.pinocchio.frame_pairs import DataPairs, Indices, Matrix, PathPairs, Site, Vector
+from eurdf.pinocchio.frame_pairs import FramePairs, Indices, Matrix, Site, Vector
 from eurdf.pinocchio.frames import body_frame_ids
 from eurdf.pinocchio.placement import placement_of
-
-_AFTER, _BEFORE = [1, 2, 0], [2, 0, 1]
 
 
 class Coordinate(NamedTuple):
@@ -114,15 +112,9 @@ class PinocchioTree:
         """A `pin.Data`."""
         return self.model.createData()
 
-    def pairs(
-        self, anchors: Sequence[tuple[Anchor, Anchor]], velocities: Indices | None, data: pin.Data | None = None
-    ) -> DataPairs | PathPairs:
+    def pairs(self, anchors: Sequence[tuple[Anchor, Anchor]], velocities: Indices | None) -> FramePairs:
         """See `eurdf.kinematics.tree_kinematics.TreeKinematics`."""
-        pairs = self._located(anchors)
-        # Joints that mimic have columns of their own in Pinocchio's Jacobians, which only the paths add up.
-        if data is None or self.model.nv < self.model.nvExtended:
-            return PathPairs(self.model, pairs, velocities)
-        return DataPairs(self.model, pairs, velocities, data)
+        return FramePairs(self.model, [(self.site(a), self.site(b)) for a, b in anchors], velocities)
 
     def jacobian_along(self, joints: Sequence[int], q: Vector) -> Matrix:
         """The world Jacobian (6, nvExtended) at q (nq,), zero but in the columns of the joints and of their ancestors.
@@ -145,31 +137,6 @@ class PinocchioTree:
             J[:, first : first + moving.nvExtended] = oMi.toActionMatrix() @ data.S.reshape(6, -1)
         return J
 
-    def relative_motions(
-        self, anchors: Sequence[tuple[Anchor, Anchor]], q: Vector, v: Vector, data: pin.Data
-    ) -> tuple[Matrix, Matrix, Matrix, Matrix, Matrix, Matrix]:
-        """See `eurdf.kinematics.tree_kinematics.TreeKinematics`.
-
-        Source: the classical formulae of relative motion, in a frame A that turns and accelerates.
-        """
-        pin.forwardKinematics(self.model, data, q, v, np.zeros(self.model.nv))
-        pairs = self._located(anchors)
-        R, p_a, v_a, omega_a, a_a, alpha_a = _motions(data, [a for a, _ in pairs])
-        R_b, p_b, v_b, omega_b, a_b, alpha_b = _motions(data, [b for _, b in pairs])
-        p, omega = p_b - p_a, omega_b - omega_a
-        turning = _cross(omega_a, p)
-        velocity = v_b - v_a - turning
-        acceleration = a_b - a_a - _cross(alpha_a, p) - _cross(omega_a, turning) - 2.0 * _cross(omega_a, velocity)
-        alpha = alpha_b - alpha_a - _cross(omega_a, omega)
-        inward = np.swapaxes(R, 1, 2)
-        p, velocity, omega, acceleration, alpha = (
-            (inward @ each[:, :, None])[:, :, 0] for each in (p, velocity, omega, acceleration, alpha)
-        )
-        return inward @ R_b, p, velocity, omega, acceleration, alpha
-
-    def _located(self, anchors: Sequence[tuple[Anchor, Anchor]]) -> list[tuple[Site, Site]]:
-        return [(self.site(a), self.site(b)) for a, b in anchors]
-
 
 def build_tree(mechanism: Mechanism, model: pin.Model) -> PinocchioTree:
     """The tree of a mechanism; ``model`` is what `build_model` made of it."""
@@ -184,29 +151,3 @@ def build_tree(mechanism: Mechanism, model: pin.Model) -> PinocchioTree:
 
 def _ranges(first: Sequence[int], count: Sequence[int]) -> list[range]:
     return [range(start, start + number) for start, number in zip(first, count, strict=True)]
-
-
-def _motions(data: pin.Data, sites: Sequence[Site]) -> tuple[Matrix, Matrix, Matrix, Matrix, Matrix, Matrix]:
-    """Of frames in the world, k: orientation, origin, its velocity, angular velocity, acceleration, angular one."""
-    k = len(sites)
-    R, numbers = np.empty((k, 3, 3)), np.empty((k, 6, 3))
-    for index, (joint, placement) in enumerate(sites):
-        oMi, twist, acceleration = data.oMi[joint], data.v[joint], data.a[joint]
-        R[index] = oMi.rotation
-        numbers[index, :3] = placement.translation, twist.linear, twist.angular
-        numbers[index, 3:] = acceleration.linear, acceleration.angular, oMi.translation
-    c, v, omega, a, alpha, origin = (numbers[:, index] for index in range(6))
-    outward = (
-        c,
-        v + _cross(omega, c),
-        omega,
-        a + _cross(omega, v) + _cross(alpha, c) + _cross(omega, _cross(omega, c)),
-        alpha,
-    )
-    turned = np.array([placement.rotation for _, placement in sites]).reshape(k, 3, 3)
-    c, v, omega, a, alpha = ((R @ each[:, :, None])[:, :, 0] for each in outward)
-    return R @ turned, origin + c, v, omega, a, alpha
-
-
-def _cross(a: Matrix, b: Matrix) -> Matrix:
-    return np.asarray(a[:, _AFTER] * b[:, _BEFORE] - a[:, _BEFORE] * b[:, _AFTER])

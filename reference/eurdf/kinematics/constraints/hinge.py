@@ -101,7 +101,7 @@ def _plane_across(a: Vector) -> Matrix:
     """E (3, 2): what the shortest rotation that takes z to a makes of x and y; of -z, the half turn about x."""
     if a[2] < -1.0 + 1e-9 and math.hypot(a[0], a[1]) < 1e-9:
         return np.array([[1.0, 0.0], [0.0, -1.0], [0.0, 0.0]])
-    turn = skew(np.array([-a[1], a[0], 0.0]))
+    (turn,) = skew(np.array([[-a[1], a[0], 0.0]]))
     return np.asarray((np.eye(3) + turn + turn @ turn / (1.0 + a[2]))[:, :2])
 
 

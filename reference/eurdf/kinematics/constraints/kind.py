@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Generic, TypeVar
 import numpy as np
 
 from eurdf.kinematics.array import Indices, Matrix, Vector
-from eurdf.kinematics.tree_kinematics import FramePairs, RelativeMotions, TreeKinematics
+from eurdf.kinematics.tree_kinematics import PairMemory, RelativeMotions, TreeKinematics
 from eurdf.mechanism.constraint import Closure, Constraint
 
 AnyConstraint = TypeVar("AnyConstraint", bound=Constraint)
@@ -24,12 +24,12 @@ class State:
     Attributes:
         q: The configuration (nq,).
         placements: ᴬM_B of each pair of frames of the stack there, as `pin.SE3`.
-        pairs: Where they were computed.
+        memory: Where they were computed.
     """
 
     q: Vector
     placements: Sequence[Any]
-    pairs: FramePairs
+    memory: PairMemory
 
 
 class Kind(ABC, Generic[AnyConstraint]):
@@ -94,7 +94,7 @@ class Closures(Kind[AnyClosure]):
 
     def jacobian(self, at: State) -> Matrix:
         """See `Kind`."""
-        return at.pairs.jacobian(self.rows_of_twist(self._placements(at)), self.which)
+        return at.memory.jacobian(self.rows_of_twist(self._placements(at)), self.which)
 
     def drift(self, motions: RelativeMotions) -> Matrix:
         """See `Kind`."""

@@ -10,6 +10,7 @@ import numpy as np
 from eurdf.kinematics.array import Matrix, Vector
 
 _AFTER, _BEFORE = [1, 2, 0], [2, 0, 1]
+_EACH = np.arange(3)
 
 
 def cross(a: Matrix, b: Matrix) -> Matrix:
@@ -23,8 +24,13 @@ def dot(a: Matrix, b: Matrix) -> Vector:
 
 
 def skew(a: Matrix) -> Matrix:
-    """The matrices (…, 3, 3) that multiply b to a × b."""
-    return np.asarray(np.swapaxes(cross(a[..., None, :], np.eye(3)), -1, -2))
+    """The matrices (k, 3, 3) that multiply b to a × b, of vectors (k, 3)."""
+    x, y, z = a.T
+    matrices = np.zeros((len(a), 3, 3))
+    matrices[:, 2, 1], matrices[:, 1, 2] = x, -x
+    matrices[:, 0, 2], matrices[:, 2, 0] = y, -y
+    matrices[:, 1, 0], matrices[:, 0, 1] = z, -z
+    return matrices
 
 
 def origins(placements: Sequence[Any]) -> Matrix:
@@ -35,6 +41,6 @@ def origins(placements: Sequence[Any]) -> Matrix:
 def velocity_of_origin(p: Matrix) -> Matrix:
     """[1, -skew(p)] (k, 3, 6): ṗ over the twist of B against A, seen from A, where the origin of B is at p (k, 3)."""
     rows = np.zeros((len(p), 3, 6))
-    rows[:, :, :3] = np.eye(3)
+    rows[:, _EACH, _EACH] = 1.0
     rows[:, :, 3:] = -skew(p)
     return rows
