@@ -1,6 +1,6 @@
-"""What is wrong with the specification as a text: ``python -m spec.site.lint`` lists it, as ``file:line: message``.
+"""Errors in the text of the specification: ``python -m spec.site.lint`` lists them, as ``file:line: message``.
 
-Each rule is one function; what it finds bears its name, so that a finding can be looked up here.
+Each rule is one function. A finding ends with the name of its rule.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from spec.site.clause import (
 from spec.site.example import DESCRIPTIONS, FILES
 from spec.site.specification import Specification, Text, current_specification
 
-#: Languages that an example of a robot is written in.
+#: Languages of examples of a robot.
 EXAMPLE_LANGUAGES = frozenset({"yaml", "yml", "xml", "urdf"})
 
 _OPTIONS = {
@@ -42,7 +42,7 @@ _OPTIONS = {
     "diagnostic": {"file", "with", "place", "unshown"},
 }
 
-# Words of RFC 2119 that say the same as those that clauses use: one word for one thing.
+# Synonyms in RFC 2119 of the words that clauses use.
 _SYNONYM = re.compile(r"\b(?:SHALL|REQUIRED|RECOMMENDED|OPTIONAL)\b")
 _ROLE = re.compile(r"\{(clause|code)\}`([^`]*)`")
 _LINK = re.compile(r"(?<!\\)\[(?P<text>[^\[\]]*)\]\((?P<target>[^()\s]*(?:\([^()\s]*\)[^()\s]*)*)(?:\s+\"[^\"]*\")?\)")
@@ -56,7 +56,7 @@ _NUMBERED_HEADING = re.compile(r"^(?:[0-9]+\.)+[0-9]* |^[0-9]+ +[A-Z]")
 
 @dataclass(frozen=True, slots=True, order=True)
 class Finding:
-    """One thing that is wrong: where, what, and the name of the rule that says so."""
+    """One error: its place, its message and the name of its rule."""
 
     path: Path
     line: int
@@ -69,7 +69,7 @@ class Finding:
 
 
 def lint(spec: Specification) -> list[Finding]:
-    """Everything that is wrong with a specification, by place."""
+    """All errors in a specification, ordered by place."""
     return sorted(finding for rule in RULES for finding in rule(spec))
 
 
@@ -77,24 +77,26 @@ def id_form(spec: Specification) -> Iterator[Finding]:
     """An id is ``EU-``, three letters, and three digits."""
     for entry in _entries(spec):
         if not ID.fullmatch(entry.id):
-            yield _at(spec, entry, f"'{entry.id}' is no id: EU-, three capital letters, -, three digits", "id-form")
+            yield _at(
+                spec, entry, f"'{entry.id}' is not an id: use EU-, three capital letters, -, three digits", "id-form"
+            )
 
 
 def id_twice(spec: Specification) -> Iterator[Finding]:
-    """An id stands for one requirement."""
+    """An id belongs to one requirement."""
     seen: set[str] = set()
     for entry in _entries(spec):
         if entry.id in seen:
-            yield _at(spec, entry, f"{entry.id} stands twice", "id-twice")
+            yield _at(spec, entry, f"{entry.id} occurs twice", "id-twice")
         seen.add(entry.id)
 
 
 def id_listed(spec: Specification) -> Iterator[Finding]:
-    """An id that was given once is kept: it stands in the text, or is withdrawn there."""
+    """An id is never lost: the text states it or withdraws it."""
     present = {entry.id for entry in _entries(spec)}
     for number, given in enumerate(spec.ids, start=1):
         if given not in present:
-            message = f"{given} was given once and is gone: state it, or withdraw it with a {{withdrawn}} directive"
+            message = f"{given} was used before and is missing: state it, or withdraw it with a {{withdrawn}} directive"
             yield Finding(spec.ids_path, number, message, "id-lost")
     listed = set(spec.ids)
     for entry in _entries(spec):
@@ -104,11 +106,11 @@ def id_listed(spec: Specification) -> Iterator[Finding]:
 
 
 def id_informative(spec: Specification) -> Iterator[Finding]:
-    """A chapter that binds nobody has no clauses."""
+    """An informative chapter has no clauses."""
     for chapter in spec.chapters:
         if chapter.is_informative:
             for found in directives(chapter, "clause"):
-                message = f"{found.argument} stands in an informative chapter"
+                message = f"{found.argument} is in an informative chapter, which cannot have clauses"
                 yield Finding(chapter.path, found.line, message, "clause-informative")
 
 
@@ -125,7 +127,7 @@ def one_keyword(spec: Specification) -> Iterator[Finding]:
 
 
 def keyword_place(spec: Specification) -> Iterator[Finding]:
-    """Normative words stand in clauses only, and where they are defined; of synonyms only one is used."""
+    """Normative words occur only in clauses and where they are defined; their synonyms do not occur."""
     for text in spec.texts():
         if text.defines_words:
             continue
@@ -134,12 +136,12 @@ def keyword_place(spec: Specification) -> Iterator[Finding]:
             message = f"{match[0]}: clauses say MUST, SHOULD or MAY"
             yield _in(text, match.start(), message, "keyword-other")
         if "clause" not in text.inside and (words := keywords(text.text)):
-            message = f"{words[0]} outside a clause: nothing but clauses is normative"
+            message = f"{words[0]} outside a clause: only clauses are normative"
             yield _in(text, plain.index(words[0]), message, "keyword-outside")
 
 
 def options(spec: Specification) -> Iterator[Finding]:
-    """Directives have options that there are; a clause has a level, and versions that there are."""
+    """Directives have known options; a clause has a known level and known versions."""
     for chapter, found in _directives(spec, *_OPTIONS):
         for name in sorted(found.options.keys() - _OPTIONS[found.name]):
             message = f"a {{{found.name}}} has no option '{name}'"
@@ -156,28 +158,28 @@ def options(spec: Specification) -> Iterator[Finding]:
 
 
 def reasons(spec: Specification) -> Iterator[Finding]:
-    """What is not tested or not enforced says why."""
+    """A clause that is not tested or enforced, or a diagnostic that is not shown, states the reason."""
     for chapter, found in _directives(spec, "clause", "diagnostic"):
         for name in ("untested", "unenforced", "unshown"):
             if found.options.get(name) == "":
-                message = f"'{name}' says no reason"
+                message = f"'{name}' has no reason"
                 yield Finding(chapter.path, found.line, message, "reason-missing")
 
 
 def codes(spec: Specification) -> Iterator[Finding]:
-    """A diagnostic and the clause that it cites name one another; an error is against a MUST."""
+    """A diagnostic and its clause name each other; an error belongs to a MUST, a warning to a SHOULD."""
     for clause in spec.clauses:
         for code in clause.codes:
             rule = spec.codes.get(code)
             if rule is None:
-                yield _at(spec, clause, f"{clause.id} names '{code}', which is no diagnostic", "code-unknown")
+                yield _at(spec, clause, f"{clause.id} names '{code}', which is not a diagnostic", "code-unknown")
             elif rule.clause != clause.id:
                 message = f"{clause.id} names '{code}', which cites {rule.clause or 'no clause'}"
                 yield _at(spec, clause, message, "code-elsewhere")
             else:
                 word = "MUST" if rule.severity is Severity.ERROR else "SHOULD"
                 if clause.keyword.split()[:1] not in ([word], []):
-                    message = f"'{code}' is of severity {rule.severity}, but {clause.id} is no {word}"
+                    message = f"'{code}' has severity {rule.severity}, but {clause.id} has no {word}"
                     yield _at(spec, clause, message, "code-severity")
     for code, rule in spec.codes.items():
         if code.startswith(OWN_PREFIX) or rule.clause is None:
@@ -185,7 +187,7 @@ def codes(spec: Specification) -> Iterator[Finding]:
             continue
         cites = spec.by_id.get(rule.clause)
         if cites is None:
-            message = f"'{code}' cites {rule.clause}, which is no clause"
+            message = f"'{code}' cites {rule.clause}, which is not a clause"
             yield Finding(spec.codes_path, _line_of(spec.codes_path, code), message, "code-clause")
         elif code not in cites.codes:
             yield _at(spec, cites, f"{cites.id} does not name '{code}', which cites it", "code-unnamed")
@@ -202,38 +204,38 @@ def _own_code(spec: Specification, code: str, rule: Rule) -> Iterator[Finding]:
 
 
 def enforced(spec: Specification) -> Iterator[Finding]:
-    """A clause is enforced by a function of the reference, or says why not; functions cite clauses that there are."""
+    """A function of the reference enforces each clause, or the clause states why not; cited clauses exist."""
     enforcing = {citation.clause for citation in spec.functions}
     for clause in spec.clauses:
         if clause.id not in enforcing and clause.unenforced is None:
-            message = f"{clause.id} is enforced by no function of the reference, and does not say why"
+            message = f"{clause.id} is enforced by no function of the reference and has no 'unenforced' reason"
             yield _at(spec, clause, message, "clause-unenforced")
         elif clause.id in enforcing and clause.unenforced is not None:
             names = sorted(citation.source for citation in spec.functions if citation.clause == clause.id)
-            message = f"{clause.id} says that nothing enforces it, but {names[0]} does"
+            message = f"{clause.id} has an 'unenforced' reason, but {names[0]} enforces it"
             yield _at(spec, clause, message, "clause-enforced")
     for citation in spec.functions:
         yield from _unknown(spec, citation, "function-cites")
 
 
 def tested(spec: Specification) -> Iterator[Finding]:
-    """Where there is a suite, a case of it cites each clause, or the clause says why not."""
+    """If the suite is present, a case cites each clause, or the clause states why not."""
     if spec.cases is None:
         return
     testing = {citation.clause: citation.source for citation in spec.cases}
     for clause in spec.clauses:
         if clause.id not in testing and clause.untested is None and clause.level != "parser":
-            message = f"{clause.id} is cited by no case of the suite, and does not say why"
+            message = f"{clause.id} is cited by no case of the suite and has no 'untested' reason"
             yield _at(spec, clause, message, "clause-untested")
         elif clause.id in testing and clause.untested is not None:
-            message = f"{clause.id} says that it cannot be tested, but case {testing[clause.id]} does"
+            message = f"{clause.id} has an 'untested' reason, but case {testing[clause.id]} tests it"
             yield _at(spec, clause, message, "clause-tested")
     for citation in spec.cases:
         yield from _unknown(spec, citation, "case-cites")
 
 
 def roles(spec: Specification) -> Iterator[Finding]:
-    """Clauses and diagnostics are referred to by their roles, and exist."""
+    """References to clauses and diagnostics use their roles, and their targets exist."""
     known = {entry.id for entry in _entries(spec)}
     for text in spec.texts():
         for match in _ROLE.finditer(text.text):
@@ -247,7 +249,7 @@ def roles(spec: Specification) -> Iterator[Finding]:
 
 
 def links(spec: Specification) -> Iterator[Finding]:
-    """A link within the specification leads to a file that there is; one that leads out of it is an address."""
+    """An internal link leads to an existing file; an external link is an https address."""
     for text in spec.texts():
         plain = without_code(text.text)
         for match in [*_LINK.finditer(plain), *_AUTOLINK.finditer(plain)]:
@@ -255,24 +257,26 @@ def links(spec: Specification) -> Iterator[Finding]:
             address = urlsplit(target.removeprefix("path:"))
             if address.scheme or address.netloc:
                 if address.scheme != "mailto" and (address.scheme != "https" or "." not in address.netloc):
-                    yield _in(text, match.start(), f"'{target}' is no https address", "link-form")
+                    yield _in(text, match.start(), f"'{target}' is not an https address", "link-form")
             elif address.path and not (text.chapter.path.parent / address.path).exists():
                 yield _in(text, match.start(), f"there is no file '{address.path}'", "link-missing")
 
 
 def section_numbers(spec: Specification) -> Iterator[Finding]:
-    """Nothing is referred to by a number that another edition changes; the text of links to other documents may."""
+    """No reference uses a section number, except in the text of links to other documents."""
     for text in spec.texts():
         plain = _LINK.sub(_blank_if_external, without_code(text.text))
         for match in _SECTION_NUMBER.finditer(plain):
-            message = f"'{plain[match.start() : match.end()].strip()}…': refer by a link, a clause or a diagnostic"
+            message = (
+                f"'{plain[match.start() : match.end()].strip()}…': refer to it by a link, a clause or a diagnostic"
+            )
             yield _in(text, match.start(), message, "section-number")
         if text.is_heading and _NUMBERED_HEADING.match(text.text):
-            yield _in(text, 0, "a heading has no number", "section-number")
+            yield _in(text, 0, "remove the number from the heading", "section-number")
 
 
 def bare_examples(spec: Specification) -> Iterator[Finding]:
-    """A description or URDF that is shown is an example, so that it is checked."""
+    """Every description or URDF in the text is an ``{example}``, so that it is checked."""
     for chapter in spec.chapters:
         for block in walk(chapter.text):
             language = ""
@@ -286,7 +290,7 @@ def bare_examples(spec: Specification) -> Iterator[Finding]:
 
 
 def shown_codes(spec: Specification) -> Iterator[Finding]:
-    """Examples and diagnostics name codes, files and robots that there are; a diagnostic stands once."""
+    """Examples and diagnostics name existing codes, files and robots; each diagnostic occurs once."""
     seen: Counter[str] = Counter()
     for chapter, found in _directives(spec, "example", "diagnostic"):
         known = {"valid", *spec.codes} if found.name == "example" else set(spec.codes)
@@ -295,7 +299,7 @@ def shown_codes(spec: Specification) -> Iterator[Finding]:
             yield Finding(chapter.path, found.line, message, f"{found.name}-code")
         file = found.options.get("file", DESCRIPTIONS[0])
         if file not in FILES:
-            message = f"'{file}' is none of {', '.join(FILES)}"
+            message = f"'{file}' is not one of {', '.join(FILES)}"
             yield Finding(chapter.path, found.line, message, f"{found.name}-file")
         robot = found.options.get("with")
         if robot is not None and not (spec.examples / robot).is_dir():
@@ -309,17 +313,17 @@ def shown_codes(spec: Specification) -> Iterator[Finding]:
 
 
 def _edit_and_place(chapter: Chapter, found: Directive) -> Iterator[Finding]:
-    """A diagnostic is shown by one edit, or says why not; and it says what it points at."""
+    """A diagnostic is shown by one edit, or states why not, and states what it points at."""
     diffs = sum(isinstance(block, Code) and block.language == "diff" for block in read_blocks(found.body))
     if diffs != (0 if "unshown" in found.options else 1):
-        message = f"'{found.argument}' has {diffs} blocks of diff: one, or 'unshown' and none"
+        message = f"'{found.argument}' has {diffs} blocks of diff: use one, or none with 'unshown'"
         yield Finding(chapter.path, found.line, message, "diagnostic-diff")
     if not found.options.get("place"):
-        message = f"'{found.argument}' does not say what it points at: 'place'"
+        message = f"'{found.argument}' does not state what it points at: add 'place'"
         yield Finding(chapter.path, found.line, message, "diagnostic-place")
 
 
-#: All rules, in the order in which they are asked.
+#: All rules, in the order in which they run.
 RULES: tuple[Callable[[Specification], Iterable[Finding]], ...] = (
     id_form,
     id_twice,
@@ -341,7 +345,7 @@ RULES: tuple[Callable[[Specification], Iterable[Finding]], ...] = (
 
 
 def main() -> int:
-    """List what is wrong, and return 1 where something is."""
+    """List the errors, and return 1 if there are any."""
     findings = lint(current_specification())
     for finding in findings:
         print(finding)
@@ -371,13 +375,13 @@ def _directives(spec: Specification, *names: str) -> Iterator[tuple[Chapter, Dir
 def _unknown(spec: Specification, citation: Citation, rule: str) -> Iterator[Finding]:
     if citation.clause not in spec.by_id:
         withdrawn = any(citation.clause == gone.id for gone in spec.withdrawn)
-        what = "is withdrawn" if withdrawn else "is no clause"
+        what = "is withdrawn" if withdrawn else "is not a clause"
         message = f"{citation.source} cites {citation.clause}, which {what}"
         yield Finding(citation.path, citation.line, message, rule)
 
 
 def _line_of(path: Path, word: str) -> int:
-    """Line of a file that begins with a word; the first where none does."""
+    """The line of a file that begins with a word; 1 if none does."""
     lines = path.read_text(encoding="utf-8").splitlines()
     return next((number for number, line in enumerate(lines, start=1) if line.split()[:1] == [word]), 1)
 
