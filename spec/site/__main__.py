@@ -16,7 +16,7 @@ BUILD = SPEC / "_build"
 
 
 def build(output: Path, builder: str = "html", source: Path = SPEC) -> int:
-    """Build the site anew; a warning is an error, and so is a link that leads nowhere.
+    """Build the site from scratch; a warning or a broken link is an error.
 
     Args:
         output: Folder that the site is written into.
@@ -39,12 +39,12 @@ def build(output: Path, builder: str = "html", source: Path = SPEC) -> int:
 
 
 def main() -> int:
-    """Build what the command line asks for."""
+    """Run the command line."""
     parser = argparse.ArgumentParser(prog="python -m spec.site", description="Build the site of the specification.")
     parser.add_argument(
         "-o", "--output", type=Path, default=BUILD / "html", metavar="FOLDER", help="default: %(default)s"
     )
-    parser.add_argument("--linkcheck", action="store_true", help="look up every address that the text links to")
+    parser.add_argument("--linkcheck", action="store_true", help="check every external link")
     args = parser.parse_args()
     if args.linkcheck:
         return build(BUILD / "linkcheck", "linkcheck")

@@ -1,4 +1,4 @@
-"""The blocks that a chapter is made of: headings, prose, code, and directives.
+"""The blocks of a chapter: headings, prose, code and directives.
 
 This is the part of MyST that the specification is written in, and no more: it is read without Sphinx, so that tests and
 other programs need nothing but Python.
@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-#: Directives that hold no Markdown.
+#: Directives whose body is not Markdown.
 VERBATIM = frozenset({"code", "code-block", "example", "math", "raw", "sourcecode", "toctree", "transcript"})
 
 _FENCE = re.compile(r"^(?P<indent> *)(?P<marks>`{3,}|~{3,}|:{3,}) *(?P<info>.*?) *$")
@@ -30,7 +30,7 @@ class Heading:
 
 @dataclass(frozen=True, slots=True)
 class Prose:
-    """A paragraph, list or table: lines that no blank one parts."""
+    """A paragraph, list or table: lines without a blank line between them."""
 
     line: int
     text: str
@@ -54,7 +54,7 @@ class Directive:
         name: Its name, as ``clause``.
         argument: What follows the name.
         options: Its options, by name; the value of a flag is empty.
-        body: What it holds, without the options.
+        body: Its body, without the options.
         body_line: Line at which the body begins.
     """
 
@@ -67,7 +67,7 @@ class Directive:
 
     @property
     def is_code(self) -> bool:
-        """Whether what it holds is no Markdown."""
+        """Whether its body is not Markdown."""
         return self.name in VERBATIM
 
 
@@ -75,7 +75,7 @@ Block = Heading | Prose | Code | Directive
 
 
 def read_blocks(text: str, first_line: int = 1) -> Iterator[Block]:
-    """The blocks of a chapter or of a directive's body, in their order; those within a directive are not among them.
+    """The blocks of a chapter or of a directive's body, in order, without those inside directives.
 
     Args:
         text: Markdown.
@@ -103,7 +103,7 @@ def read_blocks(text: str, first_line: int = 1) -> Iterator[Block]:
 
 
 def walk(text: str, first_line: int = 1) -> Iterator[Block]:
-    """The blocks of a chapter, each directive followed by those within it."""
+    """The blocks of a chapter; the blocks inside a directive follow it."""
     for block in read_blocks(text, first_line):
         yield block
         if isinstance(block, Directive) and not block.is_code:
@@ -115,7 +115,7 @@ def _begins_other(line: str) -> bool:
 
 
 def _end_of(lines: list[str], start: int, marks: str) -> int:
-    """Index of the line that closes a fence; that after the last one where none does."""
+    """Index of the line that closes a fence; after the last line if none does."""
     closing = re.compile(rf"^ *{re.escape(marks[0])}{{{len(marks)},}} *$")
     return next((index for index in range(start + 1, len(lines)) if closing.match(lines[index])), len(lines))
 
@@ -143,5 +143,5 @@ def _fenced(fence: re.Match[str], content: list[str], line: int) -> Code | Direc
 
 
 def _unquoted(value: str) -> str:
-    """The value of an option: quotes around it, which MyST needs where a colon stands in it, are no part of it."""
+    """The value of an option, without the quotes that MyST needs around a value with a colon."""
     return value[1:-1] if len(value) > 1 and value[0] == value[-1] == '"' else value

@@ -1,4 +1,4 @@
-"""Who enforces a clause, by a docstring that cites it or a diagnostic that it reports; and which cases cite it."""
+"""Functions that enforce a clause (their docstring cites it, or they report its diagnostic), and cases that cite it."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from eurdf.diagnostics import REGISTRY
 from eurdf_conformance.corpus import protocol_rule
 from spec.site.clause import ROOT
 
-#: Folders that hold an import package whose functions enforce clauses.
+#: Folders of packages whose functions enforce clauses.
 PACKAGES = (ROOT / "reference", ROOT / "conformance")
 
-#: Parts of the suite whose functions cite what they test or state again, and enforce nothing.
+#: Parts of the suite whose functions cite clauses without enforcing them.
 NOT_ENFORCING = frozenset({"corpus", "judging", "oracle", "properties", "suite"})
 
-#: Where the cases of the conformance suite are.
+#: The cases of the conformance suite.
 CORPUS = ROOT / "conformance" / "eurdf_conformance" / "corpus" / "cases"
 
-# An id, and what may follow it to cite its neighbours: "EU-URD-009, -010, -014 to -018, and EU-INR-002".
+# An id, and short forms of further ids after it: "EU-URD-009, -010, -014 to -018, and EU-INR-002".
 _CITED = re.compile(r"(?P<family>EU-[A-Z]{3}-)(?P<number>[0-9]{3})(?P<more>(?:(?:,? and |, | to )-[0-9]{3})*)")
 _MORE = re.compile(r"(?P<to> to )?-(?P<number>[0-9]{3})")
 _SPELLED_OUT = re.compile(r"(?P<family>EU-[A-Z]{3})-(?P<first>[0-9]{3}) to (?P=family)-(?P<last>[0-9]{3})")
@@ -31,12 +31,12 @@ _SPELLED_OUT = re.compile(r"(?P<family>EU-[A-Z]{3})-(?P<first>[0-9]{3}) to (?P=f
 
 @dataclass(frozen=True, slots=True)
 class Citation:
-    """A clause that something cites.
+    """A citation of a clause.
 
     Attributes:
         clause: Id of the clause.
         source: Qualified name of the function or class, or the id of the case.
-        path: File that it stands in.
+        path: Its file.
         line: Line of the function, class or case there.
     """
 
@@ -65,7 +65,7 @@ def function_citations(packages: Iterable[Path] = PACKAGES) -> list[Citation]:
     A function enforces what its docstring cites, and the clause of a diagnostic that it names in its code.
 
     Args:
-        packages: Folders, each of which holds import packages.
+        packages: Folders of import packages.
     """
     return [
         citation
@@ -77,7 +77,7 @@ def function_citations(packages: Iterable[Path] = PACKAGES) -> list[Citation]:
 
 
 def case_citations(corpus: Path = CORPUS) -> list[Citation] | None:
-    """The clauses that cases of the conformance suite cite, by id of the case; None where there is no suite."""
+    """The clauses that cases of the conformance suite cite, by id of the case; None if there is no suite."""
     if not corpus.is_dir():
         return None
     citations = []
@@ -89,7 +89,7 @@ def case_citations(corpus: Path = CORPUS) -> list[Citation] | None:
 
 
 def suite_citations() -> list[Citation] | None:
-    """The clauses that the conformance suite cites; None where there is none.
+    """The clauses that the conformance suite cites; None if there is no suite.
 
     What it asks of a reader without files, rules of the protocol, counts as cases: ``protocol/`` and the rule's name.
     """
@@ -126,7 +126,7 @@ def citations_in(path: Path, package: Path) -> list[Citation]:
 
 
 def _codes(definition: ast.AST) -> Iterator[str]:
-    """Codes of diagnostics that stand in the code of a function or class, but for those in functions inside it."""
+    """Codes of diagnostics in the code of a function or class, without those in nested functions."""
     for node in ast.iter_child_nodes(definition):
         if isinstance(node, ast.Constant) and isinstance(node.value, str) and node.value in REGISTRY:
             yield node.value

@@ -12,13 +12,13 @@ from spec.site.blocks import Directive, walk
 SPEC = Path(__file__).resolve().parents[1]
 ROOT = SPEC.parent
 
-#: Chapters that explain and bind nobody: they hold no clauses.
+#: Informative chapters: they have no clauses.
 INFORMATIVE = frozenset({"tutorial", "rationale", "comparison", "bibliography"})
 
-#: At what level of conformance a clause is tested; ``parser`` where no suite can test it.
+#: The conformance level that tests a clause; ``parser`` if the suite cannot test it.
 LEVELS = ("accept", "structure", "kinematics", "dynamics", "diagnose", "parser")
 
-#: Versions of the format that a clause can be of.
+#: Versions of the format.
 VERSIONS = (1, 2)
 
 ID = re.compile(r"EU-[A-Z]{3}-[0-9]{3}")
@@ -58,7 +58,7 @@ class Clause:
 
 @dataclass(frozen=True, slots=True)
 class Withdrawn:
-    """An id that no longer stands for a requirement, and what became of it."""
+    """An id that is no longer used, and what replaced it."""
 
     id: str
     chapter: str
@@ -73,7 +73,7 @@ class Chapter:
     Attributes:
         name: Its name without ``.md``.
         path: Where it is.
-        text: What it holds.
+        text: Its text.
     """
 
     name: str
@@ -82,23 +82,23 @@ class Chapter:
 
     @property
     def is_informative(self) -> bool:
-        """Whether it binds nobody."""
+        """Whether it has no clauses."""
         return self.name in INFORMATIVE
 
 
 def read_chapters(folder: Path = SPEC) -> list[Chapter]:
-    """The chapters in a folder, by name; its README tells of the text and is none."""
+    """The chapters in a folder, by name; its README is not a chapter."""
     paths = sorted(path for path in folder.glob("*.md") if path.name != "README.md")
     return [Chapter(path.stem, path, path.read_text(encoding="utf-8")) for path in paths]
 
 
 def read_clauses(chapters: Iterable[Chapter]) -> list[Clause]:
-    """All clauses, in the order in which they stand."""
+    """All clauses, in the order of the text."""
     return [clause for chapter in chapters for clause in _clauses_of(chapter)]
 
 
 def read_withdrawn(chapters: Iterable[Chapter]) -> list[Withdrawn]:
-    """All withdrawn ids, in the order in which they stand."""
+    """All withdrawn ids, in the order of the text."""
     return [
         Withdrawn(found.argument, chapter.name, found.line, found.body)
         for chapter in chapters
@@ -112,12 +112,12 @@ def directives(chapter: Chapter, name: str) -> Iterator[Directive]:
 
 
 def keywords(text: str) -> list[str]:
-    """The normative words in a text, in their order; those in code spans are not meant."""
+    """The normative words in a text, in order, without those in code spans."""
     return _KEYWORD.findall(without_code(text))
 
 
 def without_code(text: str) -> str:
-    """The text with blanks in place of what stands in code spans and roles, every line as long as it was."""
+    """The text with spaces instead of code spans and roles; the length of each line is kept."""
     return _CODE_SPAN.sub(lambda span: re.sub(r"[^\n]", " ", span[0]), text)
 
 

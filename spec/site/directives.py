@@ -1,4 +1,4 @@
-"""The directives that the chapters are written with, and those that fill the pages made when the site is built."""
+"""The directives of the chapters, and those of pages that are generated when the site is built."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from spec.site.schema_page import property_anchors, schema_sections
 
 _KEYWORD = re.compile(r"\b(?:MUST NOT|MUST|SHOULD NOT|SHOULD|MAY)\b")
 
-#: Lines of a file shown before and after those that an edit changes.
+#: Lines of a file shown before and after the changed lines.
 _CONTEXT = 2
 
 _LANGUAGES = {".yaml": "yaml", ".urdf": "xml"}
@@ -48,17 +48,17 @@ class SpecificationDirective(SphinxDirective):
 
     @property
     def domain(self) -> SpecificationDomain:
-        """What the site knows by name."""
+        """The named items of the site."""
         return cast(SpecificationDomain, self.env.domains[NAME])
 
     @property
     def page(self) -> str:
-        """Name of the page being read."""
+        """Name of the current page."""
         return self.env.current_document.docname
 
     @property
     def stated(self) -> Directive:
-        """The directive as the plain reader of the chapters has it."""
+        """The directive as `blocks` reads it."""
         options = {name: value or "" for name, value in self.options.items()}
         body = "\n".join(self.content)
         return Directive(self.lineno, self.name, self.arguments[0], options, body, self.content_offset + 1)
@@ -68,30 +68,30 @@ class SpecificationDirective(SphinxDirective):
         return reference_to(what, name, self.page)
 
     def anchored(self, what: str, name: str, title: str, *children: Node) -> nodes.container:
-        """A block that has a name, and an anchor of that name."""
+        """A named block with an anchor."""
         self.domain.note(what, name, title)
         block = nodes.container("", *children, ids=[name], classes=[f"eu-{what}"])
         self.set_source_info(block)
         return block
 
     def parsed(self, text: str) -> list[Node]:
-        """Markdown, as it is shown."""
+        """Rendered Markdown."""
         return self.parse_text_to_nodes(text, offset=self.content_offset)
 
 
 class ClauseDirective(SpecificationDirective):
-    """``{clause}``: one requirement, with its anchor, and what says, enforces and tests it."""
+    """``{clause}``: one requirement, with its anchor, its diagnostics, and what enforces and tests it."""
 
     option_spec: ClassVar = dict.fromkeys(
         ("level", "version", "code", "untested", "unenforced"), directives.unchanged_required
     )
 
     def run(self) -> list[Node]:
-        """The clause as it is shown."""
+        """The rendered clause."""
         name = self.arguments[0]
         entry = _registry(self).get(name)
         if entry is None:
-            raise self.error(f"'{name}' is no clause of the specification")
+            raise self.error(f"'{name}' is not a clause of the specification")
         head = _line("eu-head", _permalink(name), *_badge(f"level {entry['level']}"))
         if len(entry["versions"]) == 1:
             head += _badge(f"version {entry['versions'][0]}")
@@ -114,12 +114,12 @@ class ClauseDirective(SpecificationDirective):
 
 
 class WithdrawnDirective(SpecificationDirective):
-    """``{withdrawn}``: an id that is no longer used, and what became of it."""
+    """``{withdrawn}``: an id that is no longer used, and what replaced it."""
 
     option_spec: ClassVar[dict[str, Callable[[str], Any]]] = {}
 
     def run(self) -> list[Node]:
-        """The withdrawn id as it is shown."""
+        """The rendered id."""
         name = self.arguments[0]
         head = _line("eu-head", _permalink(name), *_badge("withdrawn"))
         block = self.anchored("clause", name, "Withdrawn", head, *self.parse_content_to_nodes())
@@ -128,12 +128,12 @@ class WithdrawnDirective(SpecificationDirective):
 
 
 class ExampleDirective(SpecificationDirective):
-    """``{example}``: a description or URDF, which the reference has checked."""
+    """``{example}``: a description or URDF that the reference has checked."""
 
     option_spec: ClassVar = {"file": directives.unchanged, "with": directives.unchanged, "part": directives.flag}
 
     def run(self) -> list[Node]:
-        """The example as it is shown."""
+        """The rendered example."""
         example = example_of(self.stated, self.page)
         caption = _line("eu-caption", nodes.literal("", example.file))
         if example.part:
@@ -143,13 +143,13 @@ class ExampleDirective(SpecificationDirective):
         if example.code is not None:
             caption += [nodes.Text(" · wrong: "), self.reference("code", example.code)]
             block["classes"].append("eu-wrong")
-            # The lines of a fragment have other numbers in the file that was checked.
+            # In the checked file, the lines of a fragment have other numbers.
             block += _printed(example.shown().check(), with_source=not example.part)
         return [block]
 
 
 class DiagnosticDirective(SpecificationDirective):
-    """``{diagnostic}``: one code, the edit that causes it, the message that it gives, and the repair."""
+    """``{diagnostic}``: one code, the edit that causes it, its message and its fix."""
 
     option_spec: ClassVar = {
         "file": directives.unchanged,
@@ -159,7 +159,7 @@ class DiagnosticDirective(SpecificationDirective):
     }
 
     def run(self) -> list[Node]:
-        """The diagnostic as it is shown."""
+        """The rendered diagnostic."""
         shown = diagnostic_of(self.stated, self.page)
         if shown.code not in REGISTRY:
             raise self.error(f"there is no diagnostic '{shown.code}'")
@@ -193,12 +193,12 @@ class DiagnosticDirective(SpecificationDirective):
 
 
 class TranscriptDirective(SpecificationDirective):
-    """``{transcript}``: a conversation, in which → begins what is asked and ← what is answered."""
+    """``{transcript}``: a conversation; → marks a request and ← an answer."""
 
     required_arguments = 0
 
     def run(self) -> list[Node]:
-        """The conversation as it is shown."""
+        """The rendered conversation."""
         block = _styled("eu-transcript")
         side = ""
         for line in self.content:
@@ -243,7 +243,7 @@ class AllDiagnosticsDirective(SpecificationDirective):
 
 
 class SchemaDirective(SpecificationDirective):
-    """``{schema} extended-urdf-2.0``: all that a JSON Schema says, property by property."""
+    """``{schema} extended-urdf-2.0``: the contents of a JSON Schema, property by property."""
 
     def run(self) -> list[Node]:
         """The sections of the page."""
@@ -259,7 +259,7 @@ class SchemaDirective(SpecificationDirective):
 
 
 def _registry(directive: SpecificationDirective) -> dict[str, dict[str, Any]]:
-    """The clauses by id, with what refers to them; read once a build."""
+    """The clauses by id, with what refers to them; read once per build."""
     app = directive.env.app
     if not hasattr(app, "eurdf_clauses"):
         app.eurdf_clauses = clauses_with_references()  # type: ignore[attr-defined]
@@ -291,7 +291,7 @@ def _spaced(values: Iterable[Node]) -> Iterator[Node]:
 
 
 def _code(text: str, file: str, first_line: int | None = None, marked: Iterable[int] = ()) -> nodes.literal_block:
-    """Lines of a file; whatever is wrong with them is meant, so that no lexer need understand them."""
+    """Lines of a file. Errors in them are intended, so no lexer has to accept them."""
     block = nodes.literal_block(text, text, language=_LANGUAGES[file[file.rindex(".") :]], force=True)
     block["highlight_args"] = {"hl_lines": list(marked)}
     if first_line is not None:
@@ -301,7 +301,7 @@ def _code(text: str, file: str, first_line: int | None = None, marked: Iterable[
 
 
 def _excerpt(edit: Edit, text: str, changed: int, file: str) -> nodes.literal_block:
-    """The lines of a file about those that an edit changes, which are marked."""
+    """The lines of a file around the changed ones, which are marked."""
     lines = text.rstrip("\n").split("\n")
     start = max(0, edit.start - _CONTEXT)
     end = min(len(lines), edit.start + changed + _CONTEXT)
@@ -310,7 +310,7 @@ def _excerpt(edit: Edit, text: str, changed: int, file: str) -> nodes.literal_bl
 
 
 def _printed(outcome: Outcome, with_source: bool = True) -> nodes.literal_block:
-    """What `eurdf check` prints, in its colours."""
+    """The output of `eurdf check`, in its colours."""
     block = _styled("eu-printed")
     for line in outcome.lines:
         is_source = any("|" in text for text, style in line if style == "blue")
@@ -328,12 +328,12 @@ def _printed(outcome: Outcome, with_source: bool = True) -> nodes.literal_block:
 
 
 def _styled(name: str) -> nodes.literal_block:
-    """A block of lines that have styles of their own, as one says by a source that is not what is shown."""
+    """A block of lines with their own styles; Sphinx requires a source that differs from the content for this."""
     return nodes.literal_block("styled", "", classes=[name])
 
 
 def _embolden(body: nodes.Element) -> None:
-    """Set the normative word of a clause apart."""
+    """Highlight the normative word of a clause."""
     for text in list(body.findall(nodes.Text)):
         parent = text.parent
         if isinstance(parent, nodes.literal | nodes.math | nodes.math_block | nodes.literal_block):
@@ -348,13 +348,13 @@ def _embolden(body: nodes.Element) -> None:
 
 
 def _plain(text: str) -> str:
-    """Markdown without its marks, on one line, for where a pointer rests on a link."""
+    """Markdown as one line of plain text, for the tooltip of a link."""
     text = re.sub(r"\{\w+\}`([^`]*)`|`([^`]*)`", lambda span: span[1] or span[2], text)
     return " ".join(text.split())
 
 
 def _first_sentence(text: str) -> str:
-    """The sentence that a clause begins with, or what leads to its list or equation."""
+    """The first sentence of a clause, or the text before its list or equation."""
     paragraph = " ".join(text.split("\n\n")[0].split("\n- ")[0].split("\n* ")[0].split("$$")[0].split())
     end = re.search(r"(?<=[.;:])\s", without_code(paragraph))
     return paragraph if end is None or end.start() < 40 else paragraph[: end.start()].rstrip(";:")
@@ -364,11 +364,11 @@ def _table(*heads: str, rows: Iterable[Iterable[Node]]) -> nodes.container:
     group = nodes.tgroup("", *(nodes.colspec(colwidth=1) for _ in heads), cols=len(heads))
     group += nodes.thead("", nodes.row("", *(nodes.entry("", nodes.paragraph("", head)) for head in heads)))
     group += nodes.tbody("", *(nodes.row("", *(nodes.entry("", cell) for cell in row)) for row in rows))
-    # Furo lets a table scroll by itself on a narrow screen where it stands in a block of its own.
+    # Furo makes a table in its own block scroll on a narrow screen.
     return nodes.container("", nodes.table("", group, classes=["eu-table"]), classes=["table-wrapper"])
 
 
-#: Every directive, by the name that the chapters use.
+#: Every directive, by its name in the chapters.
 DIRECTIVES: dict[str, type[SpecificationDirective]] = {
     "clause": ClauseDirective,
     "withdrawn": WithdrawnDirective,

@@ -1,4 +1,4 @@
-"""What pages of the site refer to by name: clauses, diagnostics, and the properties of the schemas."""
+"""The named items of the site: clauses, diagnostics and the properties of the schemas."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ NAME = "eurdf"
 
 
 class Target(NamedTuple):
-    """Where something stands, and what is said of it where a pointer rests on a link to it."""
+    """The place of a named item, and the tooltip of links to it."""
 
     page: str
     anchor: str
@@ -40,23 +40,23 @@ class SpecificationDomain(Domain):
 
     @property
     def targets(self) -> dict[tuple[str, str], Target]:
-        """Where each thing stands, by what it is and its name."""
+        """The place of each item, by kind and name."""
         targets: dict[tuple[str, str], Target] = self.data["targets"]
         return targets
 
     def note(self, what: str, name: str, title: str) -> None:
-        """Take in something that stands on the page being read, at the anchor of its own name."""
+        """Record an item on the current page; its anchor is its name."""
         page = self.env.current_document.docname
         self.targets[what, f"{page}#{name}" if what == "property" else name] = Target(page, name, title)
-        # So that a Markdown link with the anchor is known to lead somewhere.
+        # So that a Markdown link to the anchor is valid.
         self.env.domains.standard_domain.anonlabels[f"{page}#{name}"] = (page, name)
 
     def clear_doc(self, docname: str) -> None:
-        """Forget what stood on a page."""
+        """Remove the items of a page."""
         self.data["targets"] = {key: target for key, target in self.targets.items() if target.page != docname}
 
     def merge_domaindata(self, docnames: Iterable[str], otherdata: dict[str, dict[tuple[str, str], Target]]) -> None:
-        """Take in what another process read."""
+        """Merge the data of another process."""
         pages = set(docnames)
         self.targets.update({key: target for key, target in otherdata["targets"].items() if target.page in pages})
 
@@ -70,7 +70,7 @@ class SpecificationDomain(Domain):
         node: pending_xref,
         contnode: Element,
     ) -> nodes.reference | None:
-        """The link to what a role names, or None where there is no such thing."""
+        """The link to what a role names, or None if it does not exist."""
         found = self.targets.get((typ, target))
         if found is None:
             return None
@@ -85,11 +85,11 @@ class SpecificationDomain(Domain):
         node: pending_xref,
         contnode: Element,
     ) -> list[tuple[str, nodes.reference]]:
-        """Nothing: what is meant is said by the role."""
+        """Nothing: the role determines the kind of the target."""
         return []
 
     def get_objects(self) -> Iterator[tuple[str, str, str, str, str, int]]:
-        """What the search finds by name."""
+        """The items that the search finds by name."""
         for (what, _), target in self.targets.items():
             yield target.anchor, target.anchor, what, target.page, target.anchor, 1
 
@@ -102,7 +102,7 @@ class NameRole(SphinxRole):
         self.what = what
 
     def run(self) -> tuple[list[Node], list[system_message]]:
-        """The link, which is resolved when all pages are read."""
+        """The link; it is resolved after all pages are read."""
         reference = reference_to(self.what, self.text, self.env.current_document.docname)
         self.set_source_info(reference)
         return [reference], []

@@ -1,4 +1,4 @@
-"""The examples in the text, and the edits that show diagnostics: what they are, what the reference finds in them."""
+"""The examples in the text, and the edits that show diagnostics, with the diagnostics of the reference."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from eurdf.diagnostics.text import Line, report_lines
 from spec.site.blocks import Code, Directive, read_blocks
 from spec.site.clause import SPEC, Chapter, directives
 
-#: Sound robots, one a folder, on which examples and diagnostics are shown.
+#: Sound robots for examples and diagnostics, one in each folder.
 EXAMPLES = SPEC / "examples"
 
-#: The robot that an example is shown on where it names none.
+#: The default robot of an example.
 DEFAULT_ROBOT = "four_bar"
 
 #: Files that describe a robot, in version 2 and in version 1.
@@ -24,33 +24,33 @@ DESCRIPTIONS = ("robot.yaml", "robot.v1.yaml")
 
 URDF = "robot.urdf"
 
-#: Files that an example can be.
+#: Files that an example can show.
 FILES = (*DESCRIPTIONS, URDF)
 
-#: The folder that a robot seems to be in where a message tells of its files.
+#: The folder of a robot in messages.
 SHOWN_FOLDER = "my_robot"
 
 _TOP_LEVEL = re.compile(r"^(?![\s#-])(?P<key>\"[^\"]*\"|'[^']*'|[^:]*?)\s*:(?:\s|$)")
 
 
-class NotAnEdit(ValueError):  # noqa: N818 - named as what is wrong, like the exceptions of the reference
-    """A diff that cannot be made on the robot that it names."""
+class NotAnEdit(ValueError):  # noqa: N818 - named after the error, like the exceptions of the reference
+    """A diff that does not fit its robot."""
 
 
 @dataclass(frozen=True, slots=True)
 class ShownRobot:
-    """A robot as an example has it.
+    """The robot of an example.
 
     Attributes:
         files: Its files, by name.
-        checked: The one that is checked: the description, or the URDF where it stands alone.
+        checked: The checked file: the description, or the URDF if there is none.
     """
 
     files: Mapping[str, str]
     checked: str
 
     def check(self) -> Outcome:
-        """What the reference finds wrong with it."""
+        """The diagnostics of the reference."""
         with tempfile.TemporaryDirectory() as made:
             folder = Path(made).resolve()
             for name, text in self.files.items():
@@ -66,7 +66,7 @@ class ShownRobot:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What is found wrong with a robot.
+    """The diagnostics of a robot.
 
     Attributes:
         codes: The diagnostics, in the order found.
@@ -78,20 +78,20 @@ class Outcome:
 
     @property
     def text(self) -> str:
-        """What ``eurdf check`` prints of them."""
+        """The output of ``eurdf check``."""
         return "\n".join("".join(text for text, _ in line) for line in self.lines)
 
 
 @dataclass(frozen=True, slots=True)
 class Example:
-    """A description or a URDF that the text shows.
+    """A description or a URDF in the text.
 
     Attributes:
         chapter: Chapter that shows it.
         line: Line of its fence there.
         code: The diagnostic that it illustrates; None where it is sound.
         file: Which file of a robot it is.
-        robot: The robot that holds the other files; None where it is a URDF by itself.
+        robot: The robot with the other files; None for a URDF without a description.
         part: Whether it is a fragment.
         text: The file, or the fragment.
     """
@@ -110,7 +110,7 @@ class Example:
         return () if self.code is None else (self.code,)
 
     def shown(self, examples: Path = EXAMPLES) -> ShownRobot:
-        """The robot that it makes."""
+        """The robot of the example."""
         files = {} if self.robot is None else _files(examples / self.robot)
         text = self.text + "\n"
         if self.part:
@@ -154,10 +154,10 @@ class ShownDiagnostic:
         return _robot({**sound.files, self.file: self.edit(examples).after}, self.file)
 
     def edit(self, examples: Path = EXAMPLES) -> Edit:
-        """The edit, made on the file of the robot.
+        """Apply the edit to the file of the robot.
 
         Raises:
-            NotAnEdit: Where the lines to replace do not stand there exactly once, in a row.
+            NotAnEdit: If the lines to replace do not occur together exactly once.
         """
         return _edited(_files(examples / self.robot)[self.file], self.diff or "")
 
@@ -171,7 +171,7 @@ class Edit:
         after: The file with it.
         start: Index of the first line that differs.
         removed: Number of lines of ``before`` that it replaces.
-        added: Number of lines that stand in their place.
+        added: Number of lines that replace them.
     """
 
     before: str
@@ -182,20 +182,20 @@ class Edit:
 
 
 def read_examples(chapters: Iterable[Chapter]) -> list[Example]:
-    """All examples, in the order in which they stand."""
+    """All examples, in the order of the text."""
     return [example_of(found, chapter.name) for chapter in chapters for found in directives(chapter, "example")]
 
 
 def read_diagnostics(chapters: Iterable[Chapter]) -> list[ShownDiagnostic]:
-    """All diagnostics that the text shows, in the order in which they stand."""
+    """All diagnostics that the text shows, in order."""
     return [diagnostic_of(found, chapter.name) for chapter in chapters for found in directives(chapter, "diagnostic")]
 
 
 def example_of(found: Directive, chapter: str) -> Example:
-    """The example that a directive states."""
+    """The example of a directive."""
     file = found.options.get("file", DESCRIPTIONS[0])
     part = "part" in found.options
-    # A URDF that is shown as a whole has other names than the robot that examples are shown on by default.
+    # A complete URDF has other names than the default robot.
     alone = file == URDF and not part
     robot = found.options.get("with", None if alone else DEFAULT_ROBOT)
     code = None if found.argument == "valid" else found.argument
@@ -203,7 +203,7 @@ def example_of(found: Directive, chapter: str) -> Example:
 
 
 def diagnostic_of(found: Directive, chapter: str) -> ShownDiagnostic:
-    """The diagnostic that a directive states."""
+    """The diagnostic of a directive."""
     blocks = [
         block
         for block in read_blocks(found.body, found.body_line)
@@ -227,20 +227,20 @@ def diagnostic_of(found: Directive, chapter: str) -> ShownDiagnostic:
 
 
 def with_keys(base: str, fragment: str) -> str:
-    """A YAML mapping with the top-level keys of another in place of its own; they need not be well-formed."""
+    """A YAML mapping with its top-level keys replaced by those of another; both may be malformed."""
     new = dict(_top_level(fragment))
     kept = [(key, new.pop(key, text)) for key, text in _top_level(base)]
     return "".join(text for _, text in [*kept, *new.items()])
 
 
 def with_elements(base: str, fragment: str) -> str:
-    """A URDF with elements added at its end; they need not be well-formed."""
+    """A URDF with elements added at its end; they may be malformed."""
     head, end, tail = base.rpartition("</robot>")
     return head + fragment + end + tail
 
 
 def _top_level(text: str) -> Iterator[tuple[str, str]]:
-    """The text by its top-level keys; what stands before the first of them has the empty key."""
+    """The text of each top-level key; text before the first one has the empty key."""
     key, lines = "", list[str]()
     for line in text.splitlines(keepends=True):
         if match := _TOP_LEVEL.match(line):
@@ -255,15 +255,15 @@ def _top_level(text: str) -> Iterator[tuple[str, str]]:
 def _edited(text: str, diff: str) -> Edit:
     rows = [row for row in diff.splitlines() if row.strip()]
     if strange := [row for row in rows if row[0] not in "+- "]:
-        raise NotAnEdit(f"a line of a diff begins with -, + or a blank: {strange[0]!r}")
+        raise NotAnEdit(f"a line of a diff must begin with -, + or a space: {strange[0]!r}")
     old = [row[1:] for row in rows if row[0] != "+"]
     new = [row[1:] for row in rows if row[0] != "-"]
     if not old:
-        raise NotAnEdit("a diff has a line to replace, or one to stand beside: begin it with - or a blank")
+        raise NotAnEdit("a diff needs a line that begins with - or a space")
     lines = text.split("\n")
     starts = [start for start in range(len(lines)) if lines[start : start + len(old)] == old]
     if len(starts) != 1:
-        raise NotAnEdit(f"the lines to replace stand {len(starts)} times, not once: {old[0].strip()!r} …")
+        raise NotAnEdit(f"the lines to replace occur {len(starts)} times, not once: {old[0].strip()!r} …")
     lead = next((count for count, row in enumerate(rows) if row[0] != " "), 0)
     trail = next((count for count, row in enumerate(reversed(rows)) if row[0] != " "), 0)
     after = "\n".join([*lines[: starts[0]], *new, *lines[starts[0] + len(old) :]])
@@ -275,6 +275,6 @@ def _files(folder: Path) -> dict[str, str]:
 
 
 def _robot(files: Mapping[str, str], file: str) -> ShownRobot:
-    """The robot of which a file is shown: that file is checked, or what describes it where it is the URDF."""
+    """The robot of a shown file. That file is checked; for a URDF, its description is."""
     checked = next((name for name in DESCRIPTIONS if name in files), URDF) if file == URDF else file
     return ShownRobot(files, checked)

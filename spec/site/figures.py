@@ -1,4 +1,4 @@
-"""Figures that are drawings stand in the page itself, so that they take its colours, in the dark too."""
+"""Drawings are embedded in the page, so that they use its colours, also in dark mode."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _ID = re.compile(r"""(\bid=["']|url\(["']?#|\bhref=["']#)""")
 
 
 class InlineDrawings(SphinxPostTransform):
-    """Puts each SVG in the place of the image that names it."""
+    """Replaces each image of an SVG by the SVG."""
 
     default_priority = 5  # before images are collected to be copied
     formats = ("html",)
@@ -31,13 +31,13 @@ class InlineDrawings(SphinxPostTransform):
             if path.suffix == ".svg" and path.exists():
                 alt = image.get("alt", "").strip()
                 if not alt:
-                    _LOGGER.warning("a figure says in words what it shows: give it an alt text", location=image)
+                    _LOGGER.warning("the figure has no alternative text: add alt", location=image)
                 drawing = inline_svg(path.read_text(encoding="utf-8"), path.stem, alt)
                 image.replace_self(nodes.raw("", drawing, format="html"))
 
 
 def inline_svg(svg: str, name: str, alt: str) -> str:
-    """A drawing as it stands in a page.
+    """A drawing in a page.
 
     Args:
         svg: The file.

@@ -1,4 +1,4 @@
-"""What a built site links to: every link within it leads somewhere, and no page loads anything from elsewhere."""
+"""Checks the links of a built site: no internal link is broken, and no page loads external files."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ _STYLE_URL = re.compile(r"url\(\s*['\"]?(?P<url>[^'\")]+)|@import\s+['\"](?P<imp
 
 @dataclass
 class Page:
-    """What a page has and names.
+    """The anchors and links of a page.
 
     Attributes:
-        anchors: How often each id stands in it.
+        anchors: How often each id occurs.
         links: What it leads to.
         loads: What is loaded to show it.
     """
@@ -45,26 +45,26 @@ class Page:
 
 
 def site_faults(folder: Path) -> list[str]:
-    """What is wrong with the links of a site, as ``page: message``."""
+    """The errors in the links of a site, as ``page: message``."""
     pages = {path: read_page(path.read_text(encoding="utf-8")) for path in sorted(folder.rglob("*.html"))}
     faults = []
     for path, page in pages.items():
         name = path.relative_to(folder)
-        faults += [f"{name}: the id '{anchor}' stands {n} times" for anchor, n in page.anchors.items() if n > 1]
-        faults += [f"{name}: '{url}' leads nowhere" for url in page.links if not _leads(url, path, folder, pages)]
-        faults += [f"{name}: '{url}' is loaded from elsewhere" for url in page.loads if _is_external(url)]
+        faults += [f"{name}: the id '{anchor}' occurs {n} times" for anchor, n in page.anchors.items() if n > 1]
+        faults += [f"{name}: '{url}' is broken" for url in page.links if not _leads(url, path, folder, pages)]
+        faults += [f"{name}: '{url}' is loaded from another site" for url in page.loads if _is_external(url)]
         for url in page.loads:
             if not _is_external(url) and not _leads(url, path, folder, pages):
-                faults.append(f"{name}: '{url}' is not there to be loaded")
+                faults.append(f"{name}: '{url}' does not exist")
     for path in sorted(folder.rglob("*.css")):
         for url in _style_urls(path.read_text(encoding="utf-8")):
             if _is_external(url):
-                faults.append(f"{path.relative_to(folder)}: '{url}' is loaded from elsewhere")
+                faults.append(f"{path.relative_to(folder)}: '{url}' is loaded from another site")
     return faults
 
 
 def read_page(text: str) -> Page:
-    """What a page has and names."""
+    """The anchors and links of a page."""
     reader = _Reader()
     reader.feed(text)
     reader.close()

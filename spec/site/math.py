@@ -1,4 +1,4 @@
-"""Equations as MathML, made when the site is built: browsers show it by themselves, and nothing is loaded."""
+"""Equations as MathML, generated when the site is built: browsers render it without loading anything."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ _UNKNOWN = re.compile(r"<m(?:i|text|o)[^>]*>\\[A-Za-z]+")
 
 
 def mathml(latex: str, display: bool) -> str:
-    """An equation as MathML, with its source for who copies it or cannot see it.
+    """An equation as MathML, with its source for copying and screen readers.
 
     Args:
         latex: The equation in LaTeX.
-        display: Whether it stands on a line of its own.
+        display: Whether it is on its own line.
 
     Raises:
         ValueError: Where it cannot be converted.
     """
     try:
         converted: str = convert(latex.strip(), display="block" if display else "inline")
-    except Exception as error:  # the converter raises whatever it stumbles over
-        raise ValueError(f"'{latex}' is no equation: {error!r}") from error
+    except Exception as error:  # the converter raises exceptions of any type
+        raise ValueError(f"'{latex}' is not an equation: {error!r}") from error
     if unknown := _UNKNOWN.search(converted):
-        raise ValueError(f"'{latex}' has a command that is not known: {unknown[0].rpartition('>')[2]}")
+        raise ValueError(f"'{latex}' has an unknown command: {unknown[0].rpartition('>')[2]}")
     return converted.replace("<math ", f'<math alttext="{escape(latex.strip())}" ', 1)
 
 
@@ -57,5 +57,5 @@ def _shown(node: nodes.math | nodes.math_block, display: bool) -> str:
 
 
 def setup(app: Sphinx) -> None:
-    """Make equations so, where ``html_math_renderer`` asks for it."""
+    """Register the renderer for ``html_math_renderer``."""
     app.add_html_math_renderer("mathml", (_visit_math, None), (_visit_math_block, None))

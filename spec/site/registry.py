@@ -1,6 +1,6 @@
 """The registry: ``python -m spec.site.registry`` writes the clauses and the codes of the text to ``spec/clauses.json``.
 
-What refers to a clause is not in it: `clauses_with_references` computes that.
+It has no references to clauses: `clauses_with_references` computes them.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from spec.site.example import read_diagnostics
 
 CLAUSES = SPEC / "clauses.json"
 
-#: Every id that was ever given, one a line: what stands here never stands for anything else.
+#: Every id ever used, one per line: an id is never reused.
 IDS = SPEC / "ids.txt"
 
 #: The JSON Schema of the registry, beside it.
@@ -26,11 +26,11 @@ SCHEMA = "clauses.schema.json"
 
 
 def registry(chapters: Sequence[Chapter], rules: Iterable[Rule] = REGISTRY.values()) -> dict[str, Any]:
-    """The registry as it is written.
+    """The registry as JSON data.
 
     Args:
         chapters: The text of the specification.
-        rules: The diagnostics; advice of the reference parser is left out, for no clause asks for it.
+        rules: The diagnostics; advice of the reference parser is left out, because it has no clause.
     """
     places = {shown.code: shown.place for shown in read_diagnostics(chapters)}
     return {
@@ -88,7 +88,7 @@ def clauses_with_references() -> dict[str, dict[str, Any]]:
 
 
 def registry_text(content: dict[str, Any]) -> str:
-    """A registry as its file holds it: one entry a line."""
+    """A registry as the text of its file: one entry per line."""
     lists = ",\n".join(
         f'  "{name}": [\n' + ",\n".join(f"    {_line(entry)}" for entry in content[name]) + "\n  ]"
         for name in ("clauses", "diagnostics", "withdrawn")
@@ -101,12 +101,12 @@ def _line(value: Any) -> str:
 
 
 def read_ids(path: Path = IDS) -> list[str]:
-    """Every id that was ever given."""
+    """Every id ever used."""
     return path.read_text(encoding="utf-8").split() if path.exists() else []
 
 
 def main() -> None:
-    """Write the registry, and take new ids into the list of those given, which only grows."""
+    """Write the registry, and add new ids to the list, which only grows."""
     content = current_registry()
     CLAUSES.write_text(registry_text(content), encoding="utf-8")
     ids = {entry["id"] for kind in ("clauses", "withdrawn") for entry in content[kind]}

@@ -1,4 +1,4 @@
-"""A page that shows a JSON Schema: each kind of value in it, each property with type, default, description, example."""
+"""A page that shows a JSON Schema: its definitions and properties, with type, default, description and example."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _TYPES = {
 
 
 def schema_sections(schema: Schema) -> list[nodes.section]:
-    """The sections of the page: the file as a whole, then what its properties are made of, by title.
+    """The sections of the page: the whole file, then its definitions, by title.
 
     Every section and every property has an anchor: ``file``, ``file.closures``, ``Closure``, ``Closure.frames``.
     """
@@ -48,7 +48,7 @@ def property_anchors(schema: Schema) -> Iterator[tuple[str, str]]:
 
 
 def _title(name: str, definition: Schema) -> str:
-    """What a definition is called: its title, or the words of its name."""
+    """The title of a definition, or the words of its name."""
     words: str = definition.get("title") or re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name).capitalize()
     return words
 
@@ -93,7 +93,7 @@ def _other_keys(definition: Schema) -> Iterator[nodes.Node]:
     if definition.get("additionalProperties", True) is not False:
         yield nodes.Text("Other keys are the user's own.")
     elif any(pattern == "^x-" for pattern in definition.get("patternProperties", ())):
-        yield nodes.Text("There are no other keys, but for the user's own, which begin with ")
+        yield nodes.Text("Any other key is the user's own and begins with ")
         yield nodes.literal("", "x-")
         yield nodes.Text(".")
     else:
@@ -101,13 +101,13 @@ def _other_keys(definition: Schema) -> Iterator[nodes.Node]:
     for key, others in definition.get("dependentRequired", {}).items():
         yield nodes.Text(" ")
         yield nodes.literal("", key)
-        yield nodes.Text(" stands only together with ")
+        yield nodes.Text(" requires ")
         yield from _joined([[nodes.literal("", other)] for other in others], " and ")
         yield nodes.Text(".")
 
 
 def _type(value: Schema, titles: dict[str, str]) -> Iterator[nodes.Node]:
-    """What a value can be, in words, with links to the sections that say more."""
+    """The type of a value in words, with links to the sections of its definitions."""
     for choice in ("oneOf", "anyOf"):
         choices = [option for option in value.get(choice, ()) if option.keys() != {"required"}]
         if choices:
@@ -167,14 +167,14 @@ def _joined(parts: Sequence[Sequence[nodes.Node]], word: str) -> Iterator[nodes.
 
 
 class _Indented(yaml.SafeDumper):
-    """Writes lists further in than the key that they belong to."""
+    """Indents lists more than their key."""
 
     def increase_indent(self, flow: bool = False, indentless: bool = False) -> None:
         super().increase_indent(flow, False)
 
 
 def _entry(key: str, value: object) -> str:
-    """A key and its value as they stand in a YAML file."""
+    """A key and its value as YAML."""
     if isinstance(value, dict | list):
         text: str = yaml.dump(
             {key: value}, Dumper=_Indented, sort_keys=False, default_flow_style=None, allow_unicode=True, width=100
@@ -185,6 +185,6 @@ def _entry(key: str, value: object) -> str:
 
 
 def _flow(value: object) -> str:
-    """A value as one would write it in YAML, on one line."""
+    """A value as YAML on one line."""
     text: str = yaml.safe_dump(value, default_flow_style=True, allow_unicode=True, width=10_000)
     return text.removesuffix("\n").removesuffix("\n...")

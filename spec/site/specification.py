@@ -1,4 +1,4 @@
-"""The specification as a whole: its chapters, and all that they must agree with."""
+"""The specification: its chapters, and what must agree with them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from spec.site.clause import SPEC, Chapter, Clause, Withdrawn, read_chapters, re
 from spec.site.example import EXAMPLES
 from spec.site.registry import IDS, read_ids
 
-#: The section that names it says what the normative words mean.
+#: The section that names it defines the normative words.
 SOURCE_OF_WORDS = "RFC 2119"
 
 _COMMENT = re.compile(r"<!--.*?-->|^%.*$", re.S | re.M)
@@ -23,17 +23,17 @@ _COMMENT = re.compile(r"<!--.*?-->|^%.*$", re.S | re.M)
 
 @dataclass(frozen=True)
 class Specification:
-    """The text, and all that it must agree with.
+    """The text, and what must agree with it.
 
     Attributes:
         chapters: The text.
-        codes: The diagnostics there are, by code.
-        codes_path: File that lists them.
-        ids: Every id that was ever given.
-        ids_path: File that lists them.
-        functions: What the functions of the reference cite.
-        cases: What the cases of the suite cite; None where there is no suite.
-        examples: Folder of the robots that examples and diagnostics are shown on.
+        codes: All diagnostics, by code.
+        codes_path: The file that lists them.
+        ids: Every id ever used.
+        ids_path: The file that lists them.
+        functions: Citations by functions of the reference.
+        cases: Citations by cases of the suite; None if there is no suite.
+        examples: Folder of the robots of examples and diagnostics.
     """
 
     chapters: Sequence[Chapter]
@@ -66,7 +66,7 @@ class Specification:
         return {chapter.name: chapter.path for chapter in self.chapters}
 
     def texts(self) -> Iterator[Text]:
-        """All that is written for people, paragraph by paragraph, code left out."""
+        """All prose, paragraph by paragraph, without code."""
         for chapter in self.chapters:
             yield from _texts(chapter, chapter.text, 1, (), _defining_lines(chapter))
 
@@ -76,12 +76,12 @@ class Text:
     """A paragraph, or a heading.
 
     Attributes:
-        chapter: Chapter that it stands in.
+        chapter: Its chapter.
         line: Its first line there.
-        text: What it says; comments are blank.
-        inside: Names of the directives that it stands in, the outermost first.
+        text: Its text; comments are blank.
+        inside: Names of the directives around it, the outermost first.
         is_heading: Whether it is a heading.
-        defines_words: Whether it stands in the section that says what the normative words mean.
+        defines_words: Whether it is in the section that defines the normative words.
     """
 
     chapter: Chapter
@@ -92,12 +92,12 @@ class Text:
     defines_words: bool = False
 
     def line_of(self, offset: int) -> int:
-        """The line on which a character of it stands."""
+        """The line of a character."""
         return self.line + self.text.count("\n", 0, offset)
 
 
 def current_specification(folder: Path = SPEC) -> Specification:
-    """The specification as it now stands."""
+    """The current specification."""
     return Specification(
         chapters=read_chapters(folder),
         codes=REGISTRY,
@@ -119,7 +119,7 @@ def _texts(chapter: Chapter, text: str, line: int, inside: tuple[str, ...], defi
 
 
 def _defining_lines(chapter: Chapter) -> frozenset[int]:
-    """Lines at which the blocks begin of the section that says what the normative words mean."""
+    """First lines of the blocks in the section that defines the normative words."""
     if chapter.is_informative:
         return frozenset()
     sections: list[list[Heading | Prose]] = [[]]

@@ -12,7 +12,7 @@ from spec.site.domain import NameRole, SpecificationDomain
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
-    """Add the directives, the roles, and how equations and drawings are shown."""
+    """Add the directives, the roles, and the rendering of equations and drawings."""
     app.add_domain(SpecificationDomain)
     for name, directive in DIRECTIVES.items():
         app.add_directive(name, directive)

@@ -153,9 +153,9 @@ def test_what_leads_nowhere_or_cannot_be_shown_fails_the_build(tmp_path: Path) -
         "local id not found in doc 'index': 'nowhere'",
         "clause reference target not found: EU-TST-001",
         "code reference target not found: no-such-code",
-        "a command that is not known: \\nosuchcommand",
-        "give it an alt text",
-        "the lines to replace stand 0 times",
+        "an unknown command: \\nosuchcommand",
+        "the figure has no alternative text: add alt",
+        "the lines to replace occur 0 times",
     ):
         assert message in done.stderr
 
@@ -165,7 +165,7 @@ def test_a_picture_from_elsewhere_fails_the_build(tmp_path: Path) -> None:
     done = _build(tmp_path / "html", source)
     assert (done.returncode, done.stderr) == (
         1,
-        "index.html: 'https://example.org/picture.png' is loaded from elsewhere\n",
+        "index.html: 'https://example.org/picture.png' is loaded from another site\n",
     )
 
 
@@ -182,14 +182,14 @@ def test_the_links_of_a_page_are_read_as_a_browser_reads_them(tmp_path: Path) ->
     )
     (tmp_path / "c.css").write_text("@font-face { src: url('https://fonts.example.org/f.woff2'); }", encoding="utf-8")
     assert sorted(site_faults(tmp_path)) == [
-        "a.html: '#y' leads nowhere",
-        "a.html: '//cdn.example.org/a.css' is loaded from elsewhere",
-        "a.html: 'b.html' leads nowhere",
-        "a.html: 'b.js' is not there to be loaded",
-        "a.html: 'http://a.b/1.png' is loaded from elsewhere",
-        "a.html: 'https://a.b/c.css' is loaded from elsewhere",
-        "a.html: the id 'x' stands 2 times",
-        "c.css: 'https://fonts.example.org/f.woff2' is loaded from elsewhere",
+        "a.html: '#y' is broken",
+        "a.html: '//cdn.example.org/a.css' is loaded from another site",
+        "a.html: 'b.html' is broken",
+        "a.html: 'b.js' does not exist",
+        "a.html: 'http://a.b/1.png' is loaded from another site",
+        "a.html: 'https://a.b/c.css' is loaded from another site",
+        "a.html: the id 'x' occurs 2 times",
+        "c.css: 'https://fonts.example.org/f.woff2' is loaded from another site",
     ]
 
 
