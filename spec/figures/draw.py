@@ -1,6 +1,6 @@
 """Draws the figures of the specification: ``python -m spec.figures.draw`` writes them beside this file.
 
-They stand in pages that are light or dark: lines and words are drawn in ``currentColor``, bodies in colours between.
+Pages are light or dark: lines and words are in ``currentColor``, bodies in colours that work on both.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ TUTORIAL = FIGURES.parent / "examples" / "tutorial"
 Point = tuple[float, float]
 
 INK = "currentColor"
-PARENT = "#8b9099"  # what a joint hangs from
-CHILD = "#3d8bd4"  # what hangs from it
-OTHER = "#3f9d6b"  # what hangs from that, or stands across a cut
+PARENT = "#8b9099"  # the parent of a joint
+CHILD = "#3d8bd4"  # its child
+OTHER = "#3f9d6b"  # the child of that, or the body across a cut
 MOTION = "#d97a1e"  # axes, and motion along and about them
 
 _BAR = 9.0  # width of a bar
@@ -32,7 +32,7 @@ _LINE = 1.6  # width of a line
 
 
 class Drawing:
-    """An SVG in the making. Angles are in degrees, counted from x towards y, which points down."""
+    """Builds an SVG. Angles are in degrees, from x towards y, which points down."""
 
     def __init__(self, width: float, height: float) -> None:
         self._size = width, height
@@ -40,7 +40,7 @@ class Drawing:
         self._offset = 0.0, 0.0
 
     def at(self, x: float, y: float) -> None:
-        """Count what follows from here."""
+        """Set the origin of what follows."""
         self._offset = x, y
 
     def line(self, points: Iterable[Point], colour: str = INK, width: float = _LINE, dash: str = "") -> None:
@@ -50,7 +50,7 @@ class Drawing:
         self._parts.append(f'<polyline points="{where}" stroke="{colour}" stroke-width="{width:g}"{style}/>')
 
     def bar(self, start: Point, end: Point, colour: str, width: float = _BAR) -> None:
-        """A body that is long."""
+        """A long body."""
         self.line([start, end], colour, width)
 
     def disc(self, centre: Point, radius: float, fill: str = "none", stroke: str = INK, width: float = _LINE) -> None:
@@ -133,7 +133,7 @@ class Drawing:
 
 
 def _shifted(letter: str, down: int, size: float) -> str:
-    """A letter that stands low or high; an empty span could not bring the line back, one of no width does."""
+    """A subscript or superscript; a zero-width span returns to the line, which an empty span would not."""
     return f'<tspan dy="{down}" font-size="{size * 0.72:g}">{letter}</tspan><tspan dy="{-down}">&#8203;</tspan>'
 
 
@@ -188,7 +188,7 @@ def _universal(drawing: Drawing) -> None:
     _title(drawing, "universal", "θ₁, θ₂")
     drawing.bar((x, 40), (x, 70), PARENT, 16)
     drawing.line([(x - 52, y), (x - 52, 74), (x + 52, 74), (x + 52, y)], PARENT, 12)
-    # The fork of the child holds the other arm of the cross, which points at the reader and away.
+    # The fork of the child has the other arm of the cross, which is perpendicular to the drawing.
     drawing.line([far, (far[0], far[1] + 62), (near[0], near[1] + 62)], CHILD, 12)
     drawing.bar((x, y + 64), (x - 4, 232), CHILD, 16)
     drawing.bar((x - 52, y), (x + 52, y), INK, 5)
