@@ -9,7 +9,7 @@ import pytest
 
 from eurdf.collection import collection_names
 from eurdf.diagnostics import Diagnostics
-from eurdf.format.urdf import read_urdf
+from eurdf.format.urdf.read import read_urdf
 from eurdf.kinematics.analysis import analyze
 from eurdf.linking.description import describe
 from eurdf.mechanism.mechanism import Mechanism

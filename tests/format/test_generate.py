@@ -14,7 +14,8 @@ from lxml import etree
 
 from eurdf.commands.main import main
 from eurdf.diagnostics import Diagnostics
-from eurdf.format.urdf import Urdf, read_urdf
+from eurdf.format.urdf.data import Urdf
+from eurdf.format.urdf.read import read_urdf
 from eurdf.format.yaml_text import flow, lines_of, lines_of_item, scalar
 from eurdf.linking.description import describe
 from eurdf.mechanism.same_model import differences

@@ -19,7 +19,8 @@ from hypothesis import strategies as st
 from eurdf.commands.main import main
 from eurdf.diagnostics import Diagnostics, Fault
 from eurdf.format.read_extension import read_extension
-from eurdf.format.urdf import Urdf, read_urdf
+from eurdf.format.urdf.data import Urdf
+from eurdf.format.urdf.read import read_urdf
 from eurdf.kinematics.residual import residual
 from eurdf.linking.description import Described, describe
 from eurdf.linking.link import link

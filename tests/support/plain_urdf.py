@@ -8,7 +8,7 @@ import pinocchio as pin
 from hypothesis import strategies as st
 
 from eurdf.diagnostics import Diagnostics
-from eurdf.format.urdf import read_urdf
+from eurdf.format.urdf.read import read_urdf
 from eurdf.linking.link import link
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.reading.source import Source

@@ -14,7 +14,7 @@ from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.output_file import write_new
 
 if TYPE_CHECKING:
-    from eurdf.format.urdf import Urdf
+    from eurdf.format.urdf.data import Urdf
 
 #: The message if a description goes to the standard output.
 NOT_BESIDE = "the output names no schema; use -o FILE to write the schema for editors beside it"

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from eurdf.format.field import OWN_KEY, is_own_key
-from eurdf.format.urdf import Urdf
+from eurdf.format.urdf.data import Urdf
 from eurdf.format.version1 import Version1
 from eurdf.format.version2 import Version2
 from eurdf.mechanism.joint_type import JointType

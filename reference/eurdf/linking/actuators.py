@@ -9,7 +9,7 @@ from typing import Any
 
 from eurdf.diagnostics import Hint, did_you_mean
 from eurdf.format.extension import ActuatorEntry
-from eurdf.format.urdf import Urdf
+from eurdf.format.urdf.data import Urdf
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.reading.reporter import YamlReporter

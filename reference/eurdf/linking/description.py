@@ -16,7 +16,8 @@ from eurdf.diagnostics import Diagnostics, Fault, Place, quoted
 from eurdf.exceptions import CannotExpand
 from eurdf.format.extension import Extension
 from eurdf.format.read_extension import read_extension, version_of
-from eurdf.format.urdf import Urdf, read_urdf
+from eurdf.format.urdf.data import Urdf
+from eurdf.format.urdf.read import read_urdf
 from eurdf.format.yaml_text import scalar
 from eurdf.linking.inertia import check_inertias, check_leaves
 from eurdf.linking.link import link

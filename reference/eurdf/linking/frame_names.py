@@ -8,7 +8,7 @@ from itertools import chain
 
 from eurdf.diagnostics import did_you_mean
 from eurdf.format.extension import FrameEntry, FrameReference
-from eurdf.format.urdf import Urdf
+from eurdf.format.urdf.data import Urdf
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.pose import Pose

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from eurdf.diagnostics import Diagnostics
-from eurdf.format.urdf import Urdf, UrdfLink
+from eurdf.format.urdf.data import Urdf, UrdfLink
 from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType

@@ -8,7 +8,7 @@ from types import MappingProxyType
 
 from eurdf.diagnostics import Diagnostics
 from eurdf.format.extension import Extension, FrameReference
-from eurdf.format.urdf import Urdf
+from eurdf.format.urdf.data import Urdf
 from eurdf.linking.actuators import link_actuators, with_motor
 from eurdf.linking.closures import link_closures
 from eurdf.linking.configurations import link_configurations

@@ -7,7 +7,7 @@ import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
-from eurdf.format.urdf import Urdf
+from eurdf.format.urdf.data import Urdf
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, squarable

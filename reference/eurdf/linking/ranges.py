@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from functools import partial
 
 from eurdf.diagnostics import Diagnostics, quoted
-from eurdf.format.urdf import Urdf, UrdfJoint
+from eurdf.format.urdf.data import Urdf, UrdfJoint
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 

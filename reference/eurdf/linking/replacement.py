@@ -9,7 +9,7 @@ from functools import partial
 
 from eurdf.diagnostics import Hint, did_you_mean
 from eurdf.format.extension import JointEntry
-from eurdf.format.urdf import Urdf
+from eurdf.format.urdf.data import Urdf
 from eurdf.linking.merging import PARALLEL, NotMergeable, check_chain, find_chains, fixed, merge
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint, JointProperties

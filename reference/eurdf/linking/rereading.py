@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from eurdf.diagnostics import Diagnostics, Fault
 from eurdf.format.read_extension import read_extension
-from eurdf.format.urdf import Urdf
+from eurdf.format.urdf.data import Urdf
 from eurdf.linking.link import link
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.reading.source import Source

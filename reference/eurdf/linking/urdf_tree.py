@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from eurdf.format.urdf import Urdf, UrdfJoint
+from eurdf.format.urdf.data import Urdf, UrdfJoint
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_type import JointType

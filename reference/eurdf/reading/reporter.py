@@ -12,6 +12,8 @@ from eurdf.reading.xml_reader import XmlDocument
 from eurdf.reading.yaml_node import Pointer
 from eurdf.reading.yaml_reader import YamlDocument
 
+Element = etree._Element
+
 
 @dataclass(frozen=True, slots=True)
 class YamlReporter:
@@ -43,7 +45,7 @@ class XmlReporter:
     diagnostics: Diagnostics
 
     def report(
-        self, code: str, message: str, element: etree._Element, attribute: str | None = None, hint: Hint = None
+        self, code: str, message: str, element: Element, attribute: str | None = None, hint: Hint = None
     ) -> None:
         """Report at an element, or at one of its attributes: see `Diagnostics.report` and `XmlDocument.place`."""
         self.diagnostics.report(code, message, partial(self.document.place, element, attribute), hint)

@@ -8,7 +8,7 @@ from typing import Literal
 
 from eurdf.diagnostics import Diagnostics
 from eurdf.format.field import is_own_key
-from eurdf.format.urdf import Urdf
+from eurdf.format.urdf.data import Urdf
 from eurdf.linking.merging import find_chains
 from eurdf.linking.rereading import reread
 from eurdf.linking.urdf_tree import joint_of

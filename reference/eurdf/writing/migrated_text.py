@@ -11,7 +11,7 @@ from eurdf.diagnostics import Fault
 from eurdf.format.extension import Extension, FrameReference, JointEntry
 from eurdf.format.field import is_own_key
 from eurdf.format.schema import FILES
-from eurdf.format.urdf import Urdf
+from eurdf.format.urdf.data import Urdf
 from eurdf.format.version1 import Version1
 from eurdf.format.version2 import VERSION
 from eurdf.format.yaml_text import (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from eurdf.format.urdf import Urdf
+from eurdf.format.urdf.data import Urdf
 from eurdf.linking.description import Described
 from eurdf.linking.rereading import reread
 from eurdf.mechanism.joint_type import JointType

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import Literal, cast
 
 from eurdf.format.field import is_own_key
-from eurdf.format.urdf import Urdf
+from eurdf.format.urdf.data import Urdf
 from eurdf.format.version2 import VERSION
 from eurdf.format.yaml_text import Entry, Value, item_of_mapping, lines_of, modeline, section, text_of
 from eurdf.linking.merging import MASSLESS

@@ -14,7 +14,7 @@ from eurdf.reading.yaml_node import Pointer
 
 if TYPE_CHECKING:
     from eurdf.diagnostics import Diagnostics, Place
-    from eurdf.format.urdf import Urdf
+    from eurdf.format.urdf.data import Urdf
     from eurdf.mechanism.mechanism import Mechanism
 
 # An orientation beyond one turn, and a joint angle beyond two, is looked at, in rad. Wrists and steering wheels turn up

@@ -14,7 +14,7 @@ from eurdf.mechanism.joint_type import JointType
 
 if TYPE_CHECKING:
     from eurdf.diagnostics import Diagnostics, Place
-    from eurdf.format.urdf import Urdf
+    from eurdf.format.urdf.data import Urdf
 
 # A length beyond this, in m, is looked at. In a hundred published robots the longest is 2.9 m.
 _LONG = 10.0

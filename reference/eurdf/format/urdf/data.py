@@ -1,0 +1,101 @@
+"""A sound URDF as data."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+from eurdf.mechanism.body import Inertia, Shape
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mimic import Mimic
+from eurdf.mechanism.pose import Pose, Vector3
+from eurdf.reading.reporter import Element
+from eurdf.reading.xml_reader import XmlDocument
+
+
+class Limit(NamedTuple):
+    """A joint's ``limit``: positions in rad or m, velocity in rad/s or m/s, effort in N·m or N."""
+
+    lower: float
+    upper: float
+    velocity: float
+    effort: float
+
+
+class UrdfLink(NamedTuple):
+    """A ``link`` element as read; ``inertial`` is its element, to point at."""
+
+    name: str
+    element: Element
+    inertia: Inertia | None
+    inertial: Element | None
+    visuals: tuple[Shape, ...]
+    collisions: tuple[Shape, ...]
+
+
+class UrdfJoint(NamedTuple):
+    """A ``joint`` element as read.
+
+    Attributes:
+        name: Its name.
+        type: One of URDF's six types.
+        element: To point at.
+        parent: Name of the parent link.
+        child: Name of the child link.
+        placement: Pose of the joint, which is that of the child link at zero, in the parent link.
+        axis: As written, in the joint's frame; (1, 0, 0) where the URDF gives none.
+        limit: None where the URDF gives none.
+        damping: N·m·s/rad or N·s/m.
+        friction: N·m or N.
+        mimic: The joint that it mimics as the file has it, or None. A fixed joint mimics none.
+    """
+
+    name: str
+    type: JointType
+    element: Element
+    parent: str
+    child: str
+    placement: Pose
+    axis: Vector3
+    limit: Limit | None
+    damping: float
+    friction: float
+    mimic: Mimic | None
+
+
+@dataclass(frozen=True, slots=True)
+class Urdf:
+    """A sound URDF: unique names, known links, one tree.
+
+    Attributes:
+        document: Where it was read from.
+        name: Name of the robot.
+        links: By name, in file order.
+        joints: By name, in file order.
+        root: Name of the root link.
+        children: For each link, the joints that hang from it, in the byte order of their names.
+    """
+
+    document: XmlDocument
+    name: str
+    links: Mapping[str, UrdfLink]
+    joints: Mapping[str, UrdfJoint]
+    root: str
+    children: Mapping[str, tuple[UrdfJoint, ...]]
+
+    def without_mimics(self) -> Urdf:
+        """The same URDF in which no joint mimics another."""
+        if all(joint.mimic is None for joint in self.joints.values()):
+            return self
+        joints = {name: joint._replace(mimic=None) for name, joint in self.joints.items()}
+        children = {link: tuple(joints[joint.name] for joint in of) for link, of in self.children.items()}
+        return replace(self, joints=joints, children=children)
+
+    def walk(self) -> Iterator[UrdfJoint]:
+        """The joints depth first from the root; the joints of one link in the byte order of their names."""
+        stack = list(reversed(self.children.get(self.root, ())))
+        while stack:
+            joint = stack.pop()
+            yield joint
+            stack.extend(reversed(self.children.get(joint.child, ())))

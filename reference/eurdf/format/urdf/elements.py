@@ -1,0 +1,272 @@
+"""What every element of a URDF is read with: its children, its attributes, and what is wrong with them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+from eurdf.diagnostics import Hint, did_you_mean
+from eurdf.format.near import near
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
+from eurdf.reading.reporter import Element, XmlReporter
+
+#: The types a URDF may give a joint.
+URDF_JOINT_TYPES = {
+    kind.value: kind
+    for kind in (
+        JointType.REVOLUTE,
+        JointType.CONTINUOUS,
+        JointType.PRISMATIC,
+        JointType.PLANAR,
+        JointType.FLOATING,
+        JointType.FIXED,
+    )
+}
+
+#: The elements that an element may have, but need not; of a joint that moves in a range, `limit` it must.
+_OPTIONAL_CHILDREN: dict[str, tuple[str, ...]] = {
+    "robot": ("link", "joint", "material"),
+    "link": ("inertial", "visual", "collision"),
+    "inertial": ("origin",),
+    "visual": ("origin", "material"),
+    "collision": ("origin",),
+    "joint": ("origin", "axis", "limit", "dynamics", "mimic"),
+    "material": ("color", "texture"),
+}
+
+_REQUIRED_CHILDREN: dict[str, tuple[str, ...]] = {
+    "inertial": ("mass", "inertia"),
+    "visual": ("geometry",),
+    "collision": ("geometry",),
+    "joint": ("parent", "child"),
+}
+
+_KNOWN_CHILDREN: dict[str, frozenset[str]] = {
+    tag: frozenset((*optional, *_REQUIRED_CHILDREN.get(tag, ()))) for tag, optional in _OPTIONAL_CHILDREN.items()
+}
+
+#: The attributes that an element may have, but need not.
+_OPTIONAL_ATTRIBUTES: dict[str, tuple[str, ...]] = {
+    "origin": ("xyz", "rpy"),
+    "mesh": ("scale",),
+    "limit": ("lower", "upper"),
+    "dynamics": ("damping", "friction"),
+    "mimic": ("multiplier", "offset"),
+}
+
+#: The types of joints that move in a range, and so need a `limit`.
+RANGED = frozenset({JointType.REVOLUTE, JointType.PRISMATIC})
+
+_ZERO: Vector3 = (0.0, 0.0, 0.0)
+
+#: White space of XML: a name of other blanks, such as one that does not break, is one like any other.
+_WHITE = " \t\r\n"
+
+#: Of so many different names that URDF lacks it is kept whether they are misspelt; of the rest it is asked again.
+_MOST_STRANGE = 200
+
+
+def named(element: Element) -> str:
+    """How a sentence names an element: a link or joint by its name, what is in it by tag and owner."""
+    tag, name = str(element.tag), element.get("name")
+    if tag in ("link", "joint") and name:
+        return f"{tag} '{name}'"
+    owner = next((above for above in element.iterancestors("link", "joint") if above.get("name")), None)
+    return f"<{tag}>" + ("" if owner is None else f" of {owner.tag!s} '{owner.get('name')}'")
+
+
+def cycle_of(names: Sequence[str]) -> str:
+    """How a sentence names the members of a cycle, a few at most."""
+    shown = names if len(names) <= 6 else [*names[:5], "..."]
+    return " -> ".join(f"'{name}'" for name in [*shown, names[0]])
+
+
+def _floats(text: str, separator: str | None = None) -> tuple[float, ...] | None:
+    """Finite decimal numbers in ASCII; of what `float` takes beyond them (nan, inf, 1_0, other digits) none is URDF."""
+    if "_" in text or not text.isascii():
+        return None
+    try:
+        values = tuple(map(float, text.split(separator)))
+    except ValueError:
+        return None
+    # The sum is finite where all are, but for sums that overflow.
+    return values if math.isfinite(sum(values)) or all(map(math.isfinite, values)) else None
+
+
+class UrdfReader:
+    """Reads attributes and child elements, and reports what is wrong with them.
+
+    It knows the texts that come again and again in a file: numbers, poses, and names that URDF lacks.
+
+    Attributes:
+        reporter: Gets what is found.
+        mimic_reporter: Gets what is wrong with which joint mimics which.
+    """
+
+    def __init__(self, reporter: XmlReporter, mimic_reporter: XmlReporter) -> None:
+        self.reporter = reporter
+        self.mimic_reporter = mimic_reporter
+        self._floats: dict[str, tuple[float, ...] | None] = {}
+        self._joined: dict[str, tuple[float, ...] | None] = {}
+        self._poses: dict[tuple[str | None, str | None], Pose] = {}
+        self._strange: dict[tuple[str, tuple[str, ...]], str | None] = {}
+
+    def report(
+        self, code: str, message: str, element: Element, attribute: str | None = None, hint: Hint = None
+    ) -> None:
+        """Report what is wrong with an element, or with one of its attributes."""
+        self.reporter.report(code, message, element, attribute, hint)
+
+    def numbers(self, element: Element, attribute: str, text: str, count: int) -> tuple[float, ...] | None:
+        """EU-URD-007: an attribute of numbers holds as many finite decimal numbers as it must."""
+        values = self._floats.get(text)
+        if values is None:
+            # Zeros, units and limits come again and again in a file.
+            values = self._floats[text] = _floats(text)
+        if values is not None and len(values) == count:
+            return values
+        if values is None:
+            self._bad_number(element, attribute, text, count)
+            return None
+        wanted = "one number" if count == 1 else f"{count} numbers separated by spaces"
+        self.report(
+            "urdf-bad-number",
+            f"'{attribute}' of {named(element)} has {len(values)} numbers; it must have {wanted}",
+            element,
+            attribute,
+        )
+        return None
+
+    def _bad_number(self, element: Element, attribute: str, text: str, count: int) -> None:
+        wanted = "a finite decimal number" if count == 1 else f"{count} finite decimal numbers separated by spaces"
+        hint = None
+        if "," in text:
+            hint = "write a point, not a comma, and separate numbers by spaces"
+        elif "${" in text or "$(" in text:
+            hint = (
+                "this looks like xacro: give the .xacro file itself, by --urdf if there is a description, or expand it"
+            )
+        shown = text if len(text) <= 40 else text[:37] + "..."
+        self.report(
+            "urdf-bad-number",
+            f"'{attribute}' of {named(element)} is '{shown}'; it must be {wanted}",
+            element,
+            attribute,
+            hint,
+        )
+
+    def single_numbers(self, element: Element, attributes: Mapping[str, str | None]) -> tuple[float, ...] | None:
+        """Attributes of one number each.
+
+        Args:
+            element: The element.
+            attributes: What each is where it is left out; None where it must not be.
+        """
+        get = element.get
+        texts = [get(attribute, default) for attribute, default in attributes.items()]
+        if None not in texts:
+            # A comma in an attribute makes one number too many, and a blank is no number: so none slips through.
+            joined = ",".join(texts)  # type: ignore[arg-type]
+            values = self._joined.get(joined)
+            if values is None:
+                values = self._joined[joined] = _floats(joined, ",")
+            if values is not None and len(values) == len(texts):
+                return values
+        for attribute, text in zip(attributes, texts, strict=True):
+            if text is None:
+                self.missing_attribute(element, attribute)
+            else:
+                self.numbers(element, attribute, text, 1)
+        return None
+
+    def missing_attribute(self, element: Element, attribute: str) -> None:
+        """EU-URD-005: report that an element lacks an attribute that it must have."""
+        near = did_you_mean(attribute, [str(key) for key in element.keys()])  # noqa: SIM118 - an lxml element
+        hint = near.replace("did you mean", "rename").replace("?", "") if near else None
+        self.report("urdf-missing-attribute", f"{named(element)} has no attribute '{attribute}'", element, None, hint)
+
+    def name(self, element: Element, attribute: str = "name") -> str | None:
+        """EU-URD-005, EU-URD-008: what must have a name has one, and it is not empty."""
+        name = element.get(attribute)
+        if name is None:
+            self.missing_attribute(element, attribute)
+            return None
+        if not name.strip(_WHITE):
+            self.report("urdf-empty-name", f"'{attribute}' of <{element.tag}> is empty", element, attribute)
+            return None
+        return name
+
+    def refuse_reserved(self, name: str, element: Element) -> None:
+        """EU-URD-011: no link and no joint is named as the world is."""
+        if name == "universe":
+            message = f"'universe' is the name of the world and cannot be a {element.tag}'s"
+            self.report("urdf-reserved-name", message, element, "name")
+
+    def children(self, parent: Element) -> dict[str, Element]:
+        """EU-URD-006: the child elements that may stand once, by tag. Unknown ones are looked at for near misses."""
+        found: dict[str, Element] = {}
+        known = _KNOWN_CHILDREN[str(parent.tag)]
+        for child in parent:
+            tag = child.tag
+            if tag in found:
+                self.report("urdf-repeated-element", f"<{parent.tag}> has a second <{tag}>", child)
+            elif tag in known:
+                found[tag] = child
+            else:
+                self.unknown(parent, child)
+        return found
+
+    def unknown(self, parent: Element, child: Element) -> None:
+        """EU-URD-026: an element that URDF lacks is left alone unless it is near one that may be left out."""
+        tag = child.tag
+        if not isinstance(tag, str):
+            return
+        optional = _OPTIONAL_CHILDREN[str(parent.tag)]
+        if parent.tag == "joint" and URDF_JOINT_TYPES.get(parent.get("type", "")) in RANGED:
+            optional = tuple(other for other in optional if other != "limit")
+        if hint := self.near_miss(tag, optional):
+            self.report("urdf-unknown-element", f"<{parent.tag}> has an unknown element <{tag}>", child, hint=hint)
+
+    def attributes(self, element: Element) -> None:
+        """EU-URD-026: an attribute that may be left out is not misspelt, which would leave it out."""
+        optional = _OPTIONAL_ATTRIBUTES[str(element.tag)]
+        for attribute in map(str, element.keys()):
+            hint = None if attribute in optional else self.near_miss(attribute, optional)
+            if hint:
+                message = f"{named(element)} has an unknown attribute '{attribute}'"
+                self.report("urdf-unknown-element", message, element, hint=hint)
+
+    def near_miss(self, name: str, optional: tuple[str, ...]) -> str | None:
+        """The hint for a name that URDF lacks, without a prefix; mostly the same few stand in each joint of a file."""
+        if (name, optional) in self._strange:
+            return self._strange[name, optional]
+        meant = None if "}" in name or ":" in name else near(name, optional)
+        hint = meant and f"did you mean '{meant}'?"
+        if len(self._strange) < _MOST_STRANGE:
+            self._strange[name, optional] = hint
+        return hint
+
+    def need(self, parent: Element, found: Mapping[str, Element], tag: str) -> Element | None:
+        """EU-URD-004: an element has the child elements that it must have."""
+        element = found.get(tag)
+        if element is None:
+            self.report("urdf-missing-element", f"{named(parent)} has no <{tag}>", parent)
+        return element
+
+    def origin(self, element: Element | None) -> Pose:
+        """The pose of an ``origin``, the identity where there is none or it has an error (EU-FRM-006)."""
+        if element is None:
+            return IDENTITY
+        text = (element.get("xyz"), element.get("rpy"))
+        if len(element.keys()) > 2 - text.count(None):
+            self.attributes(element)
+        pose = self._poses.get(text)
+        if pose is None:
+            xyz = _ZERO if text[0] is None else self.numbers(element, "xyz", text[0], 3)
+            rpy = _ZERO if text[1] is None else self.numbers(element, "rpy", text[1], 3)
+            if xyz is None or rpy is None:
+                return IDENTITY
+            # What is seen and what collides mostly stand in the same place.
+            pose = self._poses[text] = Pose.from_xyz_rpy(xyz, rpy)  # type: ignore[arg-type]
+        return pose

@@ -1,0 +1,158 @@
+"""The joints of a URDF."""
+
+from __future__ import annotations
+
+from eurdf.diagnostics import did_you_mean
+from eurdf.format.urdf.data import Limit, UrdfJoint
+from eurdf.format.urdf.elements import RANGED, URDF_JOINT_TYPES, UrdfReader, named
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mimic import Mimic
+from eurdf.mechanism.pose import Vector3
+from eurdf.reading.reporter import Element
+
+_AXLESS = frozenset({JointType.FIXED, JointType.FLOATING})
+
+# Attributes of one number each, and what they are where they are left out.
+_LIMIT = {"effort": None, "velocity": None, "lower": "0", "upper": "0"}
+_DYNAMICS = {"damping": "0", "friction": "0"}
+_MIMIC = {"multiplier": "1", "offset": "0"}
+
+
+def read_joint(reader: UrdfReader, element: Element) -> UrdfJoint | None:
+    """A joint, or None where it lacks what a tree is made of, which was reported."""
+    name = reader.name(element)
+    found = reader.children(element)
+    kind = _type(reader, element)
+    parent_element, child_element = reader.need(element, found, "parent"), reader.need(element, found, "child")
+    parent = reader.name(parent_element, "link") if parent_element is not None else None
+    child = reader.name(child_element, "link") if child_element is not None else None
+    placement = reader.origin(found.get("origin"))
+    if kind is None:
+        return None
+    axis = _axis(reader, name, kind, found.get("axis"))
+    limit = _limit(reader, name, kind, element, found.get("limit"))
+    damping = friction = 0.0
+    if "dynamics" in found:
+        damping, friction = _dynamics(reader, found["dynamics"])
+    mimic = _mimic(reader, name, kind, found["mimic"]) if "mimic" in found else None
+    if name is None or parent is None or child is None or axis is None:
+        return None
+    reader.refuse_reserved(name, element)
+    return UrdfJoint(name, kind, element, parent, child, placement, axis, limit, damping, friction, mimic)
+
+
+def _type(reader: UrdfReader, element: Element) -> JointType | None:
+    """EU-URD-012: the type of a joint is one of URDF's six."""
+    text = element.get("type")
+    if text is None:
+        reader.missing_attribute(element, "type")
+        return None
+    kind = URDF_JOINT_TYPES.get(text)
+    if kind is None:
+        hint = did_you_mean(text, URDF_JOINT_TYPES)
+        if text in ("spherical", "ball", "universal", "cylindrical", "helical", "screw"):
+            hint = "write 'revolute' or 'continuous' here, and the type under 'joints' in the YAML file"
+        reader.report("urdf-joint-type", f"'{text}' is no joint type of URDF", element, "type", hint)
+    return kind
+
+
+def _axis(reader: UrdfReader, name: str | None, kind: JointType, element: Element | None) -> Vector3 | None:
+    """EU-URD-013, EU-URD-035: the axis of a joint that turns about or slides along it is a direction, or else x."""
+    if element is None:
+        return (1.0, 0.0, 0.0)
+    text = element.get("xyz")
+    if text is None:
+        reader.missing_attribute(element, "xyz")
+        return None
+    axis = reader.numbers(element, "xyz", text, 3)
+    if axis is None:
+        return None
+    x, y, z = axis
+    if kind in _AXLESS:
+        return (1.0, 0.0, 0.0)
+    if kind is JointType.PLANAR:
+        if x != 0.0 or y != 0.0:
+            reader.report(
+                "urdf-planar-axis",
+                f"planar joint '{name}' moves in its own xy plane, whatever its axis says",
+                element,
+                "xyz",
+                "turn the joint's origin so that its z is the normal of the plane, and write the axis 0 0 1",
+            )
+    elif x == y == z == 0.0:
+        reader.report("urdf-zero-axis", f"the axis of joint '{name}' has no direction", element, "xyz")
+        return None
+    return (x, y, z)
+
+
+def _limit(
+    reader: UrdfReader, name: str | None, kind: JointType, joint: Element, element: Element | None
+) -> Limit | None:
+    if element is None:
+        _check_needs_no_limit(reader, name, kind, joint)
+        return None
+    reader.attributes(element)
+    values = reader.single_numbers(element, _LIMIT)
+    if values is None:
+        return None
+    effort, velocity, lower, upper = values
+    _refuse_negative(reader, element, effort=effort, velocity=velocity)
+    if kind in RANGED:
+        _check_order(reader, name, lower, upper, element)
+    return Limit(lower, upper, velocity, effort)
+
+
+def _check_needs_no_limit(reader: UrdfReader, name: str | None, kind: JointType, joint: Element) -> None:
+    """EU-URD-004: a joint that moves in a range has a ``limit``."""
+    if kind in RANGED:
+        reader.report(
+            "urdf-missing-element",
+            f"{kind} joint '{name}' has no <limit>",
+            joint,
+            hint="use type 'continuous' for a joint that turns without limits" if kind == "revolute" else None,
+        )
+
+
+def _check_order(reader: UrdfReader, name: str | None, lower: float, upper: float, element: Element) -> None:
+    """EU-URD-019: the lower limit is not above the upper one."""
+    if lower > upper:
+        reader.report(
+            "urdf-reversed-limits",
+            f"joint '{name}' has its lower limit {lower:g} above its upper limit {upper:g}",
+            element,
+            "lower",
+            "swap them",
+        )
+
+
+def _dynamics(reader: UrdfReader, element: Element) -> tuple[float, ...]:
+    reader.attributes(element)
+    damping, friction = reader.single_numbers(element, _DYNAMICS) or (0.0, 0.0)
+    _refuse_negative(reader, element, damping=damping, friction=friction)
+    return damping, friction
+
+
+def _refuse_negative(reader: UrdfReader, element: Element, **values: float) -> None:
+    """EU-URD-020: what is a magnitude is not negative."""
+    for attribute, value in values.items():
+        if value < 0.0:
+            message = f"'{attribute}' of {named(element)} is negative"
+            reader.report("urdf-negative-limit", message, element, attribute)
+
+
+def _mimic(reader: UrdfReader, name: str | None, kind: JointType, element: Element) -> Mimic | None:
+    """EU-URD-036: a fixed joint, which has no coordinate, has no use for a `<mimic>`."""
+    joint = reader.name(element, "joint")
+    reader.attributes(element)
+    values = reader.single_numbers(element, _MIMIC)
+    if joint is None or values is None:
+        return None
+    if kind is JointType.FIXED:
+        reader.mimic_reporter.report(
+            "urdf-mimic-fixed",
+            f"joint '{name}' is fixed: its <mimic> of '{joint}' has no effect",
+            element,
+            hint="remove <mimic>, or change the type if the joint moves",
+        )
+        return None
+    return Mimic(joint, *values)

@@ -1,0 +1,63 @@
+"""The materials of a URDF."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from eurdf.diagnostics import did_you_mean
+from eurdf.format.urdf.elements import UrdfReader, named
+from eurdf.reading.reporter import Element
+
+#: Red, green, blue, alpha, or None; and the file name of a texture, or an empty text.
+Look = tuple[tuple[float, float, float, float] | None, str]
+
+
+class Materials:
+    """The materials of one robot, by name."""
+
+    def __init__(self, reader: UrdfReader) -> None:
+        self._reader = reader
+        self._known: dict[str, Look] = {}
+        self._nameless = False  # whether a material of the robot has no name
+
+    def define(self, element: Element) -> None:
+        """Take in a material of the robot."""
+        name = self._reader.name(element)
+        color = _color(self._reader, element)
+        if name is None:
+            self._nameless = True
+        else:
+            self._known.setdefault(name, color)
+
+    def of(self, element: Element) -> Look:
+        """EU-URD-029: a material is defined where it is used, in the robot, or at an earlier use."""
+        name = element.get("name", "")
+        if element.find("color") is None and element.find("texture") is None:
+            if name not in self._known:
+                if self._nameless:  # it may be the one that lacks its name
+                    return None, ""
+                message = f"material '{name}' is not defined" if name else f"{named(element)} has no name and no color"
+                self._reader.report(
+                    "urdf-unknown-material",
+                    message,
+                    element,
+                    "name",
+                    partial(did_you_mean, name, self._known),
+                )
+                return None, ""
+            return self._known[name]
+        own = _color(self._reader, element)
+        return self._known.setdefault(name, own) if name else own
+
+
+def _color(reader: UrdfReader, element: Element) -> Look:
+    found = reader.children(element)
+    rgba: tuple[float, ...] | None = None
+    if "color" in found:
+        text = found["color"].get("rgba")
+        if text is None:
+            reader.missing_attribute(found["color"], "rgba")
+        else:
+            rgba = reader.numbers(found["color"], "rgba", text, 4)
+    texture = reader.name(found["texture"], "filename") or "" if "texture" in found else ""
+    return rgba, texture  # type: ignore[return-value]

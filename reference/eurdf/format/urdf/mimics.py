@@ -1,0 +1,79 @@
+"""Which joint of a URDF mimics which."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from itertools import dropwhile
+
+from eurdf.diagnostics import did_you_mean
+from eurdf.format.urdf.data import UrdfJoint
+from eurdf.format.urdf.elements import UrdfReader, cycle_of
+from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic
+from eurdf.reading.reporter import Element
+
+_Joints = Mapping[str, UrdfJoint]
+
+
+def check_mimics(reader: UrdfReader, joints: _Joints) -> None:
+    """Check what each mimic joint names as its leader.
+
+    Args:
+        reader: Gets what is found.
+        joints: The joints by name, in file order.
+    """
+    done: set[str] = set()
+    for joint in joints.values():
+        if joint.mimic is None:
+            continue
+        element = next(joint.element.iterchildren("mimic"))
+        leader = _leader(reader, joint, joint.mimic, joints, element)
+        if leader is not None and _can_mimic(reader, joint, leader, element):
+            _check_chain(reader, joint, leader, joints, element, done)
+
+
+def _leader(reader: UrdfReader, joint: UrdfJoint, mimic: Mimic, joints: _Joints, element: Element) -> UrdfJoint | None:
+    """EU-URD-021: the leader of a mimic joint exists."""
+    leader = joints.get(mimic.joint)
+    if leader is None:
+        reader.mimic_reporter.report(
+            "urdf-mimic-unknown",
+            f"joint '{joint.name}' mimics '{mimic.joint}', which is no joint",
+            element,
+            "joint",
+            partial(did_you_mean, mimic.joint, joints.keys() - {joint.name}, joint.name),
+        )
+    return leader
+
+
+def _can_mimic(reader: UrdfReader, joint: UrdfJoint, leader: UrdfJoint, element: Element) -> bool:
+    """EU-URD-023: a mimic joint and its leader have one coordinate."""
+    for role, each in (("mimics another", joint), ("is mimicked", leader)):
+        if each.type not in MIMIC_TYPES:
+            reader.mimic_reporter.report(
+                "urdf-mimic-kind",
+                f"joint '{each.name}' {role}, but is {each.type}: only joints of one coordinate can",
+                element,
+                "joint",
+            )
+            return False
+    return True
+
+
+def _check_chain(
+    reader: UrdfReader, joint: UrdfJoint, leader: UrdfJoint, joints: _Joints, element: Element, done: set[str]
+) -> None:
+    """EU-URD-022: no joint mimics itself through others; joints that are done are not followed again."""
+    trail = dict.fromkeys([joint.name])
+    at: UrdfJoint | None = leader
+    while at is not None and at.name not in trail and at.name not in done:
+        trail[at.name] = None
+        at = None if at.mimic is None else joints.get(at.mimic.joint)
+    if at is not None and at.name in trail:
+        reader.mimic_reporter.report(
+            "urdf-mimic-cycle",
+            "joints mimic one another in a cycle: " + cycle_of([*dropwhile(at.name.__ne__, trail)]),
+            element,
+            "joint",
+        )
+    done.update(trail)

@@ -1,0 +1,95 @@
+"""Reading a URDF."""
+
+from __future__ import annotations
+
+import re
+
+from eurdf.diagnostics import Diagnostics
+from eurdf.format.urdf.data import Urdf, UrdfJoint, UrdfLink
+from eurdf.format.urdf.elements import UrdfReader
+from eurdf.format.urdf.joints import read_joint
+from eurdf.format.urdf.links import read_link
+from eurdf.format.urdf.materials import Materials
+from eurdf.format.urdf.tree import build_tree
+from eurdf.reading.reporter import Element, XmlReporter
+from eurdf.reading.xml_reader import XmlDocument
+
+#: Elements by which other dialects state a closure or a coupling; a reader of this format would drop them.
+_CLOSURE_DIALECTS = frozenset({"loop", "loop_joint", "constraint", "coupling"})
+
+
+def read_urdf(
+    document: XmlDocument,
+    diagnostics: Diagnostics,
+    *,
+    geometry: bool = True,
+    mimic_diagnostics: Diagnostics | None = None,
+) -> Urdf | None:
+    """Read a URDF and check it by itself.
+
+    Args:
+        document: The XML file.
+        diagnostics: Gets what is found.
+        geometry: Whether to read what is seen and what collides; else links have neither, and it is not checked.
+        mimic_diagnostics: Gets what is wrong with which joint mimics which, in place of `diagnostics`: for a caller
+            that ignores mimics, to whom this is no error.
+
+    Returns:
+        The URDF, or None where an error was added to `diagnostics`.
+    """
+    before = diagnostics.error_count
+    of_mimics = diagnostics if mimic_diagnostics is None else mimic_diagnostics
+    reader = UrdfReader(XmlReporter(document, diagnostics), XmlReporter(document, of_mimics))
+    urdf = _read_robot(reader, document.root, Materials(reader) if geometry else None)
+    return None if diagnostics.error_count > before else urdf
+
+
+def _read_robot(reader: UrdfReader, root: Element, materials: Materials | None) -> Urdf | None:
+    if not _is_robot(reader, root):
+        return None
+    name = reader.name(root)
+    elements: list[Element] = []
+    for element in root:
+        tag = element.tag
+        if tag in ("link", "joint"):
+            elements.append(element)
+        elif tag == "material":
+            if materials is not None:
+                materials.define(element)
+        elif isinstance(tag, str) and not _is_of_other_dialect(reader, element):
+            reader.unknown(root, element)
+    links: list[UrdfLink] = []
+    joints: list[UrdfJoint] = []
+    for element in elements:
+        if element.tag == "link":
+            if link := read_link(reader, element, materials):
+                links.append(link)
+        elif joint := read_joint(reader, element):
+            joints.append(joint)
+    if name is None or len(links) + len(joints) < len(elements):
+        return None
+    return build_tree(reader, name, links, joints)
+
+
+def _is_robot(reader: UrdfReader, root: Element) -> bool:
+    """EU-URD-003: the root element is ``robot``."""
+    if root.tag == "robot":
+        return True
+    hint = "this is another format; give the URDF of the robot" if root.tag in ("sdf", "mujoco") else None
+    message = f"the root element is <{root.tag}>; it must be <robot>"
+    reader.report("urdf-root-element", message, root, hint=hint)
+    return False
+
+
+def _is_of_other_dialect(reader: UrdfReader, element: Element) -> bool:
+    """EU-URD-027: whether an element of the robot states a closure in another dialect, of which is told."""
+    local = re.split("[}:]", str(element.tag))[-1]
+    if local not in _CLOSURE_DIALECTS and not local.endswith("_constraint"):
+        return False
+    reader.report(
+        "urdf-closure-ignored",
+        f"<{local}> states a constraint that is not part of this format and has no effect",
+        element,
+        hint="state it under 'closures' in the YAML file",
+    )
+    return True

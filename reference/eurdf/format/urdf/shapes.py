@@ -1,0 +1,91 @@
+"""The shapes of links: what is seen, and what collides."""
+
+from __future__ import annotations
+
+from typing import Literal, cast
+
+from eurdf.diagnostics import did_you_mean
+from eurdf.format.urdf.elements import UrdfReader
+from eurdf.format.urdf.materials import Look, Materials
+from eurdf.mechanism.body import Shape
+from eurdf.mechanism.pose import Pose
+from eurdf.reading.reporter import Element
+
+_Primitive = Literal["box", "cylinder", "sphere", "capsule"]
+
+# Attributes of one number each, and what they are where they are left out.
+_SPHERE = {"radius": None}
+_CYLINDER = {"radius": None, "length": None}
+
+
+def read_shape(reader: UrdfReader, element: Element, materials: Materials) -> Shape | None:
+    """The shape of a ``visual`` or ``collision``, or None where it has an error, which was reported."""
+    found = reader.children(element)
+    pose = reader.origin(found.get("origin"))
+    look: Look = (None, "")
+    if element.tag == "visual" and "material" in found:
+        look = materials.of(found["material"])
+    geometry = reader.need(element, found, "geometry")
+    shape = None if geometry is None else _only_shape(reader, geometry)
+    if shape is None:
+        return None
+    return (_mesh if shape.tag == "mesh" else _primitive)(reader, shape, pose, look)
+
+
+def _only_shape(reader: UrdfReader, geometry: Element) -> Element | None:
+    """EU-URD-024: a geometry holds one shape."""
+    shapes = list(geometry)
+    if len(shapes) == 1:
+        return shapes[0]
+    message = f"<geometry> holds {len(shapes)} elements; it must hold exactly one shape"
+    reader.report("urdf-geometry", message, geometry)
+    return None
+
+
+def _mesh(reader: UrdfReader, element: Element, pose: Pose, look: Look) -> Shape | None:
+    """EU-URD-024: the scale of a mesh is not zero on any axis."""
+    name = reader.name(element, "filename")
+    text = element.get("scale")
+    reader.attributes(element)
+    scale = (1.0, 1.0, 1.0) if text is None else reader.numbers(element, "scale", text, 3)
+    if name is None or scale is None:
+        return None
+    if 0.0 in scale:
+        reader.report("urdf-geometry", "'scale' of <mesh> has a zero", element, "scale")
+        return None
+    return Shape("mesh", scale, pose, name, *look)
+
+
+def _primitive(reader: UrdfReader, element: Element, pose: Pose, look: Look) -> Shape | None:
+    """EU-URD-024: any other shape is a box, cylinder, sphere or capsule of positive size."""
+    kind = element.tag
+    if kind == "box":
+        size = _size_of_box(reader, element)
+    elif kind == "sphere":
+        size = reader.single_numbers(element, _SPHERE)
+    elif kind in ("cylinder", "capsule"):
+        size = reader.single_numbers(element, _CYLINDER)
+    else:
+        shown = kind if isinstance(kind, str) else "?"
+        reader.report(
+            "urdf-geometry",
+            f"<{shown}> is no shape; it must be box, cylinder, sphere, capsule or mesh",
+            element,
+            hint=did_you_mean(shown, ("box", "cylinder", "sphere", "capsule", "mesh")),
+        )
+        return None
+    if size is None:
+        return None
+    if min(size) <= 0.0:
+        reader.report("urdf-geometry", f"a size of <{kind}> is not positive", element)
+        return None
+    color, texture = look
+    return Shape(cast(_Primitive, kind), size, pose, color=color, texture=texture)
+
+
+def _size_of_box(reader: UrdfReader, element: Element) -> tuple[float, ...] | None:
+    text = element.get("size")
+    if text is None:
+        reader.missing_attribute(element, "size")
+        return None
+    return reader.numbers(element, "size", text, 3)

@@ -1,0 +1,140 @@
+"""The tree that the joints of a URDF make of its links."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+
+from eurdf.diagnostics import did_you_mean, quoted
+from eurdf.format.urdf.data import Urdf, UrdfJoint, UrdfLink
+from eurdf.format.urdf.elements import UrdfReader, cycle_of
+from eurdf.format.urdf.mimics import check_mimics
+
+
+def build_tree(reader: UrdfReader, name: str, links: Sequence[UrdfLink], joints: Sequence[UrdfJoint]) -> Urdf | None:
+    """The tree, or None where an error was found. What follows from an error is not looked at.
+
+    Args:
+        reader: Gets what is found.
+        name: Name of the robot.
+        links: In file order.
+        joints: In file order.
+    """
+    diagnostics, document = reader.reporter.diagnostics, reader.reporter.document
+    before = diagnostics.error_count
+    link_by_name = _links_by_name(reader, links)
+    joint_by_name = _joints_by_name(reader, joints)
+    if not links:  # EU-URD-015
+        reader.report("urdf-no-link", f"robot '{name}' has no link", document.root)
+    _check_links_of_joints(reader, joints, link_by_name)
+    if diagnostics.error_count > before:
+        return None
+    check_mimics(reader, joint_by_name)
+    parent_joint = _parent_joints(reader, joints)
+    if diagnostics.error_count > before:
+        return None
+    children: dict[str, list[UrdfJoint]] = {}
+    for joint in joints:
+        children.setdefault(joint.parent, []).append(joint)
+    ordered = {link: tuple(sorted(of, key=lambda joint: joint.name)) for link, of in children.items()}
+    roots = [link for link in links if link.name not in parent_joint]
+    urdf = Urdf(document, name, link_by_name, joint_by_name, roots[0].name if roots else "", ordered)
+    return urdf if _is_acyclic(reader, urdf, roots, parent_joint) and _has_one_root(reader, roots) else None
+
+
+def _links_by_name(reader: UrdfReader, links: Sequence[UrdfLink]) -> dict[str, UrdfLink]:
+    """EU-URD-009: the names of links are unique."""
+    by_name: dict[str, UrdfLink] = {}
+    for link in links:
+        if link.name in by_name:
+            reader.report("urdf-duplicate-link", f"there is a second link '{link.name}'", link.element, "name")
+        by_name[link.name] = link
+    return by_name
+
+
+def _joints_by_name(reader: UrdfReader, joints: Sequence[UrdfJoint]) -> dict[str, UrdfJoint]:
+    """EU-URD-010: the names of joints are unique."""
+    by_name: dict[str, UrdfJoint] = {}
+    for joint in joints:
+        if joint.name in by_name:
+            reader.report("urdf-duplicate-joint", f"there is a second joint '{joint.name}'", joint.element, "name")
+        by_name[joint.name] = joint
+    return by_name
+
+
+def _check_links_of_joints(reader: UrdfReader, joints: Sequence[UrdfJoint], links: Mapping[str, UrdfLink]) -> None:
+    """EU-URD-014: the links that a joint names exist."""
+    for joint in joints:
+        for tag, name in (("parent", joint.parent), ("child", joint.child)):
+            if name not in links:
+                reader.report(
+                    "urdf-unknown-link",
+                    f"joint '{joint.name}' names the {tag} link '{name}', which does not exist",
+                    next(joint.element.iterchildren(tag)),
+                    "link",
+                    partial(did_you_mean, name, links, joint.name),
+                )
+
+
+def _parent_joints(reader: UrdfReader, joints: Sequence[UrdfJoint]) -> dict[str, UrdfJoint]:
+    """EU-URD-016: for each link but the root the joint that carries it; there is only one."""
+    parent_joint: dict[str, UrdfJoint] = {}
+    for joint in joints:
+        if joint.child in parent_joint:
+            other = parent_joint[joint.child].name
+            reader.report(
+                "urdf-two-parents",
+                f"link '{joint.child}' is the child of two joints, '{other}' and '{joint.name}'",
+                next(joint.element.iterchildren("child")),
+                "link",
+                "keep one of the joints, and state the other under 'closures' in the YAML file",
+            )
+        parent_joint[joint.child] = joint
+    return parent_joint
+
+
+def _is_acyclic(
+    reader: UrdfReader, urdf: Urdf, roots: Sequence[UrdfLink], parent_joint: Mapping[str, UrdfJoint]
+) -> bool:
+    """EU-URD-017: no joints form a cycle; every link hangs from a root."""
+    reached = {link.name for link in roots}
+    stack = list(reached)
+    while stack:
+        for joint in urdf.children.get(stack.pop(), ()):
+            reached.add(joint.child)
+            stack.append(joint.child)
+    lost = next((name for name in urdf.links if name not in reached), None)
+    if lost is None:
+        return True
+    # Walking up from a link that no root reaches must enter a cycle.
+    path: dict[str, None] = {}
+    while lost not in path:
+        path[lost] = None
+        lost = parent_joint[lost].parent
+    walked = list(path)
+    cycle = walked[walked.index(lost) :][::-1]
+    # The last one in the file: whoever closed the cycle mostly wrote it last.
+    order = {name: index for index, name in enumerate(urdf.joints)}
+    last = max((parent_joint[link] for link in cycle), key=lambda joint: order[joint.name])
+    reader.report(
+        "urdf-cycle",
+        "links form a cycle: " + cycle_of(cycle),
+        last.element,
+        hint="take one joint out of the cycle, and state it under 'closures' in the YAML file",
+    )
+    return False
+
+
+def _has_one_root(reader: UrdfReader, roots: Sequence[UrdfLink]) -> bool:
+    """EU-URD-018: one link has no parent."""
+    if len(roots) == 1:
+        return True
+    names = quoted([link.name for link in roots], 5)
+    reader.report(
+        "urdf-two-roots",
+        f"{len(roots)} links have no parent: {names}; a robot has one root",
+        roots[1].element,
+        "name",
+        "join them by a joint",
+    )
+    return False
