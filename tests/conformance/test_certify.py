@@ -29,6 +29,7 @@ from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level
 from eurdf_conformance.suite.item import planned_items
 from eurdf_conformance.suite.smoke import smoke_lines
+from support.parsers.sessions import fake
 from support.shared_runs import SharedRun
 from support.suite_runs import INVALID, PLANNED, VALID, item, result, run
 from support.terminal import on_a_terminal
@@ -45,14 +46,7 @@ MOST_SHOWN = 20
 SOME = ("--level", "accept", "--format-version", "1", "--jobs", "0")
 SOME_CASES = [case for case in read_cases() if case.case.version == "1"]
 
-
-def one_answer(word: str, *options: str) -> str:
-    """The parser that says the same of every description."""
-    parser = Path(__file__).parents[1] / "support" / "fakes" / "one_answer.py"
-    return "cmd:" + shlex.join([sys.executable, "-I", "-S", str(parser), word, *options])
-
-
-ACCEPTS, REJECTS = one_answer("accepted"), one_answer("rejected")
+ACCEPTS, REJECTS = fake("always_accepted"), fake("always_rejected")
 
 
 def certify(*argv: str | Path, **environment: str) -> subprocess.CompletedProcess[str]:
@@ -143,7 +137,7 @@ def test_a_first_try_tells_a_wrong_adapter_from_a_wrong_parser(folder: Path) -> 
     assert "your parser is wrong" in parser.stdout
     told = '/accept: failed: /outcome: it rejects what is right: expected "accepted", given "rejected"\n'
     assert told in parser.stdout
-    adapter = certify("--parser", one_answer("rejected", "--chatter"), "--smoke")
+    adapter = certify("--parser", fake("always_rejected_with_chatter"), "--smoke")
     assert adapter.returncode == 1
     assert adapter.stdout.startswith("your adapter is wrong")
 

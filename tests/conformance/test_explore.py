@@ -31,8 +31,8 @@ from eurdf_conformance.properties.truth import truth
 from eurdf_conformance.properties.trying import Trial, try_example, try_property
 from eurdf_conformance.runner.in_process import InProcess
 from eurdf_conformance.runner.outcome import Crashed, Outcome
-from support.oracle_parser import OracleParser
-from support.wrong_parsers import ForgetsInlineAngles, UniversalBackwards
+from support.parsers.oracle import OracleParser
+from support.parsers.relations import ForgetsInlineAngles, UniversalBackwards
 
 #: What is drawn from a seed depends on the version of Hypothesis too: as many are drawn as find it from any.
 SEED, COUNT = 1, 400

@@ -14,7 +14,7 @@ from eurdf_conformance.suite.protocol_check import Setup, check
 from eurdf_conformance.suite.smoke import SMOKE, smoke_case
 from support.mutants import MUTANTS, SPEAKERS, UNBROKEN, Mutant
 from support.mutants.catching import catching
-from support.oracle_parser import OracleParser
+from support.parsers.oracle import OracleParser
 
 
 @pytest.mark.parametrize("name", MUTANTS)

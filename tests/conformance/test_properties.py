@@ -27,54 +27,56 @@ from eurdf_conformance.properties.truth import truth
 from eurdf_conformance.properties.trying import Trial, try_example, try_frozen, try_property
 from eurdf_conformance.protocol.message import Accepted, Evaluated, Unsupported
 from eurdf_conformance.protocol.reply import unsupported
+from eurdf_conformance.protocol.serve import PythonParser
 from eurdf_conformance.runner.in_process import InProcess
 from eurdf_conformance.runner.outcome import Crashed, Outcome
 from eurdf_conformance.suite.item import PropertyItem, property_items
-from support import wrong_parsers as wrong
-from support.oracle_parser import OracleParser
-from support.spoiled import Remembering, Spoiling, spoils
+from support.mutants import MUTANTS
+from support.parsers import relations as wrong
+from support.parsers.oracle import OracleParser
+from support.parsers.spoilt import Remembering, Spoiling, spoils
 
 KINEMATICS, DYNAMICS, STRUCTURE = Level.KINEMATICS, Level.DYNAMICS, Level.STRUCTURE
 
 FAMILIES = [prop for prop in PROPERTIES if prop.family is not None]
 
-#: For each property and level a parser that departs from it.
-BROKEN: list[tuple[str, Level, type[wrong.WrongParser]]] = [
-    ("accepted", Level.ACCEPT, wrong.RejectsFloating),
-    ("redundant-rows", Level.ACCEPT, wrong.RejectsRedundancy),
-    ("structure-agreement", STRUCTURE, wrong.ForgetsDamping),
-    ("agreement", KINEMATICS, wrong.OffByAMillionth),
-    ("inertia-agreement", DYNAMICS, wrong.OffByAMillionth),
+#: For each property and level a parser that violates it: a mutant, by its name, or one of `relations`.
+BROKEN: list[tuple[str, Level, str | type[wrong.WrongParser]]] = [
+    ("accepted", Level.ACCEPT, "continuous_joints_need_limits"),
+    ("redundant-rows", Level.ACCEPT, "redundant_closures_are_refused"),
+    ("structure-agreement", STRUCTURE, "damping_is_0"),
+    ("agreement", KINEMATICS, "poses_of_six_decimals"),
+    ("inertia-agreement", DYNAMICS, "mass_matrix_of_single_precision"),
     ("columns", KINEMATICS, wrong.ForgetsAColumn),
     ("columns", DYNAMICS, wrong.ForgetsAColumn),
-    ("inertia", DYNAMICS, wrong.ForgetsTheRoot),
+    ("inertia", DYNAMICS, "root_weighs_nothing"),
     ("inertia", DYNAMICS, wrong.Weightless),
-    ("derivative", KINEMATICS, wrong.TwistForDerivative),
-    ("mobility", KINEMATICS, wrong.LosesARow),
-    ("planar-polygon", KINEMATICS, wrong.Noisy),
-    ("planar-polygon-6d", KINEMATICS, wrong.Noisy),
-    ("parallelograms", KINEMATICS, wrong.Noisy),
-    ("spherical-polygon", KINEMATICS, wrong.Noisy),
-    ("ball-ring", KINEMATICS, wrong.LosesARow),
+    ("derivative", KINEMATICS, "k_is_the_twist"),
+    ("mobility", KINEMATICS, "k_forgets_the_branch_of_a"),
+    ("planar-polygon", KINEMATICS, "axes_in_the_parents_frame"),
+    ("planar-polygon-6d", KINEMATICS, "axes_in_the_parents_frame"),
+    ("parallelograms", KINEMATICS, "k_forgets_the_branch_of_a"),
+    ("spherical-polygon", KINEMATICS, "axes_in_the_parents_frame"),
+    ("ball-ring", KINEMATICS, "k_forgets_the_branch_of_a"),
     ("ball-chain", KINEMATICS, wrong.ForgetsAColumn),
-    ("platform-ups", KINEMATICS, wrong.LosesARow),
-    ("platform-sps", KINEMATICS, wrong.LosesARow),
-    ("sarrus", KINEMATICS, wrong.Noisy),
-    ("bennett", KINEMATICS, wrong.Noisy),
-    ("renaming", STRUCTURE, wrong.RejectsSlashes),
+    ("platform-ups", KINEMATICS, "k_forgets_the_branch_of_a"),
+    ("platform-sps", KINEMATICS, "k_forgets_the_branch_of_a"),
+    ("sarrus", KINEMATICS, "axes_in_the_parents_frame"),
+    ("bennett", KINEMATICS, "axes_in_the_parents_frame"),
+    ("renaming", STRUCTURE, "slashes_in_names_are_refused"),
     ("renaming", KINEMATICS, wrong.OrderOfNames),
     ("renaming", DYNAMICS, wrong.OrderOfNames),
     ("reordering", STRUCTURE, wrong.OrderOfFile),
     ("reordering", KINEMATICS, wrong.OrderOfFile),
     ("reordering", DYNAMICS, wrong.OrderOfFile),
-    ("yaml-style", STRUCTURE, wrong.OldYaml),
-    ("yaml-style", KINEMATICS, wrong.OldYaml),
-    ("versions", STRUCTURE, wrong.Type3dByDefault),
-    ("versions", KINEMATICS, wrong.Type3dByDefault),
+    ("yaml-style", STRUCTURE, "yaml_as_pyyaml_reads_it"),
+    ("yaml-style", KINEMATICS, "yaml_as_pyyaml_reads_it"),
+    ("versions", STRUCTURE, "types_left_out_are_3d"),
+    ("versions", KINEMATICS, "types_left_out_are_3d"),
     ("versions", DYNAMICS, wrong.OffWhereLocked1),
     ("frames", KINEMATICS, wrong.ForgetsInlineAngles),
     ("frames", DYNAMICS, wrong.OffByLinks),
-    ("swapping", KINEMATICS, wrong.SeenFromB),
+    ("swapping", KINEMATICS, "k_along_the_world"),
     ("ball-closure", KINEMATICS, wrong.LosesARowOf3d),
     ("moving-base", KINEMATICS, wrong.SeenFromTheWorld),
     ("moving-base", DYNAMICS, wrong.SeenFromTheWorld),
@@ -88,14 +90,14 @@ BROKEN: list[tuple[str, Level, type[wrong.WrongParser]]] = [
     ("locking", DYNAMICS, wrong.OffWhereLocked),
     ("elementary-joints", KINEMATICS, wrong.UniversalBackwards),
     ("elementary-joints", DYNAMICS, wrong.UniversalBackwards),
-    ("merging", KINEMATICS, wrong.OffWhereMerged),
-    ("merging", DYNAMICS, wrong.OffWhereMerged),
-    ("following", KINEMATICS, wrong.OffWhereMimicking),
-    ("following", DYNAMICS, wrong.OffWhereMimicking),
-    ("mimics-ignored", STRUCTURE, wrong.RejectsMimics),
-    ("mimics-ignored", KINEMATICS, wrong.OffWhereMimicking),
-    ("mimics-ignored", DYNAMICS, wrong.OffWhereMimicking),
-    ("lumping", DYNAMICS, wrong.OffByInertials),
+    ("merging", KINEMATICS, "balls_at_the_last_origin"),
+    ("merging", DYNAMICS, "balls_at_the_last_origin"),
+    ("following", KINEMATICS, "mimic_offset_is_dropped"),
+    ("following", DYNAMICS, "mimic_is_inverted"),
+    ("mimics-ignored", STRUCTURE, "mimics_of_version_1_are_followed"),
+    ("mimics-ignored", KINEMATICS, "mimics_of_version_1_are_followed"),
+    ("mimics-ignored", DYNAMICS, "mimics_of_version_1_are_followed"),
+    ("lumping", DYNAMICS, "links_behind_fixed_joints_weigh_nothing"),
     ("leaving-out", KINEMATICS, wrong.OffWhereLeftOut),
     ("leaving-out", DYNAMICS, wrong.OffWhereLeftOut),
     ("turning", KINEMATICS, wrong.MindsTheSign),
@@ -103,7 +105,7 @@ BROKEN: list[tuple[str, Level, type[wrong.WrongParser]]] = [
 ]
 
 
-def tried(prop: Property, level: Level, version: Version, parser: OracleParser, folder: Path) -> Judgement:
+def tried(prop: Property, level: Level, version: Version, parser: PythonParser, folder: Path) -> Judgement:
     return try_frozen(prop, level, version, Harness(InProcess(parser), folder))
 
 
@@ -121,10 +123,11 @@ def test_every_property_holds_of_the_oracle(
     ("name", "level", "parser"), BROKEN, ids=lambda value: value if isinstance(value, str) else value.__name__
 )
 def test_each_property_is_broken_by_a_wrong_parser(
-    name: str, level: Level, parser: type[wrong.WrongParser], tmp_path: Path
+    name: str, level: Level, parser: str | type[wrong.WrongParser], tmp_path: Path
 ) -> None:
     prop = property_of(name)
-    judgement = tried(prop, level, prop.versions[-1], parser(), tmp_path)
+    made = MUTANTS[parser].parser() if isinstance(parser, str) else parser()
+    judgement = tried(prop, level, prop.versions[-1], made, tmp_path)
     # One that cannot read what it should is no better than one that reads it wrong.
     assert judgement.verdict in (Verdict.FAILED, Verdict.ERRORED)
     assert judgement.differences or judgement.issues or judgement.verdict == Verdict.ERRORED
@@ -167,7 +170,8 @@ def test_a_parser_that_does_not_read_version_2_can_keep_what_both_versions_say(t
 
 
 def test_an_answer_of_another_kind_stands_among_the_differences(tmp_path: Path) -> None:
-    (wrong_answer,) = tried(property_of("accepted"), Level.ACCEPT, "2", wrong.RejectsFloating(), tmp_path).differences
+    parser = MUTANTS["continuous_joints_need_limits"].parser()
+    (wrong_answer,) = tried(property_of("accepted"), Level.ACCEPT, "2", parser, tmp_path).differences
     assert (wrong_answer.pointer, wrong_answer.expected, wrong_answer.given) == ("/outcome", "accepted", "rejected")
 
 
@@ -199,7 +203,7 @@ def test_where_a_3d_closure_is_open_the_k_of_a_6d_one_is_looked_at_all_the_same(
     assert len(prop.frozen("2")) >= 3
     assert tried(prop, KINEMATICS, "2", OracleParser(), tmp_path).verdict == Verdict.PASSED
     (tmp_path / "twist").mkdir()
-    judgement = tried(prop, KINEMATICS, "2", wrong.TwistOf6d(), tmp_path / "twist")
+    judgement = tried(prop, KINEMATICS, "2", MUTANTS["k_is_the_twist"].parser(), tmp_path / "twist")
     assert judgement.verdict == Verdict.FAILED
     assert {each.pointer.split("/")[3] for each in judgement.differences} == {"jacobian"}
 

@@ -29,7 +29,7 @@ from eurdf_conformance.runner.outcome import (
 )
 from eurdf_conformance.runner.session import NotStarted, Session
 from eurdf_conformance.suite.protocol_check import Setup, check
-from support.fake_parsers import FAKES, accepts, fake, has_ended, load, runs
+from support.parsers.sessions import PARSERS, accepts, fake, has_ended, load, runs
 
 #: For each way to go wrong: what comes of it, words that tell it, and whether the process can be asked on.
 WAYS = [
@@ -426,7 +426,7 @@ def test_an_error_on_this_side_ends_the_parser_at_once() -> None:
 
 RUNNER = """
 import sys
-from support.fake_parsers import fake, load
+from support.parsers.sessions import fake, load
 from eurdf_conformance.runner.session import Session
 with Session(fake("spins"), timeout=60.0) as session:
     load(session, "fault")
@@ -436,7 +436,7 @@ with Session(fake("spins"), timeout=60.0) as session:
 @pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
 def test_a_parser_ends_with_a_runner_that_is_killed(end: signal.Signals, tmp_path: Path) -> None:
     pids = tmp_path / "pids"
-    environment = os.environ | {"FAKE_PIDS": str(pids), "PYTHONPATH": str(FAKES.parents[1])}
+    environment = os.environ | {"FAKE_PIDS": str(pids), "PYTHONPATH": str(PARSERS.parents[1])}
     with subprocess.Popen(
         [sys.executable, "-c", RUNNER],
         env=environment,

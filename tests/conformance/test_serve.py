@@ -17,13 +17,13 @@ from eurdf_conformance.protocol.message import Accepted, AnyAnswer, Errored, Eva
 from eurdf_conformance.protocol.serve import find_object, serve
 from eurdf_conformance.runner.outcome import Answered, Crashed, Malformed, Outcome
 from eurdf_conformance.runner.session import Session
-from support.fake_parsers import FAKES, load
+from support.parsers.sessions import PARSERS, load
 
 
 @pytest.fixture(autouse=True)
 def _where_the_parsers_are(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    monkeypatch.chdir(FAKES)
-    monkeypatch.syspath_prepend(str(FAKES))
+    monkeypatch.chdir(PARSERS)
+    monkeypatch.syspath_prepend(str(PARSERS))
     yield
     sys.modules.pop("python_parsers", None)
 
@@ -59,7 +59,7 @@ def test_an_object_or_a_class_is_served_by_its_import_path(path: str) -> None:
 @pytest.mark.parametrize(
     ("path", "words"),
     [
-        ("no_such_module:PARSER", f"there is no module 'no_such_module': neither in the working folder, {FAKES}, nor "),
+        ("no_such_module:PARSER", f"neither in the working folder, {PARSERS}, nor "),
         ("python_parsers.inner:PARSER", "there is no module 'python_parsers.inner': "),
         ("python_parsers:Nil", "python_parsers has no 'Nil'"),
         ("python_parsers:holder.outer", "python_parsers has no 'holder.outer'"),
@@ -93,7 +93,11 @@ def test_what_is_no_parser_ends_the_process_with_the_reason_in_a_line(path: str,
         ("imports_what_is_missing:X", "imports_what_is_missing.py", "No module named 'no_such_package'"),
     ],
 )
-def test_what_the_module_of_a_parser_raises_is_told_with_its_own_lines_alone(path: str, first: str, last: str) -> None:
+def test_what_the_module_of_a_parser_raises_is_told_with_its_own_lines_alone(
+    path: str, first: str, last: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "imports_what_is_missing.py").write_text("import no_such_package\n")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     with Session(path) as session:
         outcome = session.start()
     assert isinstance(outcome, Crashed)
@@ -225,6 +229,6 @@ def test_paths_reach_the_parser_as_they_are() -> None:
         answer = answer_of(session.load(Path("Ω/robot 関節.yaml"), Path("../robot.urdf")))
         assert isinstance(answer, Accepted)
         assert [issue.message for issue in answer.issues] == [
-            str(FAKES / "Ω/robot 関節.yaml"),
-            str(FAKES / "../robot.urdf"),
+            str(PARSERS / "Ω/robot 関節.yaml"),
+            str(PARSERS / "../robot.urdf"),
         ]

@@ -380,7 +380,7 @@ def suite(
     """Run the suite, in one process: exit code, and what it writes."""
     parser = [f"--parser=case_parser:{parser}"] if parser else []
     argv = [*command, "-n0", "-p", "no:cacheprovider", *parser, *arguments]
-    environment = os.environ | {"PYTHONPATH": str(ROOT / "tests" / "support" / "fakes"), "COLUMNS": "200"}
+    environment = os.environ | {"PYTHONPATH": str(ROOT / "tests" / "support" / "parsers"), "COLUMNS": "200"}
     done = run_module("pytest", argv, cwd=cwd, environment=environment)
     assert "INTERNALERROR" not in done.stdout + done.stderr
     return done.returncode, done.stdout + done.stderr

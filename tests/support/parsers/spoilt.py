@@ -12,7 +12,7 @@ from pydantic import BaseModel, ValidationError
 from eurdf_conformance.protocol.message import Accepted, Evaluated, Quantity
 from eurdf_conformance.runner.in_process import InProcess
 from eurdf_conformance.runner.outcome import Answered, Outcome
-from support.oracle_parser import OracleParser
+from support.parsers.oracle import OracleParser
 
 #: Where a value stands in an answer; None is any index of a list, or any name of a mapping from names.
 Place = tuple[str | None, ...]

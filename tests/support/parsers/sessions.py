@@ -1,4 +1,4 @@
-"""Sessions with fake parsers, and what came of them."""
+"""Sessions with processes that are wrong, and what came of them."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from eurdf_conformance.protocol.message import Accepted
 from eurdf_conformance.runner.outcome import Answered, Outcome
 from eurdf_conformance.runner.session import Session
 
-FAKES = Path(__file__).parent / "fakes"
+PARSERS = Path(__file__).parent
 
 
 def fake(way: str) -> str:
-    """The parser that goes wrong in that way; see `fakes/parser.py`."""
-    return "cmd:" + shlex.join([sys.executable, "-I", "-S", str(FAKES / "parser.py"), way])
+    """The parser that goes wrong in a way; see `process.py`."""
+    return "cmd:" + shlex.join([sys.executable, "-I", "-S", str(PARSERS / "process.py"), way])
 
 
 def load(session: Session, name: str, **options: float) -> Outcome:

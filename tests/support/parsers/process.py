@@ -1,8 +1,8 @@
-"""Parsers that are wrong, each in one way: ``python parser.py WAY``.
+"""Processes that are wrong, each in one way: ``python process.py WAY``. Each way is a function of the request.
 
-Each accepts whatever it is to load, and says which in the message of an issue, so that an answer tells which request it
-is the answer to. It goes wrong where the name of the description begins with ``fault``, or at `start`, or at `stop`,
-as its way has it. It knows nothing of the package that is tested.
+Most accept whatever they load, with the path in the message of an issue, so that an answer shows its request. They go
+wrong where the name of the description begins with ``fault``, or at `start`, or at `stop`. Nothing of the suite is
+imported.
 """
 
 import json
@@ -40,37 +40,45 @@ def say(answer):
 
 
 def sound(request):
+    """Accepts, as it should."""
     say(accepted(request))
 
 
 def hangs(request):
+    """Never answers."""
     time.sleep(60)
 
 
 def exits(request):
+    """Ends with exit code 3 and a line on standard error."""
     sys.stderr.write("cannot go on\n")
     sys.exit(3)
 
 
 def exits_with_success(request):
+    """Ends with exit code 0, without an answer."""
     sys.exit(0)
 
 
 def exits_after_answering(request):
+    """Answers, and ends with exit code 4."""
     say(accepted(request))
     sys.exit(4)
 
 
 def segfaults(request):
+    """Ends by SIGSEGV."""
     os.kill(os.getpid(), signal.SIGSEGV)
 
 
 def aborts_with_a_line(request):
+    """Writes a line that is no answer, and ends by SIGABRT."""
     write("terminate called\n")
     os.kill(os.getpid(), signal.SIGABRT)
 
 
 def another_id(request):
+    """Answers with an id that was never asked."""
     say({**accepted(request), "id": request["id"] + 7})
 
 
@@ -80,15 +88,18 @@ def answer_before(request):
 
 
 def late(request):
+    """Answers after 0.7 s."""
     time.sleep(0.7)
     say(accepted(request))
 
 
 def twice(request):
+    """Answers twice."""
     write(2 * (json.dumps(accepted(request)) + "\n"))
 
 
 def in_pieces(request):
+    """Writes its answer byte by byte."""
     line = json.dumps({**accepted(request), "robot": None}, ensure_ascii=False).encode() + b"\n"
     for byte in range(len(line)):
         write(line[byte : byte + 1])
@@ -96,22 +107,27 @@ def in_pieces(request):
 
 
 def garbage(request):
+    """Writes a line that is not JSON."""
     write("Segmentation fault (not really)\n")
 
 
 def nothing_but_a_line_end(request):
+    """Writes an empty line."""
     write("\n")
 
 
 def not_utf8(request):
+    """Writes a line in Latin-1."""
     write(b'{"id": %d, "outcome": "skipped", "reason": "\xe9"}\n' % request["id"])
 
 
 def half_a_character(request):
+    """Writes half of a surrogate pair."""
     say({"id": request["id"], "outcome": "skipped", "reason": "\ud800"})
 
 
 def list_of_one(request):
+    """Writes its answer in a list."""
     say([accepted(request)])
 
 
@@ -122,15 +138,18 @@ def cut_off(request):
 
 
 def no_line_end(request):
+    """Writes its answer without the end of the line."""
     write(json.dumps(accepted(request)))
     time.sleep(60)
 
 
 def unknown_member(request):
+    """Adds a member that answers do not have."""
     say({**accepted(request), "verdict": "fine"})
 
 
 def member_missing(request):
+    """Leaves out a member."""
     answer = accepted(request)
     del answer["robot"]
     say(answer)
@@ -142,36 +161,44 @@ def another_outcome_before(request):
 
 
 def two_ids(request):
+    """Writes two ids into one answer."""
     write(json.dumps(accepted(request)).replace('"id"', '"id": 7, "id"') + "\n")
 
 
 def number_too_long(request):
+    """Writes a number of 5000 digits."""
     write(json.dumps({**accepted(request), "issues": [{"message": "m", "line": 7}]}).replace("7", "7" * 5000) + "\n")
 
 
 def wrong_type(request):
+    """Writes a number as text."""
     say({**accepted(request), "issues": [{"message": "m", "line": "12"}]})
 
 
 def no_outcome(request):
+    """Leaves out the outcome."""
     say({"id": request["id"]})
 
 
 def unknown_outcome(request):
+    """Writes an outcome that does not exist."""
     say({"id": request["id"], "outcome": "valid"})
 
 
 def no_id(request):
+    """Leaves out the id."""
     answer = accepted(request)
     del answer["id"]
     say(answer)
 
 
 def wrong_kind(request):
+    """Answers another request than the one it got."""
     say({"id": request["id"], "outcome": "evaluated", "values": []})
 
 
 def not_a_number(request):
+    """Writes NaN, which JSON does not have."""
     robot = {
         "name": "r", "version": "2", "root": "fixed", "links": [], "frames": [], "joints": [], "closures": [],
         "actuators": [], "configurations": {}, "own": {"/x-a": float("nan")},
@@ -180,6 +207,7 @@ def not_a_number(request):
 
 
 def number_too_large(request):
+    """Writes a number beyond the range of a double."""
     robot = {
         "name": "r", "version": "2", "root": "fixed", "links": [], "frames": [], "joints": [], "closures": [],
         "actuators": [], "configurations": {}, "own": {"/x-a": "huge"},
@@ -188,35 +216,42 @@ def number_too_large(request):
 
 
 def nested_deep(request):
+    """Writes 100 000 opening brackets."""
     write("[" * 100_000 + "\n")
 
 
 def endless_line(request):
+    """Writes a line without end."""
     while True:
         write("x" * 2**16)
 
 
 def endless_lines(request):
+    """Writes lines without end."""
     while True:
         write("y\n" * 2**10)
 
 
 def chatter_before(request):
+    """Writes two lines before its answer."""
     write("loading...\nloaded\n")
     say(accepted(request))
 
 
 def chatter_after(request):
+    """Writes a line after its answer."""
     write(json.dumps(accepted(request)) + "\ndone\n")
 
 
 def chatter_later(request):
+    """Writes a line 0.1 s after its answer."""
     say(accepted(request))
     time.sleep(0.1)
     write("cleaned up\n")
 
 
 def floods_stderr(request):
+    """Writes 6 MB to standard error, and answers."""
     for _ in range(100):
         sys.stderr.write("x" * 2**16 + "\n")
     sys.stderr.write("the last of it\n")
@@ -224,6 +259,7 @@ def floods_stderr(request):
 
 
 def floods_stderr_for_ever(request):
+    """Writes to standard error without end."""
     while True:
         os.write(2, b"x" * 2**16)
 
@@ -234,10 +270,12 @@ def child():
 
 
 def has_a_child(request):
+    """Leaves a child behind, and answers with its process id."""
     say({**accepted(request), "issues": [{"message": str(child())}]})
 
 
 def dies_before_its_child(request):
+    """Ends, and leaves a child that has its pipes."""
     os.write(2, str(child()).encode())
     os._exit(5)
 
@@ -252,21 +290,25 @@ def spins(request):
 
 
 def closes_stdout(request):
+    """Closes its standard output."""
     os.close(1)
     time.sleep(60)
 
 
 def closes_stdin(request):
+    """Answers, and closes its standard input."""
     os.close(0)
     say(accepted(request))
     time.sleep(60)
 
 
 def carriage_returns(request):
+    """Ends its lines with a carriage return and a line feed."""
     write(json.dumps(accepted(request)) + "\r\n")
 
 
 def whole_numbers_with_a_point(request):
+    """Writes integers with a decimal point."""
     issue = {"message": request["description"], "line": 3.0}
     say({**accepted(request), "id": float(request["id"]), "issues": [issue]})
 
@@ -285,6 +327,7 @@ def null_for_a_number(request):
 
 
 def errors(request):
+    """Answers `errored`."""
     say({"id": request["id"], "outcome": "errored", "message": "out of luck"})
 
 
@@ -292,27 +335,33 @@ def errors(request):
 
 
 def crashes_at_start(request):
+    """Ends with exit code 9 and a line on standard error."""
     sys.stderr.write("no licence found\n")
     sys.exit(9)
 
 
 def hangs_at_start(request):
+    """Never answers."""
     time.sleep(60)
 
 
 def refuses_to_start(request):
+    """Answers `errored`."""
     say({"id": request["id"], "outcome": "errored", "message": "no licence"})
 
 
 def speaks_another_protocol(request):
+    """Speaks version 2.0 of the protocol."""
     say({**started(request), "protocol": "2.0"})
 
 
 def byte_order_mark(request):
+    """Begins with a byte order mark."""
     write("\ufeff" + json.dumps(started(request)) + "\n")
 
 
 def banner(request):
+    """Writes a line before its first answer."""
     write("Welcome to Fake 1.0!\n")
     say(started(request))
 
@@ -330,10 +379,12 @@ def starts_once(request):
 
 
 def ignores_stop(request):
+    """Never answers."""
     time.sleep(60)
 
 
 def does_not_end(request):
+    """Answers, and goes on running."""
     say({"id": request["id"], "outcome": "stopped"})
     time.sleep(60)
 
@@ -345,11 +396,37 @@ def ends_with_its_input(request):
 
 
 def crashes_at_the_end(request):
+    """Answers, and ends by SIGSEGV."""
     say({"id": request["id"], "outcome": "stopped"})
     os.kill(os.getpid(), signal.SIGSEGV)
 
 
-_AT_START = (
+# -- Ways that show whatever is loaded ------------------------------------------------------------------------------
+
+
+def always_accepted(request):
+    """Accepts any description."""
+    say({"id": request["id"], "outcome": "accepted", "robot": None, "issues": []})
+
+
+def always_rejected(request):
+    """Rejects any description."""
+    say({"id": request["id"], "outcome": "rejected", "issues": []})
+
+
+def always_rejected_with_chatter(request):
+    """Rejects any description, and writes a line before each answer."""
+    write("reading\n")
+    always_rejected(request)
+
+
+def starts_as(name):
+    """The answer to `start` of one that claims the level accept for both versions."""
+    who, claims = {"name": name, "version": "1", "language": "Python"}, {"1": ["accept"], "2": ["accept"]}
+    return lambda request: started(request) | {"parser": who, "claims": claims}
+
+
+AT_START = (
     crashes_at_start,
     hangs_at_start,
     refuses_to_start,
@@ -358,29 +435,32 @@ _AT_START = (
     banner,
     starts_once,
 )
-AT_START = {way.__name__: way for way in _AT_START}
-AT_STOP = {way.__name__: way for way in (ignores_stop, does_not_end, crashes_at_the_end, ends_with_its_input)}
+AT_STOP = (ignores_stop, does_not_end, crashes_at_the_end, ends_with_its_input)
+ALWAYS = (always_accepted, always_rejected, always_rejected_with_chatter)
 
 
 def main(way):
-    at_start, at_stop = AT_START.get(way, started), AT_STOP.get(way)
-    at_fault = sound if way in AT_START or way in AT_STOP else globals()[way]
+    wrong = globals()[way]
+    at_start = wrong if wrong in AT_START else starts_as(way) if wrong in ALWAYS else started
     for line in iter(sys.stdin.readline, ""):
         request = json.loads(line)
         match request["command"]:
             case "start":
-                answer = at_start(request)
-                if answer is not None:
+                if (answer := at_start(request)) is not None:
                     say(answer)
-            case "load" if Path(request["description"]).name.startswith("fault"):
-                at_fault(request)
+            case "load" if wrong in ALWAYS:
+                wrong(request)
+            case "load" if wrong not in AT_START + AT_STOP and Path(request["description"]).name.startswith("fault"):
+                wrong(request)
             case "load":
                 sound(request)
+            case "evaluate" if wrong in ALWAYS:
+                say({"id": request["id"], "outcome": "unsupported", "feature": "evaluate"})
             case "evaluate":
                 say({"id": request["id"], "outcome": "evaluated", "values": [{}]})
             case "stop":
-                if at_stop is not None:
-                    at_stop(request)
+                if wrong in AT_STOP:
+                    wrong(request)
                 else:
                     say({"id": request["id"], "outcome": "stopped"})
                 return

@@ -1,4 +1,4 @@
-"""Parsers that are wrong in one way each, made of the oracle: a property that none of them breaks says nothing."""
+"""Parsers whose answers depend on what must not matter: they violate relations between two answers."""
 
 from __future__ import annotations
 
@@ -13,10 +13,9 @@ import numpy as np
 import yaml
 
 from eurdf_conformance.oracle import OracleRobot
-from eurdf_conformance.oracle.logarithm import log6_derivative
 from eurdf_conformance.protocol.message import Accepted, Jacobian, MassMatrix, Quantity, Rejected, Values
-from eurdf_conformance.protocol.reply import accepted, rejected
-from support.oracle_parser import OracleParser
+from eurdf_conformance.protocol.reply import accepted
+from support.parsers.oracle import OracleParser
 
 Configuration = Mapping[str, Sequence[float]]
 
@@ -76,76 +75,6 @@ def off(values: Values) -> Values:
     return with_m(found, lambda M: M * 1.01)
 
 
-class RejectsSlashes(WrongParser):
-    """Takes a slash in a name for a path."""
-
-    def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
-        if re.search('name="[^"]*/', urdf.read_text("utf-8")):
-            return rejected("no such folder")
-        return super().load(description, urdf)
-
-
-class RejectsFloating(WrongParser):
-    """Says that a joint of six freedoms is none."""
-
-    def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
-        if 'type="floating"' in urdf.read_text("utf-8"):
-            return rejected("no such joint")
-        return super().load(description, urdf)
-
-
-class RejectsMimics(WrongParser):
-    """Says that a joint must not mimic."""
-
-    def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
-        if "<mimic" in urdf.read_text("utf-8"):
-            return rejected("no coordinate of its own")
-        return super().load(description, urdf)
-
-
-class RejectsRedundancy(WrongParser):
-    """Takes a redundant row for a fault."""
-
-    def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
-        read = super().load(description, urdf)
-        assert self.robot is not None
-        found = self.robot.dimensions(self.robot.description.configurations["assembled"])
-        return rejected("redundant rows") if found.nc > found.rank else read
-
-
-class ForgetsDamping(WrongParser):
-    """Reads no damping."""
-
-    def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
-        super().load(description, urdf)
-        assert self.robot is not None
-        robot = self.robot.canonical()
-        joints = [joint.model_copy(update={"damping": [0.0] * len(joint.damping)}) for joint in robot.joints]
-        return accepted(robot.model_copy(update={"joints": joints}))
-
-
-class OldYaml(WrongParser):
-    """Reads YAML 1.1."""
-
-    def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
-        text = json.dumps(yaml.safe_load(description.read_text("utf-8-sig")))
-        old = description.with_name("old.yaml")
-        old.write_text(text, "utf-8")
-        return super().load(old, urdf)
-
-
-class Type3dByDefault(WrongParser):
-    """Takes `type` left out for 3d."""
-
-    def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
-        document = yaml.safe_load(description.read_text("utf-8-sig"))
-        if "extended_urdf" not in document and "closed_loop" in document:
-            document.setdefault("type", ["3d"] * len(document["closed_loop"]))
-        other = description.with_name("other.yaml")
-        other.write_text(json.dumps(document), "utf-8")
-        return super().load(other, urdf)
-
-
 class ForgetsInlineAngles(WrongParser):
     """Reads no `rpy` of a frame that is said in place."""
 
@@ -199,16 +128,6 @@ class ForgetsAColumn(WrongParser):
         return values
 
 
-class ForgetsTheRoot(WrongParser):
-    """Weighs no root."""
-
-    def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
-        root = robot.urdf.links[robot.urdf.root].inertia
-        if root is None or values.mass is None:
-            return values
-        return values.model_copy(update={"mass": values.mass - root.mass})
-
-
 class Weightless(WrongParser):
     """Moves with no effort."""
 
@@ -216,66 +135,11 @@ class Weightless(WrongParser):
         return with_m(values, lambda M: 0.0 * M)
 
 
-class OffByAMillionth(WrongParser):
-    """Computes in single precision."""
-
-    def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
-        found = with_poses(values, lambda name, p: p.astype(np.float32).astype(float))
-        return with_m(found, lambda M: M.astype(np.float32).astype(float) * (1 + 1e-7))
-
-
-class TwistForDerivative(WrongParser):
-    """Takes the relative velocity of B for the derivative of the residual, also where the closure is open."""
-
-    def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
-        def change(name: str, K: Any) -> Any:
-            r = np.array((values.residuals or robot.residuals(q))[name])
-            return K * (1.0 + np.linalg.norm(r)) if len(r) == 6 else K - np.linalg.norm(r)
-
-        return with_k(values, change)
-
-
-class TwistOf6d(WrongParser):
-    """Takes the relative velocity of B, seen from A, for the derivative of the residual of 6d closures."""
-
-    def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
-        r = robot.residuals(q)
-        return with_k(values, lambda name, K: np.linalg.solve(log6_derivative(r[name]), K) if len(K) == 6 else K)
-
-
-class LosesARow(WrongParser):
-    """Holds a closure in one direction less."""
-
-    def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
-        return with_k(values, lambda name, K: np.vstack([0.0 * K[:1], K[1:]]) if name == "closure_1" else K)
-
-
 class LosesARowOf3d(WrongParser):
     """Holds 3d closures in one direction less."""
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
         return with_k(values, lambda name, K: np.vstack([0.0 * K[:1], K[1:]]) if len(K) == 3 else K)
-
-
-class Noisy(WrongParser):
-    """Holds a closure in every direction, whether it does or not."""
-
-    def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
-        noise = np.random.default_rng(0)
-        return with_k(values, lambda name, K: K + 0.1 * noise.normal(size=K.shape))
-
-
-class SeenFromB(WrongParser):
-    """Sees the residual of a 3d closure from B."""
-
-    def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
-        if values.residuals is None:
-            return values
-        at, found = robot.kinematics(q), dict(values.residuals)
-        for name, (kind, a, b) in robot.closures.items():
-            if kind == "3d":
-                found[name] = (at.pose(b)[:3, :3].T @ at.pose(a)[:3, :3] @ np.array(found[name])).tolist()
-        return values.model_copy(update={"residuals": found})
 
 
 class SeenFromTheWorld(WrongParser):
@@ -345,26 +209,6 @@ class UniversalBackwards(WrongParser):
         assert self.robot is not None
         kinds = {joint.name: joint.type for joint in self.robot.tree.joints}
         return {name: list(reversed(each)) if kinds[name] == "universal" else each for name, each in q.items()}
-
-
-class OffWhereMerged(Where):
-    """Places a ball a little off."""
-
-    words = "merges"
-
-
-class OffWhereMimicking(Where):
-    """Does not follow, quite."""
-
-    words = "<mimic"
-
-
-class OffByInertials(WrongParser):
-    """Weighs what is fixed twice."""
-
-    def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
-        fixed = sum(link.inertia is not None for link in robot.urdf.links.values())
-        return with_m(values, lambda M: M * (1.0 + 0.01 * fixed))
 
 
 class OffByLinks(WrongParser):
