@@ -11,8 +11,8 @@ from hypothesis import HealthCheck, Phase, given, settings
 
 from eurdf_conformance.adapters.reference import PARSER
 from eurdf_conformance.comparison.canonical import canonical_differences
-from eurdf_conformance.corpus.expect import DYNAMICS, KINEMATICS
-from eurdf_conformance.level import Version
+from eurdf_conformance.level import Level, Version
+from eurdf_conformance.level_spec import LEVELS
 from eurdf_conformance.properties.harness import Harness
 from eurdf_conformance.properties.mechanism import Mechanism
 from eurdf_conformance.properties.query import query_of
@@ -55,7 +55,7 @@ def test_they_agree_to_a_billionth_of_its_size(version: Version, closures: int, 
         read = harness.read(asked)
         assert read is not None
         assert canonical_differences(robot.canonical(), read, robot.bodies) == []
-        quantities = (*KINEMATICS, *DYNAMICS)
+        quantities = (*LEVELS[Level.KINEMATICS].quantities, *LEVELS[Level.DYNAMICS].quantities)
         for q, given_values in zip(asked.configurations, harness.evaluate(asked, quantities), strict=True):
             expected = robot.evaluate(q, asked.frames, quantities)
             assert_close(expected, given_values, max(1.0, robot.size(q)))

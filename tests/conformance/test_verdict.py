@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import jsonschema
 import pytest
 import yaml
 
+from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.judging import known_failures
 from eurdf_conformance.judging.known_failures import (
     KnownFailures,
@@ -22,6 +23,8 @@ from eurdf_conformance.judging.result import Result
 from eurdf_conformance.judging.run import Run
 from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level
+from eurdf_conformance.level_spec import LEVELS
+from eurdf_conformance.protocol.message import Quantity
 from support.suite_runs import INVALID, PLANNED, VALID, item, result, run
 
 KNOWN = """\
@@ -204,3 +207,18 @@ def test_the_schema_of_known_failures_is_current_and_takes_what_is_taken() -> No
     for wrong in ("verdict: passed", "verdict: not run", "verdict: unknown"):
         assert not validator.is_valid(yaml.safe_load(KNOWN.replace("verdict: failed", wrong)))
     assert not validator.is_valid(yaml.safe_load(KNOWN.replace("It does not look at names yet.", "' '")))
+
+
+# --- levels ----------------------------------------------------------------------------------------------------------
+
+
+def test_the_table_of_levels_defines_every_level_by_clauses_that_exist() -> None:
+    assert list(LEVELS) == list(Level)
+    named = {spec.clause for spec in LEVELS.values()}
+    named |= {clause for spec in LEVELS.values() for clauses in spec.defining.values() for clause in clauses}
+    assert named <= read_clauses().keys()
+
+
+def test_every_quantity_is_asked_for_at_one_level() -> None:
+    asked = [quantity for spec in LEVELS.values() for quantity in spec.quantities]
+    assert sorted(asked) == sorted(get_args(Quantity))

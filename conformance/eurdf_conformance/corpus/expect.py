@@ -10,7 +10,7 @@ import argparse
 import math
 import sys
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Any, get_args
 
 from pydantic import ValidationError
 
@@ -21,10 +21,6 @@ from eurdf_conformance.corpus.expected import EXPECTED_FILE, Expected, expected_
 from eurdf_conformance.corpus.read import CorpusCase, read_cases
 from eurdf_conformance.oracle import NotRead, read
 from eurdf_conformance.protocol.message import Quantity, Values
-
-#: What a level asks for at each configuration.
-KINEMATICS: tuple[Quantity, ...] = ("poses", "residuals", "jacobian")
-DYNAMICS: tuple[Quantity, ...] = ("mass_matrix", "mass", "center_of_mass")
 
 #: Digits kept of a number, relative to the largest of its kind: those below depend on the processor.
 _DIGITS = 12
@@ -43,7 +39,7 @@ def expect(case: CorpusCase) -> Expected:
         bodies=sorted(sorted(body, key=str.encode) for body in robot.bodies),
         robot=robot.canonical(),
         values=[
-            _rounded(robot.evaluate(configuration, case.case.frames, (*KINEMATICS, *DYNAMICS)))
+            _rounded(robot.evaluate(configuration, case.case.frames, get_args(Quantity)))
             for configuration in configurations
         ],
         sizes=[_round(robot.size(configuration)) for configuration in configurations],

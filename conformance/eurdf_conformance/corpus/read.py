@@ -14,6 +14,7 @@ from pydantic import ValidationError
 from eurdf_conformance.corpus.case import CASE, TOPICS, Case, ValidCase
 from eurdf_conformance.corpus.expected import EXPECTED_FILE, Expected, read_expected
 from eurdf_conformance.level import Level
+from eurdf_conformance.level_spec import Compared, levels_comparing
 from eurdf_conformance.strict_yaml import load_strictly
 
 CASES = Path(__file__).with_name("cases")
@@ -79,9 +80,9 @@ class CorpusCase:
     def levels(self) -> tuple[Level, ...]:
         """The levels at which it is tested."""
         if not isinstance(self.case, ValidCase):
-            return Level.ACCEPT, Level.DIAGNOSE
-        evaluated = (Level.KINEMATICS, Level.DYNAMICS) if self.case.configurations else ()
-        return Level.ACCEPT, Level.STRUCTURE, *evaluated, Level.DIAGNOSE
+            return levels_comparing(Compared.OUTCOME, Compared.ISSUES)
+        evaluated = (Compared.VALUES,) if self.case.configurations else ()
+        return levels_comparing(Compared.OUTCOME, Compared.ROBOT, *evaluated, Compared.ISSUES)
 
 
 def read_case(folder: Path) -> CorpusCase:

@@ -16,6 +16,7 @@ from eurdf_conformance.judging.judge import Judgement
 from eurdf_conformance.judging.result import Item
 from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level
+from eurdf_conformance.level_spec import LEVELS, Compared
 from eurdf_conformance.protocol.message import Issue
 from eurdf_conformance.visible import visible
 
@@ -25,15 +26,9 @@ _MOST = 12
 #: So many characters of a line of a file are shown.
 _WIDTH = 100
 
-
-#: By quantity of a configuration, the clauses that say what it is, whatever the item is about.
-_SAYING: Mapping[str, Sequence[str]] = {
-    "poses": ("EU-JNT-025", "EU-FRM-006"),
-    "residuals": ("EU-CLO-008", "EU-CLO-009"),
-    "jacobian": ("EU-CLO-010", "EU-JNT-026"),
-    "mass_matrix": ("EU-INR-005", "EU-INR-006", "EU-JNT-026"),
-    "mass": ("EU-INR-005",),
-    "center_of_mass": ("EU-INR-005",),
+#: The clauses that define a quantity, by its name.
+_DEFINING: Mapping[str, Sequence[str]] = {
+    quantity: clauses for spec in LEVELS.values() for quantity, clauses in spec.defining.items()
 }
 
 
@@ -82,7 +77,7 @@ def _saying(judgement: Judgement) -> Iterator[str]:
     """The clauses on the quantities that differ."""
     for each in judgement.differences:
         if found := re.match(r"/values/\d+/(\w+)", each.pointer):
-            yield from _SAYING.get(found[1], ())
+            yield from _DEFINING.get(found[1], ())
 
 
 def where_it_stood(judgement: Judgement, configurations: Sequence[Mapping[str, Sequence[float]]]) -> Iterator[str]:
@@ -109,7 +104,7 @@ def _files(case: CorpusCase, level: Level, judgement: Judgement) -> Iterator[str
     places: list[tuple[CasePlace | Issue, str]] = []
     if isinstance(case.case, InvalidCase):
         places.append((case.case.place, "expected"))
-    elif isinstance(case.case, ValidCase) and level == Level.DIAGNOSE:
+    elif isinstance(case.case, ValidCase) and LEVELS[level].compared is Compared.ISSUES:
         places += [(warning.place, "expected") for warning in case.case.warnings]
     if judgement.verdict == Verdict.FAILED:
         places += [(issue, "given") for issue in judgement.issues]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 from eurdf_conformance.comparison.canonical import canonical_differences
@@ -10,11 +10,11 @@ from eurdf_conformance.comparison.difference import Difference
 from eurdf_conformance.comparison.issues import error_differences, warning_differences
 from eurdf_conformance.comparison.values import values_differences
 from eurdf_conformance.corpus.case import InvalidCase, ValidCase
-from eurdf_conformance.corpus.expect import DYNAMICS, KINEMATICS
 from eurdf_conformance.corpus.read import CorpusCase
 from eurdf_conformance.judging.conversation import Conversation
 from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level
+from eurdf_conformance.level_spec import LEVELS, Compared
 from eurdf_conformance.protocol.message import (
     Accepted,
     AnyAnswer,
@@ -72,7 +72,15 @@ def judge(case: CorpusCase, level: Level, conversation: Conversation) -> Judgeme
         level: One of its levels.
         conversation: With the parser.
     """
-    return _LEVELS[level](case, conversation)
+    match LEVELS[level].compared:
+        case Compared.OUTCOME:
+            return _judge_accept(case, conversation)
+        case Compared.ROBOT:
+            return _judge_structure(case, conversation)
+        case Compared.VALUES:
+            return _judge_values(case, conversation, LEVELS[level].quantities)
+        case Compared.ISSUES:
+            return _judge_diagnose(case, conversation)
 
 
 def judge_outcome(outcome: Outcome, expected: str = "") -> Judgement:
@@ -163,24 +171,21 @@ def _judge_structure(case: CorpusCase, conversation: Conversation) -> Judgement:
     return judge_outcome(outcome, _to_load(case))
 
 
-def _judge_values(quantities: Sequence[Quantity]) -> Callable[[CorpusCase, Conversation], Judgement]:
-    def judge_values(case: CorpusCase, conversation: Conversation) -> Judgement:
-        loaded = conversation.load(case)
-        outcome = conversation.evaluate(case, quantities)
-        match outcome:
-            case Answered(answer=Evaluated(values=values)):
-                expected = case.expected
-                if len(values) != len(expected.values):
-                    wrong = Difference("/values", len(expected.values), len(values), "how many configurations")
-                    return _unless([wrong], "one value a configuration", "")
-                found = []
-                for index, (one, other, size) in enumerate(zip(expected.values, values, expected.sizes, strict=True)):
-                    pointer = f"/values/{index}"
-                    found += [each.within(pointer) for each in values_differences(_only(one, quantities), other, size)]
-                return _unless(found, "its values are others", "")
-        return judge_outcome(outcome, _to_load(case) if outcome is loaded else "evaluated")
-
-    return judge_values
+def _judge_values(case: CorpusCase, conversation: Conversation, quantities: Sequence[Quantity]) -> Judgement:
+    loaded = conversation.load(case)
+    outcome = conversation.evaluate(case, quantities)
+    match outcome:
+        case Answered(answer=Evaluated(values=values)):
+            expected = case.expected
+            if len(values) != len(expected.values):
+                wrong = Difference("/values", len(expected.values), len(values), "how many configurations")
+                return _unless([wrong], "one value a configuration", "")
+            found = []
+            for index, (one, other, size) in enumerate(zip(expected.values, values, expected.sizes, strict=True)):
+                pointer = f"/values/{index}"
+                found += [each.within(pointer) for each in values_differences(_only(one, quantities), other, size)]
+            return _unless(found, "its values are others", "")
+    return judge_outcome(outcome, _to_load(case) if outcome is loaded else "evaluated")
 
 
 def _judge_diagnose(case: CorpusCase, conversation: Conversation) -> Judgement:
@@ -205,12 +210,3 @@ def _unless(found: Sequence[Difference], reason: str, pointer: str, issues: Sequ
 
 def _only(values: Values, quantities: Collection[Quantity]) -> Values:
     return values.model_copy(update={name: None for name in Values.model_fields if name not in quantities})
-
-
-_LEVELS: Mapping[Level, Callable[[CorpusCase, Conversation], Judgement]] = {
-    Level.ACCEPT: _judge_accept,
-    Level.STRUCTURE: _judge_structure,
-    Level.KINEMATICS: _judge_values(KINEMATICS),
-    Level.DYNAMICS: _judge_values(DYNAMICS),
-    Level.DIAGNOSE: _judge_diagnose,
-}

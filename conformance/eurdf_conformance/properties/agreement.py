@@ -9,8 +9,9 @@ from eurdf_conformance.comparison.canonical import canonical_differences
 from eurdf_conformance.comparison.difference import ABSENT, Difference
 from eurdf_conformance.comparison.values import values_differences
 from eurdf_conformance.level import Level, Version
+from eurdf_conformance.level_spec import LEVELS, Compared
 from eurdf_conformance.properties.example import Example
-from eurdf_conformance.properties.harness import QUANTITIES, Harness
+from eurdf_conformance.properties.harness import Harness
 from eurdf_conformance.properties.property import Property
 from eurdf_conformance.properties.query import query_of
 from eurdf_conformance.properties.truth import truth
@@ -26,12 +27,12 @@ def accepted(harness: Harness, example: Example, version: Version, level: Level)
 def agreement(harness: Harness, example: Example, version: Version, level: Level) -> list[Difference]:
     """What the oracle says is what the parser says."""
     query, robot = query_of(example.mechanism, version), truth(example.mechanism, version)
-    if level is Level.STRUCTURE:
+    if LEVELS[level].compared is Compared.ROBOT:
         read = harness.read(query)
         if read is None:
             return [Difference("/robot", "what it has read", ABSENT, "the level structure asks for it")]
         return [each.within("/robot") for each in canonical_differences(robot.canonical(), read, robot.bodies)]
-    quantities, found = QUANTITIES[level], []
+    quantities, found = LEVELS[level].quantities, []
     for index, (q, given) in enumerate(zip(query.configurations, harness.evaluate(query, quantities), strict=True)):
         expected = robot.evaluate(q, query.frames, quantities)
         found += [each.within(f"/values/{index}") for each in values_differences(expected, given, robot.size(q))]

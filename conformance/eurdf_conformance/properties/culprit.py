@@ -5,7 +5,8 @@ from __future__ import annotations
 from eurdf_conformance.comparison.canonical import canonical_differences
 from eurdf_conformance.comparison.values import values_differences
 from eurdf_conformance.level import Level
-from eurdf_conformance.properties.harness import QUANTITIES, Harness, NotAnswered
+from eurdf_conformance.level_spec import LEVELS, Compared
+from eurdf_conformance.properties.harness import Harness, NotAnswered
 from eurdf_conformance.properties.query import Query
 from eurdf_conformance.properties.shape import WrongShape
 from eurdf_conformance.properties.truth import truth
@@ -22,9 +23,9 @@ def is_wrong(harness: Harness, query: Query, level: Level) -> bool:
     robot = truth(query.mechanism, query.version)
     try:
         read = harness.read(query)
-        if level is Level.STRUCTURE:
+        if LEVELS[level].compared is Compared.ROBOT:
             return read is None or bool(canonical_differences(robot.canonical(), read, robot.bodies))
-        quantities = QUANTITIES.get(level, ())
+        quantities = LEVELS[level].quantities
         given = harness.evaluate(query, quantities) if quantities else []
     except (NotAnswered, WrongShape):
         return True

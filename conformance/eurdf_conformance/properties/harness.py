@@ -6,18 +6,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from eurdf_conformance.comparison.difference import Difference
-from eurdf_conformance.corpus.expect import DYNAMICS, KINEMATICS
 from eurdf_conformance.judging.conversation import Parser
-from eurdf_conformance.level import Level
 from eurdf_conformance.properties.files import Files
 from eurdf_conformance.properties.query import Query
 from eurdf_conformance.properties.shape import WrongShape, shaped
 from eurdf_conformance.properties.truth import truth
 from eurdf_conformance.protocol.message import Accepted, CanonicalRobot, Evaluated, Quantity, Values
 from eurdf_conformance.runner.outcome import Answered, Outcome
-
-#: What a level asks for.
-QUANTITIES: dict[Level, tuple[Quantity, ...]] = {Level.KINEMATICS: KINEMATICS, Level.DYNAMICS: DYNAMICS}
 
 
 class NotAnswered(Exception):  # noqa: N818 - it says what happened

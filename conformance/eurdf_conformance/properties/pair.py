@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from eurdf_conformance.comparison.canonical import canonical_differences
 from eurdf_conformance.comparison.difference import ABSENT, Difference
 from eurdf_conformance.level import Level, Version
+from eurdf_conformance.level_spec import LEVELS, Compared
 from eurdf_conformance.properties.example import Example
-from eurdf_conformance.properties.harness import QUANTITIES, Harness
+from eurdf_conformance.properties.harness import Harness
 from eurdf_conformance.properties.property import Check
 from eurdf_conformance.properties.query import Query
 from eurdf_conformance.properties.same_values import same_values
@@ -51,7 +52,7 @@ def related(pair_of: Callable[[Example, Version], Pair]) -> Check:
 
     def check(harness: Harness, example: Example, version: Version, level: Level) -> list[Difference]:
         pair = pair_of(example, version)
-        if level is Level.STRUCTURE:
+        if LEVELS[level].compared is Compared.ROBOT:
             return _read_differences(harness, pair)
         return _value_differences(harness, pair, level)
 
@@ -67,8 +68,8 @@ def _read_differences(harness: Harness, pair: Pair) -> list[Difference]:
 
 
 def _value_differences(harness: Harness, pair: Pair, level: Level) -> list[Difference]:
-    before = harness.evaluate(pair.one, QUANTITIES[level])
-    after = harness.evaluate(pair.other, QUANTITIES[level])
+    before = harness.evaluate(pair.one, LEVELS[level].quantities)
+    after = harness.evaluate(pair.other, LEVELS[level].quantities)
     robot = truth(pair.one.mechanism, pair.one.version)
     found = []
     for index, (one, other, q) in enumerate(zip(before, after, pair.one.configurations, strict=True)):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import product
 
@@ -12,26 +12,9 @@ from eurdf_conformance.corpus.protocol_rule import RULES, ProtocolRule
 from eurdf_conformance.corpus.read import CorpusCase
 from eurdf_conformance.judging.result import Item
 from eurdf_conformance.level import VERSIONS, Level, Version
+from eurdf_conformance.level_spec import LEVELS
 from eurdf_conformance.properties import PROPERTIES
 from eurdf_conformance.properties.property import Property
-
-#: The levels of clauses that can be seen at a level.
-_SEEN: Mapping[Level, Collection[str]] = {
-    Level.ACCEPT: (Level.ACCEPT,),
-    Level.STRUCTURE: (Level.ACCEPT, Level.STRUCTURE),
-    Level.KINEMATICS: (Level.ACCEPT, Level.STRUCTURE, Level.KINEMATICS),
-    Level.DYNAMICS: (Level.ACCEPT, Level.STRUCTURE, Level.KINEMATICS, Level.DYNAMICS),
-    Level.DIAGNOSE: (Level.ACCEPT, Level.DIAGNOSE),
-}
-
-#: What every item of a level tests.
-_GENERAL: Mapping[Level, str] = {
-    Level.ACCEPT: "EU-CNF-002",
-    Level.STRUCTURE: "EU-CAN-001",
-    Level.KINEMATICS: "EU-PRO-008",
-    Level.DYNAMICS: "EU-PRO-009",
-    Level.DIAGNOSE: "EU-DIA-001",
-}
 
 
 @dataclass(frozen=True)
@@ -73,17 +56,15 @@ def clauses_at(level: Level, version: Version, cited: Iterable[str], general: st
     A parser that has only said whether it accepts a description has shown nothing of what it makes of it.
     """
     clauses = read_clauses()
-    seen = (name for name in cited if clauses[name].level in _SEEN[level] and version in clauses[name].versions)
+    seen = (name for name in cited if clauses[name].level in LEVELS[level].shows and version in clauses[name].versions)
     return tuple(dict.fromkeys((*seen, general)))
 
 
 def _general(case: CorpusCase, level: Level) -> str:
     """The clause that every case like this tests at a level."""
-    if level is not Level.ACCEPT:
-        return _GENERAL[level]
-    if isinstance(case.case, InvalidCase):
+    if level is Level.ACCEPT and isinstance(case.case, InvalidCase):
         return "EU-PRO-001" if case.case.either else "EU-CNF-001"
-    return "EU-CNF-002"
+    return LEVELS[level].clause
 
 
 def planned_items(cases: Iterable[CorpusCase]) -> Iterator[Item]:
@@ -105,5 +86,5 @@ def property_items() -> Iterator[PropertyItem]:
     """What there is to ask on random mechanisms."""
     for each in PROPERTIES:
         for level, version in product(each.levels, each.versions):
-            clauses = clauses_at(level, version, each.clauses, _GENERAL[level])
+            clauses = clauses_at(level, version, each.clauses, LEVELS[level].clause)
             yield PropertyItem(Item(f"properties/{each.name}-{version}", level, version, clauses, each.title), each)

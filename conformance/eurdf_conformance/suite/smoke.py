@@ -9,6 +9,7 @@ from eurdf_conformance.corpus.read import CorpusCase
 from eurdf_conformance.judging.result import Result
 from eurdf_conformance.judging.verdict import OF_THE_ADAPTER
 from eurdf_conformance.level import Level, Version
+from eurdf_conformance.level_spec import Compared, levels_comparing
 from eurdf_conformance.suite.item import CaseItem
 
 
@@ -33,9 +34,9 @@ _LEVELS: Mapping[str, tuple[Level, ...]] = {
     case_id: levels
     for three in SMOKE.values()
     for case_id, levels in (
-        (three.valid, (Level.ACCEPT, Level.STRUCTURE, Level.DIAGNOSE)),
-        (three.invalid, (Level.ACCEPT, Level.DIAGNOSE)),
-        (three.evaluated, (Level.KINEMATICS, Level.DYNAMICS)),
+        (three.valid, levels_comparing(Compared.OUTCOME, Compared.ROBOT, Compared.ISSUES)),
+        (three.invalid, levels_comparing(Compared.OUTCOME, Compared.ISSUES)),
+        (three.evaluated, levels_comparing(Compared.VALUES)),
     )
 }
 

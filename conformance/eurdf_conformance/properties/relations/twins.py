@@ -5,9 +5,10 @@ from __future__ import annotations
 from eurdf_conformance.comparison.canonical import canonical_differences
 from eurdf_conformance.comparison.difference import ABSENT, Difference
 from eurdf_conformance.level import Level, Version
+from eurdf_conformance.level_spec import LEVELS, Compared
 from eurdf_conformance.properties.document import names1
 from eurdf_conformance.properties.example import Example
-from eurdf_conformance.properties.harness import QUANTITIES, Harness, NotAnswered
+from eurdf_conformance.properties.harness import Harness, NotAnswered
 from eurdf_conformance.properties.mechanism import Mechanism
 from eurdf_conformance.properties.property import Property
 from eurdf_conformance.properties.query import Query, query_of
@@ -24,13 +25,13 @@ def twins(harness: Harness, example: Example, version: Version, level: Level) ->
     mechanism = example.mechanism
     one, other = query_of(mechanism, "2"), query_of(mechanism, "1")
     robot = truth(mechanism, "2")
-    if level is Level.STRUCTURE:
+    if LEVELS[level].compared is Compared.ROBOT:
         expected, given = read2(harness, one), harness.read(other)
         if given is None:
             return [Difference("/robot", "what it has read", ABSENT, "the level structure asks for it")]
         differences = canonical_differences(robot_of_version1(expected), given, robot.bodies)
         return [each.within("/robot") for each in differences]
-    before, after = evaluate2(harness, one, level), harness.evaluate(other, QUANTITIES[level])
+    before, after = evaluate2(harness, one, level), harness.evaluate(other, LEVELS[level].quantities)
     found = []
     for index, (values, given_values, q) in enumerate(zip(before, after, one.configurations, strict=True)):
         carried = values_of_version1(values, mechanism)
@@ -50,10 +51,10 @@ def read2(harness: Harness, query: Query) -> CanonicalRobot:
 def evaluate2(harness: Harness, query: Query, level: Level) -> list[Values]:
     """What the parser says of the description of version 2."""
     try:
-        return harness.evaluate(query, QUANTITIES[level])
+        return harness.evaluate(query, LEVELS[level].quantities)
     except NotAnswered:
         robot = truth(query.mechanism, "2")
-        return [robot.evaluate(q, query.frames, QUANTITIES[level]) for q in query.configurations]
+        return [robot.evaluate(q, query.frames, LEVELS[level].quantities) for q in query.configurations]
 
 
 def robot_of_version1(robot: CanonicalRobot) -> CanonicalRobot:
