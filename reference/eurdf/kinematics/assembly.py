@@ -15,7 +15,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-import pinocchio as pin
 
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.descent import Descent
@@ -153,14 +152,14 @@ def start(robot: Robot, q0: Vector | None = None) -> Vector:
     if q0 is None:
         q0 = robot.configurations.get("assembled")
     if q0 is None:
-        return np.array(pin.neutral(model))
+        return robot.tree.neutral()
     q = np.asarray(q0, dtype=np.float64)
     if q.shape != (model.nq,):
         raise ValueError(f"the configuration has the shape {q.shape}; this robot needs ({model.nq},)")
     if not np.isfinite(q).all():
         raise ValueError("the configuration has a number that is not finite")
-    q = np.array(pin.normalize(model, q))
-    if not np.isfinite(q).all() or not pin.isNormalized(model, q, 1e-9):
+    q = robot.tree.normalized(q)
+    if not np.isfinite(q).all() or not robot.tree.is_normalized(q):
         raise ValueError("the configuration has a quaternion, or a (cos, sin) pair, of length zero")
     return q
 
@@ -180,7 +179,7 @@ class Assembler:
     ) -> None:
         """The arguments are those of `assemble`."""
         # No reference to the robot: the cache would keep it alive.
-        model = self._model = robot.model
+        model, self._tree = robot.model, robot.tree
         self._names = [constraint.name for constraint in robot.constraints]
         loops = find_loops(robot)
         self._nc = loops[-1].rows.stop if loops else 0
@@ -276,11 +275,11 @@ class Assembler:
 
     def moved(self, q: Vector, going: Sequence[Evaluation], steps: Sequence[Vector]) -> Vector:
         """Configuration (nq,) after a step of each group; lengths are in characteristic lengths."""
-        v = np.zeros(self._model.nv)
+        v = np.zeros(self._tree.nv)
         for evaluation, step in zip(going, steps, strict=True):
             v[evaluation.group.velocities] = evaluation.unit * step
         # Pinocchio normalizes quaternions to first order only.
-        return np.asarray(pin.normalize(self._model, pin.integrate(self._model, q, v)))
+        return self._tree.normalized(self._tree.integrate(q, v))
 
     def _descend(self, q: Vector, going: Sequence[Evaluation]) -> tuple[Vector, list[Descent], list[bool]]:
         """The configuration (nq,) after the descents of the groups, the descents, and whether each finished."""
@@ -314,7 +313,7 @@ class Assembler:
     @np.errstate(over="ignore", invalid="ignore")
     def _pressed(self, q: Vector, limits: PositionLimits) -> tuple[JointAtLimit, ...]:
         """The joints at their limits that the descent direction -Kᵀ r would move beyond them."""
-        down = np.zeros(self._model.nv)
+        down = np.zeros(self._tree.nv)
         for evaluation in filter(_feasible, self._whole):
             b = evaluation.row_scale * evaluation.residual(q)
             down[evaluation.group.velocities] = -evaluation.jacobian().T @ b

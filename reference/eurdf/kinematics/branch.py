@@ -75,7 +75,7 @@ class Branch:
             limits: The position limits of the passive joints, if any.
             data: A `pin.Data` to compute in.
         """
-        model = self._model = robot.model
+        model, self._tree = robot.model, robot.tree
         held = set(robot.actuation.idx_v.tolist()) - {actuator}
         groups = [group for group in independent_groups(robot, held) if actuator in group.velocities]
         length = characteristic_length(robot)
@@ -149,7 +149,7 @@ class Branch:
 
         Angles that differ by whole turns are equal.
         """
-        apart = np.asarray(pin.difference(self._model, one.q, other.q))[self._velocities]
+        apart = self._tree.difference(one.q, other.q)[self._velocities]
         apart = np.where(self._turns, np.remainder(apart + math.pi, 2.0 * math.pi) - math.pi, apart) / self._unit
         # K_p⁺ K removes the motions that K_p leaves free.
         return bool(np.abs(one.inverse @ (one.K @ apart)).max() <= _SAME)
@@ -159,10 +159,10 @@ class Branch:
         return self._loops.residual(q) if self._loops else np.empty(0)
 
     def _moved(self, q: Vector, step: Vector) -> Vector:
-        v = np.zeros(self._model.nv)
+        v = np.zeros(self._tree.nv)
         v[self._velocities] = self._unit * step
         # Pinocchio normalizes quaternions to first order only.
-        return np.asarray(pin.normalize(self._model, pin.integrate(self._model, q, v)))
+        return self._tree.normalized(self._tree.integrate(q, v))
 
 
 def _whole_turns(model: Any) -> Mask:

@@ -26,7 +26,6 @@ from eurdf.kinematics.derived import derived
 from eurdf.kinematics.exceptions import InconsistentMotion, UnderactuatedMotion, UndeterminedMotion
 from eurdf.kinematics.frame_index import frame_index
 from eurdf.kinematics.loop import Loop, find_loops
-from eurdf.kinematics.mass_matrix import mass_times
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import acceleration_drift, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
@@ -256,7 +255,7 @@ class _Motion:
         spaces = derived(robot, TangentSpaces)
         space = spaces.at(self.K)
         self.P, self.unit, self._basis = space.inverse, spaces.scale, space.basis
-        self.bias: Vector = np.array(pin.rnea(model, self.data, self.q, self.v, np.zeros(model.nv)))
+        self.bias: Vector = robot.tree.inverse_dynamics(self.q, self.v, np.zeros(model.nv), self.data)
 
     @cached_property
     def free(self) -> Matrix:
@@ -288,11 +287,11 @@ class _Motion:
 
     def mass(self, a: Vector) -> Vector:
         """M a, including the armature."""
-        return np.asarray(pin.rnea(self.robot.model, self.data, self.q, self.v, a) - self.bias)
+        return self.robot.tree.inverse_dynamics(self.q, self.v, a, self.data) - self.bias
 
     def mass_along(self, motions: Matrix) -> Matrix:
         """M times the columns (nv, n)."""
-        return mass_times(self.robot.model, self.data, self.q, motions)
+        return self.robot.tree.mass_times(self.q, motions, self.data)
 
     def applied(self, u: Vector | None, tau: Vector | None, external: External | None, dissipation: bool) -> Vector:
         """Generalized force (nv,) of motors, external forces, damping and friction."""

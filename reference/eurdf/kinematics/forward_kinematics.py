@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pinocchio as pin
 
 from eurdf.kinematics.array import Indices, Vector
 from eurdf.kinematics.assembly import Assembler, assemble, start
@@ -76,7 +75,7 @@ def forward_kinematics(
     goal = np.array(first.q)
     goal[given.coordinates] = given.values
     goal = start(robot, goal)
-    path = np.asarray(pin.difference(model, first.q, goal))  # zero except for the given joints
+    path = robot.tree.difference(first.q, goal)  # zero except for the given joints
     assembler, spaces = Assembler(robot, given.joints, tolerance=tolerance), TangentSpaces(robot)
     data = model.createData()
 
@@ -90,11 +89,11 @@ def forward_kinematics(
         if np.abs(motion).max(initial=0.0) > _LONGEST_MOTION and step > _SHORTEST_STEP:
             step *= 0.5
             continue
-        at = goal if done + step >= 1.0 else np.asarray(pin.integrate(model, first.q, (done + step) * path))
-        expected = np.asarray(pin.integrate(model, q, v))
+        at = goal if done + step >= 1.0 else robot.tree.integrate(first.q, (done + step) * path)
+        expected = robot.tree.integrate(q, v)
         expected[given.coordinates] = at[given.coordinates]
         closed = assembler.assemble(expected, restarts=0)
-        corrected = float(np.linalg.norm(np.asarray(pin.difference(model, expected, closed.q)) / spaces.scale))
+        corrected = float(np.linalg.norm(robot.tree.difference(expected, closed.q) / spaces.scale))
         allowed = max(_MOST_CORRECTION * float(np.linalg.norm(motion)), _LEAST_CORRECTION)
         if closed.closes and corrected <= allowed:
             q, done, step = closed.q, done + step, 2.0 * step

@@ -298,7 +298,7 @@ class _Search:
         return np.vstack([rows[above], -rows[below]]), np.concatenate([(up / scale)[above], (-down / scale)[below]])
 
     def _moved(self, q: Vector, v: Vector) -> Vector:
-        return self._clipped(np.asarray(pin.normalize(self.model, pin.integrate(self.model, q, v))))
+        return self._clipped(self.robot.tree.normalized(self.robot.tree.integrate(q, v)))
 
     def _clipped(self, q: Vector) -> Vector:
         return q if self.limits is None else self.limits.clip(q, self.velocities)

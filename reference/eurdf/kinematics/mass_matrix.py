@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pinocchio as pin
 
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import start
@@ -35,16 +34,6 @@ def mass_matrix(robot: Robot, q: Vector, *, data: Any = None) -> Matrix:
     Raises:
         ValueError: ``q`` is not a configuration.
     """
-    model = robot.model
-    M = mass_times(model, model.createData() if data is None else data, start(robot, q), np.eye(model.nv))
+    tree = robot.tree
+    M = tree.mass_times(start(robot, q), np.eye(tree.nv), tree.memory() if data is None else data)
     return np.asarray(0.5 * (M + M.T))
-
-
-def mass_times(model: Any, data: Any, q: Vector, motions: Matrix) -> Matrix:
-    """M(q) times the columns (nv, n) of accelerations; ``data`` is a `pin.Data` of the model to compute in."""
-    if not len(model.mimicking_joints):
-        M = np.triu(pin.crba(model, data, q))
-        return np.asarray((M + np.triu(M, 1).T) @ motions)
-    still = np.zeros(model.nv)
-    gravity = np.array(pin.rnea(model, data, q, still, still))
-    return np.array([pin.rnea(model, data, q, still, a) - gravity for a in motions.T]).reshape(motions.T.shape).T

@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pinocchio as pin
 
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import Assembler, start
@@ -53,20 +52,20 @@ def project_configuration(
         NotClosable: No closed configuration was found; the error lists the closures that stay open.
         ValueError: ``q`` is not a configuration, or ``weights`` is not a metric.
     """
-    model, W = robot.model, metric(weights, robot.model.nv)
+    tree, W = robot.tree, metric(weights, robot.tree.nv)
     q = start(robot, q)
     if np.abs(residual(robot, q)).max(initial=0.0) <= tolerance:
         return q
-    assembler, spaces, data = Assembler(robot, tolerance=tolerance), TangentSpaces(robot), model.createData()
+    assembler, spaces, data = Assembler(robot, tolerance=tolerance), TangentSpaces(robot), tree.memory()
     assembly = assembler.assemble(q)
     if not assembly.closes:
         raise NotClosable("no closed configuration was found near the given one", assembly.open, assembly.q)
 
     def away(at: Vector) -> Vector:
-        return np.asarray(pin.difference(model, q, at))
+        return tree.difference(q, at)
 
     def gradient(at: Vector) -> Vector:
-        return np.asarray(pin.dDifference(model, q, at, pin.ARG1).T @ (W @ away(at)))
+        return np.asarray(tree.difference_derivative(q, at).T @ (W @ away(at)))
 
     here = assembly.q
     cost = 0.5 * float(away(here) @ W @ away(here))
@@ -78,7 +77,7 @@ def project_configuration(
         normal = g - K.T @ multipliers
         columns = []
         for direction in Z.T:
-            beside = np.asarray(pin.integrate(model, here, _DIFFERENCE * direction))
+            beside = tree.integrate(here, _DIFFERENCE * direction)
             _, K_beside = residual_and_jacobian(robot, beside, data)
             columns.append((gradient(beside) - K_beside.T @ multipliers - normal) / _DIFFERENCE)
         H = Z.T @ np.column_stack(columns) if columns else np.zeros((0, 0))
@@ -88,7 +87,7 @@ def project_configuration(
             break
         for halving in range(_MOST_HALVINGS):
             part = 0.5**halving
-            trial = assembler.assemble(np.asarray(pin.integrate(model, here, part * (Z @ step))), restarts=0)
+            trial = assembler.assemble(tree.integrate(here, part * (Z @ step)), restarts=0)
             reached = 0.5 * float(away(trial.q) @ W @ away(trial.q))
             if trial.closes and reached <= cost - 1e-4 * part * gain + 1e-14 * cost:
                 break

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import pinocchio as pin
 
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import assemble, start
@@ -75,38 +74,38 @@ def simulate(
     """
     if not (step > 0.0 and duration >= 0.0 and np.isfinite(duration / step)):
         raise ValueError("duration must be at least 0 s, and step above 0 s")
-    model, data, spaces = robot.model, robot.model.createData(), TangentSpaces(robot)
+    tree, data, spaces = robot.tree, robot.tree.memory(), TangentSpaces(robot)
     count = round(duration / step)
     times: Vector = np.linspace(0.0, count * step, count + 1)
-    qs, vs = np.empty((count + 1, model.nq)), np.empty((count + 1, model.nv))
+    qs, vs = np.empty((count + 1, tree.nq)), np.empty((count + 1, tree.nv))
     assembly = assemble(robot, start(robot, q))
     if not assembly.closes:
         raise NotClosable("the simulation cannot start from an open configuration", assembly.open, assembly.q)
 
     def rates(t: float, begin: Vector, x: Vector, v: Vector) -> tuple[Vector, Vector]:
-        q = np.asarray(pin.integrate(model, begin, x))
+        q = tree.integrate(begin, x)
         if not (np.abs(v).max(initial=0.0) < _FASTEST and np.isfinite(q).all()):
             raise SimulationDiverged(t, step)
         u = None if control is None else control(t, q, v)
         a = forward_dynamics(robot, q, v, u, external=external, dissipation=dissipation, data=data).a
-        return np.linalg.solve(pin.dIntegrate(model, begin, x, pin.ARG1), v), a
+        return np.asarray(np.linalg.solve(tree.integrate_derivative(begin, x), v), dtype=np.float64), a
 
     def closed(q: Vector, v: Vector, newton_steps: int) -> tuple[Vector, Vector]:
         for _ in range(newton_steps):
             r, K = residual_and_jacobian(robot, q, data)
-            q = np.asarray(pin.normalize(model, pin.integrate(model, q, -spaces.at(K).inverse @ r)))
+            q = tree.normalized(tree.integrate(q, -spaces.at(K).inverse @ r))
         _, K = residual_and_jacobian(robot, q, data)
         return q, v - spaces.at(K).inverse @ (K @ v)
 
-    initial = checked_vector(np.zeros(model.nv) if v is None else v, model.nv, "the velocity")
+    initial = checked_vector(np.zeros(tree.nv) if v is None else v, tree.nv, "the velocity")
     qs[0], vs[0] = closed(assembly.q, initial, 0)
     for n in range(count):
-        t, q, v, still = float(times[n]), qs[n], vs[n], np.zeros(model.nv)
+        t, q, v, still = float(times[n]), qs[n], vs[n], np.zeros(tree.nv)
         x1, v1 = rates(t, q, still, v)
         x2, v2 = rates(t + step / 2.0, q, step / 2.0 * x1, v + step / 2.0 * v1)
         x3, v3 = rates(t + step / 2.0, q, step / 2.0 * x2, v + step / 2.0 * v2)
         x4, v4 = rates(t + step, q, step * x3, v + step * v3)
-        end = pin.integrate(model, q, step / 6.0 * (x1 + 2.0 * x2 + 2.0 * x3 + x4))
+        end = tree.integrate(q, step / 6.0 * (x1 + 2.0 * x2 + 2.0 * x3 + x4))
         v = v + step / 6.0 * (v1 + 2.0 * v2 + 2.0 * v3 + v4)
         if not (np.isfinite(end).all() and np.isfinite(v).all()):
             raise SimulationDiverged(float(times[n + 1]), step)

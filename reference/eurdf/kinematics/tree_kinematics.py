@@ -1,4 +1,4 @@
-"""What kinematics asks of a spanning tree: poses, Jacobians, mass matrix and bias.
+"""What kinematics asks of a spanning tree: its configurations, poses, Jacobians, mass matrix and bias.
 
 `eurdf.pinocchio.tree.PinocchioTree` implements it.
 """
@@ -140,3 +140,30 @@ class TreeKinematics(Protocol):
 
     def memory(self) -> Any:
         """Memory of the whole tree, which takes some 8 nv³ numbers, and saves time for small trees."""
+
+    def neutral(self) -> Vector:
+        """The neutral configuration (nq,)."""
+
+    def integrate(self, q: Vector, v: Vector) -> Vector:
+        """The configuration (nq,) that v (nv,) leads to from q in unit time, q ⊕ v."""
+
+    def integrate_derivative(self, q: Vector, v: Vector) -> Matrix:
+        """Derivative (nv, nv) of q ⊕ v by v."""
+
+    def difference(self, q: Vector, other: Vector) -> Vector:
+        """The velocity (nv,) that leads from q to the other configuration in unit time."""
+
+    def difference_derivative(self, q: Vector, other: Vector) -> Matrix:
+        """Derivative (nv, nv) of `difference` by the motion of the other configuration."""
+
+    def normalized(self, q: Vector) -> Vector:
+        """The configuration with its quaternions, and cosines and sines, of unit length."""
+
+    def is_normalized(self, q: Vector) -> bool:
+        """Whether they are of unit length, to 1e-9."""
+
+    def inverse_dynamics(self, q: Vector, v: Vector, a: Vector, data: Any) -> Vector:
+        """The generalized force (nv,) M a + h that the acceleration a (nv,) takes; with a = 0 the bias h."""
+
+    def mass_times(self, q: Vector, motions: Matrix, data: Any) -> Matrix:
+        """The mass matrix at q (nq,), the armature included, times the columns (nv, n) of accelerations."""

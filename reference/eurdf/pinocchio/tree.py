@@ -29,23 +29,36 @@ class Coordinate(NamedTuple):
 
 
 class PinocchioTree:
-    """A `TreeKinematics` by Pinocchio; its joints are those of the model.
+    """A `eurdf.kinematics.tree_kinematics.TreeKinematics` by Pinocchio; its joints are those of the model.
 
     Attributes:
         model: The model.
-        sites: Where the frame of each body is, by name.
-        first: For each joint that has coordinates of its own, the index of the first in q, their number, the index of
-            the first of its velocities in v, and their number.
     """
 
     def __init__(
         self, model: pin.Model, sites: Mapping[str, Site], first: Mapping[str, tuple[int, int, int, int]]
     ) -> None:
+        """Take a model.
+
+        Args:
+            model: The model.
+            sites: For each body, by name, where its frame is.
+            first: For each joint that has coordinates of its own, the index of the first in q, their number, the index
+                of the first of its velocities in v, and their number.
+        """
         self.model = model
         self._sites = sites
         self._first = first
-        self.nq: int = model.nq
-        self.nv: int = model.nv
+
+    @property
+    def nq(self) -> int:
+        """Number of coordinates."""
+        return int(self.model.nq)
+
+    @property
+    def nv(self) -> int:
+        """Number of velocities."""
+        return int(self.model.nv)
 
     @cached_property
     def parents(self) -> list[int]:
@@ -107,6 +120,51 @@ class PinocchioTree:
             raise ValueError(f"joint '{joint}' does not have one coordinate of its own")
         owner = next(index for index, own in enumerate(self.own_velocities) if idx_v in own)
         return Coordinate(owner, idx_q, idx_v, bool(self.translates(owner)[0]))
+
+    def neutral(self) -> Vector:
+        """The neutral configuration (nq,)."""
+        return np.array(pin.neutral(self.model))
+
+    def integrate(self, q: Vector, v: Vector) -> Vector:
+        """The configuration (nq,) that v (nv,) leads to from q in unit time."""
+        return np.asarray(pin.integrate(self.model, q, v))
+
+    def integrate_derivative(self, q: Vector, v: Vector) -> Matrix:
+        """Derivative (nv, nv) of `integrate` by v."""
+        return np.asarray(pin.dIntegrate(self.model, q, v, pin.ARG1))
+
+    def difference(self, q: Vector, other: Vector) -> Vector:
+        """The velocity (nv,) that leads from q to the other configuration in unit time."""
+        return np.asarray(pin.difference(self.model, q, other))
+
+    def difference_derivative(self, q: Vector, other: Vector) -> Matrix:
+        """Derivative (nv, nv) of `difference` by the motion of the other configuration."""
+        return np.asarray(pin.dDifference(self.model, q, other, pin.ARG1))
+
+    def normalized(self, q: Vector) -> Vector:
+        """The configuration with its quaternions, and cosines and sines, of unit length."""
+        return np.array(pin.normalize(self.model, q))
+
+    def is_normalized(self, q: Vector) -> bool:
+        """Whether they are of unit length, to 1e-9."""
+        return bool(pin.isNormalized(self.model, q, 1e-9))
+
+    def inverse_dynamics(self, q: Vector, v: Vector, a: Vector, data: pin.Data) -> Vector:
+        """The generalized force (nv,) M a + h that the acceleration a (nv,) takes; with a = 0 the bias h."""
+        return np.array(pin.rnea(self.model, data, q, v, a))
+
+    def mass_times(self, q: Vector, motions: Matrix, data: pin.Data) -> Matrix:
+        """The mass matrix at q (nq,), the armature included, times the columns (nv, n) of accelerations.
+
+        Up to Pinocchio 4.1, `pin.crba` has wrong entries if a mimic joint carries several branches.
+        """
+        if not len(self.model.mimicking_joints):
+            M = np.triu(pin.crba(self.model, data, q))
+            return np.asarray((M + np.triu(M, 1).T) @ motions)
+        still = np.zeros(self.nv)
+        gravity = self.inverse_dynamics(q, still, still, data)
+        columns = [self.inverse_dynamics(q, still, a, data) - gravity for a in motions.T]
+        return np.array(columns).reshape(motions.T.shape).T
 
     def memory(self) -> pin.Data:
         """A `pin.Data`."""
