@@ -138,10 +138,10 @@ def test_a_message_tells_of_files_that_stand_nowhere_in_particular() -> None:
 @pytest.mark.parametrize(
     ("diff", "why"),
     [
-        ("-nothing like it\n+something", "stand 0 times"),
+        ("-nothing like it\n+something", "occur 0 times"),
         ('-    <axis xyz="0 0 1"/>\n+    <axis xyz="0 0 2"/>', "not once"),
-        ("+something", "a line to replace"),
-        ("@@ -1 +1 @@\n-a\n+b", "begins with"),
+        ("+something", "needs a line"),
+        ("@@ -1 +1 @@\n-a\n+b", "must begin with"),
     ],
 )
 def test_a_diff_that_cannot_be_made_is_no_edit(diff: str, why: str) -> None:
