@@ -1,6 +1,7 @@
 """The cases: what they say, and how they are read. `test_certify` sees how the reference answers them."""
 
 import ast
+import base64
 import json
 import posixpath
 import re
@@ -8,10 +9,10 @@ import sys
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import jsonschema
 import pytest
-import yaml
 from pydantic import ValidationError
 
 from eurdf_conformance.comparison.text import same_text
@@ -20,11 +21,12 @@ from eurdf_conformance.corpus.case import CASE, SCHEMA_FILE, InvalidCase, ValidC
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.coverage import missing
 from eurdf_conformance.corpus.expect import stale
-from eurdf_conformance.corpus.expected import EXPECTED_FILE, Expected, expected_text
+from eurdf_conformance.corpus.expected import Expected, expected_text
 from eurdf_conformance.corpus.lint import lint
 from eurdf_conformance.corpus.protocol_rule import OF_RUNNERS, RULES
-from eurdf_conformance.corpus.read import CASE_FILE, CorpusCase, NotACase, collection_folder, read_case, read_cases
+from eurdf_conformance.corpus.read import CorpusCase, NotACase, collection_folder, read_case, read_cases
 from eurdf_conformance.level import Level
+from eurdf_conformance.strict_yaml import load_strictly
 
 ROOT = Path(__file__).parents[2]
 CASES = read_cases()
@@ -42,8 +44,7 @@ def test_the_schema_of_a_case_is_current_and_takes_every_case() -> None:
     assert SCHEMA_FILE.read_text(encoding="utf-8") == schema_text()
     validator = jsonschema.Draft202012Validator(case_schema())
     for case in CASES:
-        said = yaml.safe_load((case.folder / CASE_FILE).read_text(encoding="utf-8"))
-        assert list(validator.iter_errors(said)) == [], case.path
+        assert list(validator.iter_errors(load_strictly(case.path.read_text(encoding="utf-8")))) == [], case.name
 
 
 def test_an_expectation_that_is_written_is_read_back_the_same() -> None:
@@ -88,20 +89,21 @@ def test_an_import_of_the_reference_is_seen_in_every_form(text: str, so: bool) -
 
 # One case
 
-VALID_CASE = {
+VALID_CASE: dict[str, Any] = {
     "id": "ab12cd",
     "title": "A sentence.",
     "version": "2",
     "clauses": ["EU-FRM-001"],
     "valid": True,
-    "provenance": {"expectation": "hand"},
+    "files": {"robot.yaml": "extended_urdf: '2.0'\n", "robot.urdf": "<robot/>\n"},
 }
-INVALID_CASE = VALID_CASE | {
+INVALID_CASE = {key: value for key, value in VALID_CASE.items() if key != "files"} | {
     "valid": False,
     "code": "unknown-frame",
     "place": {"file": "robot.yaml", "line": 1, "column": 1},
-    "twin": "ef34gh",
-    "repair": "Mend it.",
+    "twin": "frames/sound",
+    "edit": {"file": "robot.yaml", "replace": "2.0", "with": "3.0"},
+    "fix": "Mend it.",
 }
 
 
@@ -122,7 +124,13 @@ def test_a_case_is_valid_or_says_its_fault() -> None:
         VALID_CASE | {"clauses": []},
         VALID_CASE | {"clauses": ["EU-FRM-1"]},
         VALID_CASE | {"code": "unknown-frame"},
-        VALID_CASE | {"twin": "ef34gh"},
+        VALID_CASE | {"twin": "frames/sound"},
+        VALID_CASE | {"base": "../sound"},
+        VALID_CASE | {"edits": [{"file": "robot.yaml", "rename": "a.yaml"}]},
+        VALID_CASE | {"robot": "four_bar"},
+        VALID_CASE | {"files": {"../robot.yaml": ""}},
+        VALID_CASE | {"files": {"robot.yaml": {"hex": "f"}}},
+        VALID_CASE | {"files": {"robot.yaml": {"repeat": "a", "times": 1}}},
         VALID_CASE | {"colour": "red"},
         VALID_CASE | {"valid": "yes"},
         VALID_CASE | {"configurations": [{"j": 1.0}]},
@@ -134,7 +142,11 @@ def test_a_case_is_valid_or_says_its_fault() -> None:
         INVALID_CASE | {"place": {"file": "robot.yaml", "line": 0, "column": 1}},
         INVALID_CASE | {"place": {"file": "robot.yaml", "line": 1}},
         INVALID_CASE | {"place": {"file": "robot.yaml", "column": 1}},
-        {key: value for key, value in INVALID_CASE.items() if key != "repair"},
+        INVALID_CASE | {"files": {}},
+        INVALID_CASE | {"edit": {"file": "robot.yaml", "replace": "", "with": "a"}},
+        INVALID_CASE | {"edit": {"file": "robot.yaml", "replace": "a", "with": "a"}},
+        INVALID_CASE | {"edit": {"file": "robot.yaml", "replace": "a", "rename": "b"}},
+        {key: value for key, value in INVALID_CASE.items() if key != "fix"},
         {key: value for key, value in INVALID_CASE.items() if key != "twin"},
     ],
     ids=str,
@@ -149,13 +161,14 @@ WriteCase = Callable[[str], Path]
 
 @pytest.fixture
 def written(tmp_path: Path) -> WriteCase:
-    """Writes a `case.yaml`, and gives its folder."""
+    """Writes a case, beside `frames/sound`, and gives its file."""
 
     def write(text: str) -> Path:
-        folder = tmp_path / "frames" / "ab12cd"
+        folder = tmp_path / "frames"
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / CASE_FILE).write_text(text, encoding="utf-8")
-        return folder
+        (folder / "sound.yaml").write_text(json.dumps(VALID_CASE), encoding="utf-8")
+        (folder / "one.yaml").write_text(text, encoding="utf-8")
+        return folder / "one.yaml"
 
     return write
 
@@ -166,26 +179,24 @@ def written(tmp_path: Path) -> WriteCase:
         ("", "object"),
         ("id: [", "while parsing"),
         (json.dumps(VALID_CASE)[:-1] + ', "title": "Twice."}', "stands twice"),
-        (json.dumps(VALID_CASE | {"robot": "no_such_robot"}), "no_such_robot"),
         (json.dumps(INVALID_CASE | {"place": {"file": "robot.yaml", "line": "x"}}), "place/line"),
     ],
 )
 def test_of_a_file_that_says_no_case_it_is_told_why(written: WriteCase, text: str, why: str) -> None:
     with pytest.raises(NotACase, match=why) as caught:
         read_case(written(text))
-    assert caught.value.path.name == CASE_FILE
+    assert caught.value.path.name == "one.yaml"
 
 
 def test_a_case_names_its_files(written: WriteCase) -> None:
-    folder = written(json.dumps(VALID_CASE | {"description": "other.yml", "urdf": "sub/other.urdf"}))
-    case = read_case(folder)
-    assert (case.topic, case.path) == ("frames", "frames/ab12cd")
-    assert (case.description, case.urdf) == (folder / "other.yml", folder / "sub" / "other.urdf")
+    case = read_case(written(json.dumps(VALID_CASE | {"description": "other.yml", "urdf": "sub/other.urdf"})))
+    assert (case.topic, case.name) == ("frames", "frames/one")
+    assert (case.description, case.urdf) == (case.folder / "other.yml", case.folder / "sub" / "other.urdf")
 
 
 def test_a_number_with_an_exponent_is_a_number(written: WriteCase) -> None:
     text = "id: ab12cd\ntitle: One.\nversion: '2'\nclauses: [EU-FRM-001]\nvalid: true\n"
-    text += "configurations: [{j: [1e-3, -2E5, +3, .5, 4.]}]\nprovenance: {expectation: hand}\n"
+    text += "configurations: [{j: [1e-3, -2E5, +3, .5, 4.]}]\n"
     case = read_case(written(text)).case
     assert isinstance(case, ValidCase)
     assert case.configurations == [{"j": [1e-3, -2e5, 3, 0.5, 4.0]}]
@@ -194,8 +205,10 @@ def test_a_number_with_an_exponent_is_a_number(written: WriteCase) -> None:
 def test_a_robot_of_the_collection_is_read_where_it_is(written: WriteCase) -> None:
     home = collection_folder()
     assert home is not None
-    folder = written(json.dumps(VALID_CASE | {"robot": "four_bar", "description": "robot.v1.yaml"}))
-    assert read_case(folder).description == home / "four_bar" / "robot.v1.yaml"
+    of_robot = VALID_CASE | {"robot": "four_bar", "description": "robot.v1.yaml", "files": {}}
+    assert read_case(written(json.dumps(of_robot))).description == home / "four_bar" / "robot.v1.yaml"
+    with pytest.raises(NotACase, match="no_such_robot"):
+        _ = read_case(written(json.dumps(of_robot | {"robot": "no_such_robot"}))).files
 
 
 def test_the_collection_of_an_installed_package_is_found_and_the_package_not_imported(
@@ -228,17 +241,25 @@ def test_a_case_is_asked_at_the_levels_that_it_can_be(written: WriteCase) -> Non
 
 def evaluated_case(tmp_path: Path) -> CorpusCase:
     """A copy of a case that is evaluated."""
-    case = next(case for case in VALID if case.case.robot is None and case.levels[2] == "kinematics")
-    folder = tmp_path / case.path
-    folder.mkdir(parents=True)
-    for path in case.folder.iterdir():
-        (folder / path.name).write_bytes(path.read_bytes())
-    return read_case(folder)
+    alone = (case for case in VALID if case.case.files and case.origin is None and not case.case.provenance.note)
+    case = next(case for case in alone if Level.KINEMATICS in case.levels)
+    path = tmp_path / f"{case.name}.yaml"
+    path.parent.mkdir(parents=True)
+    path.write_bytes(case.path.read_bytes())
+    path.with_suffix(".expected.json").write_bytes(case.expectation.read_bytes())
+    return read_case(path)
+
+
+def said_by_hand(case: CorpusCase) -> CorpusCase:
+    """The same case, of which values are expected by hand."""
+    text = case.path.read_text(encoding="utf-8")
+    case.path.write_text(text + "provenance: {expectation: hand}\n", encoding="utf-8")
+    return read_case(case.path)
 
 
 def test_an_expectation_is_stale_where_one_number_of_it_is_another(tmp_path: Path) -> None:
     case = evaluated_case(tmp_path)
-    path = case.folder / EXPECTED_FILE
+    path = case.expectation
     assert list(stale(case)) == []
     said = json.loads(path.read_text(encoding="utf-8"))
     for pointer, change in {
@@ -250,36 +271,35 @@ def test_an_expectation_is_stale_where_one_number_of_it_is_another(tmp_path: Pat
     }.items():
         change()
         path.write_text(json.dumps(said), encoding="utf-8")
-        assert any(pointer in fault for fault in stale(read_case(case.folder))), pointer
+        assert any(pointer in fault for fault in stale(read_case(case.path))), pointer
 
 
 def test_values_by_hand_may_be_some_of_all_and_are_held_against_the_oracle(tmp_path: Path) -> None:
     case = evaluated_case(tmp_path)
-    text = (case.folder / CASE_FILE).read_text(encoding="utf-8").replace("expectation: oracle", "expectation: hand")
-    (case.folder / CASE_FILE).write_text(text, encoding="utf-8")
+    case = said_by_hand(case)
     some = case.expected.model_dump(mode="json")
     some["values"] = [{"mass": values["mass"]} for values in some["values"]]
-    (case.folder / EXPECTED_FILE).write_text(json.dumps(some), encoding="utf-8")
-    assert list(stale(read_case(case.folder))) == []
+    case.expectation.write_text(json.dumps(some), encoding="utf-8")
+    assert list(stale(read_case(case.path))) == []
     some["values"][0]["mass"] *= 2
-    (case.folder / EXPECTED_FILE).write_text(json.dumps(some), encoding="utf-8")
-    assert any("/values/0/mass" in fault for fault in stale(read_case(case.folder)))
+    case.expectation.write_text(json.dumps(some), encoding="utf-8")
+    assert any("/values/0/mass" in fault for fault in stale(read_case(case.path)))
 
 
 def test_an_expectation_is_written_where_it_is_missing_or_stale_and_by_hand_it_is_left(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     case = evaluated_case(tmp_path)
-    path, right = case.folder / EXPECTED_FILE, (case.folder / EXPECTED_FILE).read_text(encoding="utf-8")
+    path, right = case.expectation, case.expectation.read_text(encoding="utf-8")
     wrong = right.replace('"mass": ', '"mass": 1')
-    monkeypatch.setattr(expect, "read_cases", lambda: [read_case(case.folder)])
+    monkeypatch.setattr(expect, "read_cases", lambda: [read_case(case.path)])
 
     def main(*arguments: str) -> tuple[int, str]:
         return expect.main(arguments), path.read_text(encoding="utf-8") if path.exists() else ""
 
     path.unlink()
     assert main("--check") == (1, "")
-    code, written = main(case.id)
+    code, written = main(case.name)
     assert code == 0
     # What the oracle computes may have other last digits on this processor; they are rounded to 12.
     assert same_text(written, right, relative=1e-9, absolute=1e-11)
@@ -289,8 +309,7 @@ def test_an_expectation_is_written_where_it_is_missing_or_stale_and_by_hand_it_i
     assert main("--check") == (1, wrong)
     assert "/values/0/mass" in capsys.readouterr().out
     assert main() == (0, written)
-    said = (case.folder / CASE_FILE).read_text(encoding="utf-8").replace("expectation: oracle", "expectation: hand")
-    (case.folder / CASE_FILE).write_text(said, encoding="utf-8")
+    said_by_hand(case)
     path.write_text(wrong, encoding="utf-8")
     assert main() == (1, wrong)
     with pytest.raises(SystemExit):
@@ -309,8 +328,8 @@ def test_the_archive_holds_every_file_and_has_the_same_bytes_whenever_it_is_writ
         names = set(whole.namelist())
         assert {info.date_time for info in whole.infolist()} == {(1980, 1, 1, 0, 0, 0)}
         for case in CASES:
-            for name, path in archive.case_files(case):
-                assert whole.read(name) == path.read_bytes()
+            for name, content in archive.case_files(case):
+                assert whole.read(name) == content
                 names.remove(name)
         assert names == {"README.txt", "LICENSE", "clauses.json", "case.schema.json"}
         registry = json.loads(whole.read("clauses.json"))
@@ -318,7 +337,7 @@ def test_the_archive_holds_every_file_and_has_the_same_bytes_whenever_it_is_writ
             id_: each.text for id_, each in read_clauses().items()
         }
         tested = {(entry["id"], case) for entry in registry["clauses"] for case in entry["cases"]}
-        assert tested == {(clause, case.path) for case in CASES for clause in case.case.clauses}
+        assert tested == {(clause, case.name) for case in CASES for clause in case.case.clauses}
         assert {entry["code"] for entry in registry["diagnostics"]} >= {
             case.case.code for case in CASES if isinstance(case.case, InvalidCase)
         }
@@ -329,14 +348,15 @@ def test_in_the_zip_a_case_leads_to_its_schema_and_the_readme_to_what_it_names(t
     archive.write_archive(tmp_path, VALID[:3])
     with zipfile.ZipFile(tmp_path / f"{archive.NAME}.zip") as whole:
         for case in VALID[:3]:
-            name = f"cases/{case.path}/{CASE_FILE}"
+            name = f"cases/{case.name}.yaml"
             link = whole.read(name).decode().splitlines()[0].partition("$schema=")[2]
             schema = posixpath.normpath(posixpath.join(posixpath.dirname(name), link))
             assert whole.read(schema) == SCHEMA_FILE.read_bytes()
         readme = whole.read("README.txt").decode()
         clauses = {entry["id"] for entry in json.loads(whole.read("clauses.json"))["clauses"]}
         assert set(re.findall(r"EU-[A-Z]{3}-[0-9]{3}", readme)) <= clauses
-        assert set(re.findall(r"[\w.]+\.(?:json|yaml|urdf)", readme)) <= {Path(name).name for name in whole.namelist()}
+        named = set(re.findall(r"(?<!>)(?<!>\.)\b[\w.]+\.(?:json|yaml|urdf)", readme))
+        assert named <= {Path(name).name for name in whole.namelist()}
     assert all(re.search(rf"^  {level} ", readme, re.MULTILINE) for level in Level)
 
 
@@ -384,18 +404,25 @@ def test_an_archive_that_cannot_be_written_is_said_in_one_line_and_leaves_nothin
 def test_the_manifest_says_every_case_with_the_texts_of_its_files(tmp_path: Path) -> None:
     archive.write_archive(tmp_path, CASES)
     manifest = json.loads((tmp_path / f"{archive.NAME}.json").read_text(encoding="utf-8"))
-    assert [entry["case"]["id"] for entry in manifest["cases"]] == [case.id for case in CASES]
+    assert [entry["name"] for entry in manifest["cases"]] == [case.name for case in CASES]
     for entry, case in zip(manifest["cases"], CASES, strict=True):
-        assert CASE.validate_json(json.dumps(entry["case"])) == case.case
+        said = case.case.model_dump(mode="json", exclude_none=True)
+        assert said | entry["case"] == said
         assert (entry["expected"] is None) == isinstance(case.case, InvalidCase)
-        if case.description.is_file():
-            text = entry["files"][case.case.description]
-            assert isinstance(text, dict) or text.encode() == case.description.read_bytes()
+        for name, content in case.files.items():
+            text = entry["files"][name]
+            assert (base64.b64decode(text["base64"]) if isinstance(text, dict) else text.encode()) == content
     assert set(manifest["clauses"]) == {clause for case in CASES for clause in case.case.clauses}
 
 
 def test_a_file_that_is_no_text_or_not_there_is_in_the_manifest_too(written: WriteCase) -> None:
-    folder = written(json.dumps(INVALID_CASE | {"urdf": "nowhere.urdf"}))
-    (folder / "robot.yaml").write_bytes(b"a: \xff")
-    (entry,) = archive.manifest([read_case(folder)])["cases"]
-    assert entry["files"] == {"robot.yaml": {"base64": "YTog/w=="}, "nowhere.urdf": None}
+    edit = {"file": "robot.urdf", "rename": "other.urdf"}
+    path = written(json.dumps(INVALID_CASE | {"edit": edit}))
+    (entry,) = archive.manifest([read_case(path)])["cases"]
+    assert entry["files"] == {
+        "robot.yaml": VALID_CASE["files"]["robot.yaml"],
+        "robot.urdf": None,
+        "other.urdf": "<robot/>\n",
+    }
+    path = written(json.dumps(VALID_CASE | {"files": {"robot.yaml": ["a: ", {"hex": "ff"}]}}))
+    assert read_case(path).files == {"robot.yaml": b"a: \xff"}

@@ -35,7 +35,7 @@ from eurdf_conformance.certificate.replay import (
 from eurdf_conformance.certificate.report import report
 from eurdf_conformance.certificate.write import write_certificate
 from eurdf_conformance.corpus.clause import read_clauses
-from eurdf_conformance.corpus.read import read_case, read_cases
+from eurdf_conformance.corpus.read import CASES, read_case, read_cases
 from eurdf_conformance.judging.known_failures import KnownFailure, KnownFailures
 from eurdf_conformance.judging.result import Result
 from eurdf_conformance.judging.verdict import Verdict
@@ -134,15 +134,19 @@ def test_the_hash_of_the_corpus_does_not_depend_on_the_order_of_cases_but_on_eac
     assert corpus_hash(cases[1:]) != corpus_hash(cases)
 
 
-def test_a_file_that_is_no_part_of_a_case_does_not_change_the_hash_of_the_corpus(tmp_path: Path) -> None:
-    folder = tmp_path / "closures" / "tq4m8z"
-    shutil.copytree(next(case.folder for case in read_cases() if case.id == folder.name), folder)
-    before = corpus_hash([read_case(folder)])
-    (folder / ".DS_Store").write_bytes(b"a file manager was here")
-    assert corpus_hash([read_case(folder)]) == before
-    with (folder / "robot.yaml").open("a", encoding="utf-8") as stream:
-        stream.write("# more\n")
-    assert corpus_hash([read_case(folder)]) != before
+def test_the_hash_of_the_corpus_is_that_of_the_files_that_the_cases_make(tmp_path: Path) -> None:
+    for topic in ("frames", "closures"):
+        shutil.copytree(CASES / topic, tmp_path / topic)
+
+    def hashed() -> str:
+        return corpus_hash([read_case(tmp_path / "frames" / "closure-at-unknown-frame.yaml")])
+
+    before = hashed()
+    (tmp_path / "frames" / ".DS_Store").write_bytes(b"a file manager was here")
+    assert hashed() == before
+    twin = tmp_path / "closures" / "parallelogram-3d-closure.yaml"
+    twin.write_text(twin.read_text(encoding="utf-8").replace('name="parallelogram"', 'name="other"'), encoding="utf-8")
+    assert hashed() != before
 
 
 def test_the_hash_of_the_properties_changes_with_the_mechanisms_that_they_are_tried_on(

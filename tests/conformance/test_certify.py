@@ -85,8 +85,8 @@ def test_the_reference_is_certified_at_every_level_of_both_versions(shared_run: 
 def test_a_parser_that_accepts_everything_fails_on_every_invalid_case_and_on_no_valid_one(shared_run: Run) -> None:
     certificate = read_certificate(Path(shared_run("--parser", ACCEPTS, *SOME).certificate))
     failed = {failure.id for failure in certificate.failures}
-    right = {case.path for case in SOME_CASES if not isinstance(case.case, InvalidCase) or case.case.either}
-    wrong = {case.path for case in SOME_CASES} - right
+    right = {case.name for case in SOME_CASES if not isinstance(case.case, InvalidCase) or case.case.either}
+    wrong = {case.name for case in SOME_CASES} - right
     assert wrong <= failed
     assert not right & failed
     assert not certificate.certified
@@ -96,8 +96,8 @@ def test_a_parser_that_accepts_everything_fails_on_every_invalid_case_and_on_no_
 def test_a_parser_that_rejects_everything_fails_on_every_valid_case_and_on_no_invalid_one(shared_run: Run) -> None:
     certificate = read_certificate(Path(shared_run("--parser", REJECTS, *SOME).certificate))
     failed = {failure.id for failure in certificate.failures}
-    assert {case.path for case in SOME_CASES if not isinstance(case.case, InvalidCase)} <= failed
-    assert not {case.path for case in SOME_CASES if isinstance(case.case, InvalidCase)} & failed
+    assert {case.name for case in SOME_CASES if not isinstance(case.case, InvalidCase)} <= failed
+    assert not {case.name for case in SOME_CASES if isinstance(case.case, InvalidCase)} & failed
     assert not any(level.certified for level in certificate.levels)
 
 
@@ -194,16 +194,16 @@ def test_known_failures_are_counted_and_do_not_certify(folder: Path, shared_run:
 
 
 def test_a_known_failure_that_passes_or_that_the_suite_lacks_is_told(folder: Path) -> None:
-    file = known_failures(folder, "version1/n8t4uq", "version1/aaaaaa")
+    file = known_failures(folder, "version1/fewer-joint-types-than-names", "version1/aaaaaa")
     given = certificate_of("--parser", REJECTS, *SOME, "--known-failures", file)
     assert [said.partition(":")[0] for said in given["unexpected"]] == [
-        "version1/n8t4uq/accept",
+        "version1/fewer-joint-types-than-names/accept",
         "version1/aaaaaa/accept",
     ]
 
 
 def test_a_file_of_known_failures_that_cannot_be_used_is_refused_before_anything_runs(folder: Path) -> None:
-    (folder / "known.yaml").write_text("- id: version1/n8t4uq\n", encoding="utf-8")
+    (folder / "known.yaml").write_text("- id: version1/fewer-joint-types-than-names\n", encoding="utf-8")
     done = certify("--parser", "cmd:nowhere", "--known-failures", "known.yaml")
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.startswith("eurdf: known.yaml: [0].level: ")
@@ -343,7 +343,7 @@ def test_a_replay_by_another_parser_is_told_line_by_line(folder: Path, shared_ru
     again = certify("--verify", "mine/certificate.json", "--parser", ACCEPTS, "--jobs", "0")
     assert again.returncode == 1
     assert again.stdout.startswith("parser, name: 'always_rejected' then, 'always_accepted' now\n")
-    assert "version1/n8t4uq/accept: no failure then, failed now\n" in again.stdout
+    assert "version1/fewer-joint-types-than-names/accept: no failure then, failed now\n" in again.stdout
     assert again.stdout.endswith("mine/certificate.json: differs\n")
     as_json = certify("--verify", "mine", "--parser", ACCEPTS, "--jobs", "0", "--json")
     value = json.loads(as_json.stdout)
@@ -358,10 +358,14 @@ def test_a_replay_tells_what_somebody_has_changed_in_the_file(folder: Path) -> N
     assert again.stderr == f"running {REJECTS}\n"
     file = Path("mine/certificate.json")
     text = file.read_text(encoding="utf-8")
-    file.write_text(text.replace("-k tq4m8z/accept", "; reboot").replace('"known": false', '"known": true', 1))
+    file.write_text(
+        text.replace("-k closures/parallelogram-3d-closure/accept", "; reboot").replace(
+            '"known": false', '"known": true', 1
+        )
+    )
     again = certify("--verify", file)
     assert again.returncode == 1
-    told = "closures/tq4m8z/accept: the command that is to run it again is none of the suite: pytest"
+    told = "closures/parallelogram-3d-closure/accept: the command that is to run it again is none of the suite: pytest"
     assert again.stdout.startswith(told)
     assert again.stdout.endswith(
         ": known failures: 0 by its count, 1 by its failures\nmine/certificate.json: differs\n"

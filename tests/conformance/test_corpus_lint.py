@@ -1,7 +1,6 @@
 """The lint of the cases: each of its rules is broken by a fixture, and found."""
 
 import shutil
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -11,47 +10,113 @@ from eurdf_conformance.corpus.case import CASE, Case
 from eurdf_conformance.corpus.clause import Clause, read_clauses
 from eurdf_conformance.corpus.coverage import UNSAID, missing, said_in
 from eurdf_conformance.corpus.lines import lines_of
-from eurdf_conformance.corpus.one_edit import edit_errors, lines_edited
 from eurdf_conformance.corpus.read import read_cases
 from eurdf_conformance.level import VERSIONS, Version
 
-FIXTURES = Path(__file__).parents[1] / "data" / "conformance_lint"
-BROKEN = sorted(path.parent.name for path in FIXTURES.glob("*/fault.txt"))
+SOUND = Path(__file__).parents[1] / "data" / "conformance_lint"
+VALID, INVALID, EXPECTED = (
+    f"actuation/{name}"
+    for name in ("motor-on-a-joint.yaml", "motor-on-no-joint.yaml", "motor-on-a-joint.expected.json")
+)
 
 
-@pytest.fixture
-def cases(tmp_path: Path) -> Callable[[str], Path]:
-    """The sound cases, with the files of a fixture laid over them."""
-
-    def lay(name: str) -> Path:
-        shutil.copytree(FIXTURES / "sound", tmp_path, dirs_exist_ok=True)
-        shutil.copytree(FIXTURES / name, tmp_path, dirs_exist_ok=True, ignore=shutil.ignore_patterns("fault.txt"))
-        return tmp_path
-
-    return lay
+def laid(root: Path, file: str = VALID, old: str = "", new: str = "") -> Path:
+    """The sound cases, in one file of which one text is replaced."""
+    shutil.copytree(SOUND, root, dirs_exist_ok=True)
+    text = (root / file).read_text(encoding="utf-8")
+    assert old in text
+    (root / file).write_text(text.replace(old, new, 1), encoding="utf-8")
+    return root
 
 
-def test_sound_cases_have_no_fault(cases: Callable[[str], Path]) -> None:
-    assert lint.lint(cases("sound")) == []
+def test_sound_cases_have_no_fault(tmp_path: Path) -> None:
+    assert lint.lint(laid(tmp_path)) == []
 
 
-@pytest.mark.parametrize("name", BROKEN)
-def test_a_broken_rule_is_found_and_no_other(name: str, cases: Callable[[str], Path]) -> None:
-    """The name of a fixture begins with that of the rule; `fault.txt` is what is said of it."""
-    faults = lint.lint(cases(name))
-    assert {fault.rule for fault in faults} == {name.partition("-")[0]}
-    says = (FIXTURES / name / "fault.txt").read_text(encoding="utf-8").strip()
+#: The rules that are broken, what is replaced in which file, and what is said of it.
+BROKEN = [
+    ("case", INVALID, "title: A motor on no joint.\n", "", "title: Field required"),
+    ("case", INVALID, "motor-on-a-joint", "none", "there is no case actuation/none"),
+    ("case", INVALID, "motor-on-a-joint", "motor-on-no-joint", "actuation/motor-on-no-joint is not valid"),
+    ("case", INVALID, "replace: motor", "replace: engine", "the edit changes nothing"),
+    ("case", INVALID, "replace: motor", "replace: wheel", "occurs 0 times in 'robot.yaml', expected once: 'wheel'"),
+    ("case", INVALID, "robot.yaml, replace", "robot.yaml, line: 2, replace", "0 times in line 2 of 'robot.yaml'"),
+    ("case", INVALID, "robot.yaml, replace", "other.yaml, replace", "there is no file 'other.yaml' to edit"),
+    ("id", INVALID, "id: bad001", "id: good01", "id 'good01' is another case's too"),
+    ("title", INVALID, "on no joint", "on a joint", "another case has the same title"),
+    ("clauses", VALID, "[EU-ACT-001]", "[EU-ACT-001, EU-ONE-003]", "EU-ONE-003 is no clause of version 2"),
+    ("clauses", VALID, "[EU-ACT-001]", "[EU-ACT-001, EU-ACT-001]", "a clause stands twice"),
+    ("clauses", VALID, "[EU-ACT-001]", "[EU-ACT-001, EU-ACT-999]", "there is no clause EU-ACT-999"),
+    ("code", INVALID, "fix:", "either: true\nfix:", "`either` is for the errors"),
+    ("code", INVALID, "unknown-actuator", "unknown-frame", "'unknown-frame' stands for no MUST that the case cites"),
+    (
+        "code twin",
+        VALID,
+        "files:",
+        "warnings: [{code: unknown-frame, place: {file: robot.yaml}}]\nfiles:",
+        "'unknown-frame' is the code of no warning",
+    ),
+    ("twin", INVALID, 'version: "2"', 'version: "1"', "the twin is of version 2"),
+    (
+        "twin",
+        VALID,
+        "files:",
+        "warnings: [{code: urdf-no-range, place: {file: robot.yaml}}]\nfiles:",
+        "the twin has warnings",
+    ),
+    (
+        "place twin",
+        INVALID,
+        "edit: {file: robot.yaml, replace: motor, with: engine}",
+        r'edit: {file: robot.yaml, replace: "extended_urdf: \"2.0\"\nactuators:\n  - motor\n", with: "a: 1\n"}',
+        "the edit replaces more than 2 lines",
+    ),
+    ("case", VALID, "files:", "edits: [{file: robot.yaml, rename: a.yaml}]\nfiles:", "of the files of a `base`"),
+    ("case", VALID, "files:", "robot: four_bar\nfiles:", "`robot` has its own files"),
+    ("files", VALID, "files:", "urdf: nowhere.urdf\nfiles:", "there is no file nowhere.urdf"),
+    (
+        "files",
+        VALID,
+        '<link name="base"/>',
+        '<link name="base"><visual><geometry><mesh filename="base.stl"/></geometry></visual></link>',
+        "there is no file base.stl",
+    ),
+    ("place", INVALID, "column: 5", "column: 13", "line 3 of 'robot.yaml' has no column 13"),
+    ("place", INVALID, "line: 3", "line: 5", "'robot.yaml' has 4 lines, none is 5"),
+    ("place", INVALID, "place: {file: robot.yaml", "place: {file: a.yaml", "'a.yaml' is none of its two files"),
+    ("expected", EXPECTED, '"name": "arm"', '"name": "leg"', "/name: name of the robot"),
+    ("expected", EXPECTED, "bodies", "corpses", "ValidationError"),
+]
+
+
+@pytest.mark.parametrize(("rules", "file", "old", "new", "says"), BROKEN, ids=[f"{row[0]}-{row[4]}" for row in BROKEN])
+def test_a_broken_rule_is_found_and_no_other(
+    rules: str, file: str, old: str, new: str, says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(lint, "LINES", 2)
+    faults = lint.lint(laid(tmp_path, file, old, new))
+    assert {fault.rule for fault in faults} == set(rules.split())
     assert any(says in fault.message for fault in faults), [str(fault) for fault in faults]
 
 
-def test_every_rule_has_a_fixture_that_breaks_it() -> None:
-    assert {name.partition("-")[0] for name in BROKEN} == {"folder", "schema", *lint.RULES_OF_CASES}
+@pytest.mark.parametrize(
+    "path", ["actuation/notes.txt", "cranes/crane.yaml", "actuation/motors/deep.yaml", "actuation/Motor_2.yaml"]
+)
+def test_a_file_that_is_no_case_is_found(path: str, tmp_path: Path) -> None:
+    stray = laid(tmp_path) / path
+    stray.parent.mkdir(exist_ok=True)
+    stray.touch()
+    assert [(fault.path, fault.rule) for fault in lint.lint(tmp_path)] == [(stray, "name")]
+
+
+def test_every_rule_has_a_row_that_breaks_it() -> None:
+    assert {rule for rules, *_ in BROKEN for rule in rules.split()} == {"case", *lint.RULES_OF_CASES}
 
 
 def test_the_command_says_what_is_wrong_and_what_is_not_tested(
-    cases: Callable[[str], Path], capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    root = str(cases("sound"))
+    root = str(laid(tmp_path))
     assert lint.main([root]) == 0
     out = capsys.readouterr().out
     for version in VERSIONS:
@@ -59,46 +124,11 @@ def test_the_command_says_what_is_wrong_and_what_is_not_tested(
     assert "EU-ACT-001 (version 1)" in out
     assert "EU-ACT-001 (version 2)" not in out
     assert lint.main([root, "--complete"]) == 1
-    assert lint.main([str(cases("title-twice"))]) == 1
+    assert lint.main([str(laid(tmp_path, INVALID, "on no joint", "on a joint"))]) == 1
     assert "title: another case has the same title" in capsys.readouterr().out
 
 
-# One edit
-
-
-@pytest.mark.parametrize(
-    ("one", "other", "edited"),
-    [
-        ("a\nb\nc\n", "a\nb\nc\n", (0, 0)),
-        ("a\nb\nc\n", "a\nx\nc\n", (1, 1)),
-        ("a\nb\nc\n", "a\nc\n", (1, 0)),
-        ("a\na\na\n", "a\na\n", (1, 0)),
-        ("a\nc\n", "a\nb\nb\nc\n", (0, 2)),
-        ("a\nb\nc\nd\n", "x\nb\nc\ny\n", (4, 4)),
-        ("a\nb\n", "a\r\nb\n", (1, 1)),
-        ("", "a\n", (0, 1)),
-        ("a", "a\n", (1, 1)),
-    ],
-)
-def test_lines_between_what_begins_and_what_ends_alike(
-    tmp_path: Path, one: str, other: str, edited: tuple[int, int]
-) -> None:
-    paths = tmp_path / "one", tmp_path / "other"
-    for path, text in zip(paths, (one, other), strict=True):
-        path.write_bytes(text.encode())
-    assert lines_edited(*paths) == edited
-    assert lines_edited(*reversed(paths)) == edited[::-1]
-
-
-def test_a_file_that_is_not_there_is_no_edit(tmp_path: Path) -> None:
-    (tmp_path / "robot.yaml").write_text("urdf: nowhere.urdf\n", encoding="utf-8")
-    (tmp_path / "twin.yaml").write_text("urdf: robot.urdf\n", encoding="utf-8")
-    (tmp_path / "robot.urdf").write_text("<robot/>\n", encoding="utf-8")
-    files, twin = (
-        (tmp_path / "robot.yaml", tmp_path / "nowhere.urdf"),
-        (tmp_path / "twin.yaml", tmp_path / "robot.urdf"),
-    )
-    assert edit_errors(files, twin) == []
+# The lines of a file
 
 
 def test_lines_end_at_any_line_end_and_a_byte_order_mark_is_none_of_them(tmp_path: Path) -> None:
@@ -118,11 +148,11 @@ def case(clause: str, code: str | None = None, warning: str | None = None, versi
         "version": version,
         "clauses": [clause],
         "valid": code is None,
-        "provenance": {"expectation": "hand"},
     }
     place = {"file": "robot.yaml"}
     if code is not None:
-        said |= {"code": code, "place": place, "twin": "ef34gh", "repair": "Mend it."}
+        edit = {"file": "robot.yaml", "rename": "other.yaml"}
+        said |= {"code": code, "place": place, "twin": "urdf/sound", "edit": edit, "fix": "Mend it."}
     if warning is not None:
         said["warnings"] = [{"code": warning, "place": place}]
     return CASE.validate_python(said)

@@ -78,7 +78,7 @@ def test_what_is_found_is_written_as_a_case_that_the_lint_takes(found: tuple[Pat
     assert lint(folder / "explored") == []
     case = the_case(folder)
     assert f"from seed {SEED}" in judgement.log
-    assert str(case.folder) in judgement.log
+    assert str(case.path) in judgement.log
     assert case.topic == "joints"
 
 
@@ -86,12 +86,12 @@ def test_whoever_finds_a_case_is_told_how_to_keep_it_and_to_run_it_alone(found: 
     folder, judgement = found
     case = the_case(folder)
     move, check = (line.strip() for line in judgement.log.splitlines() if line.startswith("  "))
-    program, source, target = shlex.split(move)
-    assert (program, source) == ("mv", str(case.folder))
+    program, *sources, target = shlex.split(move)
+    assert (program, sources) == ("mv", [str(case.path), str(case.expectation)])
     assert Path(target).resolve() == CASES / case.topic
     assert Path(target).is_dir()
     assert check == f"python -m {lint.__module__}"
-    assert f"-k {case.id}" in judgement.log.splitlines()[-1]
+    assert f"-k {case.name}" in judgement.log.splitlines()[-1]
 
 
 def test_the_case_is_one_that_the_wrong_parser_fails_and_the_reference_passes(found: tuple[Path, Judgement]) -> None:

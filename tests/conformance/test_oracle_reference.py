@@ -82,7 +82,7 @@ def test_they_agree_on_a_robot_of_the_collection_and_as_published(path: Path) ->
 
 
 # One in four; the suite judges the reference on all of them, as near as the clauses ask.
-@pytest.mark.parametrize("case", VALID[::4], ids=lambda case: case.path)
+@pytest.mark.parametrize("case", VALID[::4], ids=lambda case: case.name)
 def test_they_agree_on_a_valid_case_ten_times_nearer_than_the_clauses_ask_of_a_parser(case: CorpusCase) -> None:
     """At the configurations of the case, at those of its files, and at its neutral."""
     assert isinstance(case.case, ValidCase)

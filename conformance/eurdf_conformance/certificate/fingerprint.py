@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterable, Mapping
+from itertools import chain
 
 from eurdf_conformance.corpus.archive import case_files
 from eurdf_conformance.corpus.clause import Clause, read_clauses
@@ -24,10 +25,7 @@ def clauses_hash(clauses: Iterable[Clause] | None = None) -> str:
 
 def corpus_hash(cases: Iterable[CorpusCase] | None = None) -> str:
     """Hash of all files of cases, in whatever order these come; of all cases if left out."""
-    files = {
-        name: path.read_bytes() for case in (all_cases() if cases is None else cases) for name, path in case_files(case)
-    }
-    return files_hash(files)
+    return files_hash(dict(chain.from_iterable(map(case_files, all_cases() if cases is None else cases))))
 
 
 def properties_hash() -> str:

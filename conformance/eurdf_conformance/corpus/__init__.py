@@ -1,1 +1,1 @@
-"""The cases: one fault each, or none, in folders ``cases/<topic>/<id>/`` that hold all there is to know of them."""
+"""The cases: one error each, or none. ``cases/<topic>/<name>.yaml`` says what one is, and how its files are made."""

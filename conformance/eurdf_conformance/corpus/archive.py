@@ -1,14 +1,14 @@
 """All cases for those who do not use pytest: ``python -m eurdf_conformance.corpus.archive OUT`` writes two files.
 
-``eurdf-conformance-cases.zip`` holds a folder a case, ``cases/<topic>/<id>/``, with `case.yaml`, the robot's two files
-and, of a valid case, `expected.json`; and beside them what these say: the schema of `case.yaml`, the clauses, how a
-parser is judged by hand, the license. ``eurdf-conformance-cases.json`` is the cases as one JSON value,
+``eurdf-conformance-cases.zip`` holds ``cases/<topic>/<name>.yaml`` of each case, its files in the folder
+``cases/<topic>/<name>/`` and, of a valid case, ``<name>.expected.json``; and beside them the schema of a case, the
+clauses, how to judge a parser by hand, and the license. ``eurdf-conformance-cases.json`` is the cases as one value,
 
-    {"manifest": "1.0", "protocol": "1.0", "clauses": {id: text}, "cases": [
-        {"topic": …, "case": what case.yaml says, "files": {name: content}, "expected": …}]}
+    {"manifest": "2.0", "protocol": "1.0", "clauses": {id: text}, "cases": [
+        {"name": "<topic>/<name>", "case": what the case says, "files": {name: content}, "expected": …}]}
 
-where the content is a text, or ``{"base64": …}`` of what is none, or null where there is no such file. The bytes are
-the same whenever and wherever they are written.
+where the content is a text, or ``{"base64": …}`` if it is not UTF-8, or null if that file of the robot is missing. The
+bytes are the same whenever and wherever they are written.
 """
 
 from __future__ import annotations
@@ -27,16 +27,18 @@ from typing import Any
 from eurdf_conformance.carried import carried
 from eurdf_conformance.corpus.case import SCHEMA_FILE, ValidCase
 from eurdf_conformance.corpus.clause import read_clauses, read_registry
-from eurdf_conformance.corpus.expected import EXPECTED_FILE
-from eurdf_conformance.corpus.read import CASE_FILE, CorpusCase, NotACase, read_cases
+from eurdf_conformance.corpus.read import CorpusCase, NotACase, read_cases
 from eurdf_conformance.protocol.message import PROTOCOL
 from eurdf_conformance.write_together import write_together
 
 NAME = "eurdf-conformance-cases"
 
-MANIFEST = "1.0"
+MANIFEST = "2.0"
 
-#: Folder of the cases in the zip: as deep as here, so that what a `case.yaml` says of its schema leads there.
+#: What a case says of how its files are made, which those who have the files need not know.
+_MAKING = {"base", "edits", "files", "edit"}
+
+#: Folder of the cases in the zip: as deep as here, so that the path of its schema in a case leads there.
 _CASES = "cases"
 
 _README = Path(__file__).with_name("archive_readme.txt")
@@ -66,7 +68,7 @@ def archive_paths(folder: Path) -> tuple[Path, Path]:
 
 def _zipped(cases: Iterable[CorpusCase]) -> bytes:
     cases = list(cases)
-    entries = {name: path.read_bytes() for case in cases for name, path in case_files(case)} | _beside(cases)
+    entries = {name: content for case in cases for name, content in case_files(case)} | _beside(cases)
     written = io.BytesIO()
     # Stored, since what deflate makes of the same bytes depends on the library that does it.
     with zipfile.ZipFile(written, "w", zipfile.ZIP_STORED) as archive:
@@ -82,7 +84,7 @@ def _beside(cases: Iterable[CorpusCase]) -> dict[str, bytes]:
     citing = defaultdict(list)
     for case in cases:
         for clause in case.case.clauses:
-            citing[clause].append(case.path)
+            citing[clause].append(case.name)
     registry = read_registry()
     clauses = {
         "clauses": [{**entry, "cases": sorted(citing[entry["id"]])} for entry in registry["clauses"]],
@@ -106,9 +108,9 @@ def manifest(cases: Iterable[CorpusCase]) -> dict[str, Any]:
         "clauses": {name: clause.text for name, clause in sorted(read_clauses().items()) if name in cited},
         "cases": [
             {
-                "topic": case.topic,
-                "case": case.case.model_dump(mode="json", exclude_none=True),
-                "files": {name: _content(path) for name, path in _robot_files(case)},
+                "name": case.name,
+                "case": case.case.model_dump(mode="json", exclude_none=True, exclude=_MAKING),
+                "files": {name: _content(case.files.get(name)) for name in _names(case)},
                 "expected": case.expected.model_dump(mode="json") if isinstance(case.case, ValidCase) else None,
             }
             for case in cases
@@ -116,27 +118,24 @@ def manifest(cases: Iterable[CorpusCase]) -> dict[str, Any]:
     }
 
 
-def case_files(case: CorpusCase) -> Iterator[tuple[str, Path]]:
+def case_files(case: CorpusCase) -> Iterator[tuple[str, bytes]]:
     """Every file of a case, by its name in the zip."""
-    home = f"{_CASES}/{case.path}"
-    yield f"{home}/{CASE_FILE}", case.folder / CASE_FILE
+    home = f"{_CASES}/{case.name}"
+    yield f"{home}.yaml", case.path.read_bytes()
     if isinstance(case.case, ValidCase):
-        yield f"{home}/{EXPECTED_FILE}", case.folder / EXPECTED_FILE
-    for name, path in _robot_files(case):
-        if path.is_file():
-            yield f"{home}/{name}", path
-        elif path.is_dir():  # a fault of its own: a folder where a file should be
-            yield from ((f"{home}/{name}/{each.name}", each) for each in path.iterdir())
+        yield f"{home}.expected.json", case.expectation.read_bytes()
+    for name, content in case.files.items():
+        yield f"{home}/{name}", content
 
 
-def _robot_files(case: CorpusCase) -> list[tuple[str, Path]]:
-    return [(case.case.description, case.description), (case.case.urdf, case.urdf)]
+def _names(case: CorpusCase) -> Iterator[str]:
+    """The names of the robot's two files, whether they exist or not, and then of the others."""
+    yield from dict.fromkeys((case.case.description, case.case.urdf, *case.files))
 
 
-def _content(path: Path) -> str | dict[str, str] | None:
-    if not path.is_file():
+def _content(content: bytes | None) -> str | dict[str, str] | None:
+    if content is None:
         return None
-    content = path.read_bytes()
     try:
         return content.decode("utf-8")
     except UnicodeDecodeError:

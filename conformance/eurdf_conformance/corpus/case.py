@@ -1,13 +1,14 @@
-"""What `case.yaml` says of a case. ``python -m eurdf_conformance.corpus.case`` writes its JSON Schema."""
+"""What the file of a case says. ``python -m eurdf_conformance.corpus.case`` writes its JSON Schema."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, model_validator
+from pydantic import Field, TypeAdapter, model_validator
 
 from eurdf_conformance import json_schema
+from eurdf_conformance.corpus.content import Content, Edit, FilePath, Part
 from eurdf_conformance.level import Version
 
 #: The folders of cases, in the order in which cases are run.
@@ -30,18 +31,23 @@ TOPICS = (
 
 SCHEMA_FILE = Path(__file__).with_name("case.schema.json")
 
-CaseId = Annotated[str, Field(pattern=r"^[a-z0-9]{6}$", description="Opaque and permanent; the name of the folder.")]
+CaseId = Annotated[str, Field(pattern=r"^[a-z0-9]{6}$", description="Opaque and permanent.")]
+#: Topic and name of a case.
+NAME = rf"({'|'.join(TOPICS)})/[a-z0-9]+(-[a-z0-9]+)*"
+
+CaseName = Annotated[
+    str,
+    Field(
+        pattern=f"^{NAME}$",
+        description="Topic and name of a case: the path of its file, without its ending.",
+        examples=["urdf/smallest"],
+    ),
+]
 ClauseId = Annotated[str, Field(pattern=r"^EU-[A-Z]{3}-[0-9]{3}$", examples=["EU-FRM-001"])]
 Code = Annotated[str, Field(pattern=r"^[a-z0-9]+(-[a-z0-9]+)*$", examples=["unknown-frame"])]
 Sentence = Annotated[str, Field(pattern=r"^[^\n]+\.$")]
 FileName = Annotated[str, Field(pattern=r"^[^/\\]+$")]
 Coordinates = Annotated[list[Annotated[float, Field(allow_inf_nan=False)]], Field(min_length=1)]
-
-
-class Part(BaseModel):
-    """A part of a case."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
 
 
 class CasePlace(Part):
@@ -82,8 +88,6 @@ class BaseCase(Part):
     version: Version = Field(description="Version of the format.")
     clauses: list[ClauseId] = Field(min_length=1, description="The clauses that it tests, the main one first.")
     features: list[str] = Field([], description="What of the format it uses that parsers often lack.")
-    provenance: Provenance
-    robot: str | None = Field(None, description="A robot of the collection, in place of files beside this one.")
     description: FileName = Field("robot.yaml", description="Name of the YAML file.")
     urdf: str = Field("robot.urdf", description="Path of the URDF that it names, from its folder, existing or not.")
 
@@ -92,12 +96,25 @@ class ValidCase(BaseCase):
     """Two files that are right."""
 
     valid: Literal[True]
+    robot: str | None = Field(None, description="A robot of the collection, whose files are those of the case.")
+    base: CaseName | None = Field(None, description="A valid case without a base, whose files are those of this one.")
+    edits: list[Edit] = Field([], description="Edits of the files of the base.")
+    files: dict[FilePath, Content] = Field({}, description="Files beside those of the base, or in their place.")
+    provenance: Provenance = Provenance(expectation="oracle", note="")
     warnings: list[ExpectedWarning] = Field([], description="All warnings that the files deserve.")
     configurations: list[dict[str, Coordinates]] = Field(
         [],
         description="Where the robot is evaluated: by joint its coordinates; a joint left out stands at its neutral.",
     )
     frames: list[str] = Field([], description="Frames of which poses are asked for.")
+
+    @model_validator(mode="after")
+    def _one_source(self) -> Self:
+        if self.robot is not None and (self.base is not None or self.files):
+            raise ValueError("`robot` has its own files: leave out `base` and `files`")
+        if self.edits and self.base is None:
+            raise ValueError("`edits` are those of the files of a `base`")
+        return self
 
 
 class InvalidCase(BaseCase):
@@ -106,8 +123,10 @@ class InvalidCase(BaseCase):
     valid: Literal[False]
     code: Code = Field(description="The one error.")
     place: CasePlace
-    twin: CaseId = Field(description="The valid case that differs from this one by one edit.")
-    repair: Sentence = Field(description="What to do about it, as a sentence.")
+    twin: CaseName = Field(description="The valid case whose files, after the edit, are those of this one.")
+    edit: Edit = Field(description="The one edit, which makes the files invalid.")
+    fix: Sentence = Field(description="What to do about it, as a sentence.")
+    provenance: Provenance = Provenance(expectation="hand", note="")
     either: bool = Field(
         False,
         description="Whether the fault, of inertia or closure, leaves a robot that a parser may accept or reject.",
@@ -120,7 +139,7 @@ CASE: TypeAdapter[Case] = TypeAdapter(Annotated[Case, Field(discriminator="valid
 
 
 def case_schema() -> dict[str, Any]:
-    """JSON Schema (2020-12) of `case.yaml`."""
+    """JSON Schema (2020-12) of the file of a case."""
     title = "A case of the conformance suite of Extended URDF"
     return json_schema.published("schema:conformance-case", CASE.json_schema(), title=title)
 

@@ -1,6 +1,6 @@
 """What is expected of the valid cases, by the oracle.
 
-``python -m eurdf_conformance.corpus.expect [ID…]`` writes the `expected.json` of all valid cases, or of those named;
+``python -m eurdf_conformance.corpus.expect [CASE…]`` writes the `expected.json` of all valid cases, or of those named;
 ``--check`` writes nothing and says which differ. One that is written by hand is never overwritten.
 """
 
@@ -17,7 +17,7 @@ from pydantic import ValidationError
 from eurdf_conformance.comparison.canonical import canonical_differences
 from eurdf_conformance.comparison.values import values_differences
 from eurdf_conformance.corpus.case import ValidCase
-from eurdf_conformance.corpus.expected import EXPECTED_FILE, Expected, expected_text
+from eurdf_conformance.corpus.expected import Expected, expected_text
 from eurdf_conformance.corpus.read import CorpusCase, read_cases
 from eurdf_conformance.oracle import NotRead, read
 from eurdf_conformance.protocol.message import Quantity, Values
@@ -77,17 +77,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
         0 where all is well, 1 where an expectation is not, or could not be written.
     """
     parser = argparse.ArgumentParser(prog="python -m eurdf_conformance.corpus.expect", description=__doc__)
-    parser.add_argument("ids", nargs="*", metavar="ID", help="of a valid case; all of them if left out")
+    parser.add_argument("names", nargs="*", metavar="CASE", help="topic/name of a valid case; all of them if left out")
     parser.add_argument("--check", action="store_true", help="write nothing, say which differ")
     options = parser.parse_args(arguments)
     cases = [case for case in read_cases() if isinstance(case.case, ValidCase)]
-    if unknown := set(options.ids) - {case.id for case in cases}:
+    if unknown := set(options.names) - {case.name for case in cases}:
         parser.error(f"there is no valid case {', '.join(sorted(unknown))}")
     failed = False
     for case in cases:
-        if options.ids and case.id not in options.ids:
+        if options.names and case.name not in options.names:
             continue
-        path, by_hand = case.folder / EXPECTED_FILE, case.case.provenance.expectation == "hand"
+        path, by_hand = case.expectation, case.case.provenance.expectation == "hand"
         if options.check or (by_hand and path.exists()):
             faults = list(stale(case))
             failed |= bool(faults)

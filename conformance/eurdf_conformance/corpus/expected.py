@@ -1,4 +1,4 @@
-"""What is expected of a parser of a valid case: `expected.json`."""
+"""What is expected of a parser of a valid case: `<name>.expected.json`."""
 
 from __future__ import annotations
 
@@ -8,10 +8,8 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
-from eurdf_conformance.corpus.case import Part
+from eurdf_conformance.corpus.content import Part
 from eurdf_conformance.protocol.message import CanonicalRobot, Values
-
-EXPECTED_FILE = "expected.json"
 
 #: Values of these many levels of nesting below the top stand on a line of their own.
 _OPEN_LEVELS = 4

@@ -15,15 +15,17 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
-from eurdf_conformance.corpus.case import SCHEMA_FILE, TOPICS, CasePlace, InvalidCase, ValidCase, schema_text
+from eurdf_conformance.corpus.case import NAME, SCHEMA_FILE, TOPICS, CasePlace, InvalidCase, ValidCase, schema_text
 from eurdf_conformance.corpus.clause import Clause, read_clauses
+from eurdf_conformance.corpus.content import Replace
 from eurdf_conformance.corpus.coverage import missing
 from eurdf_conformance.corpus.expect import stale
-from eurdf_conformance.corpus.expected import EXPECTED_FILE
 from eurdf_conformance.corpus.lines import lines_of
-from eurdf_conformance.corpus.one_edit import edit_errors
 from eurdf_conformance.corpus.protocol_rule import OF_RUNNERS, RULES
-from eurdf_conformance.corpus.read import CASE_FILE, CASES, CorpusCase, NotACase, case_folders, read_case
+from eurdf_conformance.corpus.read import CASES, Cases, CorpusCase, NotACase, case_names
+
+#: Lines that the edit of an invalid case may replace.
+LINES = 7
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,15 +47,6 @@ class Corpus:
     cases: Sequence[CorpusCase]
     clauses: Mapping[str, Clause]
 
-    def twin(self, case: CorpusCase) -> CorpusCase | None:
-        """The valid twin of an invalid case, if it has one."""
-        assert isinstance(case.case, InvalidCase)
-        return self._by_id.get(case.case.twin)
-
-    @cached_property
-    def _by_id(self) -> Mapping[str, CorpusCase]:
-        return {case.id: case for case in reversed(self.cases)}
-
     @cached_property
     def ids(self) -> Counter[str]:
         """How many cases have each id."""
@@ -71,30 +64,36 @@ Rule = Callable[[CorpusCase, Corpus], Iterator[str]]
 
 def lint(root: Path = CASES, clauses: Mapping[str, Clause] | None = None) -> list[Fault]:
     """What is wrong with the cases below a folder."""
-    faults, cases = [], []
-    folders = set(case_folders(root))
-    for path in sorted(root.glob(f"**/{CASE_FILE}")):
-        if path.parent not in folders:
-            faults.append(
-                Fault(path, "folder", f"a case stands in <topic>/<id>/, a topic being one of {', '.join(TOPICS)}")
-            )
-    for folder in case_folders(root):
-        try:
-            cases.append(read_case(folder))
-        except NotACase as error:
-            faults.append(Fault(error.path, "schema", error.why))
+    cases, faults = _sorted_out(root)
     corpus = Corpus(cases, read_clauses() if clauses is None else clauses)
     return faults + [
-        Fault(case.folder / CASE_FILE, name, message)
+        Fault(case.path, name, message)
         for case in cases
         for name, rule in RULES_OF_CASES.items()
         for message in rule(case, corpus)
     ]
 
 
+def _sorted_out(root: Path) -> tuple[list[CorpusCase], list[Fault]]:
+    """The cases whose files can be made, and why the other files below the folder are none."""
+    known = Cases(root)
+    cases: list[CorpusCase] = []
+    faults: list[Fault] = []
+    expected = {root / f"{name}.expected.json" for name in case_names(root)}
+    for path in sorted(path for path in root.rglob("*") if path.is_file()):
+        name = path.relative_to(root).with_suffix("").as_posix()
+        if path.suffix == ".yaml" and re.fullmatch(NAME, name):
+            try:
+                _ = known[name].files
+                cases.append(known[name])
+            except NotACase as error:
+                faults.append(Fault(error.path, "case", error.why))
+        elif path not in expected:
+            faults.append(Fault(path, "name", f"a case is <topic>/<name>.yaml; the topics are {', '.join(TOPICS)}"))
+    return cases, faults
+
+
 def _id(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
-    if case.id != case.folder.name:
-        yield f"id '{case.id}' is not the name of the folder"
     if corpus.ids[case.id] > 1:
         yield f"id '{case.id}' is another case's too"
 
@@ -130,19 +129,15 @@ def _code(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
 
 
 def _twin(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
-    if not isinstance(case.case, InvalidCase):
+    if not isinstance(case.case, InvalidCase) or case.origin is None:
         return
-    twin = corpus.twin(case)
-    if twin is None:
-        yield f"there is no twin {case.case.twin}"
-    elif not isinstance(twin.case, ValidCase):
-        yield f"the twin {twin.id} is not valid"
-    elif twin.case.version != case.case.version:
-        yield f"the twin {twin.id} is of version {twin.case.version}"
-    elif twin.case.warnings:  # which the fault might hide, or not
-        yield f"the twin {twin.id} has warnings"
-    else:
-        yield from edit_errors((case.description, case.urdf), (twin.description, twin.urdf))
+    twin = case.origin.case
+    if twin.version != case.case.version:
+        yield f"the twin is of version {twin.version}"
+    if isinstance(twin, ValidCase) and twin.warnings:  # which the error might hide, or not
+        yield "the twin has warnings"
+    if isinstance(edit := case.case.edit, Replace) and edit.replace.count("\n") >= LINES:
+        yield f"the edit replaces more than {LINES} lines"
 
 
 def _named_files(urdf: Path) -> list[str]:
@@ -152,20 +147,15 @@ def _named_files(urdf: Path) -> list[str]:
 
 
 def _files(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
-    files = [case.description, case.urdf]
     if isinstance(case.case, ValidCase):
-        yield from (f"there is no file {path.name}" for path in files if not path.is_file())
-    if case.case.robot is None:
+        yield from (f"there is no file {path.name}" for path in (case.description, case.urdf) if not path.is_file())
+        if case.case.robot is not None:
+            return
+    # A file that is missing is an error of its own, which a parser reports beside that of the case.
+    told = {case.case.code} if isinstance(case.case, InvalidCase) else {each.code for each in case.case.warnings}
+    if not told & {"urdf-mesh-missing", "urdf-texture-missing"}:
         named = _named_files(case.urdf)
-        known = {CASE_FILE, case.case.description, Path(case.case.urdf).parts[0], "robot.urdf", *named}
-        known |= {EXPECTED_FILE} if isinstance(case.case, ValidCase) else set()
-        for path in sorted(case.folder.iterdir()):
-            if path.name not in known:
-                yield f"no one reads '{path.name}'"
-        # A file that is missing is a fault of its own, which a parser tells beside that of the case.
-        told = {case.case.code} if isinstance(case.case, InvalidCase) else {each.code for each in case.case.warnings}
-        if not told & {"urdf-mesh-missing", "urdf-texture-missing"}:
-            yield from (f"there is no file {name}" for name in named if not _is_there(case.urdf.parent, name))
+        yield from (f"there is no file {name}" for name in named if not _is_there(case.urdf.parent, name))
 
 
 def _is_there(folder: Path, name: str) -> bool:
@@ -230,20 +220,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     faults = [str(fault) for fault in lint(options.root, clauses)]
     if options.root == CASES and SCHEMA_FILE.read_text(encoding="utf-8") != schema_text():
         faults.append(f"{SCHEMA_FILE}: not current: python -m eurdf_conformance.corpus.case")
-    cases = [case.case for case in _readable(options.root)]
+    cases = [case.case for case in _sorted_out(options.root)[0]]
     tested = {clause for rule in RULES for clause in rule.clauses}
     gaps = list(missing(cases, clauses, tested | set(OF_RUNNERS)))
     sys.stdout.writelines(f"{line}\n" for line in [*faults, *(f"missing: {gap}" for gap in gaps)])
     sys.stdout.write(f"{len(cases)} cases, {len(faults)} faults, {len(gaps)} clauses without their cases\n")
     return int(bool(faults or (options.complete and gaps)))
-
-
-def _readable(root: Path) -> Iterator[CorpusCase]:
-    for folder in case_folders(root):
-        try:
-            yield read_case(folder)
-        except NotACase:
-            continue
 
 
 if __name__ == "__main__":

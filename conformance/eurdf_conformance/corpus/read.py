@@ -1,9 +1,12 @@
-"""The cases as they are on disk."""
+"""The cases as they are on disk: ``cases/<topic>/<name>.yaml`` says what a case is, and how its files are made."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+import shutil
+import tempfile
+import weakref
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from functools import cache, cached_property
 from importlib.util import find_spec
 from pathlib import Path
@@ -11,22 +14,22 @@ from pathlib import Path
 import yaml
 from pydantic import ValidationError
 
-from eurdf_conformance.corpus.case import CASE, TOPICS, Case, ValidCase
-from eurdf_conformance.corpus.expected import EXPECTED_FILE, Expected, read_expected
+from eurdf_conformance.corpus.case import CASE, TOPICS, Case, InvalidCase, ValidCase
+from eurdf_conformance.corpus.content import content_bytes, edited
+from eurdf_conformance.corpus.expected import Expected, read_expected
 from eurdf_conformance.level import Level
 from eurdf_conformance.level_spec import Compared, levels_comparing
 from eurdf_conformance.strict_yaml import load_strictly
 
 CASES = Path(__file__).with_name("cases")
-CASE_FILE = "case.yaml"
 
 
 class NotACase(Exception):  # noqa: N818 - it says what the file is
-    """A `case.yaml` that says no case.
+    """A file that does not describe a case.
 
     Attributes:
         path: The file.
-        why: What is wrong with it, one line a fault.
+        why: What is wrong with it, one error a line.
     """
 
     def __init__(self, path: Path, why: str) -> None:
@@ -35,21 +38,44 @@ class NotACase(Exception):  # noqa: N818 - it says what the file is
         self.why = why
 
 
+class Cases(dict[str, "CorpusCase"]):
+    """The cases of a folder by topic and name, each read when it is asked for.
+
+    Attributes:
+        made: Where their files are written; where nothing is said, a folder that is removed with the cases.
+    """
+
+    def __init__(self, root: Path) -> None:
+        super().__init__()
+        self._root = root
+        self.made: Path | None = None
+
+    def __missing__(self, name: str) -> CorpusCase:
+        self[name] = case = _read(self._root / f"{name}.yaml", name, self)
+        return case
+
+    def folder(self, name: str) -> Path:
+        """The folder for the files of a case."""
+        if self.made is None:
+            self.made = Path(tempfile.mkdtemp(prefix="eurdf-cases-"))
+            weakref.finalize(self, shutil.rmtree, self.made, ignore_errors=True)
+        return self.made / name
+
+
 @dataclass(frozen=True)
 class CorpusCase:
     """A case and its files.
 
     Attributes:
-        case: What `case.yaml` says.
-        topic: Name of the folder of its topic.
-        folder: Where `case.yaml` and `expected.json` are.
-        files: Where the robot's two files are.
+        case: What its file says.
+        name: Topic and name: ``urdf/damping-fortran-exponent``.
+        path: Its file.
     """
 
     case: Case
-    topic: str
-    folder: Path
-    files: Path
+    name: str
+    path: Path
+    _others: Cases = field(repr=False, compare=False)
 
     @property
     def id(self) -> str:
@@ -57,24 +83,84 @@ class CorpusCase:
         return self.case.id
 
     @property
-    def path(self) -> str:
-        """Topic and id, which name it among the cases."""
-        return f"{self.topic}/{self.id}"
+    def topic(self) -> str:
+        """Name of the folder that it is in."""
+        return self.path.parent.name
+
+    @property
+    def origin(self) -> CorpusCase | None:
+        """The case whose files its own are made from: the twin of an invalid case, the base of a valid one.
+
+        Raises:
+            NotACase: There is no such case.
+        """
+        name = self.case.twin if isinstance(self.case, InvalidCase) else self.case.base
+        if name is None:
+            return None
+        try:
+            found = self._others[name]
+        except NotACase as error:
+            raise NotACase(self.path, f"there is no case {name}" if not error.path.exists() else str(error)) from None
+        if isinstance(found.case, InvalidCase):
+            raise NotACase(self.path, f"{name} is not valid")
+        if isinstance(self.case, ValidCase) and found.case.base is not None:
+            raise NotACase(self.path, f"{name} has a base itself")
+        return found
 
     @cached_property
+    def files(self) -> Mapping[str, bytes]:
+        """The contents of its files, by their paths from its folder.
+
+        Raises:
+            NotACase: The file of the case does not say what they are.
+        """
+        if (home := self._collection) is not None:
+            return {name: (home / name).read_bytes() for name in (self.case.description, self.case.urdf)}
+        files = {} if (origin := self.origin) is None else dict(origin.files)
+        try:
+            for edit in [self.case.edit] if isinstance(self.case, InvalidCase) else self.case.edits:
+                files = edited(files, edit)
+        except ValueError as error:
+            raise NotACase(self.path, str(error)) from None
+        if isinstance(self.case, ValidCase):
+            files |= {name: content_bytes(content) for name, content in self.case.files.items()}
+        return files
+
+    @cached_property
+    def folder(self) -> Path:
+        """A folder with its files, which are written when they are first asked for."""
+        if (home := self._collection) is not None:
+            return home
+        folder = self._others.folder(self.name)
+        self.write(folder)
+        return folder
+
+    def write(self, folder: Path) -> None:
+        """Write its files into a folder, which is made where it is not there."""
+        for name, content in self.files.items():
+            path = folder / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(content)
+
+    @property
     def description(self) -> Path:
         """Path of the YAML file."""
-        return self.files / self.case.description
+        return self.folder / self.case.description
 
-    @cached_property
+    @property
     def urdf(self) -> Path:
         """Path of the URDF that the description names, whether it exists or not."""
-        return self.files / self.case.urdf
+        return self.folder / self.case.urdf
+
+    @property
+    def expectation(self) -> Path:
+        """The file that says what is expected of a valid case."""
+        return self.path.with_suffix(".expected.json")
 
     @cached_property
     def expected(self) -> Expected:
         """What is expected of a valid case."""
-        return read_expected(self.folder / EXPECTED_FILE)
+        return read_expected(self.expectation)
 
     @property
     def levels(self) -> tuple[Level, ...]:
@@ -84,14 +170,18 @@ class CorpusCase:
         evaluated = (Compared.VALUES,) if self.case.configurations else ()
         return levels_comparing(Compared.OUTCOME, Compared.ROBOT, *evaluated, Compared.ISSUES)
 
+    @cached_property
+    def _collection(self) -> Path | None:
+        """The folder of the robot of the collection that it is about."""
+        if not isinstance(self.case, ValidCase) or self.case.robot is None:
+            return None
+        home = collection_folder()
+        if home is None or not (home / self.case.robot).is_dir():
+            raise NotACase(self.path, f"robot: the collection has no '{self.case.robot}'")
+        return home / self.case.robot
 
-def read_case(folder: Path) -> CorpusCase:
-    """The case of a folder.
 
-    Raises:
-        NotACase: Its `case.yaml` says none.
-    """
-    path = folder / CASE_FILE
+def _read(path: Path, name: str, others: Cases) -> CorpusCase:
     try:
         case = CASE.validate_python(load_strictly(path.read_text(encoding="utf-8")))
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
@@ -99,28 +189,48 @@ def read_case(folder: Path) -> CorpusCase:
     except ValidationError as error:
         why = "\n".join(f"{'/'.join(map(str, each['loc'][1:])) or '-'}: {each['msg']}" for each in error.errors())
         raise NotACase(path, why) from None
-    return CorpusCase(case, folder.parent.name, folder, _files(case, path))
+    return CorpusCase(case, name, path, others)
+
+
+def read_case(path: Path) -> CorpusCase:
+    """The case of a file ``<topic>/<name>.yaml``; those that it is made from are beside it.
+
+    Raises:
+        NotACase: The file does not describe a case.
+    """
+    return Cases(path.parents[1])[f"{path.parent.name}/{path.stem}"]
 
 
 def read_cases(root: Path = CASES) -> list[CorpusCase]:
-    """All cases, in the order of topics and then of ids.
+    """All cases, in the order of topics and then of names.
 
     Raises:
-        NotACase: One of them is none.
+        NotACase: One of the files does not describe a case.
     """
-    return [read_case(folder) for folder in case_folders(root)]
+    cases = Cases(root)
+    return [cases[name] for name in case_names(root)]
+
+
+@cache
+def _suite() -> Cases:
+    return Cases(CASES)
 
 
 @cache
 def all_cases() -> tuple[CorpusCase, ...]:
     """The cases of the suite, read once a process."""
-    return tuple(read_cases())
+    return tuple(_suite()[name] for name in case_names())
 
 
-def case_folders(root: Path = CASES) -> Iterator[Path]:
-    """The folders of cases, in the order of topics and then of ids."""
+def keep_files_in(folder: Path) -> None:
+    """Write the files of the cases of the suite into a folder, where they stay when the process ends."""
+    _suite().made = folder
+
+
+def case_names(root: Path = CASES) -> Iterator[str]:
+    """The topics and names of cases, in the order of topics and then of names."""
     for topic in TOPICS:
-        yield from sorted(path.parent for path in (root / topic).glob(f"*/{CASE_FILE}"))
+        yield from (f"{topic}/{path.stem}" for path in sorted((root / topic).glob("*.yaml")))
 
 
 def collection_folder() -> Path | None:
@@ -133,12 +243,3 @@ def collection_folder() -> Path | None:
         if (installed := Path(place) / "collection" / "robots").is_dir():
             return installed
     return None
-
-
-def _files(case: Case, path: Path) -> Path:
-    if case.robot is None:
-        return path.parent
-    home = collection_folder()
-    if home is None or not (home / case.robot).is_dir():
-        raise NotACase(path, f"robot: the collection has no '{case.robot}'")
-    return home / case.robot

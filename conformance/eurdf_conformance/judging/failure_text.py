@@ -65,7 +65,7 @@ def _lines(item: Item, judgement: Judgement, reproduce: str, case: CorpusCase | 
     if case is not None:
         yield from _files(case, item.level, judgement)
         if isinstance(case.case, InvalidCase):
-            yield f"  what would mend the file: {case.case.repair}"
+            yield f"  fix: {case.case.fix}"
     yield from (f"  {line}" for line in judgement.log.splitlines())
 
 

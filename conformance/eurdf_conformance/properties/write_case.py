@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import hashlib
 import shlex
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 import yaml
 
 from eurdf_conformance.corpus.case import CASE
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.expect import expect
-from eurdf_conformance.corpus.expected import EXPECTED_FILE, expected_text
-from eurdf_conformance.corpus.read import CASE_FILE, CASES, CorpusCase, case_folders
+from eurdf_conformance.corpus.expected import expected_text
+from eurdf_conformance.corpus.read import CASES, all_cases, read_case
+from eurdf_conformance.properties.files import DESCRIPTION, URDF
 from eurdf_conformance.properties.property import Property
 from eurdf_conformance.properties.query import Query
 
@@ -21,7 +23,7 @@ _ALPHABET = "abcdefghijklmnopqrstuvwxyz0123456789"
 
 
 def write_case(prop: Property, query: Query, folder: Path) -> Path:
-    """Write a robot into a folder of its own, with what the oracle expects.
+    """Write a robot as a case, with what the oracle expects.
 
     Args:
         prop: The property that the parser breaks.
@@ -29,40 +31,58 @@ def write_case(prop: Property, query: Query, folder: Path) -> Path:
         folder: Where; the case goes into the folder of its topic there.
 
     Returns:
-        The folder of the case.
+        The file of the case.
     """
-    topic = "closures" if query.mechanism.closures else "joints"
-    name = fresh_id(query, {path.name for path in case_folders()})
-    home = folder / topic / name
-    home.mkdir(parents=True, exist_ok=True)
-    query.files.write(home)
+    id_ = fresh_id(query, {case.id for case in all_cases()})
+    path = folder / ("closures" if query.mechanism.closures else "joints") / f"found-{id_}.yaml"
     clauses = read_clauses()
     said = {
-        "id": name,
-        "title": f"{prop.title.removesuffix('.')}: found by exploring, {name}.",
+        "id": id_,
+        "title": f"{prop.title.removesuffix('.')}: found by exploring, {id_}.",
         "version": query.version,
         "clauses": [clause for clause in prop.clauses if query.version in clauses[clause].versions],
         "valid": True,
         "provenance": {"expectation": "oracle", "note": f"found on exploring the property {prop.name}"},
         "configurations": [{joint: list(q) for joint, q in each.items()} for each in query.configurations],
         "frames": list(query.frames),
+        "files": {DESCRIPTION: query.files.description.decode("utf-8"), URDF: query.files.urdf.decode("utf-8")},
     }
-    case = CASE.validate_python(said)
-    text = yaml.safe_dump(said, sort_keys=False, allow_unicode=True, width=120, default_flow_style=None)
-    (home / CASE_FILE).write_text(text, encoding="utf-8")
-    expected = expect(CorpusCase(case, topic, home, home))
-    (home / EXPECTED_FILE).write_text(expected_text(expected), encoding="utf-8")
-    return home
+    CASE.validate_python(said)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(_text(said), encoding="utf-8")
+    case = read_case(path)
+    case.expectation.write_text(expected_text(expect(case)), encoding="utf-8")
+    return path
 
 
-def how_to_keep(case: Path) -> Iterator[str]:
+def _text(said: Mapping[str, Any]) -> str:
+    """A case as its file holds it: the texts of files as they are, all else in short."""
+    short = {key: value for key, value in said.items() if key != "files"}
+    head = yaml.safe_dump(short, sort_keys=False, allow_unicode=True, width=120, default_flow_style=None)
+    return head + yaml.dump({"files": said["files"]}, Dumper=_Blocks, sort_keys=False, allow_unicode=True)
+
+
+class _Blocks(yaml.SafeDumper):
+    """Writes texts of several lines as they are."""
+
+
+def _block(dumper: yaml.SafeDumper, text: str) -> yaml.ScalarNode:
+    return dumper.represent_scalar("tag:yaml.org,2002:str", text, style="|" if "\n" in text else None)
+
+
+_Blocks.add_representer(str, _block)
+
+
+def how_to_keep(path: Path) -> Iterator[str]:
     """What to do with a case that was written, one line each."""
     here = Path.cwd()
-    topic = (CASES.relative_to(here) if CASES.is_relative_to(here) else CASES) / case.parent.name
-    yield "to keep it: look at its title and its clauses, move it to the others, and see what the lint says"
-    yield f"  {shlex.join(['mv', str(case), f'{topic}/'])}"
+    topic = (CASES.relative_to(here) if CASES.is_relative_to(here) else CASES) / path.parent.name
+    files = map(str, (path, path.with_suffix(".expected.json")))
+    yield "to keep it: look at its title and its clauses, give it a name that says what it shows,"
+    yield "move it to the others, and see what the lint says"
+    yield f"  {shlex.join(['mv', *files, f'{topic}/'])}"
     yield "  python -m eurdf_conformance.corpus.lint"
-    yield f"to run it alone: when it is there, the same command with -k {case.name}"
+    yield f"to run it alone: when it is there, the same command with -k {path.parent.name}/{path.stem}"
 
 
 def fresh_id(query: Query, taken: set[str]) -> str:

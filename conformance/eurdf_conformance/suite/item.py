@@ -47,7 +47,7 @@ def case_items(cases: Iterable[CorpusCase]) -> Iterator[CaseItem]:
         for level in case.levels:
             said = case.case
             clauses = clauses_at(level, said.version, said.clauses, _general(case, level))
-            yield CaseItem(Item(case.path, level, said.version, clauses, said.title), case)
+            yield CaseItem(Item(case.name, level, said.version, clauses, said.title), case)
 
 
 def clauses_at(level: Level, version: Version, cited: Iterable[str], general: str) -> tuple[str, ...]:

@@ -16,7 +16,7 @@ import pytest
 
 from eurdf_conformance.certificate.issue import issue
 from eurdf_conformance.certificate.write import NoRoom, make_room, write_certificate
-from eurdf_conformance.corpus.read import all_cases
+from eurdf_conformance.corpus.read import all_cases, keep_files_in
 from eurdf_conformance.judging.level_result import unclaimed
 from eurdf_conformance.judging.result import RESULT, Result
 from eurdf_conformance.judging.run import Run
@@ -106,8 +106,10 @@ def pytest_collection_finish() -> None:
 
 
 @pytest.fixture(scope="session")
-def _session_item_runner(pytestconfig: pytest.Config) -> Iterator[ItemRunner]:
+def _session_item_runner(pytestconfig: pytest.Config, tmp_path_factory: pytest.TempPathFactory) -> Iterator[ItemRunner]:
     options = options_of(pytestconfig)
+    # Where pytest leaves the files of its last runs, so that whoever reads of a failure finds those of the case.
+    keep_files_in(tmp_path_factory.mktemp("cases", numbered=False))
     with pytestconfig.stash.get(GREETED, None) or new_session(options) as session:
         yield ItemRunner(options, session)
 

@@ -46,13 +46,12 @@ def command_line(setting: Setting, item_id: str, level: str) -> str:
         item_id: Id of the item.
         level: Its level.
     """
-    name = item_id.split("/", 1)[-1]
     settings = [f"--parser={setting.parser}"]
     settings += [f"--parser-timeout={setting.timeout:g}"] * (setting.timeout != TIMEOUT)
     settings += [f"--parser-start-timeout={setting.start_timeout:g}"] * (setting.start_timeout != START_TIMEOUT)
     if setting.explore and item_id.startswith("properties/"):
         settings += [f"--explore={setting.explore}", f"--explore-seed={setting.explore_seed}"]
-    return shlex.join(["pytest", *setting.suite, *settings, "-k", f"{name}/{level}"])
+    return shlex.join(["pytest", *setting.suite, *settings, "-k", f"{item_id}/{level}"])
 
 
 def is_command_line(text: str, setting: Setting, item_id: str, level: str) -> bool:

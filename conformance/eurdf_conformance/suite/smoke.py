@@ -15,7 +15,7 @@ from eurdf_conformance.suite.item import CaseItem
 
 @dataclass(frozen=True, slots=True)
 class Three:
-    """Ids of a valid case, of an invalid one, and of one that is evaluated."""
+    """Names of a valid case, of an invalid one, and of one that is evaluated."""
 
     valid: str
     invalid: str
@@ -25,15 +25,19 @@ class Three:
 #: Plain ones, that the smallest of parsers can do: a loop that one closure closes; a fault that no parser overlooks,
 #: XML that is none or a name of nothing; and a tree.
 SMOKE: dict[Version, Three] = {
-    "1": Three(valid="p893ru", invalid="joac77", evaluated="zrarhs"),
-    "2": Three(valid="tq4m8z", invalid="k9b2yf", evaluated="bqswnu"),
+    "1": Three(
+        valid="frames/closure-behind-fixed-joints-v1", invalid="urdf/tag-not-closed-v1", evaluated="urdf/gantry-v1"
+    ),
+    "2": Three(
+        valid="closures/parallelogram-3d-closure", invalid="frames/closure-at-unknown-frame", evaluated="urdf/gantry"
+    ),
 }
 
 
 _LEVELS: Mapping[str, tuple[Level, ...]] = {
-    case_id: levels
+    name: levels
     for three in SMOKE.values()
-    for case_id, levels in (
+    for name, levels in (
         (three.valid, levels_comparing(Compared.OUTCOME, Compared.ROBOT, Compared.ISSUES)),
         (three.invalid, levels_comparing(Compared.OUTCOME, Compared.ISSUES)),
         (three.evaluated, levels_comparing(Compared.VALUES)),
@@ -41,9 +45,9 @@ _LEVELS: Mapping[str, tuple[Level, ...]] = {
 }
 
 
-def smoke_case(cases: Iterable[CorpusCase], case_id: str) -> CorpusCase:
-    """The case of an id."""
-    return next(case for case in cases if case.id == case_id)
+def smoke_case(cases: Iterable[CorpusCase], name: str) -> CorpusCase:
+    """The case of a name."""
+    return next(case for case in cases if case.name == name)
 
 
 def smoke_levels(item: CaseItem) -> tuple[Level, ...]:
@@ -51,7 +55,7 @@ def smoke_levels(item: CaseItem) -> tuple[Level, ...]:
 
     It is asked at the first of them that the parser claims: who claims anything is asked something.
     """
-    return _LEVELS.get(item.case.id, ())
+    return _LEVELS.get(item.case.name, ())
 
 
 def smoke_lines(wrong: Sequence[Result], asked: bool) -> Iterator[str]:

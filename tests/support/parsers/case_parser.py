@@ -7,25 +7,26 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from eurdf_conformance.corpus.case import CasePlace, ValidCase
-from eurdf_conformance.corpus.read import CASE_FILE, CorpusCase, read_case, read_cases
+from eurdf_conformance.corpus.read import CASES, CorpusCase, collection_folder, read_case, read_cases
 from eurdf_conformance.level import VERSIONS, Level, Version
 from eurdf_conformance.protocol.message import Accepted, Issue, Quantity, Rejected, Skipped, Unsupported, Values
 from eurdf_conformance.protocol.reply import accepted, rejected, skipped, unsupported
 
 #: The valid case, and the invalid one, at which the others go wrong.
-VALID, INVALID = "tq4m8z", "k9b2yf"
+VALID, INVALID = "closures/parallelogram-3d-closure", "frames/closure-at-unknown-frame"
 
 
 class Cases(dict[tuple[Path, Path], CorpusCase]):
     """The cases by their files, of which only those that are asked for are read."""
 
     def __missing__(self, files: tuple[Path, Path]) -> CorpusCase:
-        description, _ = files
-        if not (description.parent / CASE_FILE).is_file():  # of a robot of the collection
-            self.update({(case.description, case.urdf): case for case in read_cases()})
-            return dict(self)[files]
-        self[files] = read_case(description.parent)
-        return self[files]
+        folder = files[0].parent
+        if folder.parent == collection_folder():
+            robots = [case for case in read_cases() if isinstance(case.case, ValidCase) and case.case.robot is not None]
+            self.update({(case.description, case.urdf): case for case in robots})
+        else:  # the last two names of the folder are those of the case
+            self[files] = read_case(CASES / folder.parent.name / f"{folder.name}.yaml")
+        return dict(self)[files]
 
 
 class Right:
@@ -67,7 +68,7 @@ class Lenient(Right):
     """Accepts one thing that is wrong."""
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported | Skipped:
-        if self.cases[description, urdf].id == INVALID:
+        if self.cases[description, urdf].name == INVALID:
             return accepted(None, ["this looks odd"])
         return super().load(description, urdf)
 
@@ -77,10 +78,10 @@ class Misread(Right):
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported | Skipped:
         reply = super().load(description, urdf)
-        if self.cases[description, urdf].id == INVALID and isinstance(reply, Rejected):
+        if self.cases[description, urdf].name == INVALID and isinstance(reply, Rejected):
             (found,) = reply.issues
             return rejected(found.model_copy(update={"column": (found.column or 0) + 1}))
-        if self.cases[description, urdf].id == VALID and isinstance(reply, Accepted) and reply.robot is not None:
+        if self.cases[description, urdf].name == VALID and isinstance(reply, Accepted) and reply.robot is not None:
             joints = [reply.robot.joints[0].model_copy(update={"upper": [9.0]}), *reply.robot.joints[1:]]
             return accepted(reply.robot.model_copy(update={"joints": joints}))
         return reply
@@ -94,7 +95,7 @@ class Misread(Right):
         values = super().evaluate(configurations, frames, quantities)
         assert isinstance(values, list)
         assert self.case is not None
-        if self.case.id != VALID or "poses" not in quantities:
+        if self.case.name != VALID or "poses" not in quantities:
             return values
         poses = dict(values[0].poses or {})
         poses["elbow"] = poses["elbow"].model_copy(update={"translation": [7.0, 7.0, 7.0]})
@@ -105,7 +106,7 @@ class Crashing(Right):
     """Is gone when it meets one case."""
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported | Skipped:
-        if self.cases[description, urdf].id == VALID:
+        if self.cases[description, urdf].name == VALID:
             os._exit(3)
         return super().load(description, urdf)
 
@@ -138,8 +139,8 @@ class Shy(Right):
     """Does not answer all that it claims."""
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported | Skipped:
-        if self.cases[description, urdf].id == VALID:
+        if self.cases[description, urdf].name == VALID:
             return unsupported("closures", "not written yet")
-        if self.cases[description, urdf].id == INVALID:
+        if self.cases[description, urdf].name == INVALID:
             return skipped("it is Sunday")
         return super().load(description, urdf)
