@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from eurdf_conformance.oracle import kinematics, tree, urdf
+from eurdf_conformance.oracle import configuration, kinematics, tree, urdf
 from eurdf_conformance.oracle.spatial import pose, rotation
 from support.mutants.mutant import Deviation, instead, means
 
@@ -243,6 +243,19 @@ def mimic_multiplier_is_dropped() -> Deviation:
 def mimic_offset_is_multiplied() -> Deviation:
     """A mimic joint is at multiplier · (q + offset)."""
     return _mimic(lambda found: urdf.Mimic(found.joint, found.multiplier, found.multiplier * found.offset))
+
+
+@means("EU-URD-032")
+def chains_of_mimics_are_cut() -> Deviation:
+    """Of a joint that mimics one that mimics, its own multiplier and offset alone count."""
+
+    def drivers(right: Any, of: Any) -> Any:
+        return [
+            (driver, joint.mimic.multiplier, joint.mimic.offset) if joint.mimic else (driver, *others)
+            for joint, (driver, *others) in zip(of.joints, right(of), strict=True)
+        ]
+
+    return instead(configuration, "drivers", drivers)
 
 
 @means("EU-URD-032")

@@ -66,3 +66,9 @@ def heavy_links_are_merged() -> Deviation:
 def axes_that_do_not_meet_are_merged() -> Deviation:
     """Three joints are merged even if their axes do not meet."""
     return patch.object(merging, "NEAR", math.inf)
+
+
+@means("EU-ONE-007")
+def axes_within_a_millimetre_are_merged() -> Deviation:
+    """Three joints are merged if their axes pass a point within a millimetre."""
+    return patch.object(merging, "NEAR", 1e-3)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import numpy as np
 
@@ -124,6 +126,13 @@ def root_floats_by_default(data: Members) -> None:
 def version_1_is_called_2(robot: CanonicalRobot) -> Members:
     """A description of version 1 is said to have version 2."""
     return {"version": "2"}
+
+
+@answers("EU-FRM-001", versions=("2",))  # in version 1 no root floats
+def root_joint_is_a_frame(right: Answer, description: Path, urdf: Path) -> Answer:
+    """The joint of a floating root is the name of a frame."""
+    unknown = {issue.code for issue in right.issues} == {"unknown-frame"}
+    return accepted() if unknown and re.search(r"\broot_joint\b", description.read_text("utf-8-sig")) else right
 
 
 @answers("EU-VER-003")
@@ -309,6 +318,12 @@ def own_data_is_text(robot: CanonicalRobot) -> Members:
 def pointers_are_not_escaped(robot: CanonicalRobot) -> Members:
     """A slash in a key is not escaped in its JSON pointer."""
     return {"own": {pointer.replace("~1", "/"): value for pointer, value in robot.own.items()}}
+
+
+@describes("EU-CAN-002")
+def pointers_of_a_uri(robot: CanonicalRobot) -> Members:
+    """JSON pointers are those of a URI, with percent signs."""
+    return {"own": {quote(pointer, safe="/~"): value for pointer, value in robot.own.items()}}
 
 
 @describes("EU-CAN-002")

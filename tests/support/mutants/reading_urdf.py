@@ -243,6 +243,12 @@ def short_axes_are_refused(data: Any, robot: Any) -> bool:
     return any(abs(math.hypot(*map(float, axis)) - 1) > 1e-3 for axis in axes)
 
 
+@refuses("EU-URD-013")
+def zero_axes_of_fixed_joints_are_refused(data: Any, robot: Any) -> bool:
+    """The axis of a fixed joint may not be zero, which exporters write."""
+    return any(not any(map(float, axis.get("xyz").split())) for axis in robot.findall("joint[@type='fixed']/axis"))
+
+
 @refuses("EU-CNF-002")
 def unknown_elements_are_refused(data: Any, robot: Any) -> bool:
     """An element that URDF does not have is refused, and those of other programs with it."""

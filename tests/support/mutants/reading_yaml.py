@@ -203,6 +203,17 @@ def depth_of_63(right: Answer, description: Path, urdf: Path) -> Answer:
     return _rejects_text(lambda text: _depth(yaml_text.value_of(text.removeprefix("\ufeff"))) > 63, right, description)
 
 
+@answers("EU-YML-007")
+def scalars_are_nested_too(right: Answer, description: Path, urdf: Path) -> Answer:
+    """A scalar in 64 mappings and lists is nested 65 deep."""
+
+    def depth(value: Any) -> int:
+        inside = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+        return 1 + max(map(depth, inside), default=0)
+
+    return _rejects_text(lambda text: depth(yaml_text.value_of(text.removeprefix("\ufeff"))) > 64, right, description)
+
+
 @answers("EU-YML-009")
 def numbers_of_single_precision(right: Answer, description: Path, urdf: Path) -> Answer:
     """A number beyond the range of single precision is rejected."""

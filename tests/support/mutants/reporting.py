@@ -6,6 +6,8 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
+from lxml import etree
+
 from eurdf_conformance.protocol.message import Issue
 from support.mutants.mutant import Members, reports
 
@@ -64,6 +66,15 @@ def open_loops_are_not_reported(found: list[Issue], *files: Path) -> list[Issue]
     """A robot with an error of inertia or closure is accepted without a word."""
     late = ("negative-mass", "inertia-not-psd", "leaf-without-inertia", "assembled-open", "closure-cannot-close")
     return [issue for issue in found if issue.code not in late]
+
+
+@reports("EU-INR-002")
+def diagonals_alone_are_checked(found: list[Issue], *files: Path) -> list[Issue]:
+    """An inertia is positive semidefinite if its diagonal is not negative."""
+    inertias = etree.parse(files[1]).iter("inertia") if any(issue.code == "inertia-not-psd" for issue in found) else ()
+    if all(float(inertia.get(name)) >= 0 for inertia in inertias for name in ("ixx", "iyy", "izz")):
+        return [issue for issue in found if issue.code != "inertia-not-psd"]
+    return found
 
 
 # -- Places ---------------------------------------------------------------------------------------------------------
