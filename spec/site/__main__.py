@@ -10,7 +10,7 @@ from pathlib import Path
 from sphinx.cmd.build import main as sphinx_build
 
 from spec.site.clause import SPEC
-from spec.site.links import site_faults
+from spec.site.links import site_errors
 
 BUILD = SPEC / "_build"
 
@@ -32,10 +32,10 @@ def build(output: Path, builder: str = "html", source: Path = SPEC) -> int:
     failed = sphinx_build(["-b", builder, "-q", "-E", "-a", "-n", "-W", "-d", doctrees, str(source), str(output)])
     if failed or builder != "html":
         return failed
-    faults = site_faults(output)
-    for fault in faults:
-        print(fault, file=sys.stderr)
-    return 1 if faults else 0
+    errors = site_errors(output)
+    for error in errors:
+        print(error, file=sys.stderr)
+    return 1 if errors else 0
 
 
 def main() -> int:

@@ -94,7 +94,7 @@ def case_citations(corpus: Path = CORPUS) -> list[Citation] | None:
 def suite_citations() -> list[Citation] | None:
     """The clauses that the conformance suite cites; None if there is no suite.
 
-    What it asks of a reader without files, rules of the protocol, counts as cases: ``protocol/`` and the rule's name.
+    A rule of the protocol counts as a case named ``protocol/`` and the name of the rule.
     """
     cases = case_citations()
     path = Path(protocol_rule.__file__)

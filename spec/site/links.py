@@ -44,23 +44,23 @@ class Page:
     loads: list[str] = field(default_factory=list)
 
 
-def site_faults(folder: Path) -> list[str]:
+def site_errors(folder: Path) -> list[str]:
     """The errors in the links of a site, as ``page: message``."""
     pages = {path: read_page(path.read_text(encoding="utf-8")) for path in sorted(folder.rglob("*.html"))}
-    faults = []
+    errors = []
     for path, page in pages.items():
         name = path.relative_to(folder)
-        faults += [f"{name}: the id '{anchor}' occurs {n} times" for anchor, n in page.anchors.items() if n > 1]
-        faults += [f"{name}: '{url}' is broken" for url in page.links if not _leads(url, path, folder, pages)]
-        faults += [f"{name}: '{url}' is loaded from another site" for url in page.loads if _is_external(url)]
+        errors += [f"{name}: the id '{anchor}' occurs {n} times" for anchor, n in page.anchors.items() if n > 1]
+        errors += [f"{name}: '{url}' is broken" for url in page.links if not _leads(url, path, folder, pages)]
+        errors += [f"{name}: '{url}' is loaded from another site" for url in page.loads if _is_external(url)]
         for url in page.loads:
             if not _is_external(url) and not _leads(url, path, folder, pages):
-                faults.append(f"{name}: '{url}' does not exist")
+                errors.append(f"{name}: '{url}' does not exist")
     for path in sorted(folder.rglob("*.css")):
         for url in _style_urls(path.read_text(encoding="utf-8")):
             if _is_external(url):
-                faults.append(f"{path.relative_to(folder)}: '{url}' is loaded from another site")
-    return faults
+                errors.append(f"{path.relative_to(folder)}: '{url}' is loaded from another site")
+    return errors
 
 
 def read_page(text: str) -> Page:

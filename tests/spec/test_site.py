@@ -96,10 +96,10 @@ def test_the_schemas_and_the_registry_are_published_beside_the_pages(site: Path)
 
 
 def test_every_link_leads_somewhere_and_no_page_loads_anything_from_elsewhere(site: Path) -> None:
-    from spec.site.links import site_faults
+    from spec.site.links import site_errors
 
     assert len(list(site.glob("*.html"))) > 10
-    assert site_faults(site) == []
+    assert site_errors(site) == []
 
 
 def _text(page: Path) -> str:
@@ -170,7 +170,7 @@ def test_a_picture_from_elsewhere_fails_the_build(tmp_path: Path) -> None:
 
 
 def test_the_links_of_a_page_are_read_as_a_browser_reads_them(tmp_path: Path) -> None:
-    from spec.site.links import site_faults
+    from spec.site.links import site_errors
 
     (tmp_path / "a.html").write_text(
         '<html><head><link rel="stylesheet" href="//cdn.example.org/a.css"><link rel="canonical" href="https://a.b/">'
@@ -181,7 +181,7 @@ def test_the_links_of_a_page_are_read_as_a_browser_reads_them(tmp_path: Path) ->
         encoding="utf-8",
     )
     (tmp_path / "c.css").write_text("@font-face { src: url('https://fonts.example.org/f.woff2'); }", encoding="utf-8")
-    assert sorted(site_faults(tmp_path)) == [
+    assert sorted(site_errors(tmp_path)) == [
         "a.html: '#y' is broken",
         "a.html: '//cdn.example.org/a.css' is loaded from another site",
         "a.html: 'b.html' is broken",
