@@ -57,7 +57,7 @@ class FrameNames:
     def find(self, reference: FrameReference) -> Anchor | None:
         """The body and pose that a reference means; None, and a diagnostic, where it means none or two."""
         if reference.name is not None:
-            return self._by_name(reference)
+            return self._by_name(reference.name, reference)
         body = self._body(reference)
         if body is None:
             return None
@@ -73,13 +73,11 @@ class FrameNames:
             return self._urdf.joints[name].child
         return None
 
-    def _by_name(self, reference: FrameReference) -> Anchor | None:
+    def _by_name(self, name: str, reference: FrameReference) -> Anchor | None:
         """EU-FRM-001, EU-FRM-002: a name is that of exactly one frame.
 
         A link and the joint that carries it may share their name, for they share the frame.
         """
-        name = reference.name
-        assert name is not None
         if name in self._frames:
             return self._frames[name]
         child = self._joint_child(name)

@@ -48,21 +48,20 @@ def check_inertias(urdf: Urdf, diagnostics: Diagnostics) -> set[str]:
         Names of the links with an error, of which nothing more can be said.
     """
     faulty: set[str] = set()
-    links = [link for link in urdf.links.values() if link.inertia is not None]
-    suspects: list[UrdfLink] = []
-    for link in links:
+    suspects: list[tuple[UrdfLink, Inertia]] = []
+    for link in urdf.links.values():
         inertia = link.inertia
-        assert inertia is not None
+        if inertia is None:
+            continue
         if inertia.mass < 0.0:
             message = f"link '{link.name}' has a mass of {inertia.mass:g} kg"
             _report(urdf, diagnostics, link, "negative-mass", message, "mass")
             faulty.add(link.name)
             continue
         if not _plainly_sound(inertia.moments):
-            suspects.append(link)
-    for link in suspects:
-        assert link.inertia is not None
-        moments: list[float] = np.linalg.eigvalsh(_matrix(link.inertia.moments)).tolist()  # which overflow in silence
+            suspects.append((link, inertia))
+    for link, inertia in suspects:
+        moments: list[float] = np.linalg.eigvalsh(_matrix(inertia.moments)).tolist()  # which overflow in silence
         largest = max(map(abs, moments))
         if moments[0] < -MOMENT_TOLERANCE * largest:
             faulty.add(link.name)
