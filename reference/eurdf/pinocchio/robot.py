@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import pinocchio as pin
@@ -171,10 +172,12 @@ def build_robot(
         model,
         build_tree(mechanism, model),
         build_actuation(mechanism, model, at),
-        {
-            name: configuration_vector(mechanism, model, coordinates, at)
-            for name, coordinates in mechanism.configurations.items()
-        },
+        MappingProxyType(
+            {
+                name: configuration_vector(mechanism, model, coordinates, at)
+                for name, coordinates in mechanism.configurations.items()
+            }
+        ),
         shapes,
     )
 
