@@ -79,7 +79,7 @@ def own_coordinates(mechanism: Mechanism, model: pin.Model, q: Vector) -> dict[s
     """
     values = np.asarray(q, dtype=float)
     if values.shape != (model.nq,):
-        raise ValueError(f"a configuration of this robot has the shape ({model.nq},), not {values.shape}")
+        raise ValueError(f"the configuration has the shape {values.shape}; this robot needs ({model.nq},)")
     numbers = values.tolist()
     found: dict[str, tuple[float, ...]] = {}
     if mechanism.root == "floating":

@@ -35,8 +35,8 @@ class Robot:
 
     It unpacks as ``model, constraint_models, actuation, visual_model, collision_model = robot``.
 
-    What the kinematics finds out about a robot once is kept with it. To change its model or its constraint models,
-    make another one: ``dataclasses.replace(robot, constraint_models=...)``.
+    What the kinematics finds out about a robot once is kept with it, so do not change its model in place. Build
+    another robot of a changed mechanism: ``build_robot(dataclasses.replace(robot.mechanism, constraints=...))``.
 
     Take the mass matrix from `eurdf.mass_matrix`: up to Pinocchio 4.1, that of `pin.crba` has wrong entries where a
     mimic joint carries several branches.
