@@ -21,7 +21,7 @@ class Following:
         late: The leaders that come after one of their followers, in order. In Pinocchio a leader comes first.
         counted: Names of the continuous joints to hold as one angle. Pinocchio holds a continuous joint as (cos, sin),
             which has lost the number of turns that a multiplier such as 0.5 is in want of, and lets only continuous
-            joints follow one, which follow no other.
+            joints follow one, which follow no other. A coupling counts turns as well.
     """
 
     laws: Mapping[str, Mimic] = field(default_factory=dict)

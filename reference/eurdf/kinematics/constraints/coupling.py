@@ -23,7 +23,7 @@ class Couplings(Kind[Coupling]):
         """See `Kind`."""
         k = len(constraints)
         self._offsets = np.array([constraint.offset for constraint in constraints])
-        self._C = np.zeros((k, tree.nq))
+        entries: list[tuple[int, int, float]] = []
         self._K = np.zeros((k, len(velocities)))
         self._largest = np.zeros(k)
         self._translates = np.zeros(k, dtype=bool)
@@ -31,18 +31,22 @@ class Couplings(Kind[Coupling]):
         for row, constraint in enumerate(constraints):
             for name, coefficient in constraint.coefficients:
                 coordinate = tree.coordinate(name)
-                self._C[row, coordinate.idx_q] += coefficient
+                entries.append((row, coordinate.idx_q, coefficient))
                 if coordinate.idx_v in column:
                     self._K[row, column[coordinate.idx_v]] += coefficient
                 if abs(coefficient) > self._largest[row]:
                     self._largest[row], self._translates[row] = abs(coefficient), coordinate.translates
+        rows, coordinates, coefficients = zip(*entries, strict=True)
+        self._rows, self._coordinates = np.array(rows, dtype=np.intp), np.array(coordinates, dtype=np.intp)
+        self._coefficients = np.array(coefficients)
 
     def residual(self, at: State) -> Matrix:
-        """C q - offset."""
-        return np.asarray(self._C @ at.q - self._offsets)[:, None]
+        """Σ cᵢ qᵢ - offset."""
+        sums = np.bincount(self._rows, self._coefficients * at.q[self._coordinates], len(self._offsets))
+        return np.asarray(sums - self._offsets)[:, None]
 
     def jacobian(self, at: State) -> Matrix:
-        """C, by the velocities."""
+        """The coefficients, in the columns of their joints."""
         return self._K
 
     def drift(self, motions: RelativeMotions) -> Matrix:
