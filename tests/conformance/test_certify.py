@@ -18,7 +18,6 @@ import jsonschema
 import pytest
 
 from eurdf.commands.main import main
-from eurdf_conformance.certificate import suite_run
 from eurdf_conformance.certificate.certificate import certificate_schema, read_certificate
 from eurdf_conformance.certificate.issue import issue
 from eurdf_conformance.certificate.replay import replay_schema
@@ -228,7 +227,7 @@ def test_a_level_that_was_asked_for_and_is_not_claimed_is_not_certified(folder: 
 def test_without_the_suites_packages_it_says_what_to_install(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(suite_run, "missing", lambda: ["hypothesis"])
+    monkeypatch.setattr("eurdf_conformance.command.certify.missing", lambda: ["hypothesis"])
     assert main(["certify", "--parser", ACCEPTS]) == 2
     said = capsys.readouterr().err
     assert said.endswith("needs packages that are not installed; install them with: pip install hypothesis\n")

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from eurdf_conformance.certificate.certificate import Certificate, read_certificate
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.needed import is_installed, missing, needs
+from eurdf_conformance.needed import is_installed
 from eurdf_conformance.runner.session import NotStarted, Session
 from eurdf_conformance.visible import visible
 
@@ -73,11 +73,9 @@ def run_suite(run: SuiteRun, progress: Progress | None = None) -> Certificate:
         progress: Called after each item.
 
     Raises:
-        CannotRunSuite: A package is not installed, the parser does not start, or the suite broke off.
+        CannotRunSuite: The parser does not start, or the suite broke off.
         KeyboardInterrupt: The user ended it.
     """
-    if lacking := missing():
-        raise CannotRunSuite(needs(lacking))
     import pytest
 
     _greet(run)

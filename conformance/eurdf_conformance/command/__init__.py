@@ -1,1 +1,1 @@
-"""``eurdf certify``, which ``eurdf`` finds through an entry point: `certify` runs it, `output` shows its result."""
+"""``eurdf certify``: `certify` is the entry point, `run` does what the arguments ask, `output` shows the result."""

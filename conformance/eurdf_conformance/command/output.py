@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+
+from rich.text import Text
 
 from eurdf.commands.output import cell, new_table, write_lines, write_rendered
-from eurdf.diagnostics.text import visible
-
-if TYPE_CHECKING:
-    from rich.text import Text
-
-    from eurdf.diagnostics.text import Line
-    from eurdf_conformance.certificate.certificate import Certificate, Failure
-    from eurdf_conformance.judging.level_result import LevelResult
+from eurdf.diagnostics.text import Line, visible
+from eurdf_conformance.certificate.certificate import Certificate, Failure
+from eurdf_conformance.certificate.summary import headline, level_words, parser_title
+from eurdf_conformance.judging.level_result import LevelResult
+from eurdf_conformance.judging.result import Item, Result
+from eurdf_conformance.level import VERSIONS, Level
+from eurdf_conformance.properties.explore import EXPLORED
+from eurdf_conformance.suite.smoke import smoke_lines
 
 # How many of the items that did not pass are shown; the certificate has all.
 _SHOWN = 20
@@ -22,9 +23,6 @@ _SHOWN = 20
 
 def show(certificate: Certificate) -> None:
     """Write what a certificate says to the standard output: what did not pass, then the levels, then the verdict."""
-    from eurdf_conformance.certificate.summary import headline, parser_title
-    from eurdf_conformance.level import VERSIONS, Level
-
     if certificate.scope.smoke:
         write_lines(([(visible(line), "")] for line in _smoke_lines(certificate)), sys.stdout)
         return
@@ -33,8 +31,6 @@ def show(certificate: Certificate) -> None:
     if more > 0:
         lines.append([(f"{more} more did not pass; --certificate DIR writes a page that shows all", "dim")])
     if certificate.scope.explore and any(failure.id.startswith("properties/") for failure in certificate.failures):
-        from eurdf_conformance.properties.explore import EXPLORED
-
         seed = certificate.scope.explore_seed
         lines.append(
             [(f"what exploring from seed {seed} has found, if anything, is in {EXPLORED}/, a case each", "dim")]
@@ -52,9 +48,6 @@ def show(certificate: Certificate) -> None:
 
 
 def _smoke_lines(certificate: Certificate) -> Iterator[str]:
-    from eurdf_conformance.judging.result import Item, Result
-    from eurdf_conformance.suite.smoke import smoke_lines
-
     wrong = [
         Result(
             Item(failure.id, failure.level, failure.version, failure.clauses, failure.title),
@@ -82,8 +75,6 @@ def _failure_lines(failure: Failure) -> Iterator[Line]:
 
 
 def _level_cell(result: LevelResult | None) -> Text:
-    from eurdf_conformance.certificate.summary import level_words
-
     if result is None or not (result.claimed and result.asked):
         return cell("not claimed" if result is None else level_words(result), "dim")
     return cell(level_words(result), "green" if result.certified else "red")
