@@ -110,8 +110,8 @@ def test_what_failed_is_shown_with_the_reason_and_the_command_that_runs_it_again
     ]
     shown = re.findall(r"^failed (\w+)/([\w-]+)/accept: \S", done.stdout, re.MULTILINE)
     assert len(shown) == MOST_SHOWN
-    for _, id_ in shown:
-        assert f"-k {id_}/accept" in done.stdout
+    for topic, name in shown:
+        assert f"-k {topic}/{name}/accept" in done.stdout
     assert re.search(r"^\d+ more did not pass", done.stdout, re.MULTILINE)
     assert done.stdout.endswith("always_accepted 1: Not certified at any level\n")
 
@@ -399,7 +399,7 @@ def test_a_comparison_replaces_nothing_unasked(folder: Path, capsys: pytest.Capt
     certify("--parser", REJECTS, "--smoke", "--certificate", "a")
     Path("page.html").write_text("of somebody else", encoding="utf-8")
     assert main(["certify", "--compare", "a", "-o", "page.html"]) == 2
-    assert capsys.readouterr().err == "eurdf: 'page.html' exists already; --force replaces it\n"
+    assert capsys.readouterr().err == "eurdf: 'page.html' already exists; --force replaces it\n"
     assert Path("page.html").read_text(encoding="utf-8") == "of somebody else"
     assert main(["certify", "--compare", "a", "-o", "page.html", "--force"]) == 0
     assert "always_rejected 1" in Path("page.html").read_text(encoding="utf-8")
