@@ -1,5 +1,5 @@
-"""What says when a robot is good enough for the collection: ``python -m robots.quality [NAME|FOLDER …] [--json]``.
+"""Quality checks for robots of the collection: ``python -m robots.quality [NAME|FOLDER …] [--json]``.
 
-The rules, in `verdict.RULES`, are the same for a robot of the collection and for a folder anywhere. Each looks at a
-`candidate.Candidate` and says what is wrong with it, one sentence a fault.
+The checks, in `verdict.RULES`, are the same for a robot of the collection and for any other folder. Each takes a
+`candidate.Candidate` and returns its errors, one sentence each.
 """

@@ -1,4 +1,4 @@
-"""``python -m robots.quality [NAME|FOLDER …] [--json]``: whether robots are good enough for the collection."""
+"""``python -m robots.quality [NAME|FOLDER …] [--json]``: run the quality checks of the collection."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import sys
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-# Before NumPy is loaded: the matrices are too small for a pool of threads to pay.
+# Before NumPy is loaded: the matrices are too small for a thread pool.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from rich import box
@@ -25,13 +25,18 @@ from robots.quality.verdict import RULES, Verdict, judge
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Judge robots; 0 if all pass, 1 if some do not, 2 if one is not found."""
+    """Check robots; return 0 if all pass, 1 if some do not, 2 if one is not found."""
     parser = argparse.ArgumentParser(
         "python -m robots.quality",
-        description="Say of robots, rule by rule, whether they are good enough for the collection.",
-        epilog="Exit codes: 0 all pass, 1 faults found, 2 no such robot.",
+        description="Run the quality checks of the collection on robots.",
+        epilog="Exit codes: 0 all robots pass, 1 errors found, 2 robot not found.",
     )
-    parser.add_argument("robots", nargs="*", metavar="ROBOT", help="of the collection, or a folder; default: all of it")
+    parser.add_argument(
+        "robots",
+        nargs="*",
+        metavar="ROBOT",
+        help="a robot of the collection, or a folder; default: the whole collection",
+    )
     parser.add_argument("--json", action="store_true", help="write one JSON object")
     options = parser.parse_args(arguments)
     try:
@@ -51,33 +56,33 @@ def _show(verdicts: Sequence[Verdict]) -> None:
     table = _table("robot", *RULES)
     marks = {None: Text("-", "dim"), True: Text("ok", "green"), False: Text("no", "bold red")}
     for verdict in verdicts:
-        judged = (marks[None if faults is None else not faults] for faults in verdict.faults.values())
+        judged = (marks[None if errors is None else not errors] for errors in verdict.errors.values())
         table.add_row(Text(verdict.candidate.folder.name, "bold"), *judged)
     write_rendered(table)
-    if len(verdicts) == 1 and verdicts[0].faults["moves"] is not None:
+    if len(verdicts) == 1 and verdicts[0].errors["motion"] is not None:
         write_lines([[]], sys.stdout)
         write_rendered(_sweeps(verdicts[0].candidate))
     for verdict in verdicts:
-        for rule, faults in verdict.faults.items():
+        for rule, errors in verdict.errors.items():
             where = [(f"{verdict.candidate.folder.name}: ", "bold"), (f"{rule}: ", "red")]
-            write_lines([[*where, (visible(fault), "")] for fault in faults or ()], sys.stdout)
+            write_lines([[*where, (visible(error), "")] for error in errors or ()], sys.stdout)
 
 
 def _sweeps(candidate: Candidate) -> Table:
-    """The sweep of each actuator: its stops, what ends it on either side, its worst numbers."""
-    table = _table("actuator", "stops", "swept", "ends below", "and above", "residual", "correction", "singularity")
+    """The range of motion of each actuator: its bounds, what ends it, and its worst numbers."""
+    table = _table("actuator", "bounds", "reached", "lower end", "upper end", "residual", "correction", "singularity")
     for actuator, found in candidate.sweeps.items():
         if isinstance(found, str):
             continue
-        angular, ways = is_angular(candidate.robot, actuator), (found.lower, found.upper)
+        angular, paths = is_angular(candidate.robot, actuator), (found.lower, found.upper)
         table.add_row(
             Text(actuator, "bold"),
             "none" if is_endless(candidate.robot, actuator) else _range(found.bounds, angular),
-            _range((way.reached for way in ways), angular),
-            *(way.joint or way.end for way in ways),
-            f"{max(way.residual for way in ways):.0e}",
-            f"{max(way.correction for way in ways):.1e}",
-            f"{min(way.singularity for way in ways):.2f}",
+            _range((path.reached for path in paths), angular),
+            *(path.joint or path.end for path in paths),
+            f"{max(path.residual for path in paths):.0e}",
+            f"{max(path.correction for path in paths):.1e}",
+            f"{min(path.singularity for path in paths):.2f}",
         )
     return table
 
@@ -95,12 +100,12 @@ def _table(*headings: str) -> Table:
 
 def _as_json(verdict: Verdict) -> dict[str, Any]:
     candidate = verdict.candidate
-    sweeps = candidate.sweeps if verdict.faults["moves"] is not None else {}
+    sweeps = candidate.sweeps if verdict.errors["motion"] is not None else {}
     return {
         "name": candidate.folder.name,
         "folder": str(candidate.folder),
         "passes": verdict.passes,
-        "rules": verdict.faults,
+        "rules": verdict.errors,
         "sweeps": [_sweep_as_json(found) for found in sweeps.values() if isinstance(found, Sweep)],
     }
 
@@ -115,14 +120,14 @@ def _sweep_as_json(found: Sweep) -> dict[str, Any]:
     }
 
 
-def _path_as_json(way: MotionPath) -> dict[str, Any]:
+def _path_as_json(path: MotionPath) -> dict[str, Any]:
     return {
-        "end": way.end,
-        "joint": way.joint,
-        "reached": way.reached,
-        "residual": way.residual,
-        "correction": way.correction,
-        "singularity": way.singularity,
+        "end": path.end,
+        "joint": path.joint,
+        "reached": path.reached,
+        "residual": path.residual,
+        "correction": path.correction,
+        "singularity": path.singularity,
     }
 
 

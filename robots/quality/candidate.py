@@ -1,4 +1,4 @@
-"""A robot that is looked at, with what several rules ask of it, each found once."""
+"""A robot to check, with the results that several rules share."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ class Candidate:
     """A robot in its folder.
 
     Attributes:
-        path: Its description, or its URDF where it has no description.
+        path: Its description, or its URDF if it has no description.
     """
 
     path: Path
 
     @classmethod
     def find(cls, path: str | os.PathLike[str]) -> Candidate:
-        """The robot that a path or a name of the collection stands for.
+        """The robot at a path or with a name of the collection.
 
         Raises:
-            RobotNotFound: There is none.
+            RobotNotFound: There is no such robot.
         """
         files = find_robot(path)
         found = files.description or files.urdf
         if not isinstance(found, Path):
-            raise eurdf.RobotNotFound(str(path), f"'{path}' is no file: the rules are about a robot's folder")
+            raise eurdf.RobotNotFound(str(path), f"'{path}' is not a file; give the folder of a robot")
         return cls(found.resolve())
 
     @property
@@ -43,7 +43,7 @@ class Candidate:
 
     @cached_property
     def robot(self) -> eurdf.Robot:
-        """It, loaded without geometry.
+        """The robot, loaded without geometry.
 
         Raises:
             InvalidRobot: It cannot be built.
@@ -57,12 +57,12 @@ class Candidate:
 
     @cached_property
     def closes(self) -> bool:
-        """Whether a closed configuration is found from where it stands assembled."""
+        """Whether a closed configuration is found from the assembled one."""
         return eurdf.assemble(self.robot).closes
 
     @cached_property
     def sweeps(self) -> dict[str, Sweep | str]:
-        """By actuator its sweep, or why it has none; of a robot that closes."""
+        """For each actuator of a robot that closes its sweep, or why it has none."""
         found: dict[str, Sweep | str] = {}
         for actuator in self.robot.actuation.joints:
             try:

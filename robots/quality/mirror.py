@@ -1,7 +1,7 @@
-"""The rule on mirrored legs: what is named left and what is named right are exact mirror images in the plane y = 0.
+"""The rule on mirrored legs: elements named left and right are exact mirror images in the plane y = 0.
 
-A joint and its image move as in a mirror where their coordinates are equal but for their signs. Which sign, the twists
-of their velocities say: with M = diag(1, -1, 1), the image of a twist (v, ω) is (M v, -M ω).
+A joint and its image mirror each other if their coordinates are equal up to signs. The twists of their velocities
+determine the signs: with M = diag(1, -1, 1), the image of a twist (v, ω) is (M v, -M ω).
 """
 
 from __future__ import annotations
@@ -30,20 +30,20 @@ _RIGHT = re.compile(r"(?<![a-z])right(?![a-z])")
 
 _SAME_PLACE = 1e-12  # m
 _SAME_TWIST = 1e-9  # rad/s; m/s at the world's origin
-_SAME_INERTIA = 1e-9  # in parts of the mass, or of the largest moment: what the digits in files allow
-_POSES = 3  # looked at beside that of all zeros
-_REACH = 0.5  # how far joints go in them, rad or m
+_SAME_INERTIA = 1e-9  # relative to the mass, or to the largest moment: the accuracy of the digits in files
+_POSES = 3  # in addition to the pose with all coordinates zero
+_REACH = 0.5  # range of the coordinates in them, rad or m
 
 
 def is_mirrored(candidate: Candidate) -> list[str] | None:
-    """Links, centres of mass, inertias, closures, limits of left and right are mirror images; None without such."""
+    """Links, centres of mass, inertias, closures and limits of left and right are mirrored; None if there are none."""
     mechanism = candidate.robot.mechanism
     pairs, alone = _pairs(mechanism)
     if not pairs:
         return None
     if alone:
-        return [f"'{name}' has no mirror image of its name" for name in alone]
-    # Followers too get coordinates of their own, since they have to be mirrored as well.
+        return [f"'{name}' has no counterpart: there is no element of the mirrored name" for name in alone]
+    # Mimic joints get their own coordinates, because they have to be mirrored, too.
     robot = eurdf.load(candidate.path, geometry=False, mimic=False)
     at = slots(robot.mechanism, robot.model)
     joints = [(at[left], at[right]) for left, right in pairs.items() if left in at and right in at]
@@ -51,7 +51,7 @@ def is_mirrored(candidate: Candidate) -> list[str] | None:
     for (left, right), sign in zip(joints, signs, strict=True):
         if not sign.all():
             return [f"joint '{left.joint.name}' does not move as the mirror image of '{right.joint.name}'"]
-    faults = [fault for joint, sign in zip(joints, signs, strict=True) for fault in _limits(*joint, sign)]
+    errors = [error for joint, sign in zip(joints, signs, strict=True) for error in _limits(*joint, sign)]
     random = np.random.default_rng(0)
     for pose in range(1 + _POSES):
         v = np.zeros(robot.model.nv)
@@ -62,12 +62,12 @@ def is_mirrored(candidate: Candidate) -> list[str] | None:
         found = _unlike(robot, pairs, np.asarray(pin.integrate(robot.model, pin.neutral(robot.model), v)))
         if found:
             where = "with mirrored coordinates" if pose else "with every joint at zero"
-            return faults + [f"{what}, {where}" for what in found]
-    return faults
+            return errors + [f"{what}, {where}" for what in found]
+    return errors
 
 
 def _pairs(mechanism: Mechanism) -> tuple[dict[str, str], list[str]]:
-    """By name of a body, joint or closure on the left, that on the right; and the names without counterpart."""
+    """For each body, joint or closure on the left the one on the right; and the names without counterpart."""
     bodies, joints, closures = mechanism.bodies, mechanism.joints, mechanism.closures
     names = dict.fromkeys(
         [*(body.name for body in bodies), *(joint.name for joint in joints), *(closure.name for closure in closures)]
@@ -80,7 +80,7 @@ def _pairs(mechanism: Mechanism) -> tuple[dict[str, str], list[str]]:
 
 
 def _signs(robot: eurdf.Robot, joints: list[tuple[Slot, Slot]]) -> list[Vector]:
-    """For each pair of joints the signs (nv,) of the velocities that mirror one another; 0 where they do not."""
+    """For each pair of joints the signs (nv,) of mirrored velocities; 0 for velocities that are not mirrored."""
     J = pin.computeJointJacobians(robot.model, robot.model.createData(), pin.neutral(robot.model)).reshape(6, -1)
     signs = []
     for left, right in joints:
@@ -97,14 +97,14 @@ def _signs(robot: eurdf.Robot, joints: list[tuple[Slot, Slot]]) -> list[Vector]:
 def _limits(left: Slot, right: Slot, sign: Vector) -> Iterator[str]:
     """Limits, damping and friction that differ."""
     one, other = left.joint, right.joint
-    stops = list(zip(one.properties.lower, one.properties.upper, strict=True))
-    if len(stops) == len(sign):  # a coordinate for each velocity: else there are no stops
-        kept = zip(stops, (sign > 0.0).tolist(), strict=True)
-        stops = [(low, high) if same else (-high, -low) for (low, high), same in kept]
-    if stops != list(zip(other.properties.lower, other.properties.upper, strict=True)):
-        yield f"'{one.name}' and '{other.name}' have other stops"
+    limits = list(zip(one.properties.lower, one.properties.upper, strict=True))
+    if len(limits) == len(sign):  # only joints with one coordinate per velocity have limits
+        kept = zip(limits, (sign > 0.0).tolist(), strict=True)
+        limits = [(low, high) if same else (-high, -low) for (low, high), same in kept]
+    if limits != list(zip(other.properties.lower, other.properties.upper, strict=True)):
+        yield f"'{one.name}' and '{other.name}' have different position limits"
     if _drive(one) != _drive(other):
-        yield f"'{one.name}' and '{other.name}' have other limits of velocity or effort, damping, friction or armature"
+        yield f"'{one.name}' and '{other.name}' differ in velocity limit, effort limit, damping, friction or armature"
 
 
 def _drive(joint: Joint) -> tuple[tuple[float, ...], ...]:
@@ -113,19 +113,19 @@ def _drive(joint: Joint) -> tuple[tuple[float, ...], ...]:
 
 
 def _unlike(robot: eurdf.Robot, pairs: Mapping[str, str], q: Vector) -> list[str]:
-    """What is not mirrored at q (nq,): places of links, of centres of mass and of closures, inertias."""
+    """What is not mirrored at q (nq,): positions of links, centres of mass and closures, or inertias."""
     model = robot.model
     data = model.createData()
     pin.framesForwardKinematics(model, data, q)
     frames = body_frame_ids(robot.mechanism)
     places = {name: data.oMf[frame].translation for name, frame in frames.items()}
-    faults = [
+    errors = [
         f"link '{left}' is {apart:.1e} m from the mirror image of '{right}'"
         for left, right in pairs.items()
         if left in places and (apart := _apart(places[left], places[right])) > _SAME_PLACE
     ]
-    if faults:
-        return faults[:1]  # and what hangs from it
+    if errors:
+        return errors[:1]  # links beyond it differ as well
     closures = {closure.name: closure for closure in robot.mechanism.closures}
     masses = {name: _inertia(model, data, model.getJointId(name)) for name in pairs if model.existJointName(name)}
     images = {name: _inertia(model, data, model.getJointId(pairs[name])) for name in masses}
@@ -133,19 +133,19 @@ def _unlike(robot: eurdf.Robot, pairs: Mapping[str, str], q: Vector) -> list[str
         other_mass, other_center, other_moments = images[name]
         image = _MIRROR[:, None] * moments * _MIRROR
         if abs(mass - other_mass) > _SAME_INERTIA * mass:
-            faults.append(f"what '{name}' and '{pairs[name]}' carry differs in mass")
+            errors.append(f"the masses on joints '{name}' and '{pairs[name]}' differ")
         elif _apart(center, other_center) > _SAME_PLACE:
-            faults.append(f"the centres of mass of what '{name}' and '{pairs[name]}' carry are no mirror images")
+            errors.append(f"the centres of mass on joints '{name}' and '{pairs[name]}' are not mirror images")
         elif np.abs(image - other_moments).max() > _SAME_INERTIA * np.abs(moments).max():
-            faults.append(f"the inertias of what '{name}' and '{pairs[name]}' carry are no mirror images")
+            errors.append(f"the inertias on joints '{name}' and '{pairs[name]}' are not mirror images")
     for name in pairs:
         if name in closures:
             ends = _ends(robot, data, closures[name]), _ends(robot, data, closures[pairs[name]])
             if closures[name].type != closures[pairs[name]].type or any(
                 _apart(one, other) > _SAME_PLACE for one, other in zip(*ends, strict=True)
             ):
-                faults.append(f"closures '{name}' and '{pairs[name]}' are no mirror images")
-    return faults
+                errors.append(f"closures '{name}' and '{pairs[name]}' are not mirror images")
+    return errors
 
 
 def _inertia(model: Any, data: Any, joint: int) -> tuple[float, Vector, Any]:
@@ -156,7 +156,7 @@ def _inertia(model: Any, data: Any, joint: int) -> tuple[float, Vector, Any]:
 
 
 def _ends(robot: Robot, data: Any, closure: Closure) -> list[Vector]:
-    """Places (3,) of its two frames in the world, m."""
+    """Positions (3,) of its two frames in the world, m."""
     return [data.oMi[joint].act(placement.translation) for joint, placement in map(robot.tree.site, closure.anchors)]
 
 

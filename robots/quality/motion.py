@@ -1,4 +1,4 @@
-"""The rules on how a robot moves: closed where it stands, heavy, and led by each actuator through its range."""
+"""The rules on the motion of a robot: closed when assembled, massive, and each actuator moves through its range."""
 
 from __future__ import annotations
 
@@ -13,36 +13,36 @@ from eurdf.kinematics.sweep import MotionPath, Sweep
 from robots.quality.candidate import Candidate
 
 _ASSEMBLED = 1e-12  # largest row of the residual at the assembled configuration, m or rad
-_CLOSED = 1e-10  # and on the way, m or rad
+_CLOSED = 1e-10  # largest row of the residual on paths, m or rad
 
-# M is positive definite by this part of its diagonal: far above rounding, and far below what a light link between heavy
-# ones brings it to.
+# M must be positive definite with this margin, relative to its diagonal: far above rounding, and far below the effect
+# of a light link between heavy ones.
 _MARGIN = 1e-9
-_EVERY = 10  # M changes slowly: of so many configurations on a way it is looked at in one
+_EVERY = 10  # M changes slowly: check it at every tenth configuration of a path
 
 
 def is_assembled(candidate: Candidate) -> list[str]:
-    """It has an assembled configuration, at which its loops are closed to 1e-12."""
+    """The loops are closed to 1e-12 at the configuration 'assembled'."""
     q = candidate.assembled
     if q is None:
-        return ["there is no configuration 'assembled'"]
+        return ["the configuration 'assembled' is missing"]
     largest = float(np.abs(eurdf.residual(candidate.robot, q)).max(initial=0.0))
     return [f"a loop is open by {largest:.1e} (m or rad) at 'assembled'"] if not largest <= _ASSEMBLED else []
 
 
-def weighs(candidate: Candidate) -> list[str]:
-    """Every body that moves has mass, and M(q) is positive definite where it is assembled and on all ways."""
+def has_mass(candidate: Candidate) -> list[str]:
+    """Every moving body has mass, and M(q) is positive definite at 'assembled' and on all paths."""
     model = candidate.robot.model
     moving = zip(model.names[1:], model.inertias[1:], strict=True)
-    massless = [f"what joint '{name}' carries has no mass" for name, inertia in moving if not inertia.mass > 0.0]
+    massless = [f"the body of joint '{name}' has no mass" for name, inertia in moving if not inertia.mass > 0.0]
     if massless:
         return massless
     data = model.createData()
-    places = {"where it is assembled": [pin.neutral(model) if candidate.assembled is None else candidate.assembled]}
+    places = {"at 'assembled'": [pin.neutral(model) if candidate.assembled is None else candidate.assembled]}
     if candidate.closes:
         for actuator, found in candidate.sweeps.items():
-            ways = (found.lower, found.upper) if isinstance(found, Sweep) else ()
-            places[f"on the way of '{actuator}'"] = [q for way in ways for q in way.configurations[::_EVERY]]
+            paths = (found.lower, found.upper) if isinstance(found, Sweep) else ()
+            places[f"on the path of '{actuator}'"] = [q for path in paths for q in path.configurations[::_EVERY]]
     for place, configurations in places.items():
         if not all(_is_positive_definite(np.array(pin.crba(model, data, q))) for q in configurations):
             return [f"the mass matrix is not positive definite {place}"]
@@ -50,7 +50,7 @@ def weighs(candidate: Candidate) -> list[str]:
 
 
 def _is_positive_definite(M: Matrix) -> bool:
-    """Whether M (nv, nv), of which the upper triangle is given, is so by a margin relative to its diagonal."""
+    """Whether M (nv, nv), given by its upper triangle, is positive definite with a margin relative to its diagonal."""
     M = np.triu(M) + np.triu(M, 1).T
     try:
         np.linalg.cholesky(M - _MARGIN * np.diag(np.diag(M)))
@@ -59,39 +59,41 @@ def _is_positive_definite(M: Matrix) -> bool:
     return bool((np.diag(M) > 0.0).all())
 
 
-def moves(candidate: Candidate) -> list[str] | None:
-    """Each actuator comes to its own stop, or to that of a passive joint, on one branch; None if loops are open.
+def reaches_limits(candidate: Candidate) -> list[str] | None:
+    """Each actuator reaches its own limit, or that of a passive joint, on one branch; None if loops are open.
 
-    One without stops comes round. So what the linkage does not allow is beyond a stop that is stated.
+    An actuator without limits makes a full turn. So the stated limits exclude what the linkage does not allow.
     """
     if not candidate.closes:
         return None
-    faults = []
+    errors = []
     for actuator, found in candidate.sweeps.items():
         if isinstance(found, str):
-            faults.append(found)
+            errors.append(found)
             continue
         angular = is_angular(candidate.robot, actuator)
-        for way, stop in zip((found.lower, found.upper), found.bounds, strict=True):
-            faults += [f"'{actuator}' {fault}" for fault in _faults(way, stop, angular)]
+        for path, bound in zip((found.lower, found.upper), found.bounds, strict=True):
+            errors += [f"'{actuator}' {error}" for error in _errors(path, bound, angular)]
         if found.periodic is False:
-            faults.append(f"'{actuator}' does not come round: a full turn leads to another configuration")
+            errors.append(f"'{actuator}' is not periodic: a full turn leads to a different configuration")
         if is_endless(candidate.robot, actuator):
-            faults += [
-                f"'{actuator}' has no stops, but '{way.joint}' comes to its own at {shown(way.reached, angular)}"
-                for way in (found.lower, found.upper)
-                if way.end == "passive limit"
+            errors += [
+                f"'{actuator}' has no limits, but '{path.joint}' reaches its own at {shown(path.reached, angular)}"
+                for path in (found.lower, found.upper)
+                if path.end == "passive limit"
             ]
-    return faults
+    return errors
 
 
-def _faults(way: MotionPath, stop: float, angular: bool) -> list[str]:
-    faults = []
-    if way.end == "dead point":
-        faults.append(f"has a dead point at {shown(way.reached, angular)}, before its stop at {shown(stop, angular)}")
-    if not way.residual <= _CLOSED:
-        faults.append(f"opens a loop by {way.residual:.1e} (m or rad) before {shown(way.reached, angular)}")
-    return faults
+def _errors(path: MotionPath, bound: float, angular: bool) -> list[str]:
+    errors = []
+    if path.end == "dead point":
+        errors.append(
+            f"has a dead point at {shown(path.reached, angular)}, before its limit at {shown(bound, angular)}"
+        )
+    if not path.residual <= _CLOSED:
+        errors.append(f"opens a loop by {path.residual:.1e} (m or rad) before {shown(path.reached, angular)}")
+    return errors
 
 
 def is_angular(robot: eurdf.Robot, joint: str) -> bool:
@@ -100,7 +102,7 @@ def is_angular(robot: eurdf.Robot, joint: str) -> bool:
 
 
 def is_endless(robot: eurdf.Robot, joint: str) -> bool:
-    """Whether a joint turns without stops."""
+    """Whether a joint turns without limits."""
     return _type(robot, joint) == "continuous"
 
 
@@ -109,5 +111,5 @@ def _type(robot: eurdf.Robot, joint: str) -> str:
 
 
 def shown(coordinate: float, angular: bool) -> str:
-    """A coordinate (rad or m) for people."""
+    """A coordinate (rad or m) as text, in degrees or mm."""
     return f"{math.degrees(coordinate):.1f}°" if angular else f"{coordinate * 1e3:.1f} mm"

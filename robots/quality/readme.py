@@ -1,4 +1,4 @@
-"""The rule on the README: it shows the picture and the dimensions, as they are measured."""
+"""The rule on the README: it shows the picture and the computed dimensions."""
 
 from __future__ import annotations
 
@@ -9,38 +9,42 @@ import eurdf
 from eurdf.mechanism.mechanism import Mechanism
 from robots.quality.candidate import Candidate
 
-#: Columns of the dimension table. That of a robot with a floating root has a column ``root`` before them, and a row for
-#: either root.
+#: Columns of the dimension table. For a robot with a floating root, a column ``root`` precedes them, with one row for
+#: each root.
 COLUMNS = ("nv", "closures", "nc", "rank", "mobility", "redundant", "actuated", "uncontrolled", "moving mass")
 
 
 def is_documented(candidate: Candidate) -> list[str] | None:
-    """README.md shows picture.png and states the measured dimensions, the YAML a description; None if open."""
+    """README.md shows picture.png and the computed dimensions, and the metadata have a description; None if open."""
     if not candidate.closes:
         return None
-    faults = []
+    errors = []
     if not candidate.robot.mechanism.metadata.get("description"):
-        faults.append("the metadata have no description")
+        errors.append("the metadata have no description; add metadata: {description: …}")
     file = candidate.folder / "README.md"
     if not file.is_file():
-        return [*faults, "there is no README.md"]
+        return [*errors, "README.md is missing"]
     text = file.read_text(encoding="utf-8", errors="replace")
     if "](picture.png)" not in text:
-        faults.append("README.md does not show picture.png")
+        errors.append("README.md does not show picture.png")
     measured = dimension_table(candidate)
     stated = _dimension_table(text.splitlines())
     if not stated:
-        faults.append(f"README.md has no table of dimensions: {_row(measured[0])}")
+        errors.append(f"README.md has no table of dimensions with the columns {_row(measured[0])}")
     elif stated[0] != measured[0]:
-        faults.append(f"README.md: the columns of the dimensions are not {_row(measured[0])}")
+        errors.append(f"README.md: the columns of the dimensions must be {_row(measured[0])}")
     else:
-        faults += [f"README.md: dimensions as measured are {_row(row)}" for row in measured[1:] if row not in stated]
-        faults += [f"README.md: there is no such robot: {_row(row)}" for row in stated[1:] if row not in measured]
-    return faults
+        errors += [f"README.md: the computed dimensions are {_row(row)}" for row in measured[1:] if row not in stated]
+        errors += [
+            f"README.md: this row differs from the computed dimensions: {_row(row)}"
+            for row in stated[1:]
+            if row not in measured
+        ]
+    return errors
 
 
 def dimension_table(candidate: Candidate) -> list[list[str]]:
-    """Head and rows of the table, as measured."""
+    """Head and rows of the table, as computed."""
     if candidate.robot.mechanism.root == "fixed":
         return [list(COLUMNS), dimension_row(candidate.robot)]
     rows = [["root", *COLUMNS]]
@@ -58,7 +62,7 @@ def dimension_row(robot: eurdf.Robot) -> list[str]:
 
 
 def _closures(mechanism: Mechanism) -> str:
-    """How many, and of what type: ``3 (6d)``, ``12 (3×6d + 9×3d)``."""
+    """Number and types: ``3 (6d)``, ``12 (3×6d + 9×3d)``."""
     counts = Counter(closure.type for closure in mechanism.closures)
     kinds = list(counts) if len(counts) == 1 else [f"{counts[kind]}×{kind}" for kind in sorted(counts, reverse=True)]
     return f"{len(mechanism.closures)} ({' + '.join(kinds)})" if kinds else "0"

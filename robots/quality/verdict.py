@@ -1,4 +1,4 @@
-"""What all rules together say of a robot."""
+"""The result of all rules for a robot."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import eurdf
 from robots.quality.candidate import Candidate
 from robots.quality.files import is_built, is_pictured, is_sound, is_the_same_in_version_1
 from robots.quality.mirror import is_mirrored
-from robots.quality.motion import is_assembled, moves, weighs
+from robots.quality.motion import has_mass, is_assembled, reaches_limits
 from robots.quality.readme import is_documented
 
-#: What is wrong, one sentence a fault; None where there is nothing that the rule could look at.
-Faults = list[str] | None
+#: Errors, one sentence each; None if the rule does not apply.
+Errors = list[str] | None
 
 #: The rules by name.
-RULES: Mapping[str, Callable[[Candidate], Faults]] = {
+RULES: Mapping[str, Callable[[Candidate], Errors]] = {
     "sound": is_sound,
     "assembled": is_assembled,
     "built": is_built,
@@ -24,35 +24,35 @@ RULES: Mapping[str, Callable[[Candidate], Faults]] = {
     "pictured": is_pictured,
     "documented": is_documented,
     "mirrored": is_mirrored,
-    "weighs": weighs,
-    "moves": moves,
+    "mass": has_mass,
+    "motion": reaches_limits,
 }
 
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What was found of a robot.
+    """The errors of a robot.
 
     Attributes:
         candidate: The robot.
-        faults: By rule; None where there was nothing to look at.
+        errors: By rule; None if the rule does not apply.
     """
 
     candidate: Candidate
-    faults: Mapping[str, Faults]
+    errors: Mapping[str, Errors]
 
     @property
     def passes(self) -> bool:
-        """Whether it is good enough for the collection."""
-        return not any(self.faults.values())
+        """Whether the robot meets all rules."""
+        return not any(self.errors.values())
 
 
 def judge(candidate: Candidate) -> Verdict:
-    """Look at a robot by all rules; at one that cannot be built, by the first alone, which says why."""
-    faults: dict[str, Faults] = dict.fromkeys(RULES)
+    """Apply all rules to a robot; only the first one, which says why, if it cannot be built."""
+    errors: dict[str, Errors] = dict.fromkeys(RULES)
     try:
         candidate.robot  # noqa: B018 - loaded here, for all rules
     except eurdf.InvalidRobot:
-        faults["sound"] = is_sound(candidate)
-        return Verdict(candidate, faults)
+        errors["sound"] = is_sound(candidate)
+        return Verdict(candidate, errors)
     return Verdict(candidate, {name: rule(candidate) for name, rule in RULES.items()})

@@ -73,18 +73,18 @@ def codes(found: list[Diagnostic]) -> list[str]:
 
 
 @pytest.mark.parametrize("name", collection_names())
-def test_the_collection_needs_no_advice(name: str) -> None:
+def test_collection_needs_no_advice(name: str) -> None:
     assert [str(found) for found in eurdf.check(name).diagnostics] == []
 
 
-def test_a_robot_with_closures_and_no_actuator_is_reported_at_the_closures(advice) -> None:
+def test_closures_without_actuator_are_reported(advice) -> None:
     (found,) = advice("four_bar", without("motor_crank"))
     assert (found.code, found.severity, found.clause, found.pointer) == ("x-no-actuator", "warning", None, "/closures")
     assert "1 closure and no actuator" in found.message
     assert "'actuators'" in (found.hint or "")
 
 
-def test_no_actuator_is_missed_where_the_key_that_lists_them_is_misspelt(tmp_path: Path) -> None:
+def test_misspelt_actuator_key_suppresses_advice(tmp_path: Path) -> None:
     shutil.copy(ROBOTS / "four_bar" / "robot.urdf", tmp_path)
     text = (ROBOTS / "four_bar" / "robot.v1.yaml").read_text(encoding="utf-8")
     for key, expected in (("name_motor", ["near-miss-key"]), ("motors", ["x-no-actuator"])):
@@ -95,7 +95,7 @@ def test_no_actuator_is_missed_where_the_key_that_lists_them_is_misspelt(tmp_pat
     assert report.diagnostics[0].pointer == "/closed_loop"
 
 
-def test_a_robot_without_closures_needs_no_actuator(tmp_path: Path) -> None:
+def test_tree_needs_no_actuator(tmp_path: Path) -> None:
     shutil.copy(ROBOTS / "four_bar" / "robot.urdf", tmp_path)
     (tmp_path / "robot.yaml").write_text('extended_urdf: "2.0"\n', encoding="utf-8")
     assert eurdf.check(tmp_path).diagnostics == ()
@@ -116,7 +116,7 @@ def test_a_robot_without_closures_needs_no_actuator(tmp_path: Path) -> None:
         ("delta", "rod_2a", ["motor_1", "motor_2", "motor_3"]),
     ],
 )
-def test_a_6d_closure_that_locks_actuators_is_named_and_3d_proposed(advice, name, closure, actuators) -> None:
+def test_locking_6d_closure_is_named_and_3d_suggested(advice, name, closure, actuators) -> None:
     (found,) = advice(name, typed("6d", closure))
     text = (ROBOTS / name / "robot.yaml").read_text(encoding="utf-8")
     index = [each["name"] for each in yaml.safe_load(text)["closures"]].index(closure)
@@ -125,12 +125,12 @@ def test_a_6d_closure_that_locks_actuators_is_named_and_3d_proposed(advice, name
     assert f"type 3d for closure '{closure}'" in (found.hint or "")
 
 
-def test_two_closures_that_only_together_lock_are_named_together(advice) -> None:
+def test_two_jointly_locking_closures_are_named_together(advice) -> None:
     (found,) = advice("unitree_g1_ankle", typed("6d", "rod_a", "rod_b"))
     assert "type 3d for closures 'rod_a', 'rod_b'" in (found.hint or "")
 
 
-def test_more_actuators_than_motions_are_named_where_no_closure_is_to_blame(advice) -> None:
+def test_dependent_actuators_are_named_if_no_closure_locks(advice) -> None:
     (found,) = advice("four_bar", lambda description: description["actuators"].append("free_rocker"))
     assert (found.code, found.pointer) == ("x-dependent-actuators", "/actuators/1")
     assert "'motor_crank'" in found.message
@@ -141,7 +141,7 @@ def test_more_actuators_than_motions_are_named_where_no_closure_is_to_blame(advi
 @pytest.mark.parametrize(
     ("kind", "verb"), [("helical, pitch: 0.01", "cannot move: "), ("cylindrical", "independently: ")]
 )
-def test_an_actuator_that_can_still_turn_is_not_called_locked(tmp_path: Path, kind: str, verb: str) -> None:
+def test_freely_turning_actuator_is_not_called_locked(tmp_path: Path, kind: str, verb: str) -> None:
     arm = chain(joint("shoulder", "a", "b"), joint("elbow", "b", "c"), joint("wrist", "c", "d"))
     pin = "{name: pin, type: 3d, frames: [{link: d, xyz: [0.2, 0, 0]}, {link: a, xyz: [0.7, 0, 0]}]}"
     found = checked(tmp_path, arm, f"joints: {{elbow: {{type: {kind}}}}}\nclosures: [{pin}]\nactuators: [elbow]\n")
@@ -158,20 +158,20 @@ ACTUATORS = [
 
 
 @pytest.mark.parametrize(("name", "joint"), [(name, joint) for name, joint in ACTUATORS if "2legs" not in name])
-def test_an_actuator_that_is_forgotten_leaves_a_motion_that_is_reported(advice, name: str, joint: str) -> None:
+def test_missing_actuator_leaves_reported_motion(advice, name: str, joint: str) -> None:
     (found,) = advice(name, without(joint))
     alone = sum(other == name for other, _ in ACTUATORS) == 1
     assert found.code == ("x-no-actuator" if alone else "x-uncontrolled-motion")
     assert found.pointer == ("/closures" if alone else "/actuators")
 
 
-def test_a_closure_that_leaves_the_orientation_free_leaves_a_motion_that_is_reported(advice) -> None:
+def test_free_orientation_leaves_reported_motion(advice) -> None:
     (found,) = advice("talos_leg", typed("3d", "rod"))
     assert found.code == "x-uncontrolled-motion"
     assert "use type 6d" in (found.hint or "")
 
 
-def test_no_motion_is_reported_where_a_closure_was_left_out(advice) -> None:
+def test_skipped_closure_suppresses_motion_advice(advice) -> None:
     assert codes(advice("delta", typed("x-magnet", "rod_2a"))) == ["closure-type-unknown"]
 
 
@@ -192,7 +192,7 @@ WHEEL = """
 
 
 @pytest.mark.parametrize(("lever", "expected"), [("0", []), ("0.05", ["x-uncontrolled-motion"])])
-def test_a_wheel_needs_no_actuator_and_a_pendulum_does(advice, lever: str, expected: list[str]) -> None:
+def test_wheel_needs_no_actuator_but_pendulum_does(advice, lever: str, expected: list[str]) -> None:
     def urdf(text: str) -> str:
         parent = text.split('<link name="')[1].split('"')[0]
         return text.replace("</robot>", WHEEL.format(lever=lever, parent=parent))
@@ -220,7 +220,7 @@ def without_configurations(description: dict) -> None:
         (0, 0, ["urdf-no-range"]),
     ],
 )
-def test_loops_that_close_only_beyond_limits_are_reported(advice, edit, lower, upper, expected: list[str]) -> None:
+def test_closing_only_beyond_limits_is_reported(advice, edit, lower, upper, expected: list[str]) -> None:
     found = advice("four_bar", edit, rocker(lower, upper))
     assert codes(found) == expected
     if expected == ["x-closes-beyond-limits"]:
@@ -234,7 +234,7 @@ def test_loops_that_close_only_beyond_limits_are_reported(advice, edit, lower, u
         assert float(match[1]) >= abs(limit - farthest) - 1e-3
 
 
-def test_a_search_without_limits_that_ends_within_them_leaves_nothing_to_report(advice, monkeypatch) -> None:
+def test_solution_within_limits_is_not_reported(advice, monkeypatch) -> None:
     from eurdf.checking.advice import limits as module
 
     robot = eurdf.load("four_bar", geometry=False)
@@ -250,7 +250,7 @@ def test_a_search_without_limits_that_ends_within_them_leaves_nothing_to_report(
     assert codes(advice("four_bar", urdf=rocker(angle - 0.01, angle + 0.01))) == []
 
 
-def test_a_joint_outside_the_loops_may_be_beyond_its_limits(advice) -> None:
+def test_joint_outside_loops_can_exceed_limits(advice) -> None:
     def urdf(text: str) -> str:
         lid = WHEEL.format(lever="0", parent=text.split('<link name="')[1].split('"')[0])
         lid = lid.replace("continuous", "revolute").replace(
@@ -311,7 +311,7 @@ def checked(folder: Path, urdf: str, yaml: str = "") -> list[Diagnostic]:
 
 
 @pytest.mark.parametrize("limits", ["-90 90", "0 135", "-22.5 22.5", "-13 13", "-180 180", "-0.5 360", "-720 720"])
-def test_limits_of_a_revolute_joint_that_are_likely_in_degrees(tmp_path: Path, limits: str) -> None:
+def test_revolute_limits_in_degrees_are_reported(tmp_path: Path, limits: str) -> None:
     (found,) = checked(tmp_path, chain(joint("knee", "a", "b", limits=limits)))
     assert found.code == "x-angle-in-degrees"
     assert "of joint 'knee' is" in found.message
@@ -324,16 +324,16 @@ def test_limits_of_a_revolute_joint_that_are_likely_in_degrees(tmp_path: Path, l
     ["-3 3", "-6.2832 6.2832", "-9.42 9.42", "-10 10", "-12.5664 12.5664", "-18.85 18.85", "-100 100", "-1000 1000",
      "-1e16 1e16", "-31.4159 31.4159", "-13.37 13.37"],
 )  # fmt: skip
-def test_limits_of_wrists_and_of_joints_without_limits_are_in_rad(tmp_path: Path, limits: str) -> None:
+def test_wrists_and_unlimited_joints_are_in_rad(tmp_path: Path, limits: str) -> None:
     assert checked(tmp_path, chain(joint("knee", "a", "b", limits=limits))) == []
 
 
 @pytest.mark.parametrize("kind", ["continuous", "prismatic"])
-def test_limits_of_what_does_not_turn_in_a_range_are_no_angles(tmp_path: Path, kind: str) -> None:
+def test_limits_of_other_joints_are_no_angles(tmp_path: Path, kind: str) -> None:
     assert checked(tmp_path, chain(joint("knee", "a", "b", kind, limits="-90 90"))) == []
 
 
-def test_limits_that_may_mean_none_are_in_degrees_beside_others(tmp_path: Path) -> None:
+def test_ambiguous_limits_are_degrees_beside_others(tmp_path: Path) -> None:
     urdf = chain(joint("knee", "a", "b", limits="-100 100"), joint("hip", "b", "c", limits="-90 100"))
     (found,) = checked(tmp_path, urdf)
     assert "'hip' is -90 rad" in found.message
@@ -342,7 +342,7 @@ def test_limits_that_may_mean_none_are_in_degrees_beside_others(tmp_path: Path) 
 
 @pytest.mark.parametrize(("rpy", "expected"), [("90 0 0", 1), ("0 0 -7", 1), ("0 6.2832 -3.1416", 0), ("7.854 0 0", 0)])
 @pytest.mark.parametrize("place", ["joint", "inertial"])
-def test_an_orientation_beyond_a_turn_is_likely_in_degrees(tmp_path: Path, rpy: str, expected: int, place: str) -> None:
+def test_orientation_beyond_a_turn_is_in_degrees(tmp_path: Path, rpy: str, expected: int, place: str) -> None:
     old = 'xyz="0.2 0 0"' if place == "joint" else 'xyz="0.01 0 0"'
     urdf = chain(joint("knee", "a", "b")).replace(old, f'{old} rpy="{rpy}"', 1)
     found = checked(tmp_path, urdf)
@@ -351,7 +351,7 @@ def test_an_orientation_beyond_a_turn_is_likely_in_degrees(tmp_path: Path, rpy: 
 
 
 @pytest.mark.parametrize("rpy", ["90 0 0", "${pi} x 0"])
-def test_an_orientation_outside_of_links_and_joints_is_not_read(tmp_path: Path, rpy: str) -> None:
+def test_orientation_outside_links_and_joints_is_ignored(tmp_path: Path, rpy: str) -> None:
     gazebo = f'<gazebo reference="a"><visual><origin rpy="{rpy}"/></visual></gazebo>'
     assert checked(tmp_path, chain(joint("knee", "a", "b"), links=gazebo)) == []
 
@@ -363,7 +363,7 @@ def test_an_orientation_outside_of_links_and_joints_is_not_read(tmp_path: Path, 
         ("-90 90", "limit 'lower' of joint 'knee' is -90 rad, 14.3 turns; so is 1 other angle of this file"),
     ],
 )
-def test_the_first_angle_in_degrees_is_named(tmp_path: Path, limits: str, message: str) -> None:
+def test_first_angle_in_degrees_is_named(tmp_path: Path, limits: str, message: str) -> None:
     (found,) = checked(tmp_path, chain(joint("knee", "a", "b", limits=limits)))
     assert found.message == message
 
@@ -380,18 +380,18 @@ def test_the_first_angle_in_degrees_is_named(tmp_path: Path, limits: str, messag
         ("joints:\n  slide: {limits: {lower: -90, upper: 90}}\n", None),
     ],
 )
-def test_angles_of_the_description_that_are_likely_in_degrees(tmp_path: Path, yaml: str, pointer: str | None) -> None:
+def test_angles_of_description_in_degrees_are_reported(tmp_path: Path, yaml: str, pointer: str | None) -> None:
     slide = joint("slide", "c", "d", "prismatic", limits="-90 90")
     found = checked(tmp_path, chain(joint("knee", "a", "b"), joint("wheel", "b", "c", "continuous"), slide), yaml)
     assert [(each.code, each.pointer) for each in found] == ([("x-angle-in-degrees", pointer)] if pointer else [])
 
 
-def test_a_closure_that_an_angle_in_degrees_opens_is_reported_with_that_angle(advice) -> None:
+def test_angle_in_degrees_explains_open_closure(advice) -> None:
     found = advice("four_bar", urdf=plain('rpy="0 0 90"'))
     assert "x-angle-in-degrees" in codes(found)
 
 
-def test_a_robot_in_millimetres_is_reported_once(advice) -> None:
+def test_robot_in_millimetres_is_reported_once(advice) -> None:
     def scaled(urdf: str) -> str:
         tree = etree.fromstring(urdf.encode())
         for origin in tree.iter("origin"):
@@ -411,12 +411,12 @@ def test_a_robot_in_millimetres_is_reported_once(advice) -> None:
     ("xyz", "mass", "expected"),
     [("300 0 0", 1.0, 1), ("12 0 0", 1.0, 1), ("12 0 0", 4000.0, 0), ("9 0 0", 1.0, 0)],
 )
-def test_a_crane_may_be_long_if_it_is_heavy(tmp_path: Path, xyz: str, mass: float, expected: int) -> None:
+def test_heavy_crane_can_be_long(tmp_path: Path, xyz: str, mass: float, expected: int) -> None:
     urdf = chain(joint("boom", "a", "b", xyz=xyz)).replace('<mass value="1.0"/>', f'<mass value="{mass}"/>')
     assert codes(checked(tmp_path, urdf)) == ["x-length-in-millimetres"] * expected
 
 
-def test_a_single_length_far_beyond_the_others_is_reported_at_its_place(tmp_path: Path) -> None:
+def test_single_outlier_length_is_reported_at_its_place(tmp_path: Path) -> None:
     arm = (joint("shoulder", "a", "b"), joint("elbow", "b", "c"))
     for xyz, place in (("0 0 -250", "joint"), ("0 0 -19", None)):
         found = checked(tmp_path, chain(*arm, joint("wrist", "c", "d", xyz=xyz)))
@@ -430,14 +430,14 @@ def test_a_single_length_far_beyond_the_others_is_reported_at_its_place(tmp_path
     assert "310 mm are 0.31 m" in (found.hint or "")
 
 
-def test_where_a_robot_is_placed_in_its_world_is_no_length_of_it(tmp_path: Path) -> None:
+def test_placement_in_world_is_no_length(tmp_path: Path) -> None:
     placed = joint("placed", "a", "b", "fixed", xyz="4000 0 0")
     assert checked(tmp_path, chain(placed, joint("hip", "b", "c"), joint("knee", "c", "d"))) == []
 
 
 @pytest.mark.parametrize("kind", ["binary", "ascii", "obj"])
 @pytest.mark.parametrize(("size", "scale", "expected"), [(300.0, "", 1), (0.3, "", 0), (300.0, "0.001 0.001 0.001", 0)])
-def test_a_mesh_in_millimetres_without_a_scale_is_reported(
+def test_unscaled_mesh_in_millimetres_is_reported(
     tmp_path: Path, kind: str, size: float, scale: str, expected: int
 ) -> None:
     corners = [(0.0, 0.0, 0.0), (size, 0.0, 0.0), (0.0, size / 2, 0.0)]
@@ -460,7 +460,7 @@ def test_a_mesh_in_millimetres_without_a_scale_is_reported(
 
 @pytest.mark.parametrize("content", [b"", b"solid", b"v a b c\n", bytes(200), b"v 1 2\n", b"\xff" * 300])
 @pytest.mark.parametrize("file", ["part.stl", "part.obj", "part.dae"])
-def test_a_file_that_is_no_mesh_has_no_size_that_is_reported(tmp_path: Path, file: str, content: bytes) -> None:
+def test_unreadable_mesh_has_no_size(tmp_path: Path, file: str, content: bytes) -> None:
     (tmp_path / file).write_bytes(content)
     mesh = f'<visual><geometry><mesh filename="{file}"/></geometry></visual>'
     assert checked(tmp_path, chain(joint("k", "a", "b")).replace('<link name="b">', f'<link name="b">{mesh}')) == []
@@ -473,7 +473,7 @@ BALL = "joints:\n  neck: {type: spherical}\nconfigurations:\n  look: {neck: [%s]
     ("numbers", "expected"),
     [("1, 0, 0, 0", 1), ("-1, 0, 0, 0", 1), ("0, 0, 0, 1", 0), ("0, 1, 0, 0", 0), ("0.7071068, 0, 0, 0.7071068", 0)],
 )
-def test_the_identity_written_w_first_is_reported(tmp_path: Path, numbers: str, expected: int) -> None:
+def test_identity_written_w_first_is_reported(tmp_path: Path, numbers: str, expected: int) -> None:
     found = checked(tmp_path, chain(joint("neck", "a", "b")), BALL % numbers)
     assert codes(found) == ["x-quaternion-order"] * expected
     assert all(each.pointer == "/configurations/look/neck" for each in found)
@@ -481,7 +481,7 @@ def test_the_identity_written_w_first_is_reported(tmp_path: Path, numbers: str, 
     assert all("x, y, z, w" in (each.hint or "") for each in found)
 
 
-def test_a_floating_root_on_its_back_is_reported_as_the_identity_w_first(tmp_path: Path) -> None:
+def test_floating_root_on_its_back_is_w_first(tmp_path: Path) -> None:
     yaml = "root: floating\nconfigurations:\n  home: {root_joint: [0, 0, 1, 1, 0, 0, 0]}\n"
     assert codes(checked(tmp_path, chain(joint("neck", "a", "b")), yaml)) == ["x-quaternion-order"]
 
@@ -496,7 +496,7 @@ def quaternions_of(robot: eurdf.Robot, q: np.ndarray) -> dict[str, list[float]]:
     }
 
 
-def test_a_configuration_that_closes_only_w_first_is_reported(advice) -> None:
+def test_configuration_closing_only_w_first_is_reported(advice) -> None:
     robot = eurdf.load("digit_leg", geometry=False)
     q = robot.configurations["assembled"].copy()
     knee = robot.model.joints[robot.model.getJointId("motor_knee")].idx_q
@@ -521,7 +521,7 @@ def test_a_configuration_that_closes_only_w_first_is_reported(advice) -> None:
     assert all("the loops close only then" in each.message for each in found)
 
 
-def test_an_assembled_configuration_that_is_closed_only_w_first_has_a_hint(advice) -> None:
+def test_assembled_closing_only_w_first_has_hint(advice) -> None:
     def edit(description: dict) -> None:
         description["configurations"]["assembled"] = {"ball_achilles_start": [1, 0, 0, 0]}
 
@@ -530,7 +530,7 @@ def test_an_assembled_configuration_that_is_closed_only_w_first_has_a_hint(advic
     assert "w first" in (found.hint or "")
 
 
-def test_coordinates_with_too_few_digits_are_named_so(advice) -> None:
+def test_coordinates_with_too_few_digits_are_named(advice) -> None:
     def edit(description: dict) -> None:
         description["configurations"]["assembled"] = {"motor_crank": 0.00002}
 
@@ -540,7 +540,7 @@ def test_coordinates_with_too_few_digits_are_named_so(advice) -> None:
     assert "write more digits" in (found.hint or "")
 
 
-def test_coordinates_that_are_wrong_are_not_taken_for_rounded_ones(advice) -> None:
+def test_wrong_coordinates_are_not_called_rounded(advice) -> None:
     def edit(description: dict) -> None:
         description["configurations"]["assembled"] = {"motor_crank": 0.02}
 
@@ -570,21 +570,21 @@ def massless(*names: str) -> Callable[[str], str]:
     ("name", "part"),
     [("four_bar", "crank"), ("digit_leg", "crank1"), ("bennett", "follower")],
 )
-def test_a_link_of_a_loop_whose_mass_was_forgotten_is_reported(advice, name: str, part: str) -> None:
+def test_loop_link_without_mass_is_reported(advice, name: str, part: str) -> None:
     (found,) = advice(name, urdf=massless(part))
     assert found.code == "x-massless-link"
     assert f"link '{part}' of a loop has no mass and reaches" in found.message
     assert found.pointer.startswith("/robot/link[")
 
 
-def test_a_massless_link_that_can_move_while_all_else_is_at_rest_makes_the_mass_matrix_singular(advice) -> None:
+def test_free_massless_link_makes_mass_matrix_singular(advice) -> None:
     (found,) = advice("disney_leg", urdf=massless("outer_bracket"))
     assert found.code == "x-massless-link"
     assert "'ball_ankle' and 'free_bracket'" in found.message
     assert "the mass matrix is singular" in found.message
 
 
-def test_a_massless_link_of_a_floating_root_is_reported(tmp_path: Path) -> None:
+def test_massless_link_of_floating_root_is_reported(tmp_path: Path) -> None:
     arm = chain(joint("shoulder", "a", "b"), joint("elbow", "b", "c"), joint("wrist", "c", "d"))
     pin = "{name: pin, type: 3d, frames: [{link: d, xyz: [0.2, 0, 0]}, {link: a, xyz: [0.7, 0, 0]}]}"
     yaml = f"root: floating\nclosures: [{pin}]\nactuators: [shoulder]\n"
@@ -593,20 +593,20 @@ def test_a_massless_link_of_a_floating_root_is_reported(tmp_path: Path) -> None:
     assert "link 'a' of a loop has no mass and can move by 'root_joint' and " in found.message
 
 
-def test_an_armature_is_enough_in_place_of_mass(advice) -> None:
+def test_armature_replaces_mass(advice) -> None:
     def edit(description: dict) -> None:
         description["joints"] = {"motor_crank": {"armature": 0.01}}
 
     assert advice("four_bar", edit, massless("crank")) == []
 
 
-def test_what_is_outside_of_the_loops_or_does_not_move_needs_no_mass(advice) -> None:
+def test_immobile_or_outside_links_need_no_mass(advice) -> None:
     assert advice("four_bar", urdf=massless("ground")) == []
     assert advice("digit_leg", urdf=massless("hip")) == []
 
 
 @pytest.mark.parametrize("axes", ["0 1 0", "0 0 1"])
-def test_a_massless_cross_of_a_cardan_joint_is_no_mistake_unless_its_axes_are_one(advice, axes: str) -> None:
+def test_massless_universal_cross_is_fine_unless_axes_coincide(advice, axes: str) -> None:
     def cross(urdf: str) -> str:
         tree = etree.fromstring(urdf.encode())
         coupler = next(each for each in tree.iter("joint") if each.get("name") == "free_coupler")
@@ -623,7 +623,7 @@ def test_a_massless_cross_of_a_cardan_joint_is_no_mistake_unless_its_axes_are_on
     assert ("x-massless-link" in codes(found)) == same
 
 
-def test_loops_that_rounded_numbers_of_the_urdf_keep_open_are_named_so(advice) -> None:
+def test_rounded_urdf_numbers_that_open_loops_are_named(advice) -> None:
     def out_of_plane(distance: str) -> Callable[[str], str]:
         def edit(urdf: str) -> str:
             tree = etree.fromstring(urdf.encode())
@@ -641,12 +641,12 @@ def test_loops_that_rounded_numbers_of_the_urdf_keep_open_are_named_so(advice) -
 
 
 @pytest.mark.parametrize("number", ["1e200", "-1e15"])
-def test_a_number_that_fits_no_unit_is_not_taken_for_one_in_another(tmp_path: Path, number: str) -> None:
+def test_implausible_number_is_not_called_wrong_unit(tmp_path: Path, number: str) -> None:
     urdf = chain(joint("shoulder", "a", "b"), joint("elbow", "b", "c"), joint("wrist", "c", "d", xyz=f"0 0 {number}"))
     assert checked(tmp_path, urdf.replace('xyz="0.01 0 0"', f'xyz="0.01 0 0" rpy="0 0 {number}"', 1)) == []
 
 
-def test_loops_that_are_too_large_for_their_motions_to_be_computed_are_named(advice, monkeypatch) -> None:
+def test_too_large_loops_are_named(advice, monkeypatch) -> None:
     monkeypatch.setattr("eurdf.kinematics.analysis._MOST_WORK", 10.0)
     (found,) = advice("digit_leg_3d", typed("6d", "achilles"))
     assert (found.code, found.pointer) == ("x-loops-not-checked", "/closures")

@@ -31,7 +31,7 @@ TYPES = [
 @pytest.mark.parametrize("joints", TYPES)
 @settings(max_examples=20, deadline=None)
 @given(data=st.data())
-def test_a_configuration_of_every_joint_type_reads_back(
+def test_configuration_of_every_joint_type_survives_round_trip(
     tmp_path_factory: pytest.TempPathFactory, data: st.DataObject, joints: str, root: str
 ) -> None:
     path = written(tmp_path_factory.mktemp("star"), STAR, f"root: {root}\njoints: {joints}\n")
@@ -50,7 +50,7 @@ def test_a_configuration_of_every_joint_type_reads_back(
 
 
 @pytest.mark.parametrize("name", ["bennett", "digit_leg", "five_bar_6d", "stewart_platform", "unitree_g1_ankle"])
-def test_an_assembly_from_anywhere_is_closed_in_full_where_it_is_read_back(name: str, tmp_path: Path) -> None:
+def test_written_assembly_is_closed_when_read(name: str, tmp_path: Path) -> None:
     description = describe(ROBOTS / name, geometry=False)
     assert description.mechanism is not None
     robot = build_robot(description.mechanism, geometry=False)

@@ -48,7 +48,7 @@ WRITTEN = [
 
 @pytest.mark.parametrize(("joints", "says", "name", "numbers"), WRITTEN)
 @pytest.mark.parametrize("root", ["fixed", "floating"])
-def test_a_configuration_stands_at_the_joints_place_in_q_and_the_others_at_neutral(
+def test_configuration_fills_its_joints_others_are_neutral(
     joints: str, says: str, name: str, numbers: list[float], root: str
 ) -> None:
     loaded = load(STAR, f"joints: {joints}\nconfigurations: {{ready: {{{says}}}}}\n", root=root)
@@ -59,17 +59,17 @@ def test_a_configuration_stands_at_the_joints_place_in_q_and_the_others_at_neutr
     np.testing.assert_array_equal(others, np.delete(pin.neutral(loaded.model), range(idx_q, idx_q + nq)))
 
 
-def test_an_empty_configuration_is_the_neutral_one() -> None:
+def test_empty_configuration_is_neutral() -> None:
     loaded = load(STAR, "configurations: {zero: {}}\n")
     np.testing.assert_array_equal(loaded.configurations["zero"], pin.neutral(loaded.model))
 
 
-def test_configurations_stand_in_file_order() -> None:
+def test_configurations_are_in_file_order() -> None:
     loaded = load(STAR, "configurations: {z: {}, a: {a: 1}, m: {}}\n")
     assert list(loaded.configurations) == ["z", "a", "m"]
 
 
-def test_the_first_angle_of_a_universal_joint_is_about_its_first_axis() -> None:
+def test_first_universal_angle_is_about_first_axis() -> None:
     loaded = load(STAR, "joints: {d: {type: universal, axes: xy}}\nconfigurations: {ready: {d: [0.5, 1.5]}}\n")
     turned = link_poses(loaded.model, loaded.configurations["ready"])["ld"][:3, :3]
     np.testing.assert_allclose(turned, rotation((1, 0, 0), 0.5) @ rotation((0, 1, 0), 1.5), atol=1e-12)
@@ -77,9 +77,7 @@ def test_the_first_angle_of_a_universal_joint_is_about_its_first_axis() -> None:
 
 @settings(max_examples=50, deadline=None)
 @given(st.tuples(*[st.floats(-1, 1)] * 4), st.floats(-1.9e-6, 1.9e-6))
-def test_a_quaternion_of_nearly_unit_length_is_normalised_and_any_other_refused(
-    direction: tuple[float, ...], off: float
-) -> None:
+def test_nearly_unit_quaternion_is_normalized_others_refused(direction: tuple[float, ...], off: float) -> None:
     norm = math.hypot(*direction)
     assume(norm > 1e-3 and abs(abs(off) - 1e-6) > 1e-9)
     written = [float(value / norm * (1.0 + off)) for value in direction]
@@ -131,13 +129,11 @@ def test_a_quaternion_of_nearly_unit_length_is_normalised_and_any_other_refused(
         ("{}", "la: 0", "configuration-joint"),
     ],
 )
-def test_a_coordinate_is_within_the_limits_of_the_joint_as_the_description_makes_it(
-    joints: str, says: str, fault: str
-) -> None:
+def test_coordinate_respects_limits_of_the_description(joints: str, says: str, fault: str) -> None:
     assert codes(STAR, f"joints: {joints}\nconfigurations: {{ready: {{{says}}}}}\n") == ([fault] if fault else [])
 
 
-def test_the_root_of_the_description_holds_unless_the_caller_says_otherwise() -> None:
+def test_caller_root_overrides_description() -> None:
     fixed, floating = "configurations: {ready: {a: 1}}\n", "root: floating\nconfigurations: {ready: {a: 1}}\n"
     assert load(STAR, fixed).model.nv + 6 == load(STAR, floating).model.nv
     assert load(STAR, fixed, root="floating").model == load(STAR, floating).model
@@ -147,7 +143,7 @@ def test_the_root_of_the_description_holds_unless_the_caller_says_otherwise() ->
     assert load(STAR, floating).model.names[1] == "root_joint"
 
 
-def test_a_joint_that_follows_stands_in_the_same_place_where_it_is_loaded_free() -> None:
+def test_mimic_joint_has_same_pose_when_free() -> None:
     places = []
     for mimic in (True, False):
         robot = eurdf.load(WORKBENCH, geometry=False, mimic=mimic)
@@ -164,7 +160,7 @@ def some_configuration(robot: Robot, data: st.DataObject) -> np.ndarray:
 
 @settings(max_examples=50, deadline=None)
 @given(data=st.data(), seed=st.integers(0, 1000), root=st.sampled_from(["fixed", "floating"]))
-def test_coordinates_invert_configurations_for_all_joint_types(data: st.DataObject, seed: int, root: Root) -> None:
+def test_coordinates_invert_configurations(data: st.DataObject, seed: int, root: Root) -> None:
     mechanism = replace(by_hand.tree_of_all_types(np.random.default_rng(seed)), root=root)
     robot = build_robot(mechanism, geometry=False)
     q = some_configuration(robot, data)
@@ -179,7 +175,7 @@ def test_coordinates_invert_configurations_for_all_joint_types(data: st.DataObje
 @pytest.mark.parametrize("root", ["fixed", "floating"])
 @settings(max_examples=20, deadline=None)
 @given(data=st.data())
-def test_coordinates_name_mimic_joints_only_where_these_are_free(data: st.DataObject, root: Root, mimic: bool) -> None:
+def test_coordinates_name_mimic_joints_only_if_free(data: st.DataObject, root: Root, mimic: bool) -> None:
     robot = eurdf.load(WORKBENCH, root=root, geometry=False, mimic=mimic)
     q = some_configuration(robot, data)
     coordinates = robot.coordinates(q)
@@ -188,7 +184,7 @@ def test_coordinates_name_mimic_joints_only_where_these_are_free(data: st.DataOb
     np.testing.assert_allclose(back, q, rtol=0.0, atol=1e-12)
 
 
-def test_coordinates_of_a_named_configuration_are_those_in_the_file() -> None:
+def test_coordinates_of_named_configuration_match_file() -> None:
     robot = eurdf.load(WORKBENCH, geometry=False)
     coordinates = robot.coordinates(robot.configurations["ready"])
     stated = {name: values for name, values in coordinates.items() if name in ("motor", "grip", "hand_ball", "elbow")}
@@ -196,7 +192,7 @@ def test_coordinates_of_a_named_configuration_are_those_in_the_file() -> None:
 
 
 @pytest.mark.parametrize("shape", [(0,), (3,), (1, 12)])
-def test_coordinates_of_a_vector_of_another_shape_are_refused(shape: tuple[int, ...]) -> None:
+def test_wrong_shape_is_refused(shape: tuple[int, ...]) -> None:
     robot = eurdf.load(WORKBENCH, geometry=False)
     with pytest.raises(ValueError, match="the configuration has the shape"):
         robot.coordinates(np.zeros(shape))

@@ -197,7 +197,7 @@ def _check(folder: Path, file: str) -> eurdf.Report:
 
 
 @pytest.mark.parametrize("file", [YAML, ONE])
-def test_the_workbench_without_an_edit_is_sound(file: str) -> None:
+def test_unedited_workbench_is_valid(file: str) -> None:
     report = _check(DATA, file)
     assert [str(found) for found in report.diagnostics] == []
 
@@ -205,7 +205,7 @@ def test_the_workbench_without_an_edit_is_sound(file: str) -> None:
 @pytest.mark.parametrize(
     ("code", "file", "old", "new", "at", "says"), FAULTS, ids=[f"{row[0]}-{index}" for index, row in enumerate(FAULTS)]
 )
-def test_one_fault_gives_one_diagnostic_at_its_place(
+def test_one_error_gives_one_diagnostic(
     tmp_path: Path, code: str, file: str, old: str | None, new: str, at: str | None, says: str | None
 ) -> None:
     report = _check(_workbench(tmp_path, file, old, new), file)
@@ -226,7 +226,7 @@ def test_one_fault_gives_one_diagnostic_at_its_place(
         assert says in f"{fault.message} ({fault.hint})"
 
 
-def test_every_code_of_linking_and_meaning_has_a_case_here() -> None:
+def test_every_linking_code_has_a_case() -> None:
     shown = {row[0] for row in FAULTS}
     elsewhere = {
         "ambiguous-frame",
@@ -240,7 +240,7 @@ def test_every_code_of_linking_and_meaning_has_a_case_here() -> None:
     assert set(REGISTRY) - shown - elsewhere == set()
 
 
-def test_messages_are_sentences_without_a_full_stop_or_a_line_break(tmp_path: Path) -> None:
+def test_messages_are_sentences_without_full_stop(tmp_path: Path) -> None:
     for index, (_, file, old, new, _, _) in enumerate(FAULTS):
         folder = tmp_path / str(index)
         folder.mkdir()
@@ -256,7 +256,7 @@ def _robot(folder: Path, urdf: str, yaml: str | None = None) -> eurdf.Report:
     return eurdf.check(folder)
 
 
-def test_a_name_of_a_link_and_of_another_links_joint_is_ambiguous_only_where_it_is_used(tmp_path: Path) -> None:
+def test_shared_name_is_ambiguous_only_if_used(tmp_path: Path) -> None:
     joint = '<joint name="{0}" type="revolute"><parent link="a"/><child link="{1}"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint>'
     body = '<link name="{0}"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>'
     urdf = f'<robot name="r"><link name="a"/>{body.format("b")}{body.format("c")}{joint.format("b", "c")}{joint.format("c2", "b")}</robot>'
@@ -268,7 +268,7 @@ def test_a_name_of_a_link_and_of_another_links_joint_is_ambiguous_only_where_it_
     assert _robot(tmp_path, urdf, 'extended_urdf: "2.0"\n').ok
 
 
-def test_a_link_and_the_joint_that_carries_it_may_share_their_name(tmp_path: Path) -> None:
+def test_link_and_its_joint_can_share_a_name(tmp_path: Path) -> None:
     body = '<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
     urdf = (
         f'<robot name="r"><link name="a"/><link name="b">{body}</link>'
@@ -277,7 +277,7 @@ def test_a_link_and_the_joint_that_carries_it_may_share_their_name(tmp_path: Pat
     assert _robot(tmp_path, urdf, 'extended_urdf: "2.0"\nclosures:\n  - {name: k, type: 3d, frames: [a, b]}\n').ok
 
 
-def test_a_joint_whose_name_begins_like_the_users_own_keys_is_warned_of(tmp_path: Path) -> None:
+def test_joint_named_like_user_key_is_warned(tmp_path: Path) -> None:
     folder = _workbench(
         tmp_path, YAML, "  stage: {limits: {velocity: 1.5}, armature: 0.02}", "  x-stage: {armature: 0.02}"
     )
@@ -289,7 +289,7 @@ def test_a_joint_whose_name_begins_like_the_users_own_keys_is_warned_of(tmp_path
     assert [(found.code, found.line) for found in report.diagnostics] == [("own-key-is-joint", 9)]
 
 
-def test_a_mesh_file_that_is_no_mesh_is_refused_where_geometry_is_loaded(tmp_path: Path) -> None:
+def test_invalid_mesh_is_refused_with_geometry(tmp_path: Path) -> None:
     folder = _workbench(tmp_path, URDF, '<box size="0.2 0.04 0.04"/>', '<mesh filename="bad.stl"/>')
     (folder / "bad.stl").write_bytes(b"no mesh")
     with pytest.raises(eurdf.InvalidRobot, match="geometry=False") as refusal:
@@ -300,11 +300,11 @@ def test_a_mesh_file_that_is_no_mesh_is_refused_where_geometry_is_loaded(tmp_pat
     assert eurdf.load(folder / YAML, geometry=False).model.nv > 0
 
 
-def test_a_robot_without_links_is_told_so(tmp_path: Path) -> None:
+def test_robot_without_links_is_reported(tmp_path: Path) -> None:
     assert [found.code for found in _robot(tmp_path, '<robot name="r"/>').diagnostics] == ["urdf-no-link"]
 
 
-def test_a_planar_joint_with_another_axis_than_z_is_warned_of(tmp_path: Path) -> None:
+def test_planar_axis_other_than_z_is_warned(tmp_path: Path) -> None:
     urdf = (
         '<robot name="r"><link name="a"/><link name="b"><inertial><mass value="1"/>'
         '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>'
@@ -315,7 +315,7 @@ def test_a_planar_joint_with_another_axis_than_z_is_warned_of(tmp_path: Path) ->
     assert report.ok
 
 
-def test_two_independent_faults_are_both_told(tmp_path: Path) -> None:
+def test_two_independent_errors_are_both_reported(tmp_path: Path) -> None:
     folder = _workbench(tmp_path, YAML, "  - motor\n", "  - moter\n")
     urdf = folder / URDF
     urdf.write_text(urdf.read_text(encoding="utf-8").replace('mass value="0.7"', 'mass value="-0.7"'), encoding="utf-8")

@@ -51,7 +51,7 @@ PLACES = [
 
 @pytest.mark.parametrize(("place", "pose"), PLACES)
 @pytest.mark.parametrize("root", ["fixed", "floating"])
-def test_a_frame_of_the_description_is_found_by_name_at_its_pose(place: str, pose: Any, root: str) -> None:
+def test_frame_is_found_by_name_at_its_pose(place: str, pose: Any, root: str) -> None:
     loaded = load(ARM, f"frames:\n  - {{name: mark, {place}}}\n", root=root)
     found = frame_poses(loaded.model, q_of(loaded, AT))
     np.testing.assert_allclose(found["mark", "other"], pose, atol=1e-12)
@@ -60,9 +60,7 @@ def test_a_frame_of_the_description_is_found_by_name_at_its_pose(place: str, pos
 
 @pytest.mark.parametrize(("place", "pose"), PLACES)
 @pytest.mark.parametrize("kind", ["3d", "6d"])
-def test_a_pose_written_in_place_makes_the_same_closure_as_a_frame_of_that_pose(
-    place: str, pose: Any, kind: str
-) -> None:
+def test_inline_pose_equals_named_frame(place: str, pose: Any, kind: str) -> None:
     named = load(
         ARM,
         f"frames: [{{name: mark, {place}}}]\nclosures: [{{name: c, type: {kind}, frames: [mark, cart]}}]\n",
@@ -75,7 +73,7 @@ def test_a_pose_written_in_place_makes_the_same_closure_as_a_frame_of_that_pose(
     np.testing.assert_allclose(oMa.homogeneous, pose, atol=1e-12)
 
 
-def test_closures_between_links_on_chains_of_fixed_joints_join_what_moves_them() -> None:
+def test_closure_on_fixed_links_joins_moving_joints() -> None:
     assert codes(ARM, "closures: [{name: c, type: 6d, frames: [stub, brace]}]\n") == ["closure-same-body"]
     loaded = load(ARM, "closures: [{name: c, type: 6d, frames: [stub, fore]}]\n")
     constraint = loaded.constraint_models[0]
@@ -85,7 +83,7 @@ def test_closures_between_links_on_chains_of_fixed_joints_join_what_moves_them()
     np.testing.assert_allclose(constraint.joint2_placement.homogeneous, np.eye(4), atol=1e-12)
 
 
-def test_locking_a_joint_makes_what_it_joined_one_rigid_body() -> None:
+def test_locking_joins_bodies_rigidly() -> None:
     closure = "closures: [{name: c, type: 3d, frames: [stub, {link: fore, xyz: [0, 0.4, 0]}]}]\n"
     assert codes(ARM, closure + "joints: {elbow: fixed}\n") == ["closure-same-body"]
     loaded = load(ARM, closure.replace("stub", "cart") + "joints: {elbow: fixed}\n")
@@ -97,13 +95,13 @@ def test_locking_a_joint_makes_what_it_joined_one_rigid_body() -> None:
 @pytest.mark.parametrize(
     "entry", ["spherical", "{type: universal, axes: xy}", "cylindrical", "{type: helical, pitch: 1}"]
 )
-def test_a_closure_on_a_replaced_joint_is_on_the_link_it_carries(entry: str) -> None:
+def test_closure_on_replaced_joint_is_on_child_link(entry: str) -> None:
     loaded = load(ARM, f"joints: {{elbow: {entry}}}\nclosures: [{{name: c, type: 3d, frames: [elbow, cart]}}]\n")
     by_link = load(ARM, f"joints: {{elbow: {entry}}}\nclosures: [{{name: c, type: 3d, frames: [fore, cart]}}]\n")
     assert loaded.constraint_models == by_link.constraint_models
 
 
-def test_frames_and_closures_may_be_on_a_joint_that_the_description_makes() -> None:
+def test_frames_can_be_on_created_joints() -> None:
     wrist = '<axis xyz="{}"/>' + LIMIT
     urdf = robot(
         link_element("base"),
@@ -130,7 +128,7 @@ def test_frames_and_closures_may_be_on_a_joint_that_the_description_makes() -> N
         np.testing.assert_allclose(oMa.translation, (0, 0, 2), atol=1e-12)
 
 
-def test_a_joint_that_could_not_be_made_is_told_of_once_however_often_it_is_named() -> None:
+def test_failed_joint_is_reported_once() -> None:
     yaml = (
         "joints: {ball: {type: spherical, merges: [shoulder, elbow, slide]}}\n"
         "frames: [{name: mark, joint: ball}]\nactuators: [ball]\nconfigurations: {ready: {ball: [0, 0, 0, 1]}}\n"
@@ -141,7 +139,7 @@ def test_a_joint_that_could_not_be_made_is_told_of_once_however_often_it_is_name
 
 @settings(max_examples=40, deadline=None)
 @given(st.data(), trees(), st.integers(0, 2**32 - 1))
-def test_frames_anywhere_on_a_random_robot_stand_where_they_are_put(data: st.DataObject, urdf: str, seed: int) -> None:
+def test_random_frames_have_expected_poses(data: st.DataObject, urdf: str, seed: int) -> None:
     mechanism = mechanism_of(urdf)
     names = free_names(mechanism)
     places = [("link", found.name, found.name) for found in mechanism.bodies]
@@ -172,11 +170,11 @@ def test_frames_anywhere_on_a_random_robot_stand_where_they_are_put(data: st.Dat
         ("{name: mark, joint: fore}", "unknown-frame"),
     ],
 )
-def test_a_frame_has_a_name_of_its_own_and_a_place(entry: str, fault: str) -> None:
+def test_frame_has_own_name_and_place(entry: str, fault: str) -> None:
     assert codes(ARM, f"frames: [{entry}]\n") == [fault]
 
 
-def test_no_frame_is_named_as_the_joint_of_a_floating_root() -> None:
+def test_frame_cannot_be_named_root_joint() -> None:
     yaml = "frames: [{name: root_joint, link: arm}]\n"
     assert codes(ARM, yaml) == []
     assert codes(ARM, "root: floating\n" + yaml) == ["urdf-reserved-name"]

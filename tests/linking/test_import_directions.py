@@ -19,7 +19,7 @@ def lint(folder: Path) -> str:
     return " ".join(subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False).stdout.split())
 
 
-def test_every_import_goes_the_right_way() -> None:
+def test_imports_follow_the_layers() -> None:
     said = lint(ROOT)
     assert " 0 broken." in said, said
 
@@ -40,7 +40,7 @@ def test_every_import_goes_the_right_way() -> None:
         ("linking/frame_names.py", "import eurdf.linking.closures", "No cycles are allowed in eurdf.linking"),
     ],
 )
-def test_a_wrong_import_breaks_a_contract(tmp_path: Path, file: str, wrong: str, complaint: str) -> None:
+def test_wrong_import_breaks_a_contract(tmp_path: Path, file: str, wrong: str, complaint: str) -> None:
     sources = shutil.ignore_patterns("corpus", "__pycache__")
     shutil.copytree(ROOT / "reference/eurdf", tmp_path / "eurdf", ignore=sources)
     shutil.copytree(ROOT / "conformance/eurdf_conformance", tmp_path / "eurdf_conformance", ignore=sources)

@@ -48,13 +48,13 @@ def _bodies(draw: st.DrawFn) -> tuple[float, Any]:
 
 @settings(max_examples=150, deadline=None)
 @given(_bodies())
-def test_no_body_of_real_masses_is_accused(real: tuple[float, Any]) -> None:
+def test_real_mass_distributions_are_accepted(real: tuple[float, Any]) -> None:
     assert _one(*real) == []
 
 
 @settings(max_examples=60, deadline=None)
 @given(st.tuples(*[st.floats(0.0, 10.0)] * 2), st.floats(1e-5, 10.0), st.integers(0, 2**32 - 1), st.floats(1e-6, 1e6))
-def test_a_negative_principal_moment_is_always_seen(others: Any, negative: float, seed: int, size: float) -> None:
+def test_negative_principal_moment_is_detected(others: Any, negative: float, seed: int, size: float) -> None:
     moments = np.array((*others, -negative))
     assume(negative > 2e-6 * np.abs(moments).max())
     assert _one(1.0, _turned(moments * size, seed)) == ["inertia-not-psd"]
@@ -62,7 +62,7 @@ def test_a_negative_principal_moment_is_always_seen(others: Any, negative: float
 
 @settings(max_examples=60, deadline=None)
 @given(st.tuples(*[st.floats(1e-3, 10.0)] * 2), st.floats(1e-5, 10.0), st.integers(0, 2**32 - 1), st.floats(1e-6, 1e6))
-def test_a_moment_above_the_sum_of_the_others_is_always_seen(others: Any, more: float, seed: int, size: float) -> None:
+def test_triangle_violation_is_detected(others: Any, more: float, seed: int, size: float) -> None:
     moments = np.array((*others, sum(others) + more))
     assume(more > 2e-6 * moments.max())
     assert _one(1.0, _turned(moments * size, seed)) == ["inertia-triangle"]
@@ -89,11 +89,11 @@ def test_a_moment_above_the_sum_of_the_others_is_always_seen(others: Any, more: 
         (1.0, (0, 1e-9, 1e-9), []),
     ],
 )
-def test_the_bounds_are_those_of_the_clauses(mass: float, moments: Any, found: list[str]) -> None:
+def test_bounds_are_those_of_the_clauses(mass: float, moments: Any, found: list[str]) -> None:
     assert _one(mass, moments) == found
 
 
-def test_one_unphysical_link_is_told_once_though_it_is_a_leaf() -> None:
+def test_unphysical_leaf_is_reported_once() -> None:
     joint = joint_element("j", "revolute", "base", "tip", f'<axis xyz="0 0 1"/>{LIMIT}')
     for mass, moments, found in (
         (-1.0, (1, 1, 1), "negative-mass"),
@@ -105,13 +105,13 @@ def test_one_unphysical_link_is_told_once_though_it_is_a_leaf() -> None:
 
 @pytest.mark.parametrize("axis", ["0 0 1e-170", "0 0 5e-324", "1e200 0 1.7e308"])
 @pytest.mark.parametrize("mass", [0.0, 1.0])
-def test_what_a_leaf_resists_does_not_depend_on_the_length_of_its_axis(axis: str, mass: float) -> None:
+def test_leaf_inertia_does_not_depend_on_axis_length(axis: str, mass: float) -> None:
     joint = joint_element("j", "revolute", "base", "tip", f'<axis xyz="{axis}"/>{LIMIT}')
     found = codes(robot(link_element("base"), link_element("tip", _inertial(mass, (mass, mass, mass))), joint))
     assert found == ([] if mass else ["leaf-without-inertia"])
 
 
-def test_errors_of_inertia_do_not_keep_a_robot_from_being_loaded() -> None:
+def test_inertia_errors_do_not_prevent_loading() -> None:
     joint = joint_element("j", "revolute", "base", "tip", f'<axis xyz="0 0 1"/>{LIMIT}')
     loaded = load(robot(link_element("base", _inertial(1, (1, 1, -1))), link_element("tip"), joint))
     assert [found.code for found in loaded.diagnostics] == ["inertia-not-psd", "leaf-without-inertia"]
@@ -181,7 +181,7 @@ def _leaf(kind: str, inside: str, more: str = "") -> str:
 
 
 @pytest.mark.parametrize("title", LEAVES)
-def test_what_is_said_of_a_leaf_is_what_the_mass_matrix_says(title: str) -> None:
+def test_leaf_rule_agrees_with_mass_matrix(title: str) -> None:
     kind, entry, inertial, resists = LEAVES[title]
     urdf, yaml = _leaf(kind, inertial), f"joints: {{j: {entry}}}\n" if entry else ""
     found = [code for code in codes(urdf, yaml) if code != "inertia-triangle"]
@@ -192,7 +192,7 @@ def test_what_is_said_of_a_leaf_is_what_the_mass_matrix_says(title: str) -> None
     assert (smallest > 1e-10) == resists
 
 
-def test_inertia_on_links_fixed_to_a_leaf_counts_where_it_is() -> None:
+def test_inertia_of_links_fixed_to_leaf_counts() -> None:
     def fixed_at(xyz: str) -> str:
         return link_element("bob", _inertial(1, POINT)) + joint_element(
             "f", "fixed", "tip", "bob", "", f'<origin xyz="{xyz}" rpy="1 2 3"/>'
@@ -202,7 +202,7 @@ def test_inertia_on_links_fixed_to_a_leaf_counts_where_it_is() -> None:
     assert codes(_leaf("revolute", NONE, fixed_at("0 0 1"))) == ["leaf-without-inertia"]
 
 
-def test_a_massless_link_within_the_tree_is_a_way_to_write_two_axes() -> None:
+def test_inner_massless_link_is_accepted() -> None:
     hand = link_element("hand", _inertial(1, (1, 1, 1)))
     joint = joint_element("k", "revolute", "tip", "hand", f'<axis xyz="1 0 0"/>{LIMIT}')
     assert codes(_leaf("revolute", NONE, hand + joint)) == []
@@ -219,16 +219,16 @@ def test_a_massless_link_within_the_tree_is_a_way_to_write_two_axes() -> None:
         ("joints: {j: {type: spherical, armature: [0.1, 0.1, 0]}}\n", ["leaf-without-inertia"]),
     ],
 )
-def test_an_armature_stands_for_the_inertia_of_a_leaf(yaml: str, found: list[str]) -> None:
+def test_armature_replaces_leaf_inertia(yaml: str, found: list[str]) -> None:
     assert codes(_leaf("revolute", NONE), yaml) == found
 
 
-def test_a_leaf_that_mimics_weighs_on_the_joint_it_follows() -> None:
+def test_mimic_leaf_loads_its_leader() -> None:
     follow = link_element("side") + joint_element("k", "revolute", "base", "side", f'<mimic joint="j"/>{LIMIT}')
     assert codes(_leaf("revolute", _inertial(1, (1, 1, 1)), follow)) == []
 
 
-def test_a_ball_about_a_point_away_from_its_link_is_judged_about_that_point() -> None:
+def test_offset_ball_is_judged_about_its_centre() -> None:
     wrist = '<axis xyz="{}"/>' + LIMIT
 
     def ball(inertial: str) -> list[str]:

@@ -38,7 +38,7 @@ def _write(folder: Path, urdf: str, yaml: str | None = None, name: str = "robot"
 
 @settings(max_examples=30, deadline=None)
 @given(trees(), st.sampled_from(["fixed", "floating"]), st.booleans())
-def test_a_bare_urdf_and_one_with_a_description_that_adds_nothing_are_pinocchios_own_model(
+def test_plain_urdf_matches_pinocchio_with_or_without_description(
     tmp_path_factory: pytest.TempPathFactory, urdf: str, root: Root, mimic: bool
 ) -> None:
     folder = _write(tmp_path_factory.mktemp("robot"), urdf, 'extended_urdf: "2.0"\n')
@@ -47,7 +47,7 @@ def test_a_bare_urdf_and_one_with_a_description_that_adds_nothing_are_pinocchios
     assert eurdf.load(folder, root=root, mimic=mimic).model == expected
 
 
-def test_a_urdf_from_a_file_is_the_model_that_pinocchio_reads_from_it() -> None:
+def test_urdf_file_matches_pinocchio() -> None:
     path = str(ROBOTS / "digit_leg" / "robot.urdf")
     assert eurdf.load(path).model == pin.buildModelFromUrdf(path, mimic=True)
     assert eurdf.load(path, mimic=False).model == pin.buildModelFromUrdf(path)
@@ -63,7 +63,7 @@ URDF = robot(link_element("base"), body("arm"), joint_element("j", "continuous",
 YAML = 'extended_urdf: "2.0"\nactuators: [j]\n'
 
 
-def test_a_folder_stands_for_the_description_in_it(tmp_path: Path) -> None:
+def test_folder_gives_its_description(tmp_path: Path) -> None:
     folder = _write(tmp_path / "a", URDF, YAML)
     for path in (folder, str(folder), folder / "robot.yaml", str(folder / "robot.yaml")):
         assert eurdf.load(path).actuation.joints == ("j",)
@@ -72,7 +72,7 @@ def test_a_folder_stands_for_the_description_in_it(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["leg.eurdf.yaml", "leg.eurdf.yml", "LEG.EURDF.YAML"])
-def test_of_several_yaml_files_the_one_that_is_named_eurdf_is_the_description(tmp_path: Path, name: str) -> None:
+def test_eurdf_yaml_is_preferred_among_several(tmp_path: Path, name: str) -> None:
     (tmp_path / "robot.urdf").write_bytes((ROBOTS / "four_bar" / "robot.urdf").read_bytes())
     (tmp_path / name).write_bytes((ROBOTS / "four_bar" / "robot.yaml").read_bytes())
     (tmp_path / "config.yaml").write_text("rate: 100\n", encoding="utf-8")
@@ -82,7 +82,7 @@ def test_of_several_yaml_files_the_one_that_is_named_eurdf_is_the_description(tm
         eurdf.load(tmp_path)
 
 
-def test_a_folder_that_holds_none_or_several_is_not_guessed_at(tmp_path: Path) -> None:
+def test_empty_or_ambiguous_folder_is_not_guessed(tmp_path: Path) -> None:
     empty = tmp_path / "empty"
     empty.mkdir()
     several = _write(_write(tmp_path / "several", URDF, YAML, name="one"), URDF, YAML, name="two")
@@ -95,9 +95,7 @@ def test_a_folder_that_holds_none_or_several_is_not_guessed_at(tmp_path: Path) -
 @pytest.mark.parametrize(
     "path", ["no_such_robot", "no/such/robot.yaml", "a" * 5000, "a\0b", "four_bar\n", "a/four_bar"]
 )
-def test_what_is_no_file_and_no_robot_of_the_collection_is_not_found(
-    path: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_unknown_name_is_not_found(path: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     for function in (eurdf.load, eurdf.check):
         with pytest.raises(eurdf.RobotNotFound) as caught:
@@ -106,7 +104,7 @@ def test_what_is_no_file_and_no_robot_of_the_collection_is_not_found(
         assert caught.value.path == path
 
 
-def test_a_name_of_the_collection_is_loaded_from_anywhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_collection_name_loads_from_anywhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     names = eurdf.collection_names()
     assert "four_bar" in names
@@ -114,13 +112,13 @@ def test_a_name_of_the_collection_is_loaded_from_anywhere(tmp_path: Path, monkey
     assert eurdf.check("four_bar").ok
 
 
-def test_a_folder_of_that_name_comes_before_the_collection(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_folder_precedes_collection_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     _write(tmp_path / "four_bar", URDF, YAML)
     monkeypatch.chdir(tmp_path)
     assert eurdf.load("four_bar").actuation.joints == ("j",)
 
 
-def test_another_urdf_may_stand_in_for_the_one_that_is_named(tmp_path: Path) -> None:
+def test_other_urdf_can_be_given(tmp_path: Path) -> None:
     folder = _write(tmp_path, "<robot/>", YAML)
     other = folder / "elsewhere.urdf"
     other.write_text(URDF, encoding="utf-8")
@@ -131,13 +129,13 @@ def test_another_urdf_may_stand_in_for_the_one_that_is_named(tmp_path: Path) -> 
         eurdf.load(other, urdf=other)
 
 
-def test_a_folder_in_place_of_the_urdf_is_a_file_that_cannot_be_read(tmp_path: Path) -> None:
+def test_folder_as_urdf_cannot_be_read(tmp_path: Path) -> None:
     report = eurdf.check(_write(tmp_path, URDF, 'extended_urdf: "2.0"\nurdf: .\n'))
     assert [(found.code, found.line) for found in report.diagnostics] == [("file-unreadable", None)]
 
 
 @pytest.mark.parametrize("name", ["missing.urdf", "a" * 5000, "no/such/folder/robot.urdf"])
-def test_a_urdf_that_does_not_exist_is_told_where_it_is_named(tmp_path: Path, name: str) -> None:
+def test_missing_urdf_is_reported_where_named(tmp_path: Path, name: str) -> None:
     folder = _write(tmp_path, URDF, f'extended_urdf: "2.0"\nurdf: {name}\n')
     report = eurdf.check(folder)
     assert [(found.code, found.line, found.column) for found in report.diagnostics] == [("urdf-not-found", 2, 7)]
@@ -146,7 +144,7 @@ def test_a_urdf_that_does_not_exist_is_told_where_it_is_named(tmp_path: Path, na
 
 
 @pytest.mark.parametrize("name", ["missing.urdf", "a" * 5000])
-def test_a_urdf_that_the_caller_names_and_that_cannot_be_read_is_told(tmp_path: Path, name: str) -> None:
+def test_unreadable_given_urdf_is_reported(tmp_path: Path, name: str) -> None:
     report = eurdf.check(_write(tmp_path, URDF, YAML), urdf=name)
     assert [found.code for found in report.diagnostics] == ["file-unreadable"]
 
@@ -154,7 +152,7 @@ def test_a_urdf_that_the_caller_names_and_that_cannot_be_read_is_told(tmp_path: 
 # -- what it gives back -----------------------------------------------------------------------------------------------
 
 
-def test_a_robot_unpacks_as_from_the_published_loader() -> None:
+def test_robot_unpacks_as_from_published_loader() -> None:
     loaded = eurdf.load(WORKBENCH)
     model, constraint_models, actuation, visual_model, collision_model = loaded
     assert model is loaded.model
@@ -164,26 +162,26 @@ def test_a_robot_unpacks_as_from_the_published_loader() -> None:
     assert loaded.data.M.shape == (model.nv, model.nv)
 
 
-def test_a_root_is_fixed_or_floating() -> None:
+def test_root_is_fixed_or_floating() -> None:
     assert eurdf.load(WORKBENCH, root="floating").model.nv == eurdf.load(WORKBENCH).model.nv + 6
     wrong: Any = "free"
     with pytest.raises(ValueError, match="'fixed' or 'floating'"):
         eurdf.load(WORKBENCH, root=wrong)
 
 
-def test_without_geometry_there_is_none_and_nothing_wrong_with_it() -> None:
+def test_no_geometry_is_loaded_or_checked_on_request() -> None:
     loaded = eurdf.load(WORKBENCH, geometry=False)
     assert (loaded.visual_model, loaded.collision_model) == (None, None)
     assert loaded.model == eurdf.load(WORKBENCH).model
 
 
-def test_the_positional_arguments_are_those_of_the_interface(tmp_path: Path) -> None:
+def test_positional_arguments_match_interface(tmp_path: Path) -> None:
     folder = _write(tmp_path, URDF, YAML)
     loaded = eurdf.load(folder, folder / "robot.urdf", "floating", False)
     assert (loaded.model.nv, loaded.visual_model) == (7, None)
 
 
-def test_the_same_files_give_the_same_robot_twice() -> None:
+def test_loading_is_repeatable() -> None:
     one, two = eurdf.load(WORKBENCH), eurdf.load(WORKBENCH)
     assert one.model == two.model
     assert one.mechanism == two.mechanism
@@ -193,7 +191,7 @@ def test_the_same_files_give_the_same_robot_twice() -> None:
 # -- what it refuses --------------------------------------------------------------------------------------------------
 
 
-def test_an_invalid_robot_carries_everything_found(tmp_path: Path) -> None:
+def test_invalid_robot_carries_all_diagnostics(tmp_path: Path) -> None:
     folder = _write(tmp_path, URDF, YAML + "closures: [{name: c, type: 3d, frames: [base, amr]}]\nurfd: x\n")
     with pytest.raises(eurdf.InvalidRobot) as caught:
         eurdf.load(folder)
@@ -205,7 +203,7 @@ def test_an_invalid_robot_carries_everything_found(tmp_path: Path) -> None:
     assert isinstance(caught.value, eurdf.EurdfError)
 
 
-def test_the_text_of_an_invalid_robot_has_the_errors_first(tmp_path: Path) -> None:
+def test_invalid_robot_text_has_errors_first(tmp_path: Path) -> None:
     stuck = joint_element("j", "revolute", "base", "arm", '<limit effort="1" velocity="1"/>')
     urdf = robot(link_element("base"), body("arm"), stuck)
     folder = _write(tmp_path, urdf, YAML + "closures: [{name: c, type: 3d, frames: [base, amr]}]\n")
@@ -226,7 +224,7 @@ LOOSE = robot(
 )
 
 
-def test_a_leaf_without_inertia_is_kept_in_the_diagnostics_and_refused_when_strict(tmp_path: Path) -> None:
+def test_massless_leaf_is_diagnosed_and_refused_if_strict(tmp_path: Path) -> None:
     folder = _write(tmp_path, LOOSE, 'extended_urdf: "2.0"\nactuators: [j]\n')
     loaded = eurdf.load(folder)
     assert [found.code for found in loaded.diagnostics] == ["leaf-without-inertia"]
@@ -236,7 +234,7 @@ def test_a_leaf_without_inertia_is_kept_in_the_diagnostics_and_refused_when_stri
     assert [found.code for found in caught.value.diagnostics] == ["leaf-without-inertia"]
 
 
-def test_warnings_are_not_refused_when_strict(tmp_path: Path) -> None:
+def test_warnings_are_not_refused_if_strict(tmp_path: Path) -> None:
     folder = _write(tmp_path, URDF.replace("</robot>", "<loop/></robot>"), YAML)
     loaded = eurdf.load(folder, strict=True)
     assert [found.code for found in loaded.diagnostics] == ["urdf-closure-ignored"]
@@ -245,7 +243,7 @@ def test_warnings_are_not_refused_when_strict(tmp_path: Path) -> None:
 APART = 'extended_urdf: "2.0"\nclosures: [{name: c, type: 3d, frames: [{link: base, xyz: [0, 0, 9]}, arm]}]\n'
 
 
-def test_loops_are_checked_on_request_and_when_strict(tmp_path: Path) -> None:
+def test_loops_are_checked_on_request_and_if_strict(tmp_path: Path) -> None:
     folder = _write(tmp_path, URDF, APART)
     loaded = eurdf.load(folder, check_loops=True)
     assert len(loaded.constraint_models) == 1
@@ -255,7 +253,7 @@ def test_loops_are_checked_on_request_and_when_strict(tmp_path: Path) -> None:
         eurdf.load(folder, strict=True)
 
 
-def test_a_loaded_robot_starts_no_solver(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_loading_starts_no_solver(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*given: Any, **named: Any) -> None:
         raise AssertionError("a solver was started")
 
@@ -269,7 +267,7 @@ def test_a_loaded_robot_starts_no_solver(tmp_path: Path, monkeypatch: pytest.Mon
         eurdf.load(folder, check_loops=True)
 
 
-def test_a_robot_cannot_be_changed(tmp_path: Path) -> None:
+def test_robot_is_immutable(tmp_path: Path) -> None:
     loaded = eurdf.load(_write(tmp_path, URDF, APART))
     for field in dataclasses.fields(loaded):
         with pytest.raises(dataclasses.FrozenInstanceError):
@@ -279,7 +277,7 @@ def test_a_robot_cannot_be_changed(tmp_path: Path) -> None:
             setattr(loaded, name, None)
 
 
-def test_an_assembled_configuration_that_is_open_is_found_at_once(tmp_path: Path) -> None:
+def test_open_assembled_configuration_is_found_immediately(tmp_path: Path) -> None:
     yaml = APART.replace("[0, 0, 9]", "[0, 0, 2.0e-6]") + "configurations: {assembled: {}}\n"
     loaded = eurdf.load(_write(tmp_path, URDF, yaml))
     assert [found.code for found in loaded.diagnostics] == ["assembled-open"]
@@ -304,9 +302,7 @@ MESHED = robot(
 )
 
 
-def test_meshes_are_found_in_the_folders_given_and_in_those_of_the_environment(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_meshes_are_found_in_folders_and_environment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("ROS_PACKAGE_PATH", raising=False)
     folder = _write(tmp_path / "robot", MESHED, YAML)
     _stl(tmp_path / "packages" / "parts" / "arm.stl")
@@ -324,7 +320,7 @@ def test_meshes_are_found_in_the_folders_given_and_in_those_of_the_environment(
     assert eurdf.check(folder).diagnostics == ()
 
 
-def test_check_and_load_agree_on_a_missing_mesh(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_check_and_load_agree_on_missing_mesh(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("ROS_PACKAGE_PATH", raising=False)
     folder = _write(tmp_path / "robot", MESHED, YAML)
     loaded = eurdf.load(folder)
@@ -336,9 +332,7 @@ def test_check_and_load_agree_on_a_missing_mesh(tmp_path: Path, monkeypatch: pyt
     assert eurdf.load(folder, geometry=False).diagnostics == ()
 
 
-def test_geometry_that_lacks_a_mesh_is_refused_when_it_is_asked_for(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_missing_mesh_is_refused_only_on_use(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("ROS_PACKAGE_PATH", raising=False)
     loaded = eurdf.load(_write(tmp_path / "robot", MESHED, YAML))
     for ask in (
@@ -352,14 +346,14 @@ def test_geometry_that_lacks_a_mesh_is_refused_when_it_is_asked_for(
         assert [found.code for found in caught.value.diagnostics] == ["urdf-mesh-missing"]
 
 
-def test_meshes_beside_the_urdf_need_no_environment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_meshes_beside_urdf_need_no_environment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("ROS_PACKAGE_PATH", raising=False)
     folder = _write(tmp_path / "robot", MESHED, YAML)
     _stl(folder / "parts" / "arm.stl")
     assert eurdf.load(folder).visual_model.ngeoms == 1
 
 
-def test_a_mesh_moves_with_the_body_of_a_replaced_joint(tmp_path: Path) -> None:
+def test_mesh_moves_with_body_of_replaced_joint(tmp_path: Path) -> None:
     folder = _write(tmp_path / "robot", MESHED, YAML + "joints: {j: spherical}\n")
     _stl(folder / "parts" / "arm.stl")
     loaded = eurdf.load(folder)
@@ -378,14 +372,14 @@ def _modules_after(code: str) -> set[str]:
     return {name.split(".")[0] for name in done.stdout.split()}
 
 
-def test_checking_a_robot_without_closures_loads_no_simulator(tmp_path: Path) -> None:
+def test_checking_a_tree_loads_no_simulator(tmp_path: Path) -> None:
     folder = _write(tmp_path, URDF, YAML)
     found = _modules_after(f"assert eurdf.check({str(folder)!r}).ok")
     assert "eurdf" in found
     assert not found & {"pinocchio", "coal", "scipy"}
 
 
-def test_checking_a_description_with_errors_loads_no_simulator(tmp_path: Path) -> None:
+def test_checking_invalid_description_loads_no_simulator(tmp_path: Path) -> None:
     shutil.copytree(DATA, tmp_path / "data")
     yaml = tmp_path / "data" / "workbench.yaml"
     yaml.write_text(yaml.read_text(encoding="utf-8").replace("rocker_top]", "rocker_tpo]"), encoding="utf-8")

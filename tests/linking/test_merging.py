@@ -113,7 +113,7 @@ MERGE = "joints: {{{}: {{type: spherical, merges: [x, y, z]}}}}\n"
     st.sampled_from([MERGE.format("ball"), MERGE.format("z"), "note: version 1\n"]),
     st.sampled_from(["fixed", "floating"]),
 )
-def test_a_merged_ball_puts_everything_beyond_it_where_the_three_revolutes_did(
+def test_merged_ball_moves_descendants_as_three_revolutes(
     wrist: Wrist, angles: Any, grip: float, yaml: str, root: Any
 ) -> None:
     plain, merged = load(wrist.urdf, root=root), load(wrist.urdf, yaml, root=root)
@@ -132,7 +132,7 @@ def test_a_merged_ball_puts_everything_beyond_it_where_the_three_revolutes_did(
 
 @settings(max_examples=30, deadline=None)
 @given(wrists(), st.tuples(ANGLES, ANGLES, ANGLES), ANGLES)
-def test_a_merged_ball_carries_the_same_inertia(wrist: Wrist, angles: Any, grip: float) -> None:
+def test_merged_ball_carries_same_inertia(wrist: Wrist, angles: Any, grip: float) -> None:
     """M_plain = Tᵀ M T, where T takes the three joints' velocities to the angular velocity; all mass is kept."""
     # What weighs in between stays behind in one model, and moves in the other.
     urdf = wrist.urdf.replace('"9e-06"', '"0"')
@@ -195,7 +195,7 @@ X, Y, Z = "1 0 0", "0 1 0", "0 0 1"
         (("0 0 -5e-324", "0 3e-170 0", "1.7e308 0 1.7e308"), (3, 2, 1)),
     ],
 )
-def test_each_axis_of_a_ball_keeps_what_belonged_to_the_nearest_revolute(axes: Any, order: tuple[int, ...]) -> None:
+def test_ball_axes_keep_properties_of_nearest_revolutes(axes: Any, order: tuple[int, ...]) -> None:
     model = load(_chain(*axes), "joints: {ball: {type: spherical, merges: [j1, j2, j3]}}\n").model
     _, _, v, _ = at(model, "ball")
     assert model.upperEffortLimit[v : v + 3].tolist() == list(order)
@@ -204,7 +204,7 @@ def test_each_axis_of_a_ball_keeps_what_belonged_to_the_nearest_revolute(axes: A
     assert model.upperDryFrictionLimit[v : v + 3].tolist() == [30 + number for number in order]
 
 
-def test_the_axes_are_told_in_the_last_joints_frame_at_zero() -> None:
+def test_axes_are_in_last_frame_at_zero() -> None:
     quarter = f'<origin rpy="0 0 {math.pi / 2}"/>'  # x of the last frame is y of the base
     urdf = _chain(X, Y, Z, origins=("", "", quarter))
     model = load(urdf, "joints: {ball: {type: spherical, merges: [j1, j2, j3]}}\n").model
@@ -212,7 +212,7 @@ def test_the_axes_are_told_in_the_last_joints_frame_at_zero() -> None:
     assert model.upperEffortLimit[v : v + 3].tolist() == [2, 1, 3]
 
 
-def test_what_the_description_states_of_a_ball_stands_in_place_of_what_it_kept() -> None:
+def test_stated_properties_replace_kept_ones() -> None:
     stated = "limits: {effort: 9, velocity: [1, 2, 3]}, damping: 0, armature: 0.1"
     yaml = f"joints: {{ball: {{type: spherical, merges: [j1, j2, j3], {stated}}}}}\n"
     model = load(_chain(X, Y, Z), yaml).model
@@ -224,12 +224,12 @@ def test_what_the_description_states_of_a_ball_stands_in_place_of_what_it_kept()
     assert model.upperDryFrictionLimit[v : v + 3].tolist() == [31, 32, 33]
 
 
-def test_continuous_joints_merge_where_the_description_says_so() -> None:
+def test_continuous_joints_merge_on_request() -> None:
     urdf = _chain(X, Y, Z, kinds=("continuous", "revolute", "continuous"))
     assert load(urdf, "joints: {j3: {type: spherical, merges: [j1, j2, j3]}}\n").model.nv == 3
 
 
-def test_geometry_between_merged_joints_stays_behind_and_that_beyond_moves() -> None:
+def test_geometry_before_ball_stays_and_after_moves() -> None:
     wrist = Wrist([pin.SE3.Identity()] * 3, [np.eye(3)[k] for k in range(3)])
     merged = load(wrist.urdf, MERGE.format("ball"), geometry=True)
     assert merged.visual_model.getGeometryId("one_0") < merged.visual_model.ngeoms
@@ -238,7 +238,7 @@ def test_geometry_between_merged_joints_stays_behind_and_that_beyond_moves() -> 
     assert objects["hand_0"].parentJoint == merged.model.getJointId("ball")
 
 
-def test_every_joint_and_link_of_a_merged_chain_is_found_by_name() -> None:
+def test_merged_joints_and_links_are_found_by_name() -> None:
     model = load(_chain(X, Y, Z), "joints: {ball: {type: spherical, merges: [j1, j2, j3]}}\n").model
     names = [frame.name for frame in model.frames]
     for name in ("base", "l1", "l2", "l3", "j1", "j2", "j3", "ball"):
@@ -270,7 +270,7 @@ def _joints(urdf: str, yaml: str = "note: version 1\n") -> dict[str, str]:
         ((X, Y, X, Z), {"j1": "RX", "j4": "Spherical"}),
     ],
 )
-def test_version_1_merges_three_at_a_time_from_the_root_outwards(axes: Any, joints: dict[str, str]) -> None:
+def test_version_1_merges_three_from_the_root(axes: Any, joints: dict[str, str]) -> None:
     assert _joints(_chain(*axes)) == joints
 
 
@@ -311,7 +311,7 @@ NOT_MERGED = {
 
 
 @pytest.mark.parametrize("title", NOT_MERGED)
-def test_version_1_leaves_three_revolutes_apart_where(title: str) -> None:
+def test_version_1_keeps_three_revolutes_if(title: str) -> None:
     urdf, yaml = NOT_MERGED[title]
     joints = _joints(urdf, yaml or "note: none\n")
     assert "Spherical" not in joints.values()
@@ -362,12 +362,12 @@ MERGED = {
 
 
 @pytest.mark.parametrize("title", MERGED)
-def test_version_1_merges_three_revolutes_even_where(title: str) -> None:
+def test_version_1_merges_three_revolutes_even_if(title: str) -> None:
     urdf, yaml = MERGED[title]
     assert _joints(urdf, yaml or "note: none\n")["j3"] == "Spherical"
 
 
-def test_a_joint_that_version_1_merged_away_cannot_be_actuated() -> None:
+def test_merged_joint_cannot_be_actuated() -> None:
     assert codes(_chain(X, Y, Z), "name_mot: [j2]\n") == ["actuator-merged"]
     assert load(_chain(X, Y, Z), "name_mot: [j3]\n").actuation.idx_v.tolist() == [0, 1, 2]
 
@@ -380,14 +380,14 @@ _BALL = "ball: {type: spherical, merges: [j1, j2, j3]}"
 @pytest.mark.parametrize("joint", ["j1", "j2", "j3"])
 @pytest.mark.parametrize("entry", ["fixed", "spherical", "{armature: 1}"])
 @pytest.mark.parametrize("first", [True, False])
-def test_a_joint_that_is_merged_is_not_changed_as_well_in_whatever_order(joint: str, entry: str, first: bool) -> None:
+def test_merged_joint_cannot_be_changed(joint: str, entry: str, first: bool) -> None:
     entries = [f"  {joint}: {entry}\n", f"  {_BALL}\n"]
     yaml = "joints:\n" + "".join(entries if first else reversed(entries))
     assert codes(_chain(X, Y, Z), yaml) == ["duplicate-replacement"]
 
 
 @pytest.mark.parametrize("last", ["j3", "ball"])
-def test_a_joint_is_merged_once(last: str) -> None:
+def test_joint_is_merged_once(last: str) -> None:
     entries = {last: "[j1, j2, j3]", "other": "[j3, j4, j5]"}
     yaml = "joints:\n" + "".join(f"  {name}: {{type: spherical, merges: {of}}}\n" for name, of in entries.items())
     assert codes(_chain(X, Y, Z, X, Y), yaml) == ["duplicate-replacement"]
@@ -406,12 +406,12 @@ def test_a_joint_is_merged_once(last: str) -> None:
         ("root_joint", "floating", ["urdf-reserved-name"]),
     ],
 )
-def test_a_merged_joint_may_have_any_name_that_is_free(name: str, root: str, fault: list[str]) -> None:
+def test_merged_joint_can_have_any_free_name(name: str, root: str, fault: list[str]) -> None:
     yaml = f"root: {root}\njoints: {{{name}: {{type: spherical, merges: [j1, j2, j3]}}}}\n"
     assert codes(_chain(X, Y, Z, X), yaml) == fault
 
 
-def test_links_before_and_beyond_a_ball_away_from_the_last_origin_stand_as_in_the_plain_urdf() -> None:
+def test_links_around_offset_ball_match_plain_urdf() -> None:
     """The axes meet at (1, 0, 0); the origins are elsewhere on them, and the hand is 2 m along the last one."""
     urdf = _chain(
         X,
@@ -440,7 +440,7 @@ def test_links_before_and_beyond_a_ball_away_from_the_last_origin_stand_as_in_th
         ("name_mot: []\njoint_name: [grip]\njoint_type: [UJOINT_XY]\n", []),
     ],
 )
-def test_ranges_are_asked_for_of_the_joints_that_are_left(yaml: str, without: list[str]) -> None:
+def test_only_remaining_joints_need_ranges(yaml: str, without: list[str]) -> None:
     wrist = Wrist([pin.SE3.Identity()] * 3, [np.eye(3)[k] for k in range(3)])
     urdf = wrist.urdf.replace('lower="-3" upper="3" ', "")
     with tempfile.TemporaryDirectory() as folder:

@@ -51,18 +51,18 @@ def test_version_1_ignores_mimics() -> None:
 
 
 @pytest.mark.parametrize("title", MISTAKES)
-def test_version_1_does_not_look_at_which_joint_a_mimic_names(title: str) -> None:
+def test_version_1_ignores_which_joint_is_mimicked(title: str) -> None:
     assert codes(MISTAKES[title], "name_mot: [left]\n") == []
     assert load(MISTAKES[title], "name_mot: [left]\n").model.nv == 2
 
 
-def test_version_1_advises_on_a_mimic_joint_that_nothing_else_says_is_free() -> None:
+def test_version_1_advises_on_unmentioned_mimic_joint() -> None:
     assert codes(gripper(), "name_mot: [drive]\n") == ["x-mimic-ignored"]
     assert codes(gripper(), "name_mot: [drive]\njoint_name: [left]\njoint_type: [SPHERICAL]\n") == []
     assert codes(gripper(), "note: 1\n") == codes(gripper(), "actuators: [drive]\n") == codes(gripper()) == []
 
 
-def test_version_1_changes_joints_with_a_mimic_and_those_that_it_names() -> None:
+def test_version_1_can_change_mimic_joints_and_leaders() -> None:
     found = load(gripper(), "joint_name: [left, drive]\njoint_type: [SPHERICAL, FIXED]\n")
     assert [joint.shortname() for joint in found.model.joints][1:] == ["JointModelSpherical"]
 
@@ -71,18 +71,18 @@ def test_version_1_changes_joints_with_a_mimic_and_those_that_it_names() -> None
     ("mimic", "code"),
     [('<mimic joint="drive" offset="1 rad"/>', "urdf-bad-number"), ("<mimic/>", "urdf-missing-attribute")],
 )
-def test_version_1_still_refuses_a_mimic_that_is_no_mimic_of_urdf(mimic: str, code: str) -> None:
+def test_version_1_refuses_malformed_mimic(mimic: str, code: str) -> None:
     text = gripper().replace(MIMIC.format("drive", -2, 0.1), mimic)
     assert codes(text, "name_mot: [drive]\n") == codes(text, "actuators: [drive]\n") == [code]
 
 
-def test_a_description_that_is_no_yaml_leaves_open_whether_a_mimic_counts(tmp_path: Path) -> None:
+def test_invalid_yaml_leaves_mimics_undecided(tmp_path: Path) -> None:
     folder = written(tmp_path, MISTAKES["urdf-mimic-unknown"], "closures: [\n").parent
     assert [found.code for found in eurdf.check(folder).diagnostics] == ["yaml-syntax"]
 
 
 @pytest.mark.parametrize("text", [gripper(), gripper("nobody")])
-def test_migrate_refuses_mimics_that_version_1_ignores(
+def test_migrate_refuses_mimics_ignored_in_version_1(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str
 ) -> None:
     folder = written(tmp_path, text, "name_mot: [left]\n").parent
@@ -96,7 +96,7 @@ def test_migrate_refuses_mimics_that_version_1_ignores(
     assert main(["migrate", str(folder)]) == 0
 
 
-def test_migrate_keeps_the_mimic_of_a_fixed_joint_which_no_version_respects(tmp_path: Path) -> None:
+def test_migrate_keeps_mimic_of_fixed_joint(tmp_path: Path) -> None:
     text = gripper(more='<mimic joint="drive"/>').replace(MIMIC.format("drive", -2, 0.1), "")
     assert main(["migrate", str(written(tmp_path, text, "name_mot: [left]\n").parent)]) == 0
 
@@ -104,7 +104,7 @@ def test_migrate_keeps_the_mimic_of_a_fixed_joint_which_no_version_respects(tmp_
 # -- version 2, and a bare URDF ---------------------------------------------------------------------------------------
 
 
-def test_a_urdf_with_mimics_is_the_model_that_pinocchio_builds_with_and_without_them(tmp_path: Path) -> None:
+def test_urdf_with_mimics_matches_pinocchio(tmp_path: Path) -> None:
     path = written(tmp_path, gripper(), "")
     followed, free = eurdf.load(path), eurdf.load(path, mimic=False)
     assert followed.model == pin.buildModelFromUrdf(str(path), mimic=True)
@@ -113,7 +113,7 @@ def test_a_urdf_with_mimics_is_the_model_that_pinocchio_builds_with_and_without_
 
 
 @pytest.mark.parametrize("path", URDFS, ids=lambda path: path.parent.name)
-def test_a_joint_that_mimics_a_later_one_is_built_although_pinocchio_does_not(path: Path) -> None:
+def test_mimic_of_later_joint_is_built(path: Path) -> None:
     with pytest.raises(ValueError, match="The parent joint of the mimic joint is not in the kinematic tree"):
         pin.buildModelFromUrdf(str(path), mimic=True)
     followed, free = eurdf.load(path, geometry=False), eurdf.load(path, geometry=False, mimic=False)
@@ -122,7 +122,7 @@ def test_a_joint_that_mimics_a_later_one_is_built_although_pinocchio_does_not(pa
 
 
 @pytest.mark.parametrize("title", MISTAKES)
-def test_a_mistake_in_a_mimic_is_kept_where_mimics_are_ignored(title: str) -> None:
+def test_mimic_error_is_kept_where_mimics_are_ignored(title: str) -> None:
     text = MISTAKES[title]
     for yaml in ("", "actuators: [drive]\n"):
         with pytest.raises(eurdf.InvalidRobot):
@@ -143,7 +143,7 @@ def test_a_mistake_in_a_mimic_is_kept_where_mimics_are_ignored(title: str) -> No
         "configurations: {open: {left: 0.2}}\n",
     ],
 )
-def test_a_free_joint_can_be_actuated_changed_and_configured(yaml: str) -> None:
+def test_free_mimic_joint_is_a_normal_joint(yaml: str) -> None:
     with pytest.raises(eurdf.InvalidRobot):
         load(gripper(), yaml)
     found = load(gripper(), yaml, mimic=False)
@@ -151,7 +151,7 @@ def test_a_free_joint_can_be_actuated_changed_and_configured(yaml: str) -> None:
     assert all(joint.mimic is None for joint in found.mechanism.joints)
 
 
-def test_free_joints_are_in_named_configurations_where_they_would_follow_to() -> None:
+def test_configurations_place_free_joints_as_mimics() -> None:
     yaml = "configurations: {half: {drive: 0.3}, stated: {drive: 0.3, left: 1}, neutral: {}}\n"
     found = load(gripper(), yaml, mimic=False)
     at = {name: found.model.joints[found.model.getJointId(name)].idx_q for name in ("drive", "left")}
@@ -161,13 +161,13 @@ def test_free_joints_are_in_named_configurations_where_they_would_follow_to() ->
         np.testing.assert_allclose((q[at["drive"]], q[at["left"]]), (drive, left), atol=1e-15)
 
 
-def test_a_configuration_says_nothing_of_a_free_joint_whose_driving_joint_became_a_ball() -> None:
+def test_configuration_omits_mimic_of_replaced_leader() -> None:
     yaml = "joints: {drive: spherical}\nconfigurations: {ready: {drive: [0, 0, 0, 1]}}\n"
     assert set(load(gripper(), yaml, mimic=False).mechanism.configurations["ready"]) == {"drive"}
 
 
 @pytest.mark.parametrize("joint", ["drive", "nobody", "tip"])
-def test_the_mimic_of_a_fixed_joint_has_no_effect_and_is_reported(joint: str) -> None:
+def test_mimic_of_fixed_joint_is_warned(joint: str) -> None:
     text = gripper(more=f'<mimic joint="{joint}"/>')
     for yaml in ("", "actuators: [drive]\n"):
         assert codes(text, yaml) == ["urdf-mimic-fixed"]
@@ -175,18 +175,18 @@ def test_the_mimic_of_a_fixed_joint_has_no_effect_and_is_reported(joint: str) ->
     assert codes(text, "name_mot: [drive, left]\n") == []
 
 
-def test_a_joint_must_not_mimic_a_fixed_one_though_that_has_a_mimic() -> None:
+def test_joint_cannot_mimic_fixed_mimic_joint() -> None:
     assert set(codes(gripper("tip", more='<mimic joint="drive"/>'))) == {"urdf-mimic-kind", "urdf-mimic-fixed"}
 
 
-def test_a_joint_of_several_coordinates_must_not_mimic() -> None:
+def test_joint_with_several_coordinates_cannot_mimic() -> None:
     assert codes(gripper(kind="floating")) == ["urdf-mimic-kind"]
 
 
 # -- chains -----------------------------------------------------------------------------------------------------------
 
 
-def test_a_chain_of_mimics_is_one_law_and_what_ends_in_a_cycle_has_none() -> None:
+def test_mimic_chain_composes_and_cycle_has_none() -> None:
     mimics = {
         "c": Mimic("b", 2.0, 1.0),
         "b": Mimic("a", -3.0, 0.5),
@@ -202,16 +202,16 @@ def test_a_chain_of_mimics_is_one_law_and_what_ends_in_a_cycle_has_none() -> Non
 
 
 @pytest.mark.parametrize("side", ["Left", "Right"])
-def test_of_names_about_as_near_that_of_the_same_side_is_meant(side: str) -> None:
+def test_hint_prefers_name_of_same_side(side: str) -> None:
     known = ["Left_index_q1", "Right_index_q1", "Left_thumb_q1", "Right_thumb_q1"]
     assert did_you_mean("index_q1", known, f"{side}_index_q2") == f"did you mean '{side}_index_q1'?"
 
 
-def test_a_name_that_is_nearer_by_far_is_meant_whatever_is_beside() -> None:
+def test_much_closer_name_wins() -> None:
     assert did_you_mean("left_knee", ["left_kne", "right_hip_roll"], "right_hip_pitch") == "did you mean 'left_kne'?"
 
 
-def test_the_hint_for_an_unknown_mimic_names_the_same_side_and_not_the_joint_itself() -> None:
+def test_mimic_hint_excludes_the_joint_itself() -> None:
     sides = ("left", "right_hand")
     text = robot(
         link_element("base", inertial()),

@@ -94,9 +94,7 @@ MOTIONS = [
 
 @pytest.mark.parametrize(("kind", "entry", "coordinates", "motion"), MOTIONS)
 @pytest.mark.parametrize("root", ["fixed", "floating"])
-def test_a_replaced_joint_moves_its_link_as_its_new_type_says(
-    kind: str, entry: str, coordinates: Any, motion: Any, root: str
-) -> None:
+def test_replaced_joint_moves_as_its_new_type(kind: str, entry: str, coordinates: Any, motion: Any, root: str) -> None:
     loaded = load(_arm(kind), _yaml(entry), root=root)
     found = frame_poses(loaded.model, q_of(loaded, {"j": coordinates, "wrist": (0.4,)}))
     arm = _placement() @ motion
@@ -108,7 +106,7 @@ def test_a_replaced_joint_moves_its_link_as_its_new_type_says(
 
 
 @pytest.mark.parametrize(("kind", "entry", "coordinates", "motion"), MOTIONS)
-def test_geometry_moves_with_the_link_of_a_replaced_joint(kind: str, entry: str, coordinates: Any, motion: Any) -> None:
+def test_geometry_moves_with_replaced_joint(kind: str, entry: str, coordinates: Any, motion: Any) -> None:
     loaded = load(_arm(kind), _yaml(entry), geometry=True)
     data = loaded.visual_model.createData()
     pin.updateGeometryPlacements(loaded.model, loaded.data, loaded.visual_model, data, q_of(loaded, {"j": coordinates}))
@@ -157,7 +155,7 @@ KEPT = [
 
 @pytest.mark.parametrize(("kind", "entry", "positions", "rates"), KEPT)
 @pytest.mark.parametrize("root", ["fixed", "floating"])
-def test_a_changed_joint_keeps_what_belonged_to_it_at_its_own_indices(
+def test_changed_joint_keeps_its_properties(
     kind: str, entry: str, positions: list[Any], rates: list[Any], root: str
 ) -> None:
     model = load(_arm(kind), _yaml(entry), root=root).model
@@ -187,9 +185,7 @@ def test_a_changed_joint_keeps_what_belonged_to_it_at_its_own_indices(
         ("{type: universal, axes: xz, armature: [0.1, 0.2]}", [0.1, 0.2]),
     ],
 )
-def test_armature_stands_at_the_velocities_and_on_the_diagonal_of_the_mass_matrix(
-    entry: str, armature: list[float]
-) -> None:
+def test_armature_is_on_mass_matrix_diagonal(entry: str, armature: list[float]) -> None:
     with_armature = load(_arm("revolute"), _yaml(entry)).model
     without = load(_arm("revolute"), _yaml(re.sub(r"armature: [^\]}]*\]?", "damping: 1", entry))).model
     _, _, idx_v, nv = at(with_armature, "j")
@@ -201,7 +197,7 @@ def test_armature_stands_at_the_velocities_and_on_the_diagonal_of_the_mass_matri
 
 
 @pytest.mark.parametrize("kind", ["revolute", "continuous", "prismatic", "planar", "floating"])
-def test_a_joint_of_any_kind_can_be_locked_at_its_zero(kind: str) -> None:
+def test_any_joint_can_be_locked_at_zero(kind: str) -> None:
     loaded = load(_arm(kind), _yaml("fixed"))
     plain = load(_arm(kind))
     assert (loaded.model.nq, loaded.model.nv) == (1, 1)
@@ -213,11 +209,11 @@ def test_a_joint_of_any_kind_can_be_locked_at_its_zero(kind: str) -> None:
         np.testing.assert_allclose(after[name], pose, atol=1e-12)
 
 
-def test_a_locked_joint_takes_no_properties() -> None:
+def test_locked_joint_accepts_no_properties() -> None:
     assert codes(_arm("revolute"), _yaml("{type: fixed, damping: 1}")) == ["joint-property"]
 
 
-def test_a_mimicked_joint_keeps_its_type_but_may_have_other_properties() -> None:
+def test_leader_keeps_type_but_accepts_properties() -> None:
     law = '<mimic joint="j" multiplier="2"/><limit effort="1" velocity="1" lower="-1" upper="1"/>'
     follow = joint_element("f", "revolute", "base", "tail", law)
     urdf = _arm("revolute").replace("</robot>", body("tail") + follow + "</robot>")
@@ -269,7 +265,7 @@ def _entries(replacements: dict[str, str], plain: dict[str, Joint]) -> str:
 
 @settings(max_examples=60, deadline=None)
 @given(st.data(), trees(), ROOTS)
-def test_at_neutral_everything_stands_where_the_plain_urdf_puts_it(data: st.DataObject, urdf: str, root: Root) -> None:
+def test_neutral_poses_match_plain_urdf(data: st.DataObject, urdf: str, root: Root) -> None:
     plain = {joint.name: joint for joint in mechanism_of(urdf).joints}
     replacements = data.draw(_replacements(urdf))
     loaded = load(urdf, _entries(replacements, plain), root=root)
@@ -300,9 +296,7 @@ def _as_replaced(kind: str, joint: Joint, values: tuple[float, ...]) -> tuple[tu
 
 @settings(max_examples=60, deadline=None)
 @given(st.data(), trees(), st.integers(0, 2**32 - 1))
-def test_a_replaced_joint_can_still_do_what_the_urdfs_did_with_the_same_inertia(
-    data: st.DataObject, urdf: str, seed: int
-) -> None:
+def test_replacement_contains_original_motion_and_inertia(data: st.DataObject, urdf: str, seed: int) -> None:
     """The plain model is the robot held on a submanifold: poses are equal, and M_plain = Tᵀ M T."""
     random = np.random.default_rng(seed)
     plain = load(urdf, mimic=False)
@@ -340,7 +334,7 @@ def test_a_replaced_joint_can_still_do_what_the_urdfs_did_with_the_same_inertia(
 
 @settings(max_examples=40, deadline=None)
 @given(st.data(), trees(), st.integers(0, 2**16), ROOTS, st.booleans())
-def test_the_mass_matrix_of_sound_bodies_is_symmetric_and_positive_definite(
+def test_mass_matrix_is_symmetric_positive_definite(
     data: st.DataObject, urdf: str, seed: int, root: Root, mimic: bool
 ) -> None:
     urdf = re.sub(r'<link name="(l\d+)">.*?</link>', lambda found: body(found[1]), urdf)
@@ -360,7 +354,7 @@ def test_the_mass_matrix_of_sound_bodies_is_symmetric_and_positive_definite(
 # -- said twice, said wrongly -----------------------------------------------------------------------------------------
 
 
-def test_what_is_said_of_joints_means_the_same_in_any_order() -> None:
+def test_order_of_joint_entries_does_not_matter() -> None:
     def in_order(*entries: str) -> list[Any]:
         with_entries = load(_arm("revolute"), "joints:\n" + "".join(f"  {entry}\n" for entry in entries))
         return list(with_entries.mechanism.joints)
@@ -369,7 +363,7 @@ def test_what_is_said_of_joints_means_the_same_in_any_order() -> None:
     assert in_order(ball, slide) == in_order(slide, ball)
 
 
-def test_links_of_a_robot_are_found_at_their_poses_after_every_kind_of_replacement() -> None:
+def test_link_poses_are_right_after_all_replacements() -> None:
     urdf = _arm("revolute")
     plain = pin.buildModelFromXML(urdf)
     expected = link_poses(plain, pin.neutral(plain))
@@ -381,7 +375,7 @@ def test_links_of_a_robot_are_found_at_their_poses_after_every_kind_of_replaceme
             np.testing.assert_allclose(found[name], pose, atol=1e-12)
 
 
-def test_mimic_joints_follow_or_are_free_as_asked() -> None:
+def test_mimic_joints_follow_or_are_free() -> None:
     lead = '<axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/>'
     follow = lead.replace("0 1 0", "1 0 0") + '<mimic joint="a" multiplier="-2" offset="0.1"/>'
     urdf = robot(
@@ -400,7 +394,7 @@ def test_mimic_joints_follow_or_are_free_as_asked() -> None:
     assert (load(urdf, "actuators: [a]\n", mimic=False).model.nv, described.actuation.idx_v.tolist()) == (2, [0])
 
 
-def test_a_robot_with_replaced_joints_prints_and_unpacks() -> None:
+def test_robot_with_replacements_prints_and_unpacks() -> None:
     model, constraint_models, actuation, visual_model, collision_model = load(_arm("revolute"), _yaml("spherical"))
     assert (model.nq, constraint_models, actuation.joints, visual_model, collision_model) == (5, [], (), None, None)
     assert isinstance(load(_arm("revolute"), _yaml("spherical")), eurdf.Robot)

@@ -42,7 +42,7 @@ def _universal(letters: str) -> str:
 
 @pytest.mark.parametrize("letters", PAIRS)
 @pytest.mark.parametrize("root", ["fixed", "floating"])
-def test_a_universal_joint_is_two_revolutes_about_the_frames_axes(letters: str, root: str) -> None:
+def test_universal_joint_is_two_revolutes_about_frame_axes(letters: str, root: str) -> None:
     loaded = load(_arm(), _universal(letters), root=root)
     first, second = f"j_{letters[0]}", f"j_{letters[1]}"
     assert [name for name in loaded.model.names if name.startswith("j")] == [first, second]
@@ -54,7 +54,7 @@ def test_a_universal_joint_is_two_revolutes_about_the_frames_axes(letters: str, 
         np.testing.assert_allclose(found[name], arm, atol=1e-12)
 
 
-def test_each_half_of_a_universal_joint_has_the_limits_and_dynamics_of_the_urdfs() -> None:
+def test_both_halves_have_limits_and_dynamics() -> None:
     model = load(_arm(), _universal("ZX")).model
     for name in ("j_Z", "j_X"):
         q, _, v, _ = at(model, name)
@@ -63,7 +63,7 @@ def test_each_half_of_a_universal_joint_has_the_limits_and_dynamics_of_the_urdfs
         assert (model.damping[v], model.upperDryFrictionLimit[v]) == (5, 6)
 
 
-def test_a_continuous_joint_becomes_two_continuous_ones() -> None:
+def test_continuous_joint_becomes_two_continuous_joints() -> None:
     model = load(_arm("continuous"), _universal("ZX")).model
     assert [model.joints[model.getJointId(name)].shortname() for name in ("j_Z", "j_X")] == [
         "JointModelRUBZ",
@@ -72,7 +72,7 @@ def test_a_continuous_joint_becomes_two_continuous_ones() -> None:
 
 
 @pytest.mark.parametrize("letters", PAIRS)
-def test_version_1_and_version_2_move_alike(letters: str) -> None:
+def test_versions_1_and_2_move_alike(letters: str) -> None:
     one = load(_arm(), _universal(letters))
     two = load(_arm(), f"joints: {{j: {{type: universal, axes: {letters.lower()}}}}}\n")
     q_one = q_of(one, {f"j_{letters[0]}": (0.4,), f"j_{letters[1]}": (-0.3,), "slide": (0.2,)})
@@ -86,7 +86,7 @@ def test_version_1_and_version_2_move_alike(letters: str) -> None:
     np.testing.assert_array_equal(one.model.lowerPositionLimit, two.model.lowerPositionLimit)
 
 
-def test_geometry_and_mass_are_on_the_second_half_of_a_universal_joint() -> None:
+def test_geometry_and_mass_are_on_second_half() -> None:
     loaded = load(_arm(), _universal("XY"), geometry=True)
     second = loaded.model.getJointId("j_Y")
     assert loaded.visual_model.geometryObjects[0].parentJoint == second
@@ -94,28 +94,28 @@ def test_geometry_and_mass_are_on_the_second_half_of_a_universal_joint() -> None
     assert loaded.model.inertias[loaded.model.getJointId("j_X")].mass == 0
 
 
-def test_what_stands_between_the_halves_of_a_universal_joint_is_no_link() -> None:
+def test_intermediate_body_is_no_link() -> None:
     loaded = load(_arm(), _universal("XY"))
     links = {frame.name for frame in loaded.model.frames if frame.type == pin.FrameType.BODY}
     assert links == {"base", "arm", "cart"}
 
 
 @pytest.mark.parametrize(("frame", "joint"), [("j", "j_Y"), ("arm", "j_Y"), ("j_Y", "j_Y"), ("j_X", "j_X")])
-def test_a_closure_may_be_on_any_frame_of_a_universal_joint(frame: str, joint: str) -> None:
+def test_closure_can_be_on_any_universal_frame(frame: str, joint: str) -> None:
     loaded = load(_arm(), f"closed_loop: [[{frame}, cart]]\n" + _universal("XY"))
     constraint = loaded.constraint_models[0]
     assert loaded.model.names[constraint.joint1_id] == joint
     np.testing.assert_allclose(constraint.joint1_placement.homogeneous, np.eye(4), atol=0)
 
 
-def test_the_halves_of_a_universal_joint_are_actuated_one_by_one() -> None:
+def test_universal_halves_are_actuated_separately() -> None:
     loaded = load(_arm(), "name_mot: [slide, j_Y, j_X]\n" + _universal("XY"))
     assert loaded.actuation.joints == ("slide", "j_Y", "j_X")
     assert loaded.actuation.idx_v.tolist() == [at(loaded.model, name)[2] for name in ("slide", "j_Y", "j_X")]
     assert codes(_arm(), "name_mot: [j]\n" + _universal("XY")) == ["unknown-actuator"]
 
 
-def test_a_link_may_be_named_as_half_of_a_universal_joint_unless_it_is_used_as_a_frame() -> None:
+def test_link_can_have_name_of_unused_half() -> None:
     urdf = _arm(arm="j_X")
     assert codes(urdf, _universal("XY")) == []
     loaded = load(urdf, _universal("XY"))
@@ -125,7 +125,7 @@ def test_a_link_may_be_named_as_half_of_a_universal_joint_unless_it_is_used_as_a
     assert codes(urdf, "closed_loop: [[j_X, cart]]\n" + _universal("XY")) == ["ambiguous-frame"]
 
 
-def test_half_of_a_universal_joint_does_not_take_the_name_of_another_joint() -> None:
+def test_half_cannot_have_name_of_other_joint() -> None:
     more = body("side") + joint_element("j_Y", "revolute", "base", "side", CONTENT)
     assert codes(_arm(more=more), _universal("XY")) == ["duplicate-joint-name"]
     assert codes(_arm(more=more), "name_mot: [j_X]\n" + _universal("XY")) == ["duplicate-joint-name"]
@@ -133,7 +133,7 @@ def test_half_of_a_universal_joint_does_not_take_the_name_of_another_joint() -> 
 
 
 @pytest.mark.parametrize("kind", ["revolute", "continuous"])
-def test_spherical_makes_one_ball_about_the_joints_origin(kind: str) -> None:
+def test_spherical_is_a_ball_at_joint_origin(kind: str) -> None:
     loaded = load(_arm(kind), "joint_name: [j]\njoint_type: [SPHERICAL]\n")
     half = math.sqrt(0.5)
     found = frame_poses(loaded.model, q_of(loaded, {"j": (0, half, 0, half)}))
@@ -142,7 +142,7 @@ def test_spherical_makes_one_ball_about_the_joints_origin(kind: str) -> None:
 
 
 @pytest.mark.parametrize("kind", ["revolute", "continuous", "prismatic"])
-def test_fixed_locks_a_joint_at_its_zero(kind: str) -> None:
+def test_fixed_locks_joint_at_zero(kind: str) -> None:
     loaded = load(_arm(kind), "joint_name: [j]\njoint_type: [FIXED]\n")
     assert (loaded.model.nv, loaded.model.names.tolist()) == (1, ["universe", "slide"])
     found = frame_poses(loaded.model, np.zeros(1))
@@ -159,12 +159,12 @@ def test_fixed_locks_a_joint_at_its_zero(kind: str) -> None:
         ("fixed", "FIXED", "joint-kind"),
     ],
 )
-def test_a_joint_that_cannot_become_what_is_asked_is_told_of_once(kind: str, new: str, found: str) -> None:
+def test_impossible_replacement_is_reported_once(kind: str, new: str, found: str) -> None:
     yaml = f"name_mot: [j{new[-3:-1] if 'UJ' in new else ''}]\njoint_name: [j]\njoint_type: [{new}]\n"
     assert [code for code in codes(_arm(kind), yaml) if code != "urdf-planar-axis"] == [found]
 
 
-def test_closures_have_the_types_listed_in_any_case_and_names_by_their_order() -> None:
+def test_closure_types_ignore_case_and_names_are_numbered() -> None:
     loops = "closed_loop: [[arm, cart], [j, base], [cart, base]]\n"
     loaded = load(_arm(), loops + "type: [3d, 6D, 3D]\n")
     assert [(found.name, found.residualSize()) for found in loaded.constraint_models] == [
@@ -175,12 +175,12 @@ def test_closures_have_the_types_listed_in_any_case_and_names_by_their_order() -
     assert [found.residualSize() for found in load(_arm(), loops).constraint_models] == [6, 6, 6]
 
 
-def test_the_root_is_fixed_unless_the_caller_floats_it() -> None:
+def test_root_is_fixed_unless_given() -> None:
     assert load(_arm(), "name_mot: [j]\n").model.nv == 2
     assert load(_arm(), "name_mot: [j]\n", root="floating").model.nv == 8
 
 
-def test_a_description_that_says_nothing_leaves_the_plain_urdf() -> None:
+def test_empty_description_keeps_plain_urdf() -> None:
     text: Any = _arm()
     assert load(text, "note: mine\n").model == pin.buildModelFromXML(text, mimic=True)
     assert load(text, "note: mine\n").mechanism.own_data == {"/note": "mine"}

@@ -1,4 +1,4 @@
-"""The robots of the collection: all that were asked for, each by every rule good enough, with the dimensions it has."""
+"""The robots of the collection: complete, passing all quality rules, with the requested dimensions."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def named(folder):
     return folder.name
 
 
-def test_every_robot_that_was_asked_for_is_there():
+def test_all_requested_robots_exist():
     assert {folder.name for folder in FOLDERS} == set(DIMENSIONS) == set(eurdf.collection_names())
 
 
@@ -70,16 +70,16 @@ def test_every_robot_that_was_asked_for_is_there():
     [pytest.param(folder, marks=[pytest.mark.slow] * (folder.name in TWO_LEGGED)) for folder in FOLDERS],
     ids=named,
 )
-def test_a_robot_is_good_enough_by_every_rule(folder):
-    faults = judge(Candidate.find(folder)).faults
-    assert {rule: found for rule, found in faults.items() if found} == {}
-    left_out = {rule for rule, found in faults.items() if found is None}
-    assert left_out == (set() if faults["mirrored"] == [] else {"mirrored"})
-    assert folder.name not in TWO_LEGGED or faults["mirrored"] == []
+def test_robot_passes_all_quality_rules(folder):
+    errors = judge(Candidate.find(folder)).errors
+    assert {rule: found for rule, found in errors.items() if found} == {}
+    left_out = {rule for rule, found in errors.items() if found is None}
+    assert left_out == (set() if errors["mirrored"] == [] else {"mirrored"})
+    assert folder.name not in TWO_LEGGED or errors["mirrored"] == []
 
 
 @pytest.mark.parametrize("folder", FOLDERS, ids=named)
-def test_a_robot_has_the_dimensions_it_was_asked_for(folder):
+def test_robot_has_requested_dimensions(folder):
     found = eurdf.analyze(eurdf.load(folder, root="fixed", geometry=False))
     robot = eurdf.load(folder, geometry=False)
     types = Counter(closure.type for closure in robot.mechanism.closures)
@@ -92,7 +92,7 @@ def test_a_robot_has_the_dimensions_it_was_asked_for(folder):
 
 
 @pytest.mark.parametrize("folder", FOLDERS, ids=named)
-def test_a_robot_is_assembled_where_it_is_drawn_with_every_joint_at_zero(folder):
+def test_drawn_pose_is_assembled_with_zero_coordinates(folder):
     description = yaml.safe_load((folder / "robot.yaml").read_text())
     assert description["configurations"] == {"assembled": {}}
     at = poses_at_zero(etree.parse(folder / "robot.urdf").getroot())
@@ -104,7 +104,7 @@ def test_a_robot_is_assembled_where_it_is_drawn_with_every_joint_at_zero(folder)
         assert closure["type"] == "3d" or apart.max() < 1e-12, closure["name"]
 
 
-def test_a_builder_writes_into_the_folder_that_it_is_given(tmp_path):
+def test_builder_writes_into_given_folder(tmp_path):
     subprocess.run([sys.executable, "-m", "robots.four_bar.build", str(tmp_path)], cwd=ROOT, check=True)
     assert {file.name for file in tmp_path.iterdir()} == {"robot.urdf", "robot.yaml", "robot.v1.yaml"}
     assert (tmp_path / "robot.urdf").read_bytes() == (ROOT / "robots" / "four_bar" / "robot.urdf").read_bytes()

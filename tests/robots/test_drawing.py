@@ -47,7 +47,7 @@ def points_of(shape):
 
 
 @given(st.lists(boxes | cylinders | spheres, min_size=1, max_size=4))
-def test_a_body_weighs_what_the_points_of_its_shapes_weigh(shapes):
+def test_body_mass_matches_sampled_shapes(shapes):
     cloud = [masspoint for shape in shapes for masspoint in points_of(shape)]
     mass = sum(m for m, _ in cloud)
     center = sum(m * at for m, at in cloud) / mass
@@ -59,17 +59,17 @@ def test_a_body_weighs_what_the_points_of_its_shapes_weigh(shapes):
 
 
 @given(cylinders)
-def test_a_cylinder_is_turned_along_its_ends(cylinder):
+def test_cylinder_is_aligned_with_its_ends(cylinder):
     half = rotation_of(cylinder.rpy) @ [0.0, 0.0, cylinder.length / 2.0]
     assert cylinder.center + half == pytest.approx(cylinder.end, abs=1e-12)
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
-def test_a_number_reads_back_the_same(value):
+def test_number_survives_round_trip(value):
     assert float(number_text(value)) == value
 
 
-def test_numbers_are_written_short_and_without_noise():
+def test_numbers_are_short_and_without_noise():
     assert number_text(-0.0) == "0"
     assert number_text(2.0) == "2"
     assert length_text((0.1 + 0.2, -1e-17, -1.5)) == "0.3 0 -1.5"
@@ -86,7 +86,7 @@ def pendulum():
     return robot
 
 
-def test_a_joint_stands_where_it_is_drawn_seen_from_its_parent():
+def test_joint_is_at_its_drawn_pose():
     robot = pendulum()
     robot.body("tip", ball("tip_ball", "arm", (0.3, 0.1, 0.4)), Sphere((0.3, 0.1, 0.4), 0.1, 1.0), material="steel")
     joints = {joint.get("name"): joint for joint in etree.fromstring(urdf_text(robot).encode()).iterfind("joint")}
@@ -95,7 +95,7 @@ def test_a_joint_stands_where_it_is_drawn_seen_from_its_parent():
     assert joints["tip_ball"].get("type") == "continuous"
 
 
-def test_an_axis_is_written_as_a_unit_vector_and_stops_as_seen_from_the_drawn_pose():
+def test_axis_is_unit_and_limits_are_relative():
     joint = etree.fromstring(urdf_text(pendulum()).encode()).find("joint")
     assert joint.find("axis").get("xyz") == "0 1 0"
     limit = {key: float(value) for key, value in joint.find("limit").attrib.items()}
@@ -103,14 +103,14 @@ def test_an_axis_is_written_as_a_unit_vector_and_stops_as_seen_from_the_drawn_po
     assert dict(joint.find("dynamics").attrib) == {"damping": "0.1", "friction": "0"}
 
 
-def test_only_what_may_touch_has_a_collision_shape():
+def test_only_contact_shapes_are_collision_shapes():
     base, arm = etree.fromstring(urdf_text(pendulum()).encode()).iterfind("link")
     assert base.find("collision/geometry/box").get("size") == "0.2 0.2 0.1"
     assert arm.find("visual/geometry/sphere").get("radius") == "0.1"
     assert arm.find("collision") is None
 
 
-def test_a_rod_is_two_halves_on_balls_that_meet_in_the_middle():
+def test_rod_is_two_halves_joined_by_balls():
     robot = pendulum()
     robot.rod("link", ("base", (0.2, 0.0, 1.0)), ("arm", (0.2, 0.1, 0.4)), radius=0.01, mass=0.4, material="steel")
     assert [joint.name for joint in robot.joints] == ["swing", "ball_link_start", "ball_link_end"]
@@ -130,7 +130,7 @@ def test_a_rod_is_two_halves_on_balls_that_meet_in_the_middle():
 @pytest.mark.parametrize(
     "text", ["yes", "No", "null", "1.0", "1e3", "012", "a: b", "- a", "", " a", "a ", "a #b", "é", "~", "3d"]
 )
-def test_a_text_reads_back_as_the_same_text(text):
+def test_text_survives_round_trip(text):
     robot = pendulum()
     robot.metadata = {"note": text}
     assert yaml.safe_load(yaml_text(robot))["metadata"] == {"note": text}
@@ -157,12 +157,12 @@ def hold_unnamed(robot):
 @given(
     point.map(lambda rpy: tuple(3.0 * angle for angle in rpy)) | st.tuples(coordinate, st.just(math.pi / 2), coordinate)
 )
-def test_a_rotation_has_the_roll_pitch_and_yaw_that_make_it(rpy):
+def test_rotation_matches_roll_pitch_yaw(rpy):
     rotation = rotation_of(rpy)
     assert rotation_of(rpy_of(rotation)) == pytest.approx(rotation, abs=1e-12)
 
 
-def test_a_sliding_joint_is_written_with_its_travel_as_seen_from_the_drawn_pose():
+def test_slider_travel_is_relative_to_drawn_pose():
     robot = pendulum()
     slider = prismatic("slide", "arm", (0.0, 0.1, 0.3), (0.0, 0.0, -3.0), metres=(0.1, 0.4), drawn=0.25)
     robot.body("piston", slider, Sphere((0.0, 0.1, 0.2), 0.1, mass=1.0), material="steel")
@@ -171,7 +171,7 @@ def test_a_sliding_joint_is_written_with_its_travel_as_seen_from_the_drawn_pose(
     assert (joint.find("limit").get("lower"), joint.find("limit").get("upper")) == ("-0.15", "0.15")
 
 
-def test_a_rod_that_ends_in_a_point_is_whole_and_held_there():
+def test_rod_with_point_end_is_one_body():
     robot = pendulum()
     rod_between(robot, ("ball", "point"))
     assert [joint.name for joint in robot.joints] == ["swing", "ball_link"]
@@ -181,7 +181,7 @@ def test_a_rod_that_ends_in_a_point_is_whole_and_held_there():
     ]
 
 
-def test_a_rod_on_a_universal_joint_cannot_spin(tmp_path):
+def test_rod_on_universal_joint_cannot_spin(tmp_path):
     robot = pendulum()
     rod_between(robot, ("ball", "universal"))
     description = yaml.safe_load(yaml_text(robot))
@@ -213,7 +213,7 @@ def limb():
     return robot
 
 
-def test_the_other_side_stands_in_the_mirror_where_its_coordinates_are_the_same(tmp_path):
+def test_mirrored_side_has_equal_coordinates(tmp_path):
     write(limb(), tmp_path)
     robot = eurdf.load(tmp_path, root="fixed")
     random = np.random.default_rng(5)
@@ -247,7 +247,7 @@ def unit_quaternion(random):
 
 
 @given(boxes | cylinders | spheres)
-def test_a_mirrored_shape_weighs_what_its_points_weigh_in_the_mirror(shape):
+def test_mirrored_shape_has_mirrored_inertia(shape):
     flip = np.diag([1.0, -1.0, 1.0])
     solid, mirrored = solid_of([shape]), solid_of([mirrored_shape(shape)])
     assert mirrored.mass == solid.mass
@@ -271,6 +271,6 @@ def test_a_mirrored_shape_weighs_what_its_points_weigh_in_the_mirror(shape):
         (lambda robot, ball: hold_unnamed(robot), "closure 'loop' holds 'base' and 'left_arm'"),
     ],
 )
-def test_a_drawing_that_does_not_hold_together_is_refused(draw, complaint):
+def test_disconnected_drawing_is_refused(draw, complaint):
     with pytest.raises(ValueError, match=complaint):
         draw(pendulum(), lambda name, parent: ball(name, parent, (0.0, 0.0, 0.0)))

@@ -16,13 +16,13 @@ from robots import picture, sheet
 ROOT = Path(__file__).parents[2]
 
 
-def test_without_a_renderer_it_says_what_to_install(monkeypatch, capsys, tmp_path):
+def test_missing_renderer_says_what_to_install(monkeypatch, capsys, tmp_path):
     monkeypatch.setitem(sys.modules, "pyvista", None)
     assert picture.main(["four_bar", "-o", str(tmp_path / "picture.png")]) == 2
     assert 'pip install -e ".[pictures]"' in capsys.readouterr().err
 
 
-def test_what_cannot_be_drawn_is_told(monkeypatch, capsys, tmp_path):
+def test_undrawable_robot_is_reported(monkeypatch, capsys, tmp_path):
     pytest.importorskip("pyvista", reason="pyvista is not installed: pip install -e '.[pictures]'")
     assert picture.main(["no_such_robot"]) == 1
     (tmp_path / "robot.urdf").write_text('<robot name="bare"><link name="base"/></robot>')
@@ -32,7 +32,7 @@ def test_what_cannot_be_drawn_is_told(monkeypatch, capsys, tmp_path):
     assert bare == f"{tmp_path}: it has no visual shapes"
 
 
-def test_the_views_of_a_robot_fill_the_picture_but_for_a_margin():
+def test_views_fill_picture_within_margin():
     pytest.importorskip("pyvista", reason="pyvista is not installed: pip install -e '.[pictures]'")
     image = picture.picture(eurdf.load("four_bar"))
     height, width, _ = image.shape
@@ -44,12 +44,12 @@ def test_the_views_of_a_robot_fill_the_picture_but_for_a_margin():
     assert (rows[0], height - 1 - rows[-1]) == pytest.approx((12, 12), abs=2)
 
 
-def test_a_picture_is_drawn_beside_the_robot_and_is_small():
+def test_picture_is_drawn_beside_robot_and_is_small():
     for file in ROOT.glob("robots/*/picture.png"):
         assert file.stat().st_size <= 150_000, file
 
 
-def test_the_sheet_shows_each_robot_with_its_name():
+def test_sheet_shows_each_robot_with_name():
     pytest.importorskip("pyvista", reason="pyvista is not installed: pip install -e '.[pictures]'")
     one, two = sheet.sheet(["four_bar"]), sheet.sheet(["four_bar", "bennett"])
     width, height = 170, 190
@@ -60,7 +60,7 @@ def test_the_sheet_shows_each_robot_with_its_name():
         assert (part < 128).any()
 
 
-def test_without_a_renderer_the_sheet_says_what_to_install(monkeypatch, capsys, tmp_path):
+def test_sheet_without_renderer_says_what_to_install(monkeypatch, capsys, tmp_path):
     monkeypatch.setitem(sys.modules, "pyvista", None)
     assert sheet.main(["-o", str(tmp_path / "sheet.png")]) == 2
     assert 'pip install -e ".[pictures]"' in capsys.readouterr().err

@@ -1,4 +1,4 @@
-"""What says when a robot is good enough: good ones pass, and what is wrong with one is told by its rule alone."""
+"""The quality rules: good robots pass, and each error is reported by its own rule only."""
 
 from __future__ import annotations
 
@@ -59,84 +59,84 @@ def restate(folder):
     (folder / "README.md").write_text("\n".join(["# Robot", "![](picture.png)", "", *rows, ""]))
 
 
-def faults(folder):
+def errors(folder):
     """What is wrong, by rule, where something is."""
-    return {rule: found for rule, found in judge(Candidate.find(folder)).faults.items() if found}
+    return {rule: found for rule, found in judge(Candidate.find(folder)).errors.items() if found}
 
 
 def only_fault(folder, rule):
     """The one thing that is wrong, by the one rule that it breaks."""
-    found = faults(folder)
+    found = errors(folder)
     assert list(found) == [rule]
-    (fault,) = found[rule]
-    return fault
+    (error,) = found[rule]
+    return error
 
 
 @pytest.mark.parametrize("name", ["four_bar", "digit_leg"])
-def test_a_good_robot_passes_wherever_it_is(name, tmp_path):
+def test_good_robot_passes_anywhere(name, tmp_path):
     folder = tmp_path / "good"
     shutil.copytree(ROOT / "robots" / name, folder)
     verdict = judge(Candidate.find(folder))
-    assert not any(verdict.faults.values())
+    assert not any(verdict.errors.values())
     assert verdict.passes
-    assert verdict.faults["mirrored"] is None  # it has one side only
+    assert verdict.errors["mirrored"] is None  # it has one side only
 
 
-def test_what_need_not_be_there_is_not_looked_at(copy):
+def test_optional_files_are_not_required(copy):
     verdict = judge(Candidate.find(copy("four_bar", "robot.v1.yaml")))
     assert verdict.passes
-    assert [rule for rule, found in verdict.faults.items() if found is None] == ["built", "version 1", "mirrored"]
+    assert [rule for rule, found in verdict.errors.items() if found is None] == ["built", "version 1", "mirrored"]
 
 
-def test_a_robot_that_cannot_be_built_is_told_why_and_nothing_else(copy):
+def test_unbuildable_robot_reports_only_its_reason(copy):
     folder = copy("four_bar")
     replace(folder / "robot.yaml", "[motor_crank]", "[motor_krank]")
     assert "did you mean 'motor_crank'" in eurdf.check(folder).diagnostics[0].hint
     assert "motor_krank" in only_fault(folder, "sound")
 
 
-def test_a_warning_is_a_fault(copy):
+def test_warning_is_an_error(copy):
     folder = copy("four_bar", "robot.v1.yaml")
     edit(folder, "link[@name='rocker_pin_b']", name="rocker_pin_a")
-    assert list(faults(folder)) == ["sound"]
+    assert list(errors(folder)) == ["sound"]
 
 
-def test_a_stop_beyond_what_the_linkage_allows_is_a_dead_point(copy):
+def test_limit_beyond_linkage_is_a_dead_point(copy):
     folder = copy("four_bar", "robot.v1.yaml")
     replace(folder / "robot.yaml", "[motor_crank]", "[free_rocker]")
     edit(folder, "joint[@name='free_rocker']/limit", lower="-2", upper="2", effort="1")
-    found = faults(folder)
-    assert list(found) == ["moves"]
-    below, above = found["moves"]
+    found = errors(folder)
+    assert list(found) == ["motion"]
+    below, above = found["motion"]
     assert below.startswith("'free_rocker' has a dead point at -45.7°")
-    assert below.endswith("before its stop at -114.6°")
+    assert below.endswith("before its limit at -114.6°")
     assert "'free_rocker' has a dead point at 1.8°" in above
 
 
-def test_an_actuator_without_stops_must_come_round(copy):
+def test_unlimited_actuator_must_make_full_turn(copy):
     folder = copy("four_bar", "robot.v1.yaml")
     edit(folder, "joint[@name='free_rocker']/limit", upper="0.01")
-    found = faults(folder)
-    assert list(found) == ["moves"]
-    assert all("'motor_crank' has no stops, but 'free_rocker' comes to its own" in fault for fault in found["moves"])
+    found = errors(folder)
+    assert list(found) == ["motion"]
+    assert all("'motor_crank' has no limits, but 'free_rocker' reaches its own" in error for error in found["motion"])
 
 
-def test_a_loop_open_by_a_nanometre_is_not_closed(copy):
+def test_loop_open_by_a_nanometre_is_open(copy):
     folder = copy("four_bar")
     edit(folder, "joint[@name='weld_rocker_pin_b']/origin", xyz="-0.070000001 0 0.24")
     assert "open by 1.0e-09" in only_fault(folder, "assembled")
 
 
-def test_a_robot_needs_an_assembled_configuration(copy):
+def test_assembled_configuration_is_required(copy):
     folder = copy("four_bar")
     replace(folder / "robot.yaml", "configurations:\n  assembled: {}\n", "")
-    assert only_fault(folder, "assembled") == "there is no configuration 'assembled'"
+    assert only_fault(folder, "assembled") == "the configuration 'assembled' is missing"
 
 
-def test_loops_that_do_not_close_are_told_once(copy):
+def test_open_loops_are_reported_once(copy):
     folder = copy("four_bar", "robot.v1.yaml")
     edit(folder, "joint[@name='weld_rocker_pin_b']/origin", xyz="9 0 0")
-    found = faults(folder)
+    found = errors(folder)
     assert list(found) == ["sound", "assembled"]
 
 
@@ -152,32 +152,32 @@ def test_loops_that_do_not_close_are_told_once(copy):
         ("](picture.png)", "](other.png)"),
     ],
 )
-def test_a_readme_that_does_not_say_what_is_measured_is_at_fault(copy, old, new):
+def test_readme_must_state_computed_dimensions(copy, old, new):
     folder = copy("four_bar")
     replace(folder / "README.md", old, new)
-    found = faults(folder)
+    found = errors(folder)
     assert list(found) == ["documented"]
-    assert all("README.md" in fault for fault in found["documented"])
+    assert all("README.md" in error for error in found["documented"])
     if old.startswith("| 3"):
         assert old in found["documented"][0]
 
 
-def test_a_readme_and_a_description_are_missed(copy):
+def test_readme_and_description_are_required(copy):
     folder = copy("four_bar", "README.md")
-    assert only_fault(folder, "documented") == "there is no README.md"
+    assert only_fault(folder, "documented") == "README.md is missing"
     folder = copy("digit_leg")
     replace(folder / "robot.yaml", "description: ", "title: ")
     assert "no description" in only_fault(folder, "documented")
 
 
-def test_a_missing_picture_is_missed_and_so_is_one_that_is_none(copy):
+def test_picture_must_be_a_png(copy):
     folder = copy("four_bar", "picture.png")
-    assert only_fault(folder, "pictured").startswith("there is no picture.png")
+    assert only_fault(folder, "pictured").startswith("picture.png is missing")
     (folder / "picture.png").write_bytes(b"")
-    assert only_fault(folder, "pictured") == "picture.png is no PNG"
+    assert only_fault(folder, "pictured") == "picture.png is not a PNG file"
 
 
-def test_a_body_without_mass_between_others_is_missed(copy):
+def test_massless_inner_body_is_reported(copy):
     folder = copy("digit_leg")
     file = folder / "robot.urdf"
     tree = etree.parse(file)
@@ -185,19 +185,19 @@ def test_a_body_without_mass_between_others_is_missed(copy):
     inertial.getparent().remove(inertial)
     tree.write(file)
     restate(folder)
-    assert only_fault(folder, "weighs") == "what joint 'free_foot1' carries has no mass"
+    assert only_fault(folder, "mass") == "the body of joint 'free_foot1' has no mass"
 
 
-def test_a_mass_matrix_that_is_not_positive_definite_is_named_with_its_place(copy):
+def test_indefinite_mass_matrix_is_reported_with_place(copy):
     folder = copy("four_bar")
     edit(folder, "link[@name='rocker']/inertial/inertia", ixx="0", ixy="0", ixz="0", iyy="0", iyz="0", izz="0")
     edit(folder, "link[@name='rocker']/inertial/origin", xyz="0 0 0")
-    found = faults(folder)
-    assert found["weighs"] == ["the mass matrix is not positive definite where it is assembled"]
+    found = errors(folder)
+    assert found["mass"] == ["the mass matrix is not positive definite at 'assembled'"]
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "fault"),
+    ("old", "new", "error"),
     [
         ("type: [3d]", "type: [6d]", "closure 'rocker_pin' is another"),
         ("[motor_crank]", "[free_rocker]", "the actuators are others"),
@@ -205,35 +205,37 @@ def test_a_mass_matrix_that_is_not_positive_definite_is_named_with_its_place(cop
         ("[motor_crank]", "[motor_crank]\njoint_name: [free_rocker]\njoint_type: [SPHERICAL]", "joint 'free_rocker'"),
     ],
 )
-def test_a_version_1_that_says_something_else_is_named(copy, old, new, fault):
+def test_different_version_1_is_reported(copy, old, new, error):
     folder = copy("four_bar")
     replace(folder / "robot.v1.yaml", old, new)
-    assert fault in only_fault(folder, "version 1")
+    assert error in only_fault(folder, "version 1")
 
 
-def test_a_version_1_with_a_fault_of_its_own_is_named(copy):
+def test_invalid_version_1_is_reported(copy):
     folder = copy("four_bar")
     replace(folder / "robot.v1.yaml", "[motor_crank]", "[motor_krank]")
     assert "motor_krank" in only_fault(folder, "version 1")
 
 
 @pytest.mark.parametrize(("number", "is_built"), [("1.57079632679488", True), ("1.5707964", False)])
-def test_the_last_digits_of_a_built_file_may_be_those_of_another_processor(number, is_built, tmp_path):
+def test_rounding_of_other_processors_is_accepted(number, is_built, tmp_path):
     folder = tmp_path / "four_bar"
     shutil.copytree(ROOT / "robots" / "four_bar", folder)
     replace(folder / "robot.urdf", "1.5707963267949", number)
-    assert faults(folder).get("built") == (None if is_built else ["robot.urdf is not what build.py writes"])
+    assert errors(folder).get("built") == (
+        None if is_built else ["robot.urdf differs from what build.py writes; run build.py"]
+    )
 
 
-def test_a_file_that_its_builder_does_not_write_is_named(tmp_path):
+def test_outdated_file_is_reported(tmp_path):
     folder = tmp_path / "four_bar"
     shutil.copytree(ROOT / "robots" / "four_bar", folder)
     replace(folder / "robot.v1.yaml", "# Written by", "# Not written by")
-    assert only_fault(folder, "built") == "robot.v1.yaml is not what build.py writes"
+    assert only_fault(folder, "built") == "robot.v1.yaml differs from what build.py writes; run build.py"
     (folder / "build.py").write_text("raise SystemExit('no drawing')\n")
     assert only_fault(folder, "built") == "build.py fails: no drawing"
     (folder / "build.py").write_text("")
-    assert len(faults(folder)["built"]) == 3
+    assert len(errors(folder)["built"]) == 3
 
 
 # --- mirrored legs ---------------------------------------------------------------------------------------------------
@@ -262,69 +264,73 @@ def walker(tmp_path):
     return tmp_path
 
 
-def test_drawn_and_mirrored_legs_pass(walker):
+def test_mirrored_legs_pass(walker):
     verdict = judge(Candidate.find(walker))
-    assert not any(verdict.faults.values())
-    assert verdict.faults["mirrored"] == []
+    assert not any(verdict.errors.values())
+    assert verdict.errors["mirrored"] == []
 
 
-def test_a_floating_robot_states_its_dimensions_with_either_root(walker):
+def test_floating_robot_states_both_roots(walker):
     text = (walker / "README.md").read_text()
     assert text.count("| fixed | ") == text.count("| floating | ") == 1
     replace(walker / "README.md", "| fixed | ", "| planar | ")
-    assert list(faults(walker)) == ["documented"]
+    assert list(errors(walker)) == ["documented"]
 
 
-def test_a_leg_may_count_its_angles_the_other_way(walker):
+def test_mirrored_angles_can_have_opposite_sign(walker):
     # The same leg, but that positive angles of its right hip are negative ones of a mirror image.
     (axis,) = etree.parse(walker / "robot.urdf").xpath("joint[@name='right_hip']/axis/@xyz")
     other_way = " ".join(str(-float(value)) for value in axis.split())
     edit(walker, "joint[@name='right_hip']/axis", xyz=other_way)
-    assert only_fault(walker, "mirrored") == "'left_hip' and 'right_hip' have other stops"
+    assert only_fault(walker, "mirrored") == "'left_hip' and 'right_hip' have different position limits"
     edit(walker, "joint[@name='right_hip']/limit", lower="-1.0472", upper="0.5236")
-    assert not faults(walker)
+    assert not errors(walker)
 
 
 @pytest.mark.parametrize(
-    ("xpath", "attributes", "fault"),
+    ("xpath", "attributes", "error"),
     [
         ("joint[@name='right_hip']/origin", {"xyz": "0 -0.2001 1"}, "'left_hip' does not move as the mirror image"),
         ("joint[@name='right_hip']/axis", {"xyz": "0 0 1"}, "'left_hip' does not move as the mirror image"),
-        ("joint[@name='right_hip']/limit", {"lower": "-0.5"}, "'left_hip' and 'right_hip' have other stops"),
-        ("joint[@name='right_hip']/limit", {"effort": "2"}, "have other limits of velocity or effort"),
-        ("link[@name='right_shin']/inertial/mass", {"value": "0.6"}, "'right_knee' carry differs in mass"),
+        (
+            "joint[@name='right_hip']/limit",
+            {"lower": "-0.5"},
+            "'left_hip' and 'right_hip' have different position limits",
+        ),
+        ("joint[@name='right_hip']/limit", {"effort": "2"}, "differ in velocity limit"),
+        ("link[@name='right_shin']/inertial/mass", {"value": "0.6"}, "'right_knee' differ"),
         ("link[@name='right_shin']/inertial/origin", {"xyz": "0 0 0"}, "centres of mass"),
         ("link[@name='right_shin']/inertial/inertia", {"iyz": "0"}, "inertias"),
-        ("link[@name='right_shin']", {"name": "right_calf"}, "'left_shin' has no mirror image of its name"),
+        ("link[@name='right_shin']", {"name": "right_calf"}, "'left_shin' has no counterpart"),
     ],
 )
-def test_legs_that_are_not_mirrored_are_told_by_what_is_other(walker, xpath, attributes, fault):
+def test_unmirrored_legs_are_reported_by_difference(walker, xpath, attributes, error):
     if "name" in attributes:
         for end in ("child", "parent"):
             edit(walker, f"joint/{end}[@link='right_shin']", link=attributes["name"])
     edit(walker, xpath, **attributes)
     restate(walker)
-    found = faults(walker)
+    found = errors(walker)
     assert list(found) == ["mirrored"]
-    assert fault in found["mirrored"][0]
+    assert error in found["mirrored"][0]
 
 
 # --- the command -----------------------------------------------------------------------------------------------------
 
 
-def test_the_command_tells_by_rule_and_exits_with_0_1_or_2(copy, capsys):
+def test_command_reports_by_rule_and_exits_0_1_2(copy, capsys):
     good, bad = copy("four_bar"), copy("digit_leg", "picture.png")
     assert main([str(good)]) == 0
     out = capsys.readouterr().out.splitlines()
     assert out[0].split()[:3] == ["robot", "sound", "assembled"]
     assert "motor_crank  none" in "\n".join(out)
     assert main([str(good), str(bad)]) == 1
-    assert "digit_leg: pictured: there is no picture.png" in capsys.readouterr().out
+    assert "digit_leg: pictured: picture.png is missing" in capsys.readouterr().out
     assert main([str(good), "no_such_robot"]) == 2
     assert "no_such_robot" in capsys.readouterr().err
 
 
-def test_the_command_writes_the_same_as_json(copy, capsys):
+def test_command_writes_same_as_json(copy, capsys):
     assert main([str(copy("four_bar", "picture.png")), "--json"]) == 1
     (robot,) = json.loads(capsys.readouterr().out)["robots"]
     assert (robot["name"], robot["passes"]) == ("four_bar", False)

@@ -25,7 +25,7 @@ def robots() -> dict[str, eurdf.Robot]:
 
 
 @pytest.mark.parametrize("name", FACTS)
-def test_the_model_has_the_published_dimensions(robots: dict[str, eurdf.Robot], name: str) -> None:
+def test_model_has_published_dimensions(robots: dict[str, eurdf.Robot], name: str) -> None:
     robot, facts = robots[name], FACTS[name]
     model = robot.model
     assert (model.nq, model.nv, model.njoints - 1) == (facts["nq"], facts["nv"], facts["joints"])
@@ -36,13 +36,13 @@ def test_the_model_has_the_published_dimensions(robots: dict[str, eurdf.Robot], 
 
 
 @pytest.mark.parametrize("name", FACTS)
-def test_the_mass_is_the_published_one(robots: dict[str, eurdf.Robot], name: str) -> None:
+def test_mass_is_published_one(robots: dict[str, eurdf.Robot], name: str) -> None:
     mass = sum(inertia.mass for inertia in list(robots[name].model.inertias)[1:])
     assert mass == pytest.approx(FACTS[name]["mass"], rel=1e-8)
 
 
 @pytest.mark.parametrize("name", FACTS)
-def test_the_motion_has_the_published_dimensions(robots: dict[str, eurdf.Robot], name: str) -> None:
+def test_motion_has_published_dimensions(robots: dict[str, eurdf.Robot], name: str) -> None:
     facts = FACTS[name]
     analysis = eurdf.analyze(robots[name])
     assert analysis.closes == facts["closes"]
@@ -58,20 +58,20 @@ def test_the_motion_has_the_published_dimensions(robots: dict[str, eurdf.Robot],
 
 
 @pytest.mark.parametrize("name", FACTS)
-def test_the_known_faults_are_found_and_no_others(name: str) -> None:
+def test_only_known_errors_are_found(name: str) -> None:
     report = eurdf.check(WILD / name)
     assert {found.code for found in report.diagnostics} - {"urdf-mesh-missing"} == FAULTS[name]
 
 
 @pytest.mark.parametrize("name", FACTS)
-def test_geometry_that_needs_a_missing_mesh_is_refused_with_the_way_out(name: str) -> None:
+def test_missing_mesh_is_refused_with_workaround(name: str) -> None:
     robot = eurdf.load(WILD / name)
     with pytest.raises(eurdf.InvalidRobot, match="geometry=False") as refusal:
         _ = robot.visual_model
     assert "urdf-mesh-missing" in {found.code for found in refusal.value.diagnostics}
 
 
-def test_a_loop_that_cannot_close_is_kept_in_the_diagnostics_and_refused_when_strict() -> None:
+def test_impossible_loop_is_diagnosed_and_refused_if_strict() -> None:
     robot = eurdf.load(WILD / "kangaroo_like", geometry=False, check_loops=True)
     assert "closure-cannot-close" in {found.code for found in robot.diagnostics}
     with pytest.raises(eurdf.InvalidRobot):
@@ -79,14 +79,14 @@ def test_a_loop_that_cannot_close_is_kept_in_the_diagnostics_and_refused_when_st
 
 
 @pytest.mark.parametrize("name", [name for name in FACTS if FACTS[name]["closes"]])
-def test_the_loops_close_from_the_neutral_configuration(robots: dict[str, eurdf.Robot], name: str) -> None:
+def test_loops_close_from_neutral_configuration(robots: dict[str, eurdf.Robot], name: str) -> None:
     assembly = eurdf.assemble(robots[name])
     assert assembly.converged
     assert np.max(np.abs(assembly.residual)) < 1e-10
 
 
 @pytest.mark.parametrize("name", [name for name in FACTS if FACTS[name]["closes"]])
-def test_every_actuator_moves_though_no_range_is_given(robots: dict[str, eurdf.Robot], name: str) -> None:
+def test_every_actuator_moves_without_range(robots: dict[str, eurdf.Robot], name: str) -> None:
     robot = robots[name]
     for actuator in robot.actuation.joints:
         found = eurdf.sweep(robot, actuator, steps=10)

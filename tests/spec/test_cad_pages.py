@@ -16,7 +16,7 @@ PAGES = ("solidworks", "onshape")
 
 
 @pytest.mark.parametrize("name", PAGES)
-def test_each_command_gives_what_the_page_shows(name: str, tmp_path: Path) -> None:
+def test_commands_give_what_page_shows(name: str, tmp_path: Path) -> None:
     page = SPEC / f"{name}.md"
     reader = PageReader(page, tmp_path)
     reader.follow()
@@ -29,7 +29,7 @@ def test_each_command_gives_what_the_page_shows(name: str, tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize("name", PAGES)
-def test_every_option_that_the_page_names_is_one(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_options_on_page_exist(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["generate", "--help"])
     options = capsys.readouterr().out
@@ -38,7 +38,7 @@ def test_every_option_that_the_page_names_is_one(name: str, capsys: pytest.Captu
     assert [option for option in sorted(named) if option not in options] == []
 
 
-def test_every_name_that_the_pages_propose_is_recognised() -> None:
+def test_proposed_names_are_recognised() -> None:
     text = (SPEC / "solidworks.md").read_text(encoding="utf-8")
     rows = dict(re.findall(r"^ +\| ([^|]+?) \| ([^|]+?) \|", text, re.M))
     proposed = {what: re.findall(r"`([^`]+)`", names) for what, names in rows.items()}
@@ -54,6 +54,6 @@ def test_every_name_that_the_pages_propose_is_recognised() -> None:
             assert any(pattern.search(name) for pattern in patterns), name
 
 
-def test_the_site_shows_the_pages() -> None:
+def test_site_shows_the_pages() -> None:
     index = (SPEC / "index.md").read_text(encoding="utf-8").split()
     assert set(PAGES) <= set(index)

@@ -58,7 +58,7 @@ def _chapter(text: str) -> list[Chapter]:
     return [Chapter("gears", Path("gears.md"), text)]
 
 
-def test_a_clause_is_read_with_its_place_its_word_and_its_options() -> None:
+def test_clause_has_place_keyword_and_options() -> None:
     first, second = read_clauses(_chapter(CHAPTER))
     assert first == Clause(
         id="EU-TST-001",
@@ -75,13 +75,13 @@ def test_a_clause_is_read_with_its_place_its_word_and_its_options() -> None:
     assert (second.id, second.line, second.keyword, second.versions) == ("EU-TST-002", 25, "SHOULD NOT", (1, 2))
 
 
-def test_a_withdrawn_id_says_where_it_went() -> None:
+def test_withdrawn_id_names_its_replacement() -> None:
     assert read_withdrawn(_chapter(CHAPTER)) == [
         Withdrawn("EU-TST-003", "gears", 32, "It went into {clause}`EU-TST-001`.")
     ]
 
 
-def test_a_fence_that_is_not_closed_ends_with_the_chapter() -> None:
+def test_unclosed_fence_ends_with_chapter() -> None:
     (clause,) = read_clauses(_chapter(":::{clause} EU-TST-001\nIt MAY end.\n"))
     assert clause.text == "It MAY end."
 
@@ -94,15 +94,15 @@ def test_a_fence_that_is_not_closed_ends_with_the_chapter() -> None:
         ("It MUST\nNOT.", ["MUST"]),
     ],
 )
-def test_normative_words_are_whole_words_in_capitals_outside_code(text: str, words: list[str]) -> None:
+def test_normative_words_are_capitals_outside_code(text: str, words: list[str]) -> None:
     assert keywords(text) == words
 
 
-def test_the_registry_of_clauses_is_current() -> None:
+def test_clause_registry_is_current() -> None:
     assert CLAUSES.read_text(encoding="utf-8") == registry_text(current_registry()), "python -m spec.site.registry"
 
 
-def test_the_registry_fits_its_schema_and_nothing_less_does() -> None:
+def test_registry_matches_its_schema_strictly() -> None:
     schema = json.loads((SPEC / SCHEMA).read_text(encoding="utf-8"))
     validator = jsonschema.Draft202012Validator(schema)
     validator.check_schema(schema)
@@ -116,7 +116,7 @@ def test_the_registry_fits_its_schema_and_nothing_less_does() -> None:
         assert not validator.is_valid({**registry, kind: [{**entry, "other": 1}]})
 
 
-def test_the_registry_has_every_code_with_its_phase_severity_and_place() -> None:
+def test_registry_lists_codes_with_phase_severity_place() -> None:
     diagnostics = {entry["code"]: entry for entry in json.loads(CLAUSES.read_text(encoding="utf-8"))["diagnostics"]}
     assert set(diagnostics) == {rule.code for rule in REGISTRY.values() if rule.clause}
     frame = diagnostics["unknown-frame"]
@@ -124,12 +124,12 @@ def test_the_registry_has_every_code_with_its_phase_severity_and_place() -> None
     assert frame["place"] == "the name"
 
 
-def test_the_ids_that_were_given_are_listed_once_in_their_order() -> None:
+def test_ids_are_listed_once_in_order() -> None:
     ids = read_ids(IDS)
     assert ids == sorted(set(ids))
 
 
-def test_every_clause_that_the_code_names_exists() -> None:
+def test_every_cited_clause_exists() -> None:
     clauses = {clause.id for clause in read_clauses(read_chapters())}
     for path in (ROOT / "reference").rglob("*.py"):
         for clause in ID.findall(path.read_text(encoding="utf-8")):

@@ -71,22 +71,22 @@ def bent_leg() -> tuple[Any, Any]:
     return robot, eurdf.forward_kinematics(robot, np.array([0.1, -0.1, 0.2, -0.3, 0.1, 0.05]))
 
 
-def test_the_simulated_leg_stays_closed_and_its_motors_hold_it(held: simulate_digit_leg.Held) -> None:
+def test_simulated_leg_stays_closed_and_is_held(held: simulate_digit_leg.Held) -> None:
     assert held.motion.t[-1] == pytest.approx(1.0)
     assert held.opening < 1e-10
     assert 0.0 < np.degrees(held.sag).max() < 1.0
 
 
-def test_the_simulated_leg_falls_until_the_motors_carry_it(held: simulate_digit_leg.Held) -> None:
+def test_simulated_leg_falls_until_carried(held: simulate_digit_leg.Held) -> None:
     assert held.energy[-1] < held.energy[0]
     assert np.abs(held.motion.v[-1]).max() < 1e-2
 
 
-def test_the_simulated_energy_is_what_the_motors_put_in(held: simulate_digit_leg.Held) -> None:
+def test_simulated_energy_is_motor_work(held: simulate_digit_leg.Held) -> None:
     assert held.energy_error < 1e-2 * abs(held.energy[-1] - held.energy[0])
 
 
-def test_the_foot_follows_its_ellipse_without_jumps_within_the_limits(tmp_path: Path) -> None:
+def test_foot_follows_ellipse_within_limits(tmp_path: Path) -> None:
     followed = follow_foot_trajectory.main(tmp_path)
     robot, model = followed.robot, followed.robot.model
     for q, wanted in zip(followed.q, followed.wanted, strict=True):
@@ -108,24 +108,24 @@ def test_the_foot_follows_its_ellipse_without_jumps_within_the_limits(tmp_path: 
     )
 
 
-def test_on_average_over_a_squat_the_ground_carries_half_the_robot(squat: squat_torques.Squat) -> None:
+def test_ground_carries_half_the_robot_on_average(squat: squat_torques.Squat) -> None:
     torso, *leg = squat.robot.model.inertias
     carried = torso.mass / 2.0 + sum(inertia.mass for inertia in leg)
     assert squat.ground[:, 2].mean() == pytest.approx(carried * 9.81, rel=1e-6)
 
 
-def test_in_a_squat_the_weight_stays_above_the_sole(squat: squat_torques.Squat) -> None:
+def test_weight_stays_above_sole_in_squat(squat: squat_torques.Squat) -> None:
     assert np.abs(squat.ground[:, 4] / squat.ground[:, 2]).max() < 0.235 / 2.0
 
 
-def test_a_squat_down_and_up_takes_no_work_where_nothing_rubs(squat: squat_torques.Squat) -> None:
+def test_frictionless_squat_takes_no_work(squat: squat_torques.Squat) -> None:
     power = np.einsum("ij,ij->i", squat.u, squat.v[:, squat.robot.actuation.idx_v])
     assert np.abs(power).mean() > 10.0
     assert abs(power.mean()) < 1e-6
 
 
 @pytest.mark.parametrize("k", [0, 37, 100])
-def test_the_ground_balances_the_leg_and_half_the_torso_about_the_ankle(squat: squat_torques.Squat, k: int) -> None:
+def test_ground_balances_leg_and_half_torso(squat: squat_torques.Squat, k: int) -> None:
     """By the momentum of the leg about its centre of mass, and the weights."""
     model = squat.robot.model
     data = model.createData()
@@ -141,7 +141,7 @@ def test_the_ground_balances_the_leg_and_half_the_torso_about_the_ankle(squat: s
 
 
 @pytest.mark.parametrize("k", [0, 37, 100])
-def test_the_torques_of_a_squat_do_the_virtual_work_of_the_rest(squat: squat_torques.Squat, k: int) -> None:
+def test_squat_torques_do_virtual_work(squat: squat_torques.Squat, k: int) -> None:
     """No closure does any: for each motor, u = Dᵀ (M a + h) less what the ground does as the foot moves with it."""
     robot, q = squat.robot, squat.q[k]
     robot.model.gravity.linear = np.array([0.0, 0.0, -9.81 - squat.upwards[k]])
@@ -151,14 +151,14 @@ def test_the_torques_of_a_squat_do_the_virtual_work_of_the_rest(squat: squat_tor
     np.testing.assert_allclose(squat.u[k], expected, rtol=0.0, atol=1e-6)
 
 
-def test_the_torques_of_a_squat_are_within_what_the_motors_can(squat: squat_torques.Squat) -> None:
+def test_squat_torques_are_within_motor_limits(squat: squat_torques.Squat) -> None:
     most = squat.robot.model.upperEffortLimit[squat.robot.actuation.idx_v]
     assert (np.abs(squat.u) < most).all()
     assert np.abs(squat.u).max() > 10.0
 
 
 @needs_matplotlib
-def test_the_picture_of_the_squat_is_written(tmp_path: Path, squat: squat_torques.Squat) -> None:
+def test_picture_of_squat_is_written(tmp_path: Path, squat: squat_torques.Squat) -> None:
     figure = squat_torques.new_figure()
     squat_torques.draw(squat, figure)
     path = tmp_path / "squat_torques.png"
@@ -173,16 +173,14 @@ def test_the_picture_of_the_squat_is_written(tmp_path: Path, squat: squat_torque
     assert "[s]" in torques.get_xlabel()
 
 
-def test_without_matplotlib_the_squat_says_what_is_missing_before_it_computes(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_squat_reports_missing_matplotlib_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
     monkeypatch.setattr(squat_torques, "squat", lambda: pytest.fail("it computed first"))
     with pytest.raises(ModuleNotFoundError, match=r"needs matplotlib: pip install -e '\.\[examples\]'"):
         squat_torques.main(tmp_path)
 
 
-def test_an_example_run_as_a_script_says_what_it_found(
+def test_example_script_prints_its_result(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(sys, "argv", ["follow_foot_trajectory.py", str(tmp_path)])
@@ -191,12 +189,12 @@ def test_an_example_run_as_a_script_says_what_it_found(
     assert (tmp_path / "foot_trajectory.csv").is_file()
 
 
-def test_the_readme_of_the_examples_lists_them_all() -> None:
+def test_examples_readme_lists_all() -> None:
     listed = re.findall(r"^\| `(\w+\.py)`", (ROOT / "examples" / "README.md").read_text(encoding="utf-8"), re.M)
     assert sorted(listed) == [path.name for path in EXAMPLES]
 
 
-def test_each_of_ours_that_the_page_names_exists() -> None:
+def test_names_on_toolbox_page_exist() -> None:
     functions = set(re.findall(r"\beurdf\.(\w+)", PAGE))
     assert len(functions) > 20
     assert functions <= set(eurdf.__all__) | {"load"}
@@ -205,12 +203,12 @@ def test_each_of_ours_that_the_page_names_exists() -> None:
         assert hasattr(robot.actuation, name), name
 
 
-def test_the_page_names_every_public_function_of_the_published_toolbox() -> None:
+def test_toolbox_page_lists_all_published_functions() -> None:
     theirs = {name for row in re.findall(r"^\|([^|]*)\|", PAGE, re.M) for name in re.findall(r"`(\w+)`", row)}
     assert theirs >= PUBLISHED
 
 
-def test_the_code_that_the_page_shows_gives_the_twist() -> None:
+def test_code_on_page_gives_the_twist() -> None:
     robot, q = bent_leg()
     twist = np.array([0.1, 0.2, -0.1, 0.3, -0.2, 0.1])
     found = re.search(r"^```python\n(.*?)^```", PAGE, re.M | re.S)
@@ -233,7 +231,7 @@ def their_jacobian(robot: Any, q: Any) -> Any:
     return np.vstack(rows)
 
 
-def test_the_page_is_right_about_the_signs_of_the_jacobian_and_of_the_forces() -> None:
+def test_signs_on_page_are_right() -> None:
     robot, q = bent_leg()
     model, S, J = robot.model, robot.actuation.selection, their_jacobian(robot, q)
     np.testing.assert_allclose(eurdf.residual_and_jacobian(robot, q)[1], -J, rtol=0.0, atol=1e-9)
@@ -245,7 +243,7 @@ def test_the_page_is_right_about_the_signs_of_the_jacobian_and_of_the_forces() -
     np.testing.assert_allclose(np.concatenate(ours.forces), -x[6:], rtol=0.0, atol=1e-6)
 
 
-def test_the_page_is_right_that_independent_motors_give_the_same_derivative() -> None:
+def test_derivative_claim_on_page_is_right() -> None:
     robot, q = bent_leg()
     motors = robot.actuation.idx_v
     free = np.setdiff1d(np.arange(robot.model.nv), motors)

@@ -32,19 +32,19 @@ def _where(shown: Example | ShownDiagnostic) -> str:
 
 
 @pytest.mark.parametrize("example", read_examples(CHAPTERS), ids=_where)
-def test_an_example_gives_exactly_what_it_illustrates(example: Example) -> None:
+def test_example_gives_exactly_its_diagnostic(example: Example) -> None:
     outcome = example.shown().check()
     assert outcome.codes == example.expected, outcome.text
 
 
 @pytest.mark.parametrize("shown", BY_EDIT, ids=_where)
-def test_the_edit_that_shows_a_diagnostic_gives_it_and_nothing_else(shown: ShownDiagnostic) -> None:
+def test_diagnostic_edit_gives_only_that_diagnostic(shown: ShownDiagnostic) -> None:
     outcome = shown.faulty().check()
     assert outcome.codes == (shown.code,), outcome.text
 
 
 @pytest.mark.parametrize("shown", BY_EDIT, ids=_where)
-def test_without_the_edit_nothing_is_wrong(shown: ShownDiagnostic) -> None:
+def test_unedited_example_is_valid(shown: ShownDiagnostic) -> None:
     outcome = shown.sound().check()
     assert outcome.codes == (), outcome.text
 
@@ -55,7 +55,7 @@ def test_every_diagnostic_is_shown() -> None:
 
 
 @pytest.mark.parametrize("folder", sorted(EXAMPLES.iterdir()), ids=lambda folder: folder.name)
-def test_every_robot_that_examples_are_shown_on_is_used(folder: Path) -> None:
+def test_every_example_robot_is_used(folder: Path) -> None:
     used = {shown.robot for shown in SHOWN} | {example.robot for example in read_examples(CHAPTERS)}
     assert folder.name in used
 
@@ -71,18 +71,18 @@ closures:
 """
 
 
-def test_a_fragment_takes_the_place_of_the_keys_that_it_has() -> None:
+def test_fragment_replaces_its_keys() -> None:
     fragment = "actuators: [motor]\nclosures: []\n"
     assert with_keys(BASE, fragment) == (
         '# a robot\nextended_urdf: "2.0"\nclosures: []\n"joints": {}\nactuators: [motor]\n'
     )
 
 
-def test_a_fragment_need_not_be_well_formed() -> None:
+def test_fragment_can_be_malformed() -> None:
     assert with_keys(BASE, "joints: {ball: [\n").endswith("joints: {ball: [\n")
 
 
-def test_elements_are_added_at_the_end_of_a_urdf() -> None:
+def test_elements_are_appended_to_urdf() -> None:
     assert with_elements('<robot name="a">\n</robot>\n', "<link/>\n") == '<robot name="a">\n<link/>\n</robot>\n'
 
 
@@ -90,13 +90,13 @@ def _directive(name: str, argument: str, body: str, **options: str) -> Directive
     return Directive(1, name, argument, options, body, 2)
 
 
-def test_an_example_that_is_wrong_in_another_way_is_noticed() -> None:
+def test_differently_wrong_example_is_detected() -> None:
     example = example_of(_directive("example", "unknown-frame", "actuators: [moter]", part=""), "here")
     assert example.shown().check().codes == ("unknown-actuator",)
     assert example.expected == ("unknown-frame",)
 
 
-def test_a_urdf_that_is_shown_whole_is_checked_by_itself() -> None:
+def test_complete_urdf_is_checked_alone() -> None:
     example = example_of(
         _directive("example", "valid", '<robot name="a"><link name="b"/></robot>', file="robot.urdf"), ""
     )
@@ -116,12 +116,12 @@ Twice.
 """
 
 
-def test_what_is_said_of_a_diagnostic_is_all_but_its_diff() -> None:
+def test_diagnostic_text_excludes_its_diff() -> None:
     shown = diagnostic_of(_directive("diagnostic", "unknown-frame", DIFF), "here")
     assert shown.text == "A name is misspelt.\n\nTwice."
 
 
-def test_an_edit_knows_the_lines_that_it_changes() -> None:
+def test_edit_knows_its_changed_lines() -> None:
     edit = diagnostic_of(_directive("diagnostic", "unknown-frame", DIFF), "here").edit()
     before, after = edit.before.split("\n"), edit.after.split("\n")
     assert (edit.removed, edit.added) == (1, 1)
@@ -130,7 +130,7 @@ def test_an_edit_knows_the_lines_that_it_changes() -> None:
     assert before[: edit.start] == after[: edit.start]
 
 
-def test_a_message_tells_of_files_that_stand_nowhere_in_particular() -> None:
+def test_message_names_files_without_folder() -> None:
     shown = diagnostic_of(_directive("diagnostic", "unknown-frame", DIFF), "here")
     assert shown.faulty().check().text.startswith("my_robot/robot.yaml:6:14: error: ")
 
@@ -144,7 +144,7 @@ def test_a_message_tells_of_files_that_stand_nowhere_in_particular() -> None:
         ("@@ -1 +1 @@\n-a\n+b", "must begin with"),
     ],
 )
-def test_a_diff_that_cannot_be_made_is_no_edit(diff: str, why: str) -> None:
+def test_impossible_diff_is_no_edit(diff: str, why: str) -> None:
     shown = diagnostic_of(_directive("diagnostic", "xml-syntax", f"```diff\n{diff}\n```", file="robot.urdf"), "here")
     with pytest.raises(NotAnEdit, match=why):
         shown.edit()

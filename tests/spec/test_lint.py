@@ -50,12 +50,12 @@ def _found(fixture: Path) -> list[str]:
 
 
 @pytest.mark.parametrize("fixture", FIXTURES, ids=lambda fixture: fixture.stem)
-def test_a_fixture_gives_exactly_the_finding_that_its_first_line_says(fixture: Path) -> None:
+def test_fixture_gives_its_stated_error(fixture: Path) -> None:
     expected = fixture.read_text(encoding="utf-8").splitlines()[0].removeprefix("<!-- ").removesuffix(" -->")
     assert _found(fixture) == ([] if expected == "nothing" else [expected])
 
 
-def test_each_rule_finds_something_in_a_fixture() -> None:
+def test_every_rule_has_a_fixture() -> None:
     found = {rule: set() for rule in RULES}
     for fixture in FIXTURES:
         specification = _specification(fixture)
@@ -64,7 +64,7 @@ def test_each_rule_finds_something_in_a_fixture() -> None:
     assert [rule.__name__ for rule in RULES if not found[rule]] == []
 
 
-def test_the_specification_is_sound() -> None:
+def test_specification_is_sound() -> None:
     assert [str(finding) for finding in lint(current_specification())] == []
 
 
@@ -78,5 +78,5 @@ def test_the_specification_is_sound() -> None:
         ("EU-CLO-001 and -002", ["EU-CLO-001", "EU-CLO-002"]),
     ],
 )
-def test_a_docstring_can_cite_several_clauses_at_once(text: str, ids: list[str]) -> None:
+def test_docstring_can_cite_several_clauses(text: str, ids: list[str]) -> None:
     assert cited(text) == ids

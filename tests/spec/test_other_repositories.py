@@ -37,7 +37,7 @@ def environment(**more: str) -> dict[str, str]:
     return {**os.environ, "PATH": path, "PYTHONPATH": str(ROOT / "reference"), **more}
 
 
-def test_the_hook_is_one_that_pre_commit_takes() -> None:
+def test_hook_is_valid_for_pre_commit() -> None:
     pre_commit = [sys.executable, "-m", "pre_commit", "validate-manifest", str(HOOKS)]
     subprocess.run(pre_commit, check=True)
 
@@ -49,7 +49,7 @@ def run_the_hook(folder: Path) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.parametrize("broken", [False, True], ids=["sound", "broken"])
-def test_the_hook_passes_where_every_robot_of_the_repository_is_sound(tmp_path: Path, broken: bool) -> None:
+def test_hook_passes_valid_repository(tmp_path: Path, broken: bool) -> None:
     found = run_the_hook(repository(tmp_path, broken=broken))
     assert found.returncode == (1 if broken else 0), found.stdout + found.stderr
     assert ("unknown-frame" in found.stdout) == broken
@@ -72,19 +72,19 @@ def other_repository(folder: Path, files: list[str]) -> Path:
 
 
 @pytest.mark.parametrize("files", OTHERS.values(), ids=OTHERS)
-def test_the_hook_passes_in_a_repository_without_robots(tmp_path: Path, files: list[str]) -> None:
+def test_hook_passes_repository_without_robots(tmp_path: Path, files: list[str]) -> None:
     found = run_the_hook(other_repository(tmp_path, files))
     assert (found.returncode, found.stdout, found.stderr) == (0, ".: no robot\n", "")
 
 
-def test_the_hook_still_checks_a_bare_urdf(tmp_path: Path) -> None:
+def test_hook_checks_plain_urdf(tmp_path: Path) -> None:
     (tmp_path / "arm.urdf").write_text("<robot")
     found = run_the_hook(tmp_path)
     assert found.returncode == 1
     assert found.stdout.startswith("arm.urdf:1:1: error: ")
 
 
-def test_the_action_is_one_that_github_takes() -> None:
+def test_action_is_valid_for_github() -> None:
     check = [sys.executable, "-m", "check_jsonschema", "--builtin-schema", "vendor.github-actions", str(ACTION)]
     subprocess.run(check, check=True)
 
@@ -102,7 +102,7 @@ def run_the_action(folder: Path, paths: str, sarif: Path, output: Path) -> subpr
 
 
 @pytest.mark.parametrize("broken", [False, True], ids=["sound", "broken"])
-def test_the_action_writes_its_findings_as_sarif_and_fails_where_the_check_does(tmp_path: Path, broken: bool) -> None:
+def test_action_writes_sarif_and_fails_with_check(tmp_path: Path, broken: bool) -> None:
     sarif, output = tmp_path / "found.sarif", tmp_path / "output"
     found = run_the_action(repository(tmp_path / "repository", broken=broken), "robots deep", sarif, output)
     assert found.returncode == (1 if broken else 0), found.stdout + found.stderr
@@ -113,14 +113,14 @@ def test_the_action_writes_its_findings_as_sarif_and_fails_where_the_check_does(
 
 
 @pytest.mark.parametrize("files", OTHERS.values(), ids=OTHERS)
-def test_the_action_passes_in_a_repository_without_robots(tmp_path: Path, files: list[str]) -> None:
+def test_action_passes_repository_without_robots(tmp_path: Path, files: list[str]) -> None:
     sarif, output = tmp_path / "found.sarif", tmp_path / "output"
     found = run_the_action(other_repository(tmp_path / "repository", files), ".", sarif, output)
     assert (found.returncode, found.stdout) == (0, ".: no robot\n"), found.stderr
     assert json.loads(sarif.read_text())["runs"][0]["results"] == []
 
 
-def test_the_action_uploads_nothing_where_a_path_does_not_exist(tmp_path: Path) -> None:
+def test_action_uploads_nothing_for_missing_path(tmp_path: Path) -> None:
     output = tmp_path / "output"
     found = run_the_action(other_repository(tmp_path / "repository", []), "robtos", tmp_path / "found.sarif", output)
     assert found.returncode == 2
@@ -128,7 +128,7 @@ def test_the_action_uploads_nothing_where_a_path_does_not_exist(tmp_path: Path) 
     assert not output.exists()
 
 
-def test_the_catalogue_entry_names_each_version_of_the_schema_and_claims_no_file_of_others() -> None:
+def test_catalogue_entry_matches_only_our_files() -> None:
     entry = json.loads((ROOT / "schema" / "catalog.json").read_text())
     assert set(entry) == {"name", "description", "fileMatch", "url", "versions"}
     assert entry["url"] == entry["versions"]["2.0"]

@@ -40,28 +40,24 @@ def robot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path / "my_robot" / "robot.yaml"
 
 
-def test_the_description_it_shows_has_no_fault_but_that_it_is_not_this_robots(
-    robot: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_shown_description_is_valid_apart_from_names(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     robot.write_text(_block("yaml"), encoding="utf-8")
     main(["check", "my_robot"])
     assert set(re.findall(r"\[([a-z-]+) EU", capsys.readouterr().out)) <= {"assembled-open"}
 
 
-def test_the_message_it_shows_is_the_message(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_shown_message_is_current(robot: Path, capsys: pytest.CaptureFixture[str]) -> None:
     robot.write_text(_block("yaml").replace("[rod_tip", "[rod_tpi"), encoding="utf-8")
     assert main(["check", "my_robot"]) == 1
     _, shown = _block("console").split("\n", 1)
     assert capsys.readouterr().out.strip() == shown.strip()
 
 
-def test_the_python_it_shows_runs() -> None:
+def test_shown_python_runs() -> None:
     exec(_block("python"), {})
 
 
-def test_the_first_command_runs_the_main_job_from_the_root(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_first_command_runs_main_job(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(ROOT)
     _, *commands = _block("sh").strip().split(" && ")
     for command in commands:

@@ -48,24 +48,24 @@ def _anchors(site: Path, page: str) -> list[str]:
     return list(read_page((site / f"{page}.html").read_text(encoding="utf-8")).anchors.elements())
 
 
-def test_every_clause_has_its_anchor_in_its_chapter(site: Path) -> None:
+def test_every_clause_has_anchor_in_its_chapter(site: Path) -> None:
     for clause in read_clauses(read_chapters()):
         assert _anchors(site, clause.chapter).count(clause.id) == 1, clause.id
 
 
-def test_every_diagnostic_has_its_anchor(site: Path) -> None:
+def test_every_diagnostic_has_anchor(site: Path) -> None:
     anchors = _anchors(site, "diagnostics")
     assert [code for code in REGISTRY if anchors.count(code) != 1] == []
 
 
-def test_a_diagnostic_shows_the_message_that_the_command_prints(site: Path) -> None:
+def test_diagnostic_shows_printed_message(site: Path) -> None:
     page = (site / "diagnostics.html").read_text(encoding="utf-8")
     assert "is no link, joint or frame of the robot" in page
     assert "did you mean" in page
 
 
 @pytest.mark.parametrize(("page", "schema"), [("schema_1", "extended-urdf-1"), ("schema_2", "extended-urdf-2.0")])
-def test_every_property_of_a_schema_has_its_anchor_and_its_description(site: Path, page: str, schema: str) -> None:
+def test_every_schema_property_has_anchor_and_description(site: Path, page: str, schema: str) -> None:
     content = json.loads((ROOT / "schema" / f"{schema}.schema.json").read_text(encoding="utf-8"))
     anchors, text = _anchors(site, page), _text(site / f"{page}.html")
     for name, definition in {"file": content, **content["$defs"]}.items():
@@ -75,7 +75,7 @@ def test_every_property_of_a_schema_has_its_anchor_and_its_description(site: Pat
             assert " ".join(value["description"].split()) in text
 
 
-def test_every_clause_and_diagnostic_is_in_the_index_that_is_drawn_from_the_text(site: Path) -> None:
+def test_index_contains_every_clause_and_diagnostic(site: Path) -> None:
     text = _text(site / "all_clauses.html")
     for clause in read_clauses(read_chapters()):
         assert clause.id in text
@@ -83,19 +83,19 @@ def test_every_clause_and_diagnostic_is_in_the_index_that_is_drawn_from_the_text
         assert rule.title in text
 
 
-def test_the_search_finds_clauses_diagnostics_and_properties_by_name(site: Path) -> None:
+def test_search_finds_clauses_diagnostics_and_properties(site: Path) -> None:
     index = (site / "searchindex.js").read_text(encoding="utf-8")
     for name in ("EU-CLO-003", "unknown-frame", "quaternion"):
         assert name in index
     assert (site / "search.html").exists()
 
 
-def test_the_schemas_and_the_registry_are_published_beside_the_pages(site: Path) -> None:
+def test_schemas_and_registry_are_published(site: Path) -> None:
     for name in ("extended-urdf-1.schema.json", "extended-urdf-2.0.schema.json", "clauses.json", "clauses.schema.json"):
         json.loads((site / name).read_text(encoding="utf-8"))
 
 
-def test_every_link_leads_somewhere_and_no_page_loads_anything_from_elsewhere(site: Path) -> None:
+def test_links_work_and_nothing_external_loads(site: Path) -> None:
     from spec.site.links import site_errors
 
     assert len(list(site.glob("*.html"))) > 10
@@ -128,7 +128,7 @@ def _small_site(folder: Path, text: str) -> Path:
     return source
 
 
-def test_what_leads_nowhere_or_cannot_be_shown_fails_the_build(tmp_path: Path) -> None:
+def test_broken_reference_fails_the_build(tmp_path: Path) -> None:
     source = _small_site(
         tmp_path,
         """\
@@ -160,7 +160,7 @@ def test_what_leads_nowhere_or_cannot_be_shown_fails_the_build(tmp_path: Path) -
         assert message in done.stderr
 
 
-def test_a_picture_from_elsewhere_fails_the_build(tmp_path: Path) -> None:
+def test_external_picture_fails_the_build(tmp_path: Path) -> None:
     source = _small_site(tmp_path, "# A page\n\n![A picture](https://example.org/picture.png)\n")
     done = _build(tmp_path / "html", source)
     assert (done.returncode, done.stderr) == (
@@ -169,7 +169,7 @@ def test_a_picture_from_elsewhere_fails_the_build(tmp_path: Path) -> None:
     )
 
 
-def test_the_links_of_a_page_are_read_as_a_browser_reads_them(tmp_path: Path) -> None:
+def test_page_links_are_parsed_like_a_browser(tmp_path: Path) -> None:
     from spec.site.links import site_errors
 
     (tmp_path / "a.html").write_text(
@@ -193,7 +193,7 @@ def test_the_links_of_a_page_are_read_as_a_browser_reads_them(tmp_path: Path) ->
     ]
 
 
-def test_an_equation_becomes_mathml_with_its_source() -> None:
+def test_equation_becomes_mathml_with_source() -> None:
     from spec.site.math import mathml
 
     shown = mathml(r"q < \frac{\theta}{2}", display=True)
@@ -204,7 +204,7 @@ def test_an_equation_becomes_mathml_with_its_source() -> None:
         mathml(r"\nosuchcommand", display=False)
 
 
-def test_a_drawing_takes_the_colours_of_the_page_and_says_what_it_shows() -> None:
+def test_drawing_has_page_colours_and_alt_text() -> None:
     from spec.site.figures import inline_svg
 
     svg = '<?xml version="1.0"?>\n<svg viewBox="0 0 1 1"><path id="a"/><use href="#a"/><path fill="url(#a)"/></svg>'

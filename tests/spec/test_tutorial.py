@@ -23,23 +23,23 @@ def reader(tmp_path_factory: pytest.TempPathFactory) -> PageReader:
     return reader
 
 
-def test_each_command_and_each_piece_of_code_gives_what_the_tutorial_shows(reader: PageReader) -> None:
+def test_commands_and_code_give_what_tutorial_shows(reader: PageReader) -> None:
     assert len(reader.told) > 10
     for line, shown, given in reader.told:
         assert given == shown, f"spec/tutorial.md:{line}"
 
 
-def test_the_robot_that_the_tutorial_ends_with_is_the_one_among_the_examples(reader: PageReader) -> None:
+def test_final_tutorial_robot_is_the_example(reader: PageReader) -> None:
     for name in ("robot.urdf", "robot.yaml"):
         assert (reader.folder / name).read_text(encoding="utf-8") == (ROBOT / name).read_text(encoding="utf-8"), name
 
 
 @pytest.mark.parametrize("name", sorted(draw.FIGURE))
-def test_each_figure_is_the_one_that_the_program_draws(name: str) -> None:
+def test_figures_are_current(name: str) -> None:
     assert (SPEC / "figures" / f"{name}.svg").read_text(encoding="utf-8") == draw.FIGURE[name]().text()
 
 
-def test_each_figure_takes_its_colours_from_the_page_or_is_seen_on_black_and_on_white() -> None:
+def test_figures_are_readable_on_any_background() -> None:
     for path in sorted((SPEC / "figures").glob("*.svg")):
         for colour in set(re.findall(r'(?:fill|stroke)="([^"]+)"', path.read_text(encoding="utf-8"))):
             if colour not in ("none", draw.INK):

@@ -32,7 +32,7 @@ def blocks(language: str) -> list[str]:
         pytest.param(blocks("console")[1], id="whole", marks=pytest.mark.slow),
     ],
 )
-def test_the_first_runs_of_the_example_come_to_what_is_shown(shown: str) -> None:
+def test_first_runs_give_shown_results(shown: str) -> None:
     command, *lines = shown.splitlines()
     program, *arguments = shlex.split(command.removeprefix("$ "))
     assert program == "pytest"
@@ -46,7 +46,7 @@ def test_the_first_runs_of_the_example_come_to_what_is_shown(shown: str) -> None
     assert done.returncode == int("--smoke" not in arguments)
 
 
-def test_the_known_failures_that_are_shown_can_be_used(tmp_path: Path) -> None:
+def test_shown_known_failures_are_usable(tmp_path: Path) -> None:
     (shown,) = blocks("yaml")
     (tmp_path / "known.yaml").write_text(shown, encoding="utf-8")
     known = read_known_failures(tmp_path / "known.yaml")
@@ -54,14 +54,14 @@ def test_the_known_failures_that_are_shown_can_be_used(tmp_path: Path) -> None:
     assert known.unexpected([], planned_items(read_cases())) == []
 
 
-def test_what_the_page_leads_to_is_there() -> None:
+def test_linked_targets_exist() -> None:
     links = re.findall(r"\]\(([^)]+\.\w+)\)", TEXT)
     assert len(links) >= 2
     assert [link for link in links if not (PAGE.parent / link).is_file()] == []
     assert f"python -m {archive.__name__} OUT" in TEXT
 
 
-def test_every_option_that_the_page_names_is_one(capsys: pytest.CaptureFixture[str]) -> None:
+def test_options_on_page_exist(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["certify", "--help"])
     options = capsys.readouterr().out
