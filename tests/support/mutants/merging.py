@@ -31,7 +31,7 @@ def balls_at_the_last_origin() -> Deviation:
     return _ball(lambda ball, joints: ball.placement @ ball.link)
 
 
-@means("EU-JNT-022", versions=("2",))  # in the cases of version 1 the three have one orientation
+@means("EU-JNT-022")
 def balls_turned_as_the_first() -> Deviation:
     """The frame of merged joints has the orientation of the first one."""
     return _ball(lambda ball, joints: pose(joints[0].origin[:3, :3], ball.placement[:3, 3]))
