@@ -13,5 +13,5 @@ def named_folder(text: str) -> Path:
         ArgumentTypeError: The name is empty, as of a variable that was not set: that would be the working folder.
     """
     if not text:
-        raise ArgumentTypeError("it names no folder; the working folder is '.'")
+        raise ArgumentTypeError("the folder name is empty; write '.' for the working folder")
     return Path(text)

@@ -18,7 +18,7 @@ class _Loader(_SafeLoader):  # type: ignore[misc, valid-type]
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Hashable, Any]:
         mapping: dict[Hashable, Any] = super().construct_mapping(node, deep=deep)
         if len(mapping) != len(node.value):
-            raise yaml.constructor.ConstructorError(None, None, "a key stands twice in one mapping", node.start_mark)
+            raise yaml.constructor.ConstructorError(None, None, "duplicate key in a mapping", node.start_mark)
         return mapping
 
 
@@ -33,6 +33,6 @@ def load_strictly(text: str) -> Any:
     """The value of a YAML text.
 
     Raises:
-        yaml.YAMLError: It is none, or a key stands twice in one mapping.
+        yaml.YAMLError: It is none, or duplicate key in a mapping.
     """
     return yaml.load(text, _Loader)

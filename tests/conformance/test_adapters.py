@@ -382,7 +382,7 @@ def test_the_two_joints_of_a_universal_one_of_version_1_are_columns_of_their_own
     [
         ({"elbow": [0.0]}, [], "'elbow' is no joint with coordinates"),
         ({"cardan": [0.0]}, [], "joint 'cardan' is given 1 coordinates; it has 2"),
-        ({}, ["elbow"], "'elbow' is no link, joint or frame"),
+        ({}, ["elbow"], "'elbow' is not a link, joint or frame"),
     ],
 )
 def test_a_question_that_makes_no_sense_is_errored(configuration: Any, frames: Sequence[str], words: str) -> None:

@@ -178,7 +178,7 @@ def written(tmp_path: Path) -> WriteCase:
     [
         ("", "object"),
         ("id: [", "while parsing"),
-        (json.dumps(VALID_CASE)[:-1] + ', "title": "Twice."}', "stands twice"),
+        (json.dumps(VALID_CASE)[:-1] + ', "title": "Twice."}', "duplicate key"),
         (json.dumps(INVALID_CASE | {"place": {"file": "robot.yaml", "line": "x"}}), "place/line"),
     ],
 )

@@ -186,7 +186,7 @@ def test_files_are_written_all_or_none(tmp_path: Path) -> None:
 @pytest.mark.parametrize("text", ["", "[]", "{", '{"certificate": "2.0"}', '{"certificate": NaN}'])
 def test_what_is_no_certificate_is_refused(text: str, tmp_path: Path) -> None:
     (tmp_path / "certificate.json").write_text(text, encoding="utf-8")
-    with pytest.raises(NoCertificate, match="is no certificate"):
+    with pytest.raises(NoCertificate, match="is not a certificate"):
         read_certificate(tmp_path)
 
 
@@ -206,7 +206,7 @@ def test_the_report_says_what_is_certified_what_failed_by_which_clause_and_why(f
     assert "Certified for version 2: structure. Not for version 2: accept" in page
     assert "✗ not certified: 1 failed, 1 of 2 passed" in page
     assert "/outcome: expected" in page
-    assert f"Again: pytest conformance/ -k {INVALID}/accept" in page
+    assert f"Run it again: pytest conformance/ -k {INVALID}/accept" in page
     assert read_clauses()["EU-CLO-001"].text in page
 
 
@@ -292,15 +292,15 @@ def test_a_comparison_shows_levels_and_only_the_clauses_on_which_parsers_differ(
     page = text_of(comparison_page([failed, other]))
     assert "my_parser 0.3" in page
     assert "your_parser 0.3" in page
-    assert "Clauses on which they differ (1 of 2)" in page
+    assert "Clauses with different results (1 of 2)" in page
     assert "✗ 0 of 1 ✓ 1 of 1" in page
     assert "EU-CLO-008" not in page
-    assert "different suites" not in page
+    assert "different versions of the suite" not in page
 
 
 def test_a_comparison_says_that_its_certificates_are_of_different_suites(failed: Certificate) -> None:
     older = failed.suite.model_copy(update={"corpus": f"sha256:{'0' * 64}"})
-    assert "different suites" in comparison_page([failed, failed.model_copy(update={"suite": older})])
+    assert "different versions of the suite" in comparison_page([failed, failed.model_copy(update={"suite": older})])
 
 
 # --- again -----------------------------------------------------------------------------------------------------------
@@ -327,11 +327,11 @@ def test_a_second_run_that_came_to_something_else_is_told_line_by_line(failed: C
 @pytest.mark.parametrize(("given", "same"), [("0.3000000002", True), ("0.30001", False)])
 def test_a_second_run_on_another_processor_has_other_last_digits(failed: Certificate, given: str, same: bool) -> None:
     def failing(number: str) -> Certificate:
-        difference = f"/values/0/mass: the mass: expected 0.25, given {number}"
+        difference = f"/values/0/mass: the mass: expected 0.25, got {number}"
         return forged(failed, failures=[each.model_dump() | {"difference": difference} for each in failed.failures])
 
     found = replay_differences(failing("0.3"), failing(given))
-    assert [": fails otherwise: " in each for each in found] == [True] * (not same)
+    assert [": fails differently: " in each for each in found] == [True] * (not same)
 
 
 def forged(certificate: Certificate, **changes: object) -> Certificate:
@@ -343,10 +343,10 @@ def test_a_certificate_that_says_more_than_its_cases_is_found_out(failed: Certif
     levels = [each.model_dump() | {"certified": True} for each in failed.levels]
     clauses = [*failed.clauses, {"id": "EU-XXX-999", "items": 7, "passed": 7}]
     better = [each.model_dump() | {"passed": each.items} for each in failed.clauses]
-    says = "what it says does not follow from what became of the cases"
+    says = "the certificate contradicts the results of its cases"
     assert replay_differences(forged(failed, certified=True), failed) == [says]
     assert replay_differences(forged(failed, clauses=clauses), failed) == [
-        "clause EU-XXX-999: 7 of 7 passed then, not in it now"
+        "clause EU-XXX-999: 7 of 7 passed then, absent now"
     ]
     assert replay_differences(forged(failed, clauses=better), failed) == [
         "clause EU-CLO-001: 1 of 1 passed then, 0 of 1 passed now"
@@ -382,10 +382,10 @@ def test_a_certificate_is_the_very_text_that_the_suite_writes(failed: Certificat
         text.replace('"certified": false,\n  "levels"', '"certified": true,\n  "certified": false,\n  "levels"')
     )
     assert read_certificate(file) == failed
-    told = ["certificate.json: the whole: the key 'certified' stands twice in it"]
+    told = ["certificate.json: (top level): duplicate key 'certified'"]
     assert file_differences(tmp_path, read_certificate(file)) == file_differences(file, failed) == told
     file.write_text(text.replace("\n", ""), encoding="utf-8")
-    assert file_differences(file, failed) == ["certificate.json: it is not written as the suite writes it"]
+    assert file_differences(file, failed) == ["certificate.json: not formatted as the suite writes it"]
 
 
 #: A case of the suite, and what became of it in a run whose parser was expected to fail otherwise, or to pass.
@@ -452,22 +452,22 @@ def forged_failure(certificate: Certificate, **changes: object) -> Certificate:
 )
 def test_a_command_that_does_not_run_the_case_again_is_found_out(command: str) -> None:
     name = f"{REAL.id}/accept"
-    told = [f"{name}: the command that is to run it again is none of the suite: {command}"]
+    told = [f"{name}: the reproduce command is not one of the suite: {command}"]
     assert own_errors(forged_failure(SOUND[0], reproduce=command)) == told
 
 
 def test_known_failures_that_are_not_those_of_the_failures_are_found_out() -> None:
     version = f"version {REAL.version}, accept"
     assert own_errors(forged_failure(SOUND[0], known=True)) == [
-        f"{version}: known failures: 0 by its count, 1 by its failures"
+        f"{version}: known_failures is 0, but 1 failures are known"
     ]
     assert own_errors(forged_failure(SOUND[1], known=False)) == [
-        f"{version}: known failures: 1 by its count, 0 by its failures"
+        f"{version}: known_failures is 1, but 0 failures are known"
     ]
     levels = [each.model_dump() | {"known_failures": 3} for each in SOUND[0].levels if each.known_failures == 0]
     assert own_errors(forged(SOUND[0], levels=levels))
     not_run = own_errors(forged_failure(SOUND[1], verdict="not run"))
-    assert not_run == [f"{REAL.id}/accept: known, but what was not run is not known to fail"]
+    assert not_run == [f"{REAL.id}/accept: known failure, but the item was not run"]
 
 
 @pytest.mark.parametrize(
@@ -475,16 +475,16 @@ def test_known_failures_that_are_not_those_of_the_failures_are_found_out() -> No
     [
         (0, "x"),
         (0, "all is well/accept: known as 'certified', but it is better"),
-        (0, f"{REAL.id}/accept: known as 'failed', but it passes now: take it out of the file"),
-        (0, f"{REAL.id}/accept: known as 'skipped', but it is 'crashed'"),
+        (0, f"{REAL.id}/accept: listed as 'failed' but passes; remove it from the known failures"),
+        (0, f"{REAL.id}/accept: listed as 'skipped', but the verdict is 'crashed'"),
         (0, f"{REAL.id}/accept: the suite has no such item"),
-        (1, f"{REAL.id}/accept: known as 'skipped', but it is 'failed'"),
-        (3, f"{REAL.id}/accept: known as 'skipped', but it is 'failed'"),
+        (1, f"{REAL.id}/accept: listed as 'skipped', but the verdict is 'failed'"),
+        (3, f"{REAL.id}/accept: listed as 'skipped', but the verdict is 'failed'"),
         (0, "closures/nobody/accept: the suite has no such item, and is wrong"),
     ],
 )
 def test_what_is_said_of_known_failures_and_does_not_follow_is_found_out(index: int, sentence: str) -> None:
-    told = f"unexpected: of these failures no file of known ones makes it say: {sentence}"
+    told = f"unexpected: does not follow from the failures: {sentence}"
     assert own_errors(forged(SOUND[index], unexpected=[sentence])) == [told]
 
 

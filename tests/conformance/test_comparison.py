@@ -123,7 +123,7 @@ def test_what_was_said_of_two_halves_of_a_universal_joint_is_said_of_it() -> Non
     half = robot(pair, actuators=both[:1], configurations={"q": {"j_Y": [0.5]}})
     assert [found.why for found in canonical_differences(one, half, BODIES)] == [
         "actuator of joint 'j' is missing",
-        "there is no actuator of joint 'j_X'",
+        "unexpected actuator of joint 'j_X'",
     ]
 
 
@@ -233,7 +233,7 @@ def test_a_quantity_or_a_frame_that_is_missing_is_a_difference() -> None:
     both = values(mass=1.0, residuals={"other": [0.0, 0.0, 0.0]})
     assert [found.why for found in values_differences(expected, both, 1.0)] == [
         "closure 'pin' is missing",
-        "no closure 'other' was asked for",
+        "closure 'other' was not requested",
     ]
 
 
@@ -417,4 +417,4 @@ def test_the_warnings_of_a_valid_case_are_told_and_no_others() -> None:
 
 def test_a_difference_reads_as_a_sentence() -> None:
     found = Difference("/joints/0/lower/0", -1.0, None, "joint 'knee', lower").within("/robot")
-    assert str(found) == "/robot/joints/0/lower/0: joint 'knee', lower: expected -1.0, given null"
+    assert str(found) == "/robot/joints/0/lower/0: joint 'knee', lower: expected -1.0, got null"

@@ -116,8 +116,7 @@ def test_where_there_is_nothing_to_find_nothing_is_written(tmp_path: Path, monke
     judgement = explored("moving-base", OracleParser(), tmp_path, 60)
     assert judgement.verdict == Verdict.PASSED
     assert (
-        judgement.log
-        == f"exploring has found nothing wrong on 60 more mechanisms, drawn from seed {SEED}, and no case is written"
+        judgement.log == f"exploring found no error on 60 more mechanisms, drawn from seed {SEED}; no case is written"
     )
     assert [path.name for path in tmp_path.iterdir()] == ["files"]
 
@@ -209,6 +208,6 @@ def test_where_only_a_frozen_example_fails_it_is_said_that_exploring_has_found_n
     )
     assert judgement.reason.startswith("example ")
     assert judgement.verdict == Verdict.FAILED
-    assert "exploring has found nothing wrong on 1 more" in judgement.log
+    assert "exploring found no error on 1 more" in judgement.log
     assert "written as a case: " not in judgement.log
     assert not Path("explored").exists()

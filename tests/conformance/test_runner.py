@@ -41,32 +41,32 @@ WAYS = [
     ("another_id", Misplaced, "answered by an answer to", False),
     ("answer_before", Misplaced, "answered by an answer to", False),
     ("late", TimedOut, "no answer in 0.5 s", False),
-    ("twice", Chatter, "a line on standard output that nobody asked for", True),
+    ("twice", Chatter, "a line on standard output unexpected", True),
     ("garbage", Malformed, "not JSON: Expecting value at character 1", False),
     ("nothing_but_a_line_end", Malformed, "not JSON", False),
     ("not_utf8", Malformed, "not UTF-8, from byte 44 on", False),
     ("half_a_character", Malformed, "hex escape", True),
-    ("list_of_one", Malformed, "a JSON value, but no object", False),
+    ("list_of_one", Malformed, "a JSON value that is not an object", False),
     ("cut_off", TimedOut, 'it wrote: \'{"id": 3, "outcome": "accepted\'', False),
     ("no_line_end", TimedOut, 'it wrote: \'{"id": 3,', False),
     ("unknown_member", Malformed, "/verdict: Extra inputs are not permitted", True),
     ("member_missing", Malformed, "/robot: Field required", True),
-    ("another_outcome_before", Malformed, "the whole: the key 'outcome' stands twice in it", True),
-    ("two_ids", Malformed, "an answer in which the key 'id' stands twice", False),
+    ("another_outcome_before", Malformed, "(top level): duplicate key 'outcome'", True),
+    ("two_ids", Malformed, "duplicate key 'id'", False),
     ("number_too_long", Malformed, "/issues/0/line: a number is beyond the range of a double", True),
     ("wrong_type", Malformed, "/issues/0/line: Input should be a valid integer", True),
     ("no_outcome", Malformed, "'outcome'", True),
     ("unknown_outcome", Malformed, "'valid'", True),
     ("no_id", Malformed, "without the 'id'", False),
-    ("wrong_kind", Malformed, "'evaluated' is no answer to 'load'", True),
-    ("not_a_number", Malformed, "/robot/own/~1x-a: NaN is no JSON", True),
+    ("wrong_kind", Malformed, "'evaluated' is not an answer to 'load'", True),
+    ("not_a_number", Malformed, "/robot/own/~1x-a: NaN is not JSON", True),
     ("number_too_large", Malformed, "/robot/own/~1x-a: a number is beyond the range of a double", True),
     ("null_for_a_number", Malformed, "/robot/joints/0/damping/0: Input should be a valid number, not null", True),
-    ("nested_deep", Malformed, "not JSON of a sensible depth", False),
+    ("nested_deep", Malformed, "JSON nested too deep", False),
     ("endless_line", Malformed, "a line of more than 1,048,576 bytes", False),
     ("endless_lines", Malformed, "not JSON", False),
-    ("chatter_before", Chatter, "2 lines on standard output that nobody asked for", True),
-    ("chatter_after", Chatter, "a line on standard output that nobody asked for", True),
+    ("chatter_before", Chatter, "2 lines on standard output unexpected", True),
+    ("chatter_after", Chatter, "a line on standard output unexpected", True),
     ("floods_stderr_for_ever", TimedOut, "no answer in 0.5 s", False),
     ("dies_before_its_child", Crashed, "exit code 5", False),
     ("closes_stdout", Crashed, "closed its standard output", False),
@@ -197,10 +197,10 @@ def test_of_a_long_log_enough_is_shown_to_see_what_node_js_misses() -> None:
 def test_a_headline_says_what_happened_once_and_the_rest_is_below() -> None:
     with Session(fake("closes_stdout"), timeout=5.0) as session:
         judgement = judge_outcome(load(session, "fault"))
-        assert judgement.reason == "the process closed its standard output, without an answer"
+        assert judgement.reason == "the process closed its standard output without answering"
     with Session(fake("null_for_a_number")) as session:
         judgement = judge_outcome(load(session, "fault"))
-        assert "null, which some libraries write for NaN and infinity: these are no JSON" in judgement.reason
+        assert "null, which some libraries write for NaN or infinity; JSON has neither" in judgement.reason
         assert "a link" not in judgement.reason
         assert "a link" in judgement.log
         assert "Input should be" not in judgement.log
@@ -345,7 +345,7 @@ def test_a_parser_that_does_not_start_again_is_no_crash_of_the_next_request_and_
         (tmp_path / "started").unlink()
         outcome = load(session, "next")
         assert isinstance(outcome, CannotStart)
-        assert "given up, for it did not start 3 times in a row: crashed: ended with exit code 9" in str(outcome)
+        assert "given up because it did not start 3 times in a row: crashed: ended with exit code 9" in str(outcome)
 
 
 def test_failed_starts_count_only_in_a_row(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

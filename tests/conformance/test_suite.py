@@ -164,17 +164,42 @@ def test_one_value_a_configuration_is_asked_for() -> None:
 @pytest.mark.parametrize(
     ("case", "level", "answer", "told"),
     [
-        (VALID, Level.ACCEPT, Rejected(id=1, issues=[]), ("accepted", "rejected", "it rejects what is right")),
-        (VALID, Level.STRUCTURE, Rejected(id=1, issues=[]), ("accepted", "rejected", "it rejects what is right")),
-        (VALID, Level.DIAGNOSE, Unsupported(id=1, feature="f"), ("accepted", "unsupported", "it lacks a feature")),
-        (VALID, Level.DYNAMICS, Unsupported(id=1, feature="f"), ("accepted", "unsupported", "it lacks a feature")),
-        (INVALID, Level.ACCEPT, Unsupported(id=1, feature="f"), ("rejected", "unsupported", "it lacks a feature")),
-        (INVALID, Level.DIAGNOSE, Skipped(id=1, reason=""), ("rejected", "skipped", "it would rather not")),
+        (
+            VALID,
+            Level.ACCEPT,
+            Rejected(id=1, issues=[]),
+            ("accepted", "rejected", "the parser rejects a valid description"),
+        ),
+        (
+            VALID,
+            Level.STRUCTURE,
+            Rejected(id=1, issues=[]),
+            ("accepted", "rejected", "the parser rejects a valid description"),
+        ),
+        (
+            VALID,
+            Level.DIAGNOSE,
+            Unsupported(id=1, feature="f"),
+            ("accepted", "unsupported", "unsupported feature"),
+        ),
+        (
+            VALID,
+            Level.DYNAMICS,
+            Unsupported(id=1, feature="f"),
+            ("accepted", "unsupported", "unsupported feature"),
+        ),
+        (
+            INVALID,
+            Level.ACCEPT,
+            Unsupported(id=1, feature="f"),
+            ("rejected", "unsupported", "unsupported feature"),
+        ),
+        (INVALID, Level.DIAGNOSE, Skipped(id=1, reason=""), ("rejected", "skipped", "the parser skipped the request")),
         (
             EITHER,
             Level.ACCEPT,
             Errored(id=1, message="oh"),
-            ("accepted or rejected", "errored", "it failed, by its own word"),
+            ("accepted or rejected", "errored", "the parser reported a failure"),
         ),
     ],
 )
@@ -246,13 +271,13 @@ def test_of_a_failure_everything_is_printed_that_it_takes_to_mend_the_parser() -
     line = Options(parser="cmd:./my parser").reproduce(item)
     lines = failure_text(item, judgement, line, INVALID).splitlines()
     assert lines == [
-        "frames/closure-at-unknown-frame/diagnose: failed: it tells of another fault",
+        "frames/closure-at-unknown-frame/diagnose: failed: the reported errors differ",
         "  pytest conformance/ '--parser=cmd:./my parser' -k frames/closure-at-unknown-frame/diagnose",
         "  A closure at a frame that no link, no joint and no frame has the name of.",
         f"  EU-FRM-001: {read_clauses()['EU-FRM-001'].text}",
         f"  EU-DIA-001: {read_clauses()['EU-DIA-001'].text}",
-        "  /issues/0/column: unknown-frame, column: expected 27, given 6",
-        "  the parser tells of:",
+        "  /issues/0/column: unknown-frame, column: expected 27, got 6",
+        "  reported issues:",
         "    error unknown-frame robot.yaml:5:6: ?",
         f"  {INVALID.description}:5:6",
         "        5 |     frames: [coupler_tip, folower_end]",
@@ -353,7 +378,7 @@ def test_an_answer_that_breaks_the_suite_is_no_pass_and_is_kept() -> None:
     def broken() -> Judgement:
         raise KeyError("elbow")
 
-    with pytest.raises(pytest.fail.Exception, match="the suite itself broke on this answer, please tell us: KeyError"):
+    with pytest.raises(pytest.fail.Exception, match="an error in the suite itself, please report it: KeyError"):
         item_runner.run(item, broken)
     assert item_runner.node is not None
     kept = dict(item_runner.node.user_properties)[RESULT]
@@ -415,9 +440,9 @@ def test_a_parser_that_is_wrong_is_told_where_and_the_line_that_is_printed_shows
     code, out = suite("-k", FEW, parser="Misread")
     assert code == 1
     assert "3 failed, 4 passed" in out
-    assert "/robot/joints/0/upper/0: joint 'motor', upper: expected 1.5, given 9.0" in out
+    assert "/robot/joints/0/upper/0: joint 'motor', upper: expected 1.5, got 9.0" in out
     assert "/values/0/poses/elbow/translation: origin of frame 'elbow' in the world, m, off by 7" in out
-    assert "/issues/0/column: unknown-frame, column: expected 27, given 28" in out
+    assert "/issues/0/column: unknown-frame, column: expected 27, got 28" in out
     assert re.search(r"version 2, accept: 2 of \d+ passed \(\d+ not run\): not certified", out)
     line = next(line.strip() for line in out.splitlines() if "-k closures/parallelogram-3d-closure/structure" in line)
     program, *arguments = shlex.split(line)
@@ -432,7 +457,7 @@ def test_a_parser_that_accepts_what_is_wrong_fails_at_accept_and_at_diagnose() -
     code, out = suite("-k", FEW, parser="Lenient")
     assert code == 1
     assert "2 failed, 5 passed" in out
-    assert "it accepts what is wrong: unknown-frame" in out
+    assert "the parser accepts an invalid description: unknown-frame" in out
     assert "this looks odd" in out
 
 
@@ -441,8 +466,7 @@ def test_a_crash_is_survived_and_no_rejection() -> None:
     assert code == 1
     assert "5 failed, 2 passed" in out
     assert (
-        "closures/parallelogram-3d-closure/accept: crashed: the process ended with exit code 3, without an answer"
-        in out
+        "closures/parallelogram-3d-closure/accept: crashed: the process ended with exit code 3 without answering" in out
     )
 
 
@@ -482,12 +506,12 @@ def test_known_failures_are_expected_and_whoever_mends_them_is_told(tmp_path: Pa
     assert re.search(r"accept: 1 of \d+ passed \(1 failed, .*; known failures: 1\): not certified", out)
     code, out = suite("-k", FEW, f"--known-failures={path}", parser="Right")
     assert code == 1
-    assert "known as 'failed', but it passes now: take it out of the file" in out
+    assert "listed as 'failed' but passes; remove it from the known failures" in out
     path.write_text(KNOWN.replace("failed", "crashed"), encoding="utf-8")
     code, out = suite("-k", FEW, f"--known-failures={path}", parser="Lenient")
     assert code == 1
     assert "2 failed, 5 passed" in out
-    assert "known as 'crashed', but it is 'failed'" in out
+    assert "listed as 'crashed', but the verdict is 'failed'" in out
     path.write_text(KNOWN.replace("closure-at-unknown-frame", "nobody"), encoding="utf-8")
     code, out = suite("-k", FEW, f"--known-failures={path}", parser="Right")
     assert code == 1
@@ -497,14 +521,14 @@ def test_known_failures_are_expected_and_whoever_mends_them_is_told(tmp_path: Pa
 def test_what_the_user_asks_for_and_cannot_be_is_said(tmp_path: Path) -> None:
     for arguments, why in (
         ([f"--known-failures={tmp_path / 'nowhere.yaml'}"], "No such file"),
-        (["--parser-timeout=0"], "a time-out is more than 0 s"),
-        (["--parser-start-timeout=nan"], "a time-out is more than 0 s"),
-        (["--explore=-1"], "--explore takes a count"),
-        (["--smoke", "--explore=1"], "--smoke goes with neither --known-failures nor --explore"),
+        (["--parser-timeout=0"], "a time limit must be positive"),
+        (["--parser-start-timeout=nan"], "a time limit must be positive"),
+        (["--explore=-1"], "--explore must not be negative"),
+        (["--smoke", "--explore=1"], "--smoke cannot be combined with --known-failures or --explore"),
         ([f"--certificate={__file__}"], "is a file; a certificate is written into a folder"),
-        (["--certificate="], "it names no folder"),
+        (["--certificate="], "the folder name is empty"),
         (["--level=everything"], "invalid choice"),
-        (["--parser="], "--parser names no parser"),
+        (["--parser="], "--parser is empty"),
         (["--parser=cmd:no-such-program-anywhere"], "'cmd:no-such-program-anywhere' could not be started: "),
     ):
         code, out = suite(*arguments, parser="Right")
@@ -515,18 +539,18 @@ def test_what_the_user_asks_for_and_cannot_be_is_said(tmp_path: Path) -> None:
 def test_smoke_tells_a_wrong_adapter_from_a_wrong_parser() -> None:
     code, out = suite("--smoke", parser="Right")
     assert code == 0
-    assert "your adapter is right so far" in out
-    assert "your parser is right so far" in out
+    assert "your adapter works so far" in out
+    assert "your parser works so far" in out
     assert "14 passed" in out
     code, out = suite("--smoke", parser="Lenient")
     assert code == 1
-    assert "your adapter is right so far" in out
-    assert "your parser is wrong:\n  protocol/goes-on-2/accept: failed: it accepts what is wrong" in out
+    assert "your adapter works so far" in out
+    assert "your parser fails:\n  protocol/goes-on-2/accept: failed: the parser accepts an invalid description" in out
     code, out = suite("--smoke", "--parser=cmd:no-such-program-anywhere")
     assert code == 1
     assert "cmd:no-such-program-anywhere could not be started" in out
-    assert "your adapter is wrong:\n  protocol/start-1/accept: " in out
-    assert "your parser: nothing can be said of it before the adapter is right" in out
+    assert "your adapter fails:\n  protocol/start-1/accept: " in out
+    assert "your parser was not tested: fix the adapter first" in out
 
 
 @pytest.mark.parametrize(
@@ -554,7 +578,7 @@ def test_smoke_asks_three_cases_each_at_the_first_level_that_the_parser_claims(p
 def test_where_nothing_is_claimed_of_what_is_asked_for_all_is_not_well() -> None:
     code, out = suite("--smoke", parser="Silent")
     assert code == 1
-    assert "nothing was asked: your parser claims nothing of what you asked for" in out
+    assert "nothing was tested: your parser claims none of the requested levels" in out
     code, out = suite("--level=dynamics", parser="Modest")
     assert code == 1
     assert "not claimed: dynamics of version 1, dynamics of version 2" in out

@@ -40,7 +40,7 @@ function read(description, urdf) {
   if ("extended_urdf" in rest || "joint_name" in rest) throw new Lacking("version 2, and joints that URDF lacks");
   const types = (type ?? closed_loop.map(() => "6d")).map((each) => String(each).toLowerCase());
   if (types.some((each) => each !== "3d" && each !== "6d")) throw new Wrong("a closure is 3d or 6d");
-  if (types.length !== closed_loop.length) throw new Wrong("there is not one type for each closure");
+  if (types.length !== closed_loop.length) throw new Wrong("type and closed_loop differ in length");
   const tree = parsed(urdf, (text) => new DOMParser({ onError }).parseFromString(text, "text/xml").documentElement);
   const links = children(tree, "link").map((link) => link.getAttribute("name"));
   const joints = children(tree, "joint").map(jointOf);
@@ -72,7 +72,7 @@ function children(element, tag) {
 }
 
 function number(text) {
-  if (!Number.isFinite(Number(text))) throw new Wrong(`'${text}' is no number`); // which JSON would make null
+  if (!Number.isFinite(Number(text))) throw new Wrong(`'${text}' is not a number`); // which JSON would make null
   return Number(text);
 }
 

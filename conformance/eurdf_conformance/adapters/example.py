@@ -14,13 +14,13 @@ WRONG = (OSError, yaml.YAMLError, ElementTree.ParseError, KeyError, ValueError) 
 
 
 class Example:
-    """The adapter: who the parser is, what it claims, and its word on two files."""
+    """The adapter: name and claims of the parser, and its answer on two files."""
 
     name, version, language = "example", "0.1", "Python"
     claims: ClassVar = {"1": [Level.ACCEPT, Level.STRUCTURE]}
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported:
-        """Let the parser read, and say what came of it."""
+        """Let the parser read the files, and answer with the result."""
         try:
             robot = read(yaml.safe_load(description.read_bytes()), ElementTree.parse(urdf).getroot())
         except NotImplementedError as feature:
@@ -33,7 +33,7 @@ class Example:
 def read(said: Any, robot: ElementTree.Element) -> dict[str, Any]:
     """The parser: the robot as a canonical description."""
     if not isinstance(said, dict):
-        raise ValueError("the description is no mapping")
+        raise ValueError("the description is not a mapping")
     if said.keys() & {"extended_urdf", "joint_name"}:
         raise NotImplementedError("version 2, and joints that URDF lacks")
     closed, motors = said.pop("closed_loop", []), said.pop("name_mot", [])

@@ -130,7 +130,7 @@ def _frame(mechanism: Mechanism, name: str) -> tuple[str, Any]:
     for frame in mechanism.frames:
         if frame.name == name:
             return frame.body, placement_of(frame.pose)
-    raise ValueError(f"'{name}' is no link, joint or frame of the robot")
+    raise ValueError(f"'{name}' is not a link, joint or frame of the robot")
 
 
 def _columns(robot: Robot) -> list[tuple[str, int]]:

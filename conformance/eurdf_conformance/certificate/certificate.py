@@ -134,7 +134,7 @@ def read_certificate(path: Path) -> Certificate:
     except ValidationError as error:
         first = error.errors()[0]
         where = "".join(f"/{part}" for part in first["loc"])
-        raise NoCertificate(f"'{file}' is no certificate: {f'{where}: ' if where else ''}{first['msg']}") from error
+        raise NoCertificate(f"'{file}' is not a certificate: {f'{where}: ' if where else ''}{first['msg']}") from error
 
 
 def certificate_schema() -> dict[str, Any]:

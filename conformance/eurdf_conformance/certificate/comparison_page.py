@@ -23,7 +23,7 @@ def comparison_page(certificates: Sequence[Certificate]) -> str:
 
 def _parsers(certificates: Sequence[Certificate]) -> Iterator[Element]:
     yield element(
-        "p", "Items passed, of those that the suite has. ✓ certified, ✗ claimed and not certified.", class_="soft"
+        "p", "Items passed of all items of the suite. ✓ certified, ✗ claimed but not certified.", class_="soft"
     )
     yield element("h2", "Parsers")
     dated = any(each.date for each in certificates)
@@ -32,13 +32,13 @@ def _parsers(certificates: Sequence[Certificate]) -> Iterator[Element]:
             element("th", title, scope="row"),
             element("td", each.parser.language if each.parser else "could not be started"),
             element("td", each.suite.version),
-            *([element("td", each.date or "not said")] if dated else []),
+            *([element("td", each.date or "unknown")] if dated else []),
         )
         for title, each in zip(_titles(certificates), certificates, strict=True)
     )
     yield table("Parsers", ("parser", "language", "suite", *(["date"] if dated else [])), rows)
     if len({(each.suite.clauses, each.suite.corpus) for each in certificates}) > 1:
-        said = "These certificates are of different suites: what one of them tests, another may not."
+        said = "These certificates come from different versions of the suite, which may test different things."
         yield element("p", said, class_="headline bad")
 
 
@@ -77,7 +77,7 @@ def _clauses(certificates: Sequence[Certificate]) -> Iterator[Element]:
     texts = {id_: clause.text for id_, clause in read_clauses().items()}
     ids = sorted({id_ for of_one in results for id_ in of_one})
     differing = [id_ for id_ in ids if len({_is_met(of_one.get(id_)) for of_one in results}) > 1]
-    title = "Clauses on which they differ"
+    title = "Clauses with different results"
     yield element("h2", f"{title} ({len(differing)} of {len(ids)})")
     if differing:
         rows = (
@@ -96,6 +96,6 @@ def _is_met(result: ClauseResult | None) -> bool | None:
 
 def _clause_cell(result: ClauseResult | None) -> Element:
     if result is None:
-        return element("td", "not asked", class_="none")
+        return element("td", "not tested", class_="none")
     met = _is_met(result)
     return element("td", f"{'✓' if met else '✗'} {result.passed} of {result.items}", class_="good" if met else "bad")

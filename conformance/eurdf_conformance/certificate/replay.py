@@ -32,7 +32,7 @@ from eurdf_conformance.suite.reproduce import Setting, is_command_line
 _RELATIVE, _ABSOLUTE = 1e-6, 1e-9
 
 # What `KnownFailures.unexpected` says of an entry: id, level, and verdict where that is said.
-_UNEXPECTED = re.compile(r"(.+)/([a-z]+): (?:known as '([a-z ]+)'|the suite has no such item)", re.DOTALL)
+_UNEXPECTED = re.compile(r"(.+)/([a-z]+): (?:listed as '([a-z ]+)'|the suite has no such item)", re.DOTALL)
 
 
 class Replay(BaseModel):
@@ -66,7 +66,7 @@ def replay_differences(certificate: Certificate, again: Certificate) -> list[str
     found = found or list(_clauses(certificate, again))
     if found or _essence(certificate) == _essence(again):
         return found
-    return ["what it says does not follow from what became of the cases"]
+    return ["the certificate contradicts the results of its cases"]
 
 
 def own_errors(certificate: Certificate) -> list[str]:
@@ -98,7 +98,7 @@ def file_differences(path: Path, certificate: Certificate) -> list[str]:
 def _otherwise(file: Path) -> str:
     """How a file that is a certificate is written otherwise than the suite writes it."""
     _, faults = read_json(file.read_bytes())
-    return faults[0] if faults else "it is not written as the suite writes it"
+    return faults[0] if faults else "not formatted as the suite writes it"
 
 
 def _commands(certificate: Certificate) -> Iterator[str]:
@@ -109,19 +109,19 @@ def _commands(certificate: Certificate) -> Iterator[str]:
         if failure.verdict == Verdict.NOT_RUN and not failure.reproduce:
             continue
         if not is_command_line(failure.reproduce, setting, failure.id, failure.level):
-            yield f"{_name(failure)}: the command that is to run it again is none of the suite: {failure.reproduce}"
+            yield f"{_name(failure)}: the reproduce command is not one of the suite: {failure.reproduce}"
 
 
 def _known(certificate: Certificate) -> Iterator[str]:
     """Counts of known failures that are not those of the failures."""
     for failure in certificate.failures:
         if failure.known and failure.verdict == Verdict.NOT_RUN:
-            yield f"{_name(failure)}: known, but what was not run is not known to fail"
+            yield f"{_name(failure)}: known failure, but the item was not run"
     known = Counter((failure.version, failure.level) for failure in certificate.failures if failure.known)
     for level in certificate.levels:
         if level.known_failures != (count := known[level.version, level.level]):
             name = f"version {level.version}, {level.level}"
-            yield f"{name}: known failures: {level.known_failures} by its count, {count} by its failures"
+            yield f"{name}: known_failures is {level.known_failures}, but {count} failures are known"
 
 
 def _unexpected(certificate: Certificate) -> Iterator[str]:
@@ -144,7 +144,7 @@ def _unexpected(certificate: Certificate) -> Iterator[str]:
             or (known.id, known.level) in expected
             or KnownFailures((known,)).unexpected(results, items.values()) != [sentence]
         ):
-            yield f"unexpected: of these failures no file of known ones makes it say: {sentence}"
+            yield f"unexpected: does not follow from the failures: {sentence}"
 
 
 def _entry(sentence: str) -> KnownFailure | None:
@@ -192,13 +192,13 @@ def _levels(before: Certificate, now: Certificate) -> Iterator[str]:
 
 
 def _level(result: LevelResult | None) -> str:
-    return "not in it" if result is None else level_words(result.model_copy(update={"known_failures": 0}))
+    return "absent" if result is None else level_words(result.model_copy(update={"known_failures": 0}))
 
 
 def _clauses(before: Certificate, now: Certificate) -> Iterator[str]:
     was, given = ({each.id: f"{each.passed} of {each.items} passed" for each in all_.clauses} for all_ in (before, now))
     for name in sorted(was.keys() | given.keys()):
-        then, here = was.get(name, "not in it"), given.get(name, "not in it")
+        then, here = was.get(name, "absent"), given.get(name, "absent")
         if then != here:
             yield f"clause {name}: {then} then, {here} now"
 
@@ -214,7 +214,7 @@ def _failures(before: Certificate, now: Certificate) -> Iterator[str]:
         elif was[key].verdict != given[key].verdict:
             yield f"{name}: {was[key].verdict} then, {given[key].verdict} now"
         elif not _same_difference(was[key].difference, given[key].difference):
-            yield f"{name}: fails otherwise: {_line(was[key])} then, {_line(given[key])} now"
+            yield f"{name}: fails differently: {_line(was[key])} then, {_line(given[key])} now"
 
 
 def _same_difference(one: str | None, other: str | None) -> bool:
@@ -222,7 +222,7 @@ def _same_difference(one: str | None, other: str | None) -> bool:
 
 
 def _line(failure: Failure) -> str:
-    return "; ".join((failure.difference or "nothing said").splitlines())
+    return "; ".join((failure.difference or "no difference stated").splitlines())
 
 
 def _by_key(certificate: Certificate) -> dict[Key, Failure]:

@@ -76,14 +76,14 @@ def _levels(certificate: Certificate) -> Iterator[Element]:
 
 def _unexpected(certificate: Certificate) -> Iterator[Element]:
     if certificate.unexpected:
-        yield element("h2", "Not as the known failures say")
+        yield element("h2", "Differences from the known failures")
         yield element("ul", *(element("li", sentence) for sentence in certificate.unexpected))
 
 
 def _failures(certificate: Certificate) -> Iterator[Element]:
     if not certificate.failures:
         return
-    yield element("h2", f"What did not pass ({len(certificate.failures)})")
+    yield element("h2", f"Failures ({len(certificate.failures)})")
     groups: defaultdict[tuple[str, Level], list[Failure]] = defaultdict(list)
     for failure in certificate.failures:
         groups[failure.version, failure.level].append(failure)
@@ -109,7 +109,7 @@ def _failure(failure: Failure, is_open: bool) -> Element:
         ),
         *([element("pre", failure.difference)] if failure.difference else []),
         element("p", "Clauses: ", *_listed([_link(f"clause-{id_}", id_) for id_ in failure.clauses])),
-        *([element("p", "Again: ", element("code", failure.reproduce))] if failure.reproduce else []),
+        *([element("p", "Run it again: ", element("code", failure.reproduce))] if failure.reproduce else []),
         class_="failure",
         id=_anchor(failure),
     )
@@ -142,7 +142,7 @@ def _clauses(certificate: Certificate, texts: Mapping[str, str]) -> Iterator[Ele
                     element("td", f"{each.passed} of {each.items}", class_="number"),
                 )
             )
-        whole = table(title, ("clause", "says", "passed"), rows)
+        whole = table(title, ("clause", "requirement", "passed"), rows)
         yield whole if clauses is broken else element("details", element("summary", "Show them"), whole)
 
 
@@ -152,9 +152,9 @@ def _run(certificate: Certificate) -> Iterator[Element]:
     yield facts(
         [
             ("--parser", certificate.parser_option),
-            ("levels asked", ", ".join(scope.levels)),
-            ("versions asked", ", ".join(scope.versions)),
-            *([("further mechanisms", f"{scope.explore}, from seed {scope.explore_seed}")] if scope.explore else []),
+            ("levels requested", ", ".join(scope.levels)),
+            ("versions requested", ", ".join(scope.versions)),
+            *([("random mechanisms", f"{scope.explore}, from seed {scope.explore_seed}")] if scope.explore else []),
             ("suite", suite.version),
             ("protocol", suite.protocol),
             ("clauses", suite.clauses),

@@ -86,9 +86,9 @@ def run_suite(run: SuiteRun, progress: Progress | None = None) -> Certificate:
         if code == pytest.ExitCode.INTERRUPTED and "KeyboardInterrupt" in written.getvalue():
             raise KeyboardInterrupt
         if code == pytest.ExitCode.NO_TESTS_COLLECTED:
-            raise CannotRunSuite("the suite tests nothing at that level of that version")
+            raise CannotRunSuite("the suite has no tests at that level for that version")
         if code not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED):
-            raise CannotRunSuite(f"the suite broke off (pytest exit code {int(code)})", written.getvalue())
+            raise CannotRunSuite(f"the suite was aborted (pytest exit code {int(code)})", written.getvalue())
         return read_certificate(Path(scratch))
 
 

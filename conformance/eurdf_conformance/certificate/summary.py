@@ -26,7 +26,7 @@ def headline(certificate: Certificate) -> str:
     if certificate.parser is None:
         return "The parser could not be started"
     if certificate.scope.smoke:
-        return "A first try on three cases, which certifies nothing"
+        return "Smoke test of three cases, which certifies nothing"
     certified = _by_version(certificate, True)
     missing = _by_version(certificate, False)
     if not certified:
@@ -39,11 +39,11 @@ def level_words(result: LevelResult, smoke: bool = False) -> str:
     if not result.claimed:
         return "not claimed"
     if not result.asked:
-        return "not asked"
+        return "not requested"
     if smoke:
         return f"tried: {', '.join(_counts(result))}" if result.counts else "not tried"
     if not result.items:
-        return "nothing tests it"
+        return "no tests"
     if result.certified:
         return f"certified: {result.items} passed"
     known = [f"known failures: {result.known_failures}"] if result.known_failures else []

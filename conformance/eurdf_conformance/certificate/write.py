@@ -30,7 +30,7 @@ def make_room(folder: Path, *, force: bool = False) -> None:
         raise NoRoom(f"'{folder}' is a file; a certificate is written into a folder")
     there = [folder / name for name in _SHOWING if (folder / name).exists()]
     if there and not force and not (folder / FILE).is_file():
-        raise NoRoom(f"'{there[0]}' exists already, and no certificate beside it")
+        raise NoRoom(f"'{there[0]}' exists, but no certificate is beside it")
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -29,13 +29,11 @@ def show(certificate: Certificate) -> None:
     lines = [line for failure in certificate.failures[:_SHOWN] for line in _failure_lines(failure)]
     more = len(certificate.failures) - _SHOWN
     if more > 0:
-        lines.append([(f"{more} more did not pass; --certificate DIR writes a page that shows all", "dim")])
+        lines.append([(f"{more} more failures; --certificate DIR writes a page that shows all", "dim")])
     if certificate.scope.explore and any(failure.id.startswith("properties/") for failure in certificate.failures):
         seed = certificate.scope.explore_seed
-        lines.append(
-            [(f"what exploring from seed {seed} has found, if anything, is in {EXPLORED}/, a case each", "dim")]
-        )
-    lines += [[("not as the known failures say: ", "red"), (visible(each), "")] for each in certificate.unexpected]
+        lines.append([(f"exploring from seed {seed} writes each failing mechanism as a case into {EXPLORED}/", "dim")])
+    lines += [[("differs from the known failures: ", "red"), (visible(each), "")] for each in certificate.unexpected]
     if lines:
         write_lines([*lines, []], sys.stdout)
     table = new_table("level", *(f"version {version}" for version in VERSIONS))

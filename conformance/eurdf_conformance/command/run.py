@@ -33,15 +33,14 @@ from eurdf_conformance.level import Level
 from eurdf_conformance.named_folder import named_folder
 
 _DESCRIPTION = """\
-Run the conformance suite on a parser of any language, and say for what it is certified.
+Run the conformance suite on a parser written in any language, and report the certified levels.
 
-A parser is 'package.module:object', a Python object that reads robots, or 'cmd:' and a command line that starts a
-program which speaks the protocol. --verify runs a certificate's parser again, by the command that stands in it:
-look at that first, or give your own with --parser.
+A parser is 'package.module:object', a Python object, or 'cmd:' and a command line that starts a program with the
+protocol of the suite. --verify runs the command in the certificate: read it first, or give your own with --parser.
 """
 _EPILOG = ending(
     "0 every level claimed and asked for is certified (--smoke: the cases passed; --verify: the result is the same),\n"
-    "1 not, 2 the command cannot run. A known failure is no pass.",
+    "1 otherwise, 2 the command cannot run. A known failure does not pass.",
     "eurdf certify --parser 'cmd:./my_parser --flag' --certificate out",
 )
 
@@ -59,35 +58,31 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--parser", metavar="PARSER", help="the parser to certify")
     what = parser.add_mutually_exclusive_group()
-    what.add_argument("--verify", metavar="PATH", type=Path, help="run a certificate again: is what it says so?")
-    what.add_argument("--compare", metavar="PATH", type=Path, nargs="+", help="write one page on several certificates")
-    what.add_argument("--smoke", action="store_true", help="try three cases, to see whether the parser is connected")
+    what.add_argument("--verify", metavar="PATH", type=Path, help="run again and compare with a certificate")
+    what.add_argument("--compare", metavar="PATH", type=Path, nargs="+", help="show several certificates on one page")
+    what.add_argument("--smoke", action="store_true", help="test three cases per version, to check the adapter")
     parser.add_argument(
         "--level", choices=list(map(str, Level)), action="append", default=[], help="test this level only (repeatable)"
     )
     parser.add_argument("--format-version", choices=("1", "2"), help="test this version of the format only")
-    parser.add_argument("--known-failures", metavar="FILE", type=Path, help="YAML list of what is expected to fail")
+    parser.add_argument("--known-failures", metavar="FILE", type=Path, help="YAML list of expected failures")
     parser.add_argument(
         "--certificate", metavar="DIR", type=named_folder, help="write a certificate: JSON, a page and a badge"
     )
-    parser.add_argument("--date", metavar="YYYY-MM-DD", type=_date, help="the day that the certificate is to show")
+    parser.add_argument("--date", metavar="YYYY-MM-DD", type=_date, help="date in the certificate")
     parser.add_argument(
-        "--explore", metavar="N", type=_count, default=0, help="try N more random mechanisms a property"
+        "--explore", metavar="N", type=_count, default=0, help="try N more random mechanisms for each property"
     )
     parser.add_argument(
-        "--explore-seed", metavar="SEED", type=_count, help="what they are drawn from (default: another each time)"
+        "--explore-seed", metavar="SEED", type=_count, help="seed of these mechanisms (default: a new one)"
     )
+    parser.add_argument("--jobs", metavar="N", type=_count, help="number of parallel processes (default: one per core)")
+    parser.add_argument("--parser-timeout", metavar="S", type=_seconds, help="time limit of an answer (default: 10 s)")
     parser.add_argument(
-        "--jobs", metavar="N", type=_count, help="processes, each with its parser (default: a core each)"
+        "--parser-start-timeout", metavar="S", type=_seconds, help="time limit of the start (default: 30 s)"
     )
-    parser.add_argument(
-        "--parser-timeout", metavar="S", type=_seconds, help="time allowed for an answer (default: 10 s)"
-    )
-    parser.add_argument(
-        "--parser-start-timeout", metavar="S", type=_seconds, help="time allowed to start (default: 30 s)"
-    )
-    parser.add_argument("-o", "--output", metavar="FILE", type=Path, help="where --compare writes its page")
-    parser.add_argument("--force", action="store_true", help="replace files that are there already")
+    parser.add_argument("-o", "--output", metavar="FILE", type=Path, help="the page that --compare writes")
+    parser.add_argument("--force", action="store_true", help="replace existing files")
     parser.add_argument("--json", action="store_true", help="write one JSON object")
     return parser
 
@@ -161,7 +156,7 @@ def _verify(args: argparse.Namespace) -> int:
 
 def _compare(paths: Sequence[Path], output: Path | None, force: bool) -> int:
     if output is None:
-        raise CannotRun("-o says where the page is written")
+        raise CannotRun("--compare needs -o FILE for its page")
     write_new(output, comparison_page([read_certificate(path) for path in paths]), force)
     return 0
 
@@ -218,12 +213,12 @@ def _date(text: str) -> date:
     try:
         return date.fromisoformat(text)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"'{text}' is no day such as 2026-01-31") from None
+        raise argparse.ArgumentTypeError(f"'{text}' is not a date such as 2026-01-31") from None
 
 
 def _count(text: str) -> int:
     if not (text.isascii() and text.isdecimal()):
-        raise argparse.ArgumentTypeError(f"'{text}' is no count")
+        raise argparse.ArgumentTypeError(f"'{text}' is not a count")
     return int(text)
 
 
@@ -233,5 +228,5 @@ def _seconds(text: str) -> float:
     except ValueError:
         seconds = math.nan
     if not 0 < seconds < math.inf:
-        raise argparse.ArgumentTypeError(f"'{text}' is no time in seconds")
+        raise argparse.ArgumentTypeError(f"'{text}' is not a time in seconds")
     return seconds

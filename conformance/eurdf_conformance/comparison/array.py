@@ -55,7 +55,7 @@ def array_differences(expected: Any, given: Any, near: float | Matrix, pointer: 
     """One difference, where numbers are not the same within a distance ``near``, or not as many."""
     one, other = np.array(expected, dtype=float), np.array(given, dtype=float)
     if one.shape != other.shape:
-        yield Difference(pointer, expected, given, f"{why}: how many numbers")
+        yield Difference(pointer, expected, given, f"{why}: number of entries")
     elif not agree(one, other, near):
         yield Difference(pointer, expected, given, f"{why}, {worst(one, other, near)[1]}")
 
@@ -69,7 +69,7 @@ def name_differences(
             yield Difference(pointer, expected[name], ABSENT, f"{kind} '{name}' is missing")
     for name in given:
         if name not in expected:
-            yield Difference(pointer + step(name), ABSENT, given[name], f"no {kind} '{name}' was asked for")
+            yield Difference(pointer + step(name), ABSENT, given[name], f"{kind} '{name}' was not requested")
 
 
 def both(expected: Mapping[str, Any], given: Mapping[str, Any]) -> list[str]:

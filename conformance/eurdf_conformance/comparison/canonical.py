@@ -50,7 +50,7 @@ def _set_differences(
     for name in sorted(expected - given):
         yield Difference(pointer, name, ABSENT, f"{kind} '{name}' is missing")
     for name in sorted(given - expected):
-        yield Difference(pointer + step(as_given.index(name)), ABSENT, name, f"there is no {kind} '{name}'")
+        yield Difference(pointer + step(as_given.index(name)), ABSENT, name, f"unexpected {kind} '{name}'")
 
 
 def _part_differences(
@@ -70,7 +70,7 @@ def _part_differences(
                 yield from value_differences(one, other, where, f"{kind} '{name}', {member}")
     for name, found in given.items():
         if name not in expected:
-            yield Difference(found.pointer, ABSENT, found.part, f"there is no {kind} '{name}'")
+            yield Difference(found.pointer, ABSENT, found.part, f"unexpected {kind} '{name}'")
 
 
 def _configuration_differences(expected: PlainRobot, given: PlainRobot, root: str) -> Iterator[Difference]:
@@ -80,14 +80,14 @@ def _configuration_differences(expected: PlainRobot, given: PlainRobot, root: st
         pointer = "/configurations" + step(name)
         one, other = expected.configurations.get(name), given.configurations.get(name)
         if one is None or other is None:
-            why = f"configuration '{name}' is missing" if other is None else f"there is no configuration '{name}'"
+            why = f"configuration '{name}' is missing" if other is None else f"unexpected configuration '{name}'"
             yield Difference(pointer, ABSENT if one is None else one, ABSENT if other is None else other, why)
             continue
         for joint in dict.fromkeys((*one, *other)):
             kind = expected.type_of(joint, root)
             if kind is None:
                 coordinates = one.get(joint, ABSENT), other.get(joint, ABSENT)
-                yield Difference(pointer + step(joint), *coordinates, f"there is no joint '{joint}' that moves")
+                yield Difference(pointer + step(joint), *coordinates, f"'{joint}' is not a moving joint")
                 continue
             there, here = one.get(joint, neutral(kind)), other.get(joint, neutral(kind))
             if not same_coordinates(kind, there, here):

@@ -33,13 +33,13 @@ def jacobian_differences(
     for name in both(expected.rows, given.rows):
         where, what = pointer + "/rows" + step(name), f"rows of K of closure '{name}'"
         if any(len(row) != width for row in given.rows[name]):
-            yield Difference(where, width, [len(row) for row in given.rows[name]], f"{what}: how long each is")
+            yield Difference(where, width, [len(row) for row in given.rows[name]], f"{what}: length of each row")
             continue
         if order is None:
             continue
         one, other = _matrix(expected.rows[name], width), _matrix(given.rows[name], width)[:, order]
         if one.shape != other.shape:
-            yield Difference(where, len(one), len(other), f"{what}: how many")
+            yield Difference(where, len(one), len(other), f"{what}: number of rows")
             continue
         if name in twins:
             one = twin_rows(np.array(twins[name]), one)
@@ -53,7 +53,7 @@ def mass_matrix_differences(expected: MassMatrix, given: MassMatrix, pointer: st
     order, width = _order(expected.columns, given.columns), len(given.columns)
     where, lengths = pointer + "/matrix", [len(row) for row in given.matrix]
     if lengths != [width] * width:
-        yield Difference(where, [width] * width, lengths, "how long each row of M is")
+        yield Difference(where, [width] * width, lengths, "length of each row of M")
     elif order is not None:
         one, other = _matrix(expected.matrix, width), _matrix(given.matrix, width)[np.ix_(order, order)]
         near = TOLERANCE * float(np.abs(one).max(initial=0.0))
@@ -64,13 +64,11 @@ def column_differences(expected: Sequence[Column], given: Sequence[Column], poin
     """EU-PRO-007: every velocity is named once."""
     for column in dict.fromkeys(expected):
         if (count := given.count(column)) != 1:
-            why = f"velocity {column[1]} of joint '{column[0]}' is named {count} times"
+            why = f"velocity {column[1]} of joint '{column[0]}' occurs {count} times"
             yield Difference(pointer, column, [column] * count if count else ABSENT, why)
     for index, column in enumerate(given):
         if column not in expected:
-            yield Difference(
-                pointer + step(index), ABSENT, column, f"there is no velocity {column[1]} of '{column[0]}'"
-            )
+            yield Difference(pointer + step(index), ABSENT, column, f"joint '{column[0]}' has no velocity {column[1]}")
 
 
 def _order(expected: Sequence[Column], given: Sequence[Column]) -> list[int] | None:

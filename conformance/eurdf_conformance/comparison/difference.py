@@ -41,7 +41,7 @@ class Difference:
 
     def __str__(self) -> str:
         where = self.pointer or "(the answer)"
-        return f"{where}: {self.why}: expected {shown(self.expected)}, given {shown(self.given)}"
+        return f"{where}: {self.why}: expected {shown(self.expected)}, got {shown(self.given)}"
 
     def within(self, pointer: str) -> Difference:
         """The same difference, of an answer that holds this one at a pointer."""

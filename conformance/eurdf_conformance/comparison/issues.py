@@ -60,14 +60,14 @@ def _differences(expected: Sequence[Finding], issues: Sequence[Issue], severity:
     for finding in expected:
         matching = [numbered for numbered in rest if numbered[1].code == finding.code]
         if not matching:
-            found.append(Difference("/issues", finding.code, codes, f"codes of what is told, {severity}"))
+            found.append(Difference("/issues", finding.code, codes, f"reported codes, {severity}"))
             continue
         # Several may have one code, at different places.
         best = min(matching, key=lambda numbered: len(_misplaced(finding, severity, *numbered)))
         found += _misplaced(finding, severity, *best)
         rest.remove(best)
     if not any(difference.pointer == "/issues" for difference in found):  # else it is told, by another code
-        found += [Difference("/issues" + step(index), ABSENT, issue, "told beside it") for index, issue in rest]
+        found += [Difference("/issues" + step(index), ABSENT, issue, "unexpected diagnostic") for index, issue in rest]
     return found
 
 

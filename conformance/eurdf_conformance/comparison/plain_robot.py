@@ -88,7 +88,9 @@ def plain_robot(robot: CanonicalRobot, bodies: Iterable[Iterable[str]], links: I
         where = joints.pop(pair.first.name).pointer
         del joints[pair.second.name]
         if pair.name in joints:
-            repeated.append(Difference(where, ABSENT, pair.first, f"there is a joint '{pair.name}' beside its two"))
+            repeated.append(
+                Difference(where, ABSENT, pair.first, f"joint '{pair.name}' occurs beside its two revolute joints")
+            )
         joints[pair.name] = Placed(pair.joint(), where)
         if (motor := pair.actuator(motors)) is not None:
             where = actuators.pop(pair.first.name).pointer
@@ -137,7 +139,7 @@ def _by_name(
     for index, part in enumerate(parts):
         name, where = name_of(part), pointer + step(index)
         if name in found:
-            repeated.append(Difference(where, ABSENT, part, f"'{name}' stands there already, at {found[name].pointer}"))
+            repeated.append(Difference(where, ABSENT, part, f"'{name}' occurs twice, first at {found[name].pointer}"))
         else:
             found[name] = Placed(part, where)
     return found

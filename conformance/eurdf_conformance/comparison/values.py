@@ -34,7 +34,7 @@ def values_differences(expected: Values, given: Values, size: float, tolerance: 
         for difference in _quantity_differences(quantity, expected, given, near, twins)
     ]
     if expected.mass == 0.0 and expected.center_of_mass is None and given.center_of_mass is not None:
-        why = "centre of mass of what has no mass"
+        why = "centre of mass of a robot without mass"
         found.append(Difference(step("center_of_mass"), ABSENT, given.center_of_mass, why))
     return found
 
@@ -45,7 +45,7 @@ def _quantity_differences(
     where = step(quantity)
     match getattr(expected, quantity), getattr(given, quantity):
         case one, None:
-            yield Difference(where, one, ABSENT, f"{quantity}: asked for, not given")
+            yield Difference(where, one, ABSENT, f"{quantity} was requested but is missing")
         case one, other if quantity == "poses":
             yield from _pose_differences(one, other, near, where)
         case one, other if quantity == "residuals":

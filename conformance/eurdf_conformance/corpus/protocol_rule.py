@@ -22,21 +22,21 @@ class ProtocolRule:
 
 START = ProtocolRule(
     "start",
-    "To `start`, a parser says who it is, and for this version of the format the levels that it claims.",
+    "A parser answers `start` with its name and the levels that it claims for this version of the format.",
     ("EU-PRO-001", "EU-PRO-003"),
 )
 QUIET = ProtocolRule(
     "quiet",
-    "A parser answers each request by one line, that repeats its id, and writes nothing else to its standard output.",
+    "A parser answers each request with one line that repeats its id, and writes nothing else to standard output.",
     ("EU-PRO-002", "EU-PRO-001", "EU-PRO-003"),
 )
 GOES_ON = ProtocolRule(
     "goes-on",
-    "A parser goes on after it has rejected a description, and then reads a robot as it did before.",
+    "After it rejects a description, a parser continues and reads a robot as before.",
     ("EU-PRO-005", "EU-PRO-004"),
 )
 
-STOP = ProtocolRule("stop", "To `stop`, a parser answers, and its process then ends by itself.", ("EU-PRO-001",))
+STOP = ProtocolRule("stop", "A parser answers `stop`, and its process then exits by itself.", ("EU-PRO-001",))
 
 RULES = (START, QUIET, GOES_ON, STOP)
 

@@ -52,7 +52,7 @@ def _lines(item: Item, judgement: Judgement, reproduce: str, case: CorpusCase | 
         return
     yield f"  {item.title}"
     if case is not None and case.case.features:
-        yield f"  It uses: {', '.join(case.case.features)}."
+        yield f"  features: {', '.join(case.case.features)}"
     clauses = read_clauses()
     for name in dict.fromkeys((*_saying(judgement), *item.clauses)):
         yield f"  {name}: {clauses[name].text}" if name in clauses else f"  {name}"
@@ -60,7 +60,7 @@ def _lines(item: Item, judgement: Judgement, reproduce: str, case: CorpusCase | 
     if case is not None and isinstance(case.case, ValidCase):
         yield from where_it_stood(judgement, case.case.configurations)
     if judgement.issues:
-        yield "  the parser tells of:"
+        yield "  reported issues:"
         yield from _cut([_issue(issue) for issue in judgement.issues], "issues")
     if case is not None:
         yield from _files(case, item.level, judgement)
@@ -115,7 +115,7 @@ def _files(case: CorpusCase, level: Level, judgement: Judgement) -> Iterator[str
                 here.setdefault((place.line, place.column), []).append(whose)
         lines = sorted(here, key=lambda place: (place[0], place[1] or 0))
         first = "".join(f":{part}" for part in (lines[0] if lines else ()) if part is not None)
-        missing = "" if path.is_file() else " (a folder)" if path.is_dir() else " (there is no such file)"
+        missing = "" if path.is_file() else " (a folder)" if path.is_dir() else " (missing)"
         yield f"  {path}{first}{missing}"
         for line, column in lines:
             yield from _excerpt(path, line, column, " and ".join(dict.fromkeys(here[line, column])))

@@ -96,20 +96,20 @@ def judge_outcome(outcome: Outcome, expected: str = "") -> Judgement:
             wrong = Difference("/outcome", expected, answer.outcome, why)
             return replace(judgement, differences=(wrong,)) if expected else judgement
         case Crashed(code=None, signal=None):
-            verdict, why = Verdict.CRASHED, "the process closed its standard output, without an answer"
+            verdict, why = Verdict.CRASHED, "the process closed its standard output without answering"
         case Crashed(code=code, signal=signal):
             verdict, how = Verdict.CRASHED, f"by {signal}" if signal else f"with exit code {code}"
-            why = f"the process ended {how}, without an answer"
+            why = f"the process ended {how} without answering"
         case TimedOut():
-            verdict, why = Verdict.TIMED_OUT, "there was no answer in the time allowed"
+            verdict, why = Verdict.TIMED_OUT, "no answer within the time limit"
         case Malformed(line=line, why=what, placed=placed):
             # Of a line that is an answer but for a fault, the beginning says nothing: what is wrong says where.
             verdict, quoted = Verdict.MALFORMED, "" if placed else f": {line[:_WIDTH]!r}"
-            why = f"a line is no answer: {what}{quoted}"
+            why = f"invalid answer: {what}{quoted}"
         case Misplaced():
-            verdict, why = Verdict.MISPLACED, "the answer is to another request"
+            verdict, why = Verdict.MISPLACED, "the answer has the id of another request"
         case Chatter(lines=lines):
-            verdict, why = Verdict.CHATTER, f"a line that nobody asked for stands on its output: {lines[0][:_WIDTH]!r}"
+            verdict, why = Verdict.CHATTER, f"unexpected output: {lines[0][:_WIDTH]!r}"
         case CannotStart(why=what):
             verdict, why = Verdict.NOT_STARTED, what.splitlines()[0]
     log = str(outcome)
@@ -122,16 +122,16 @@ def _judge_answer(answer: AnyAnswer) -> tuple[Judgement, str]:
     """What an answer comes to that is not the one asked for, and what it is, in words of the suite."""
     match answer:
         case Unsupported(feature=feature, reason=reason):
-            return Judgement(Verdict.UNSUPPORTED, f"{feature}: {reason}" if reason else feature), "it lacks a feature"
+            return Judgement(Verdict.UNSUPPORTED, f"{feature}: {reason}" if reason else feature), "unsupported feature"
         case Skipped(reason=reason):
-            return Judgement(Verdict.SKIPPED, reason), "it would rather not"
+            return Judgement(Verdict.SKIPPED, reason), "the parser skipped the request"
         case Errored(message=message):
-            return Judgement(Verdict.ERRORED, message), "it failed, by its own word"
+            return Judgement(Verdict.ERRORED, message), "the parser reported a failure"
         case Rejected(issues=issues):
-            why = "it rejects what is right"
+            why = "the parser rejects a valid description"
             return Judgement(Verdict.FAILED, why, issues=tuple(issues)), why
         case _:
-            why = f"the answer is '{answer.outcome}'"
+            why = f"the outcome is '{answer.outcome}'"
             return Judgement(Verdict.FAILED, why), why
 
 
@@ -153,7 +153,7 @@ def _judge_accept(case: CorpusCase, conversation: Conversation) -> Judgement:
         case Answered(answer=Rejected()), InvalidCase():
             return PASSED
         case Answered(answer=Accepted(issues=issues)), InvalidCase(code=code):
-            why = f"it accepts what is wrong: {code}"
+            why = f"the parser accepts an invalid description: {code}"
             wrong = Difference("/outcome", "rejected", "accepted", why)
             return Judgement(Verdict.FAILED, why, (wrong,), tuple(issues))
     return judge_outcome(outcome, _to_load(case))
@@ -163,11 +163,11 @@ def _judge_structure(case: CorpusCase, conversation: Conversation) -> Judgement:
     outcome = conversation.load(case)
     match outcome:
         case Answered(answer=Accepted(robot=None)):
-            wrong = Difference("/robot", case.expected.robot, None, "the level structure asks for what was read")
-            return Judgement(Verdict.FAILED, "it does not say what it has read", (wrong,))
+            wrong = Difference("/robot", case.expected.robot, None, "level structure requires it")
+            return Judgement(Verdict.FAILED, "the answer has no canonical description", (wrong,))
         case Answered(answer=Accepted(robot=robot)) if robot is not None:
             found = canonical_differences(case.expected.robot, robot, case.expected.bodies)
-            return _unless(found, "it has read another robot", "/robot")
+            return _unless(found, "the canonical description differs", "/robot")
     return judge_outcome(outcome, _to_load(case))
 
 
@@ -178,13 +178,13 @@ def _judge_values(case: CorpusCase, conversation: Conversation, quantities: Sequ
         case Answered(answer=Evaluated(values=values)):
             expected = case.expected
             if len(values) != len(expected.values):
-                wrong = Difference("/values", len(expected.values), len(values), "how many configurations")
-                return _unless([wrong], "one value a configuration", "")
+                wrong = Difference("/values", len(expected.values), len(values), "number of configurations")
+                return _unless([wrong], "one value per configuration is required", "")
             found = []
             for index, (one, other, size) in enumerate(zip(expected.values, values, expected.sizes, strict=True)):
                 pointer = f"/values/{index}"
                 found += [each.within(pointer) for each in values_differences(_only(one, quantities), other, size)]
-            return _unless(found, "its values are others", "")
+            return _unless(found, "the values differ", "")
     return judge_outcome(outcome, _to_load(case) if outcome is loaded else "evaluated")
 
 
@@ -194,11 +194,11 @@ def _judge_diagnose(case: CorpusCase, conversation: Conversation) -> Judgement:
     match outcome, case.case:
         case Answered(answer=Accepted(issues=issues)), ValidCase(warnings=warnings):
             found = warning_differences(warnings, issues)
-            return _unless(found, "it tells of other warnings", "", issues)
+            return _unless(found, "the reported warnings differ", "", issues)
         case Answered(answer=Accepted()), InvalidCase(either=False):
             return _judge_accept(case, conversation)
         case Answered(answer=Accepted(issues=issues) | Rejected(issues=issues)), InvalidCase() as fault:
-            return _unless(error_differences(fault, issues), "it tells of another fault", "", issues)
+            return _unless(error_differences(fault, issues), "the reported errors differ", "", issues)
     return judge_outcome(outcome, _to_load(case))
 
 

@@ -88,15 +88,15 @@ class KnownFailures:
             if (known.id, known.level) not in items:
                 found.append(f"{name}: the suite has no such item{_hint(known)}")
             elif given == Verdict.PASSED:
-                found.append(f"{name}: known as '{known.verdict}', but it passes now: take it out of the file")
+                found.append(f"{name}: listed as '{known.verdict}' but passes; remove it from the known failures")
             elif given not in (None, Verdict.NOT_RUN, known.verdict):
-                found.append(f"{name}: known as '{known.verdict}', but it is '{given}'")
+                found.append(f"{name}: listed as '{known.verdict}', but the verdict is '{given}'")
         return found
 
 
 def _hint(known: KnownFailure) -> str:
     case, _, level = known.id.rpartition("/")
-    return f"; an id is without its level: '{case}'" if level in list(Level) else ""
+    return f"; write the id without its level: '{case}'" if level in list(Level) else ""
 
 
 #: Nothing is known to fail.
@@ -114,7 +114,7 @@ def read_known_failures(path: Path) -> KnownFailures:
     except OSError as error:
         raise WrongKnownFailures(path, [error.strerror or str(error)]) from error
     except UnicodeDecodeError as error:
-        raise WrongKnownFailures(path, ["it is not in UTF-8"]) from error
+        raise WrongKnownFailures(path, ["not UTF-8"]) from error
     except yaml.YAMLError as error:
         raise WrongKnownFailures(path, [" ".join(str(error).split())]) from error
     try:
@@ -122,7 +122,7 @@ def read_known_failures(path: Path) -> KnownFailures:
     except ValidationError as error:
         raise WrongKnownFailures(path, [_fault(detail) for detail in error.errors()]) from error
     names = Counter(f"{known.id}/{known.level}" for known in failures)
-    twice = [f"{name} stands in it {count} times" for name, count in names.items() if count > 1]
+    twice = [f"{name} is listed {count} times" for name, count in names.items() if count > 1]
     if twice:
         raise WrongKnownFailures(path, twice)
     return KnownFailures(tuple(failures))

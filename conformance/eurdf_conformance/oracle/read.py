@@ -51,7 +51,7 @@ def described(path: Path) -> Description:
     """The description in a file, of the version that it says, EU-VER-001 to 003."""
     document = value_of(text_of(path))
     if not isinstance(document, dict):
-        raise NotRead("the description is no mapping")
+        raise NotRead("the description is not a mapping")
     if "extended_urdf" in document:
         text(document["extended_urdf"])
         return version2(document)

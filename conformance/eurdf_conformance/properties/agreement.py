@@ -30,7 +30,7 @@ def agreement(harness: Harness, example: Example, version: Version, level: Level
     if LEVELS[level].compared is Compared.ROBOT:
         read = harness.read(query)
         if read is None:
-            return [Difference("/robot", "what it has read", ABSENT, "the level structure asks for it")]
+            return [Difference("/robot", "a canonical description", ABSENT, "level structure requires it")]
         return [each.within("/robot") for each in canonical_differences(robot.canonical(), read, robot.bodies)]
     quantities, found = LEVELS[level].quantities, []
     for index, (q, given) in enumerate(zip(query.configurations, harness.evaluate(query, quantities), strict=True)):
@@ -73,14 +73,14 @@ def inertia(harness: Harness, example: Example, version: Version, level: Level) 
 PROPERTIES = (
     Property(
         "accepted",
-        "A mechanism that is right is accepted.",
+        "A valid mechanism is accepted.",
         ("EU-CNF-002", "EU-PRO-004"),
         (Level.ACCEPT,),
         accepted,
     ),
     Property(
         "structure-agreement",
-        "What is read of a mechanism is what it was written from.",
+        "The canonical description is that of the mechanism from which the files were written.",
         (
             *("EU-CAN-001", "EU-CAN-002", "EU-ACT-006"),
             *("EU-JNT-020", "EU-JNT-021", "EU-JNT-024", "EU-JNT-027", "EU-JNT-029"),
@@ -92,7 +92,7 @@ PROPERTIES = (
     ),
     Property(
         "agreement",
-        "Poses, residuals and K are those that a second implementation of the specification finds.",
+        "Poses, residuals and K agree with a second implementation of the specification.",
         (
             *("EU-PRO-008", "EU-JNT-025", "EU-JNT-026", "EU-FRM-004", "EU-FRM-005", "EU-FRM-006"),
             *("EU-CLO-008", "EU-CLO-009", "EU-CLO-010", "EU-URD-032", "EU-URD-035", "EU-JNT-015"),
@@ -103,21 +103,21 @@ PROPERTIES = (
     ),
     Property(
         "inertia-agreement",
-        "M, mass and centre of mass are those that a second implementation of the specification finds.",
+        "M, mass and centre of mass agree with a second implementation of the specification.",
         ("EU-INR-006", "EU-INR-005", "EU-PRO-009", "EU-JNT-026"),
         (Level.DYNAMICS,),
         agreement,
     ),
     Property(
         "columns",
-        "Every velocity of the mechanism is a column, once.",
+        "Every velocity of the mechanism is exactly one column.",
         ("EU-PRO-007",),
         (Level.KINEMATICS, Level.DYNAMICS),
         columns,
     ),
     Property(
         "inertia",
-        "The mass is that of all links, and M is symmetric and positive definite.",
+        "The mass is the sum over all links, and M is symmetric and positive definite.",
         ("EU-INR-005", "EU-INR-006"),
         (Level.DYNAMICS,),
         inertia,

@@ -52,7 +52,7 @@ def explore(prop: Property, level: Level, trial: Trial, harness: Harness, folder
     found = search(prop, level, trial.version, harness, trial.explore, trial.seed)
     if found is None:
         drawn_from = f"{trial.explore} more mechanisms, drawn from seed {trial.seed}"
-        return with_log(PASSED, f"exploring has found nothing wrong on {drawn_from}, and no case is written")
+        return with_log(PASSED, f"exploring found no error on {drawn_from}; no case is written")
     example, judgement = found
     # Once more, since the harness was asked about others meanwhile.
     again = try_example(prop, level, trial.version, harness, example)
@@ -60,10 +60,10 @@ def explore(prop: Property, level: Level, trial: Trial, harness: Harness, folder
     told = replace(judgement, reason=f"on a mechanism found by exploring: {judgement.reason}")
     log = [
         f"found by exploring from seed {trial.seed}: {judgement.verdict}: {judgement.reason}",
-        f"made small, and written as a case: {case}",
+        f"reduced and written as a case: {case}",
         *how_to_keep(case),
     ]
-    log += ["asked again, the parser answers otherwise"] * (again != judgement)
+    log += ["the parser answers differently when asked again"] * (again != judgement)
     return with_log(told, *log)
 
 

@@ -87,7 +87,7 @@ class Harness:
             raise NotAnswered("evaluated", outcome)
         given, count = outcome.answer.values, len(query.configurations)
         if len(given) != count:
-            raise WrongShape([Difference("/values", count, len(given), "how many configurations")])
+            raise WrongShape([Difference("/values", count, len(given), "number of configurations")])
         robot = truth(query.mechanism, query.version)
         return [
             shaped(values, robot, query.frames, quantities, f"/values/{index}") for index, values in enumerate(given)

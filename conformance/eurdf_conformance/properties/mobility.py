@@ -79,11 +79,11 @@ PROPERTIES = (
     family("planar-polygon", "A planar ring of n hinges has mobility n − 3.", planar.polygon, range(4, 9)),
     family(
         "planar-polygon-6d",
-        "A planar ring of n hinges that is closed in 6d has three redundant rows.",
+        "A planar ring of n hinges closed by a 6d closure has three redundant rows.",
         planar.spatial_polygon,
         range(4, 9),
     ),
-    family("parallelograms", "Parallel cranks have mobility 1, however many.", planar.parallelograms, range(1, 6)),
+    family("parallelograms", "n parallel cranks have mobility 1.", planar.parallelograms, range(1, 6)),
     family(
         "spherical-polygon",
         "A ring of n hinges through one point has mobility n − 3.",
@@ -94,6 +94,6 @@ PROPERTIES = (
     family("ball-chain", "A chain of n balls has mobility 3 n.", spherical.ball_chain, range(1, 6)),
     family("platform-ups", "A platform on legs UPS has mobility 6.", platforms.with_universals, range(3, 8)),
     family("platform-sps", "A platform on n legs SPS has mobility 6 + n.", platforms.with_balls, range(3, 8)),
-    family("sarrus", "A Sarrus linkage has a redundant row, and moves.", paradoxical.sarrus, range(2, 5)),
-    family("bennett", "A Bennett linkage has three redundant rows, and moves.", paradoxical.bennett, range(6, 11)),
+    family("sarrus", "A Sarrus linkage has one redundant row and moves.", paradoxical.sarrus, range(2, 5)),
+    family("bennett", "A Bennett linkage has three redundant rows and moves.", paradoxical.bennett, range(6, 11)),
 )

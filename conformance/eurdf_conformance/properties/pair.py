@@ -62,7 +62,7 @@ def related(pair_of: Callable[[Example, Version], Pair]) -> Check:
 def _read_differences(harness: Harness, pair: Pair) -> list[Difference]:
     one, other = harness.read(pair.one), harness.read(pair.other)
     if one is None or other is None:
-        return [Difference("/robot", "what it has read", ABSENT, "the level structure asks for it")]
+        return [Difference("/robot", "a canonical description", ABSENT, "level structure requires it")]
     bodies = truth(pair.other.mechanism, pair.other.version).bodies
     return [each.within("/robot") for each in canonical_differences(pair.carry_robot(one), other, bodies)]
 

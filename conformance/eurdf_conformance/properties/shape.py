@@ -66,7 +66,7 @@ def _differences(
     weightless = not any(inertia.mass for inertia, _ in robot.masses)
     for quantity in quantities:
         if getattr(values, quantity) is None and not (quantity == "center_of_mass" and weightless):
-            yield Difference(f"/{quantity}", quantity, ABSENT, f"{quantity}: asked for, not given")
+            yield Difference(f"/{quantity}", quantity, ABSENT, f"{quantity} was requested but is missing")
     if values.poses is not None:
         yield from name_differences(dict.fromkeys(frames, "a pose"), values.poses, "/poses", "frame")
     rows = {name: 3 if kind == "3d" else 6 for name, (kind, _, _) in robot.closures.items()}
@@ -82,7 +82,7 @@ def _row_differences(rows: dict[str, int], given: dict[str, list[float]], pointe
     yield from name_differences(rows, given, pointer, "closure")
     for name, count in rows.items():
         if name in given and len(given[name]) != count:
-            yield Difference(pointer + step(name), count, len(given[name]), f"how many rows closure '{name}' has")
+            yield Difference(pointer + step(name), count, len(given[name]), f"number of rows of closure '{name}'")
 
 
 def _jacobian_differences(K: Jacobian, rows: dict[str, int], columns: Sequence[Column]) -> Iterator[Difference]:
@@ -91,7 +91,7 @@ def _jacobian_differences(K: Jacobian, rows: dict[str, int], columns: Sequence[C
     for name, count in rows.items():
         widths = [len(row) for row in K.rows.get(name, [])]
         if name in K.rows and widths != [len(columns)] * count:
-            why = f"how long each row of K of closure '{name}' is"
+            why = f"length of each row of K of closure '{name}'"
             yield Difference("/jacobian/rows" + step(name), [len(columns)] * count, widths, why)
 
 
@@ -99,7 +99,7 @@ def _mass_matrix_differences(M: MassMatrix, columns: Sequence[Column]) -> Iterat
     yield from column_differences(columns, M.columns, "/mass_matrix/columns")
     widths = [len(row) for row in M.matrix]
     if widths != [len(columns)] * len(columns):
-        yield Difference("/mass_matrix/matrix", [len(columns)] * len(columns), widths, "how long each row of M is")
+        yield Difference("/mass_matrix/matrix", [len(columns)] * len(columns), widths, "length of each row of M")
 
 
 def _huge_numbers(value: Any, pointer: str) -> Iterator[Difference]:
@@ -110,7 +110,7 @@ def _huge_numbers(value: Any, pointer: str) -> Iterator[Difference]:
         for index, each in enumerate(value):
             yield from _huge_numbers(each, pointer + step(index))
     elif isinstance(value, float) and abs(value) > HUGE:
-        yield Difference(pointer, f"no more than {HUGE:g}", value, "no mechanism has so large a number")
+        yield Difference(pointer, f"at most {HUGE:g}", value, "the number is too large for any mechanism")
 
 
 def _is_tame(values: list[Any]) -> bool:

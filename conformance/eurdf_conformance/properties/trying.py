@@ -76,8 +76,8 @@ def try_example(prop: Property, level: Level, version: Version, harness: Harness
     except NotAnswered as failure:
         return judge_outcome(failure.outcome, failure.expected)
     except WrongShape as wrong:
-        return Judgement(Verdict.FAILED, "its values are not those asked for", wrong.differences)
-    return Judgement(Verdict.FAILED, f"it is not so: {prop.title}", tuple(found)) if found else PASSED
+        return Judgement(Verdict.FAILED, "the values do not have the requested shape", wrong.differences)
+    return Judgement(Verdict.FAILED, f"the property does not hold: {prop.title}", tuple(found)) if found else PASSED
 
 
 def with_log(judgement: Judgement, *lines: str) -> Judgement:

@@ -28,7 +28,7 @@ def error_text(error: ValidationError, within: str = "", skip: int = 0) -> str:
     """
     found = error.errors(include_url=False)
     told = [
-        f"{_pointer(each['loc'][skip:], within) or 'the whole'}: {_words(each['type'], each['msg'], each['input'])}"
+        f"{_pointer(each['loc'][skip:], within) or '(top level)'}: {_words(each['type'], each['msg'], each['input'])}"
         for each in found[:_MOST]
     ]
     more = f"; and {len(found) - _MOST} more" if len(found) > _MOST else ""
@@ -52,10 +52,10 @@ def _words(kind: str, message: str, value: Any) -> str:
     if kind in _VALUE_APART:
         return message
     if kind == "finite_number":
-        return f"{message}, not {value}: NaN and infinity are no JSON"
+        return f"{message}, not {value}: JSON has no NaN or infinity"
     told = f"{message}, not {_shown(value)}"
     if kind == "float_type" and value is None:
-        return f"{told}, which some libraries write for NaN and infinity: these are no JSON"
+        return f"{told}, which some libraries write for NaN or infinity; JSON has neither"
     return told
 
 

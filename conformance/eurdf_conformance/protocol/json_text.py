@@ -45,7 +45,7 @@ def read_json(text: bytes) -> tuple[Any, list[str]]:
     doubled: list[Doubled] = []
 
     def constant(word: str) -> float:
-        words.append(f"{word} is no JSON")
+        words.append(f"{word} is not JSON")
         return float(word)
 
     def real(text: str) -> float:
@@ -68,9 +68,9 @@ def read_json(text: bytes) -> tuple[Any, list[str]]:
     value = json.loads(
         text.decode("utf-8"), parse_constant=constant, parse_float=real, parse_int=whole, object_pairs_hook=made
     )
-    found = [f"{pointer}: the key '{key}' stands twice in it" for pointer, key in _twice(value)] if doubled else []
+    found = [f"{pointer}: duplicate key '{key}'" for pointer, key in _twice(value)] if doubled else []
     if words:
-        found.append(f"{next(not_finite(value), '') or 'the whole'}: {words[0]}")
+        found.append(f"{next(not_finite(value), '') or '(top level)'}: {words[0]}")
     return value, found
 
 
@@ -93,7 +93,7 @@ def _twice(value: Any, within: str = "") -> Iterator[tuple[str, str]]:
     """The keys that stand twice, each with the pointer to its object."""
     if isinstance(value, Doubled):
         for key in value.keys_twice:
-            yield within or "the whole", key
+            yield within or "(top level)", key
     if isinstance(value, dict):
         for key, item in value.items():
             yield from _twice(item, within + step(key))

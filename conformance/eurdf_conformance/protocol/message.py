@@ -233,7 +233,7 @@ class Values(Value):
 
 
 class Evaluated(Answer):
-    """To `evaluate`: one value a configuration, in their order."""
+    """To `evaluate`: one value per configuration, in their order."""
 
     outcome: Literal["evaluated"] = "evaluated"
     values: list[Values]

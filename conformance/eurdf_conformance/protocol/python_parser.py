@@ -18,7 +18,7 @@ def parser_error(parser: Any) -> str:
         return f"{described(parser)} has no {' and no '.join(missing)}"
     for name in ("name", "version", "language"):
         if not isinstance(said := getattr(parser, name), str):
-            return f"its {name} is {described(said)}, and should be a text"
+            return f"its {name} is {described(said)}, expected a string"
     if not parser.name:
         return "its name is empty"
     fault = _claims_fault(parser.claims) or _method_fault(parser, "load", ("description", "urdf"))
@@ -42,12 +42,12 @@ def _claims_fault(claims: Any) -> str:
     """What is wrong with the claims."""
     as_in = "as in {'2': ['accept']}"
     if not isinstance(claims, Mapping):
-        return f"its claims are {described(claims)}, and should say for each version the levels, {as_in}"
+        return f"its claims are {described(claims)}, expected a mapping from version to levels, {as_in}"
     for version, levels in claims.items():
         if version not in VERSIONS:
-            return f"it claims version {version!r}; versions are {' and '.join(map(repr, VERSIONS))}, texts, {as_in}"
+            return f"it claims version {version!r}; versions are strings, {as_in}"
         if isinstance(levels, str) or not isinstance(levels, Sequence):
-            return f"what it claims for version {version} should be a list of levels, {as_in}"
+            return f"its claims for version {version} must be a list of levels, {as_in}"
         for level in levels:
             if level not in list(Level):
                 return f"it claims level {level!r}; levels are {_LEVELS}"
@@ -58,7 +58,7 @@ def _method_fault(parser: Any, name: str, parameters: Sequence[str]) -> str:
     """What is wrong with a method."""
     method, asked = getattr(parser, name), f"{name}({', '.join(parameters)})"
     if not callable(method):
-        return f"its {name} is {described(method)}, and should be a method {asked}"
+        return f"its {name} is {described(method)}, expected a method {asked}"
     try:
         signature = inspect.signature(method)
     except (TypeError, ValueError):  # of another language, perhaps

@@ -37,7 +37,7 @@ def accepted(robot: CanonicalRobot | Mapping[str, Any] | None = None, issues: It
         robot = _canonical(robot)
     own = robot.own if isinstance(robot, CanonicalRobot) else {}
     for pointer in not_finite(own, "/robot/own"):
-        raise WrongReply(f"given to accepted(): {pointer}: NaN and infinity are no JSON")
+        raise WrongReply(f"in accepted(): {pointer}: JSON has no NaN or infinity")
     return _reply(Accepted, robot=robot, issues=_issues(issues))
 
 
@@ -82,9 +82,9 @@ def _canonical(robot: Mapping[str, Any]) -> CanonicalRobot:
     try:
         return CanonicalRobot.model_validate_json(json.dumps(robot))
     except ValidationError as error:
-        raise WrongReply(f"given to accepted(): {error_text(error, '/robot')}") from None
+        raise WrongReply(f"in accepted(): {error_text(error, '/robot')}") from None
     except (TypeError, ValueError, RecursionError) as error:  # a set, an array of numpy, what contains itself
-        raise WrongReply(f"given to accepted(): /robot is no plain data: {error}") from None
+        raise WrongReply(f"in accepted(): /robot is not plain data: {error}") from None
 
 
 def _issues(issues: Iterable[Issue | str]) -> list[Issue]:
@@ -95,4 +95,4 @@ def _reply(kind: type[_Reply], **members: Any) -> _Reply:
     try:
         return kind(id=NO_ID, **members)
     except ValidationError as error:
-        raise WrongReply(f"given to {kind.model_fields['outcome'].default}(): {error_text(error)}") from None
+        raise WrongReply(f"in {kind.model_fields['outcome'].default}(): {error_text(error)}") from None

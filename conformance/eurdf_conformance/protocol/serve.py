@@ -116,7 +116,7 @@ def find_object(path: str) -> Any:
         if not f"{module}.".startswith(f"{missing}."):
             raise  # what the module imports is missing
         where = f"neither in the working folder, {Path.cwd()}, nor in PYTHONPATH, nor installed for {sys.executable}"
-        raise NoParser(f"there is no module '{missing}': {where}") from None
+        raise NoParser(f"no module '{missing}': it is {where}") from None
     for part in name.split("."):
         if not hasattr(found, part):
             raise NoParser(f"{module} has no '{name}'")
@@ -126,7 +126,7 @@ def find_object(path: str) -> Any:
     try:
         inspect.signature(found).bind()
     except TypeError:
-        raise NoParser(f"the class {path} is not made without arguments: name an object that is made of it") from None
+        raise NoParser(f"the class {path} needs arguments; name an instance instead") from None
     except ValueError:  # nobody knows
         pass
     return found()
@@ -153,7 +153,7 @@ def main(path: str) -> None:
         _print_traceback(error)
         sys.exit(1)
     if fault:
-        sys.exit(f"{path} is no parser: {fault}")
+        sys.exit(f"{path} is not a parser: {fault}")
     serve(parser, requests, answers)
 
 
@@ -169,9 +169,9 @@ def _answer_to(parser: PythonParser, line: bytes) -> AnyAnswer | _NoAnswer:
     try:
         request = REQUEST.validate_json(line)
     except ValidationError as error:
-        return Errored(id=_id_in(line), message=f"no request of protocol {PROTOCOL}: {error_text(error)}")
+        return Errored(id=_id_in(line), message=f"not a request of protocol {PROTOCOL}: {error_text(error)}")
     if may_have_errors(line, request) and (found := read_json(line)[1]):
-        return Errored(id=request.id, message=f"no request of protocol {PROTOCOL}: {found[0]}")
+        return Errored(id=request.id, message=f"not a request of protocol {PROTOCOL}: {found[0]}")
     return _answer(parser, request)
 
 

@@ -48,11 +48,11 @@ def _placed(answer: AnyAnswer, line: bytes, request: AnyRequest) -> AnyAnswer | 
         return Misplaced(shown(line), request.id, answer.id)
     allowed = request.outcomes if isinstance(request, Stop) else (*request.outcomes, *_ANY_TIME)
     if answer.outcome not in allowed:
-        return Malformed(shown(line), f"'{answer.outcome}' is no answer to '{request.command}'", placed=True)
+        return Malformed(shown(line), f"'{answer.outcome}' is not an answer to '{request.command}'", placed=True)
     if isinstance(answer, Evaluated) and isinstance(request, Evaluate):
         given, asked = len(answer.values), len(request.configurations)
         if given != asked:
-            return Malformed(shown(line), f"values at {given} configurations; {asked} were asked for", placed=True)
+            return Malformed(shown(line), f"values at {given} configurations, expected {asked}", placed=True)
     return answer
 
 
@@ -63,7 +63,7 @@ def _unfit(line: bytes, request: AnyRequest, error: ValidationError) -> AnyAnswe
     except (ValueError, RecursionError) as why:
         return Malformed(shown(line), _reason(why))
     if not isinstance(value, dict):
-        return Malformed(shown(line), "a JSON value, but no object")
+        return Malformed(shown(line), "a JSON value that is not an object")
     if elsewhere := _elsewhere(value, line, request):
         return elsewhere
     if found:
@@ -75,18 +75,18 @@ def _unfit(line: bytes, request: AnyRequest, error: ValidationError) -> AnyAnswe
     try:
         return _placed(ANSWER.validate_json(json.dumps(_whole(value))), line, request)
     except (ValidationError, RecursionError):
-        return Malformed(shown(line), f"it breaks the schema: {error_text(error, skip=1)}", placed=True)
+        return Malformed(shown(line), f"schema violation: {error_text(error, skip=1)}", placed=True)
 
 
 def _elsewhere(value: dict[str, Any], line: bytes, request: AnyRequest) -> Malformed | Misplaced | None:
     """Why an object is not to be placed: it has no id, or two, or that of another request."""
     if isinstance(value, Doubled) and "id" in value.keys_twice:
-        return Malformed(shown(line), "an answer in which the key 'id' stands twice")
+        return Malformed(shown(line), "duplicate key 'id'")
     given_id = value.get("id")
     if isinstance(given_id, float) and given_id.is_integer():
         given_id = int(given_id)
     if not isinstance(given_id, int) or isinstance(given_id, bool):
-        return Malformed(shown(line), "an answer without the 'id' of its request, which is a whole number")
+        return Malformed(shown(line), "the 'id' of the request, an integer, is missing")
     return None if given_id == request.id else Misplaced(shown(line), request.id, given_id)
 
 
@@ -106,9 +106,9 @@ def _reason(why: Exception) -> str:
             return f"not UTF-8, from byte {why.start + 1} on"
         case json.JSONDecodeError():
             if why.doc.startswith("\ufeff"):
-                return "it begins with a byte order mark, which JSON has none of"
+                return "it begins with a byte order mark, which JSON does not allow"
             return f"not JSON: {why.msg} at character {why.pos + 1}"
         case RecursionError():
-            return "not JSON of a sensible depth"
+            return "JSON nested too deep"
         case _:
             return str(why)

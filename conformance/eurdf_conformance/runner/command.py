@@ -24,7 +24,7 @@ def command_of(parser: str) -> list[str]:
     if parser.startswith("cmd:"):
         command = shlex.split(parser.removeprefix("cmd:"))
         if not command:
-            raise ValueError("after 'cmd:' there is no command")
+            raise ValueError("the command after 'cmd:' is missing")
         return command
     if _OBJECT.fullmatch(parser):
         return [sys.executable, "-m", "eurdf_conformance.protocol.serve", parser]
@@ -41,17 +41,17 @@ def why_not(program: str, error: Exception) -> str:
     path, is_path = Path(program), "/" in program
     match error:
         case FileNotFoundError() if not is_path:
-            hint = f"; the file that is here is './{program}', and it must be executable" if path.is_file() else ""
-            return f"there is no program '{program}' where programs are (PATH){hint}"
+            hint = f"; write './{program}' for the file in this folder" if path.is_file() else ""
+            return f"program '{program}' is not in PATH{hint}"
         case FileNotFoundError() if path.exists():
-            return f"'{program}' names in its first line a program that there is not"
+            return f"the interpreter in the first line of '{program}' does not exist"
         case FileNotFoundError():
-            return f"there is no program '{path.absolute()}'"
+            return f"program '{path.absolute()}' does not exist"
         case PermissionError() if path.is_dir():
             return f"'{program}' is a folder"
         case PermissionError() if path.is_file():
             return f"'{program}' is not executable: chmod +x, or name what runs it, as in 'cmd:python {program}'"
         case OSError(errno=errno.ENOEXEC):
-            return f"'{program}' is no program; a script begins with a line as '#!/usr/bin/env python3'"
+            return f"'{program}' is not a program; a script needs a first line such as '#!/usr/bin/env python3'"
         case _:
             return str(error)

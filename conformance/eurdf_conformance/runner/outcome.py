@@ -58,7 +58,7 @@ class Crashed:
             how = f"crashed: ended with exit code {self.code}"
         else:
             how = "crashed: closed its standard output"
-        when = ", after it had answered the request before" if self.before else " without an answer"
+        when = " after answering the previous request" if self.before else " without answering"
         return how + when + _written(self.written) + _logged(self.log)
 
 
@@ -121,7 +121,7 @@ class Misplaced:
     word = "misplaced"
 
     def __str__(self) -> str:
-        return f"misplaced: request {self.expected_id} was answered by an answer to {self.given_id}"
+        return f"misplaced: the answer to request {self.expected_id} has the id {self.given_id}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,8 +139,8 @@ class Chatter:
     word = "chatter"
 
     def __str__(self) -> str:
-        count = "a line" if len(self.lines) == 1 else f"{len(self.lines)} lines"
-        return f"chatter: {count} on standard output that nobody asked for" + _written("\n".join(self.lines))
+        count = "an unexpected line" if len(self.lines) == 1 else f"{len(self.lines)} unexpected lines"
+        return f"chatter: {count} on standard output" + _written("\n".join(self.lines))
 
 
 @dataclass(frozen=True, slots=True)

@@ -51,7 +51,7 @@ class ParserProcess:
         if isinstance(outcome, Answered) and self.alive:
             self._pipes.close_input()
             if not self._pipes.await_exit(deadline):
-                outcome = TimedOut(timeout, log="it answered 'stopped', but did not end")
+                outcome = TimedOut(timeout, log="it answered 'stopped' but did not exit")
             elif (crashed := self._crashed("", before=True)).code != 0:
                 outcome = crashed
         self.end()
@@ -92,7 +92,7 @@ class ParserProcess:
             deadline = min(deadline, time.monotonic() + _SETTLE)
         first = (others or strays)[0]
         found = read_answer(first, request)
-        why = found.why if isinstance(found, Malformed) else f"{_MOST_LINES} lines that nobody asked for"
+        why = found.why if isinstance(found, Malformed) else f"{_MOST_LINES} unexpected lines"
         return Malformed(shown(first), why, log=self._pipes.log)
 
     def _rest(self) -> list[bytes]:

@@ -179,21 +179,21 @@ class Session:
         """See to it that there is a process to ask; why there is none."""
         first = self.start()
         if not _is_started(first):
-            return CannotStart(f"given up, for it did not start: {first}")
+            return CannotStart(f"given up because it did not start: {first}")
         if self._process is not None and self._process.alive:
             return None
         if self._failed_starts >= self._most_failed_starts:
-            return CannotStart(f"given up, for it did not start {self._failed_starts} times in a row: {self._last}")
+            return CannotStart(f"given up because it did not start {self._failed_starts} times in a row: {self._last}")
         self.restarts += 1
         again = self._begin()
         if not _is_started(again):
             self._failed_starts, self._last = self._failed_starts + 1, str(again)
-            return CannotStart(f"it did not start again: {again}")
+            return CannotStart(f"it did not restart: {again}")
         self._failed_starts = 0
         if isinstance(request, Evaluate) and self._accepted is not None:
             loaded = self._put(self._accepted, self._timeout)
             if not (isinstance(loaded, Answered) and isinstance(loaded.answer, Accepted)):
-                return CannotStart(f"started again, it did not accept the robot that it had accepted: {loaded}")
+                return CannotStart(f"after a restart it does not accept the robot that it accepted before: {loaded}")
         return None
 
     def _begin(self) -> Outcome:

@@ -75,13 +75,13 @@ class ItemRunner:
             name = visible(started.parser.name, kept="")
             pytest.skip(f"{name} does not claim level {item.level} for version {item.version}")
         if asked := next((level for level in rather if level in claimed), None):
-            pytest.skip(f"it is asked at level {asked}")
+            pytest.skip(f"tested at level {asked}")
         begin, before = time.perf_counter(), self._session.seconds_in_parser
         try:
             judgement = ask()
         except Exception as error:
             # That an answer breaks the suite is a fault of the suite; it is no pass all the same.
-            why = f"the suite itself broke on this answer, please tell us: {type(error).__name__}: {error}"
+            why = f"an error in the suite itself, please report it: {type(error).__name__}: {error}"
             judgement = Judgement(Verdict.FAILED, why, log=traceback.format_exc())
         seconds, in_parser = time.perf_counter() - begin, self._session.seconds_in_parser - before
         reproduce = self.options.reproduce(item)
@@ -93,12 +93,12 @@ class ItemRunner:
     def _tell(self, result: Result, judgement: Judgement, case: CorpusCase | None) -> None:
         known = self.options.known.of(result.item)
         if known is not None and known == result.verdict:
-            pytest.xfail(f"known as '{known}'")
+            pytest.xfail(f"listed as '{known}' in the known failures")
         if known is not None and result.verdict == Verdict.PASSED:
-            pytest.fail(f"known as '{known}', but it passes now: take it out of the file", pytrace=False)
+            pytest.fail(f"listed as '{known}' but passes; remove it from the known failures", pytrace=False)
         if result.verdict != Verdict.PASSED:
             text = failure_text(result.item, judgement, result.reproduce, case)
-            pytest.fail(text + (f"\n  it is known as '{known}'" if known else ""), pytrace=False)
+            pytest.fail(text + (f"\n  listed as '{known}' in the known failures" if known else ""), pytrace=False)
 
     def _started(self) -> Started | None:
         """What the parser says of itself; None where it does not start, which every item then tells."""

@@ -78,30 +78,26 @@ def add_options(parser: pytest.Parser) -> None:
         type=float,
         default=TIMEOUT,
         metavar="S",
-        help=f"for an answer (default: {TIMEOUT:g} s), which each that does not come takes; -x ends at the first",
+        help=f"time limit of an answer (default: {TIMEOUT:g} s); with -x the run stops at the first failure",
     )
     group.addoption(
         "--parser-start-timeout",
         type=float,
         default=START_TIMEOUT,
         metavar="S",
-        help=f"for a start (default: {START_TIMEOUT:g} s)",
+        help=f"time limit of the start (default: {START_TIMEOUT:g} s)",
     )
     group.addoption(
-        "--level", action="append", choices=[level.value for level in Level], help="to test, may be repeated"
+        "--level", action="append", choices=[level.value for level in Level], help="test this level only (repeatable)"
     )
-    group.addoption("--format-version", choices=VERSIONS, help="version of the format to test (default: both)")
+    group.addoption("--format-version", choices=VERSIONS, help="test this version of the format only")
     group.addoption("--known-failures", type=Path, metavar="FILE", help="YAML list of {id, level, verdict, reason}")
     group.addoption("--certificate", type=named_folder, metavar="DIR", help="write a certificate into this folder")
-    group.addoption("--explore", type=int, default=0, metavar="N", help="further random mechanisms for each property")
-    group.addoption(
-        "--explore-seed", type=int, metavar="SEED", help="what they are drawn from (default: another each time)"
-    )
+    group.addoption("--explore", type=int, default=0, metavar="N", help="try N more random mechanisms per property")
+    group.addoption("--explore-seed", type=int, metavar="SEED", help="seed of these mechanisms (default: a new one)")
     # For a program that has seen already that the parser starts.
     group.addoption("--parser-starts", action="store_true", help=argparse.SUPPRESS)
-    group.addoption(
-        "--smoke", action="store_true", help="three cases a version, to see whether the parser is plugged in"
-    )
+    group.addoption("--smoke", action="store_true", help="test three cases per version, to check the adapter")
 
 
 def read_options(config: pytest.Config) -> Options:
@@ -123,19 +119,19 @@ def read_options(config: pytest.Config) -> Options:
         raise pytest.UsageError(str(error)) from None
     timeout, start_timeout = said("--parser-timeout", TIMEOUT), said("--parser-start-timeout", START_TIMEOUT)
     if not (0 < timeout < math.inf and 0 < start_timeout < math.inf):
-        raise pytest.UsageError("a time-out is more than 0 s, and ends")
+        raise pytest.UsageError("a time limit must be positive and finite")
     explore = said("--explore", 0)
     if explore < 0:
-        raise pytest.UsageError("--explore takes a count")
+        raise pytest.UsageError("--explore must not be negative")
     if explore and said("--explore-seed") is None:
         # Set where workers see it: all of them are to draw from one seed.
         config.option.explore_seed = random.SystemRandom().randrange(10**9)
     if said("--smoke", False) and (known is not None or explore):
-        raise pytest.UsageError("--smoke goes with neither --known-failures nor --explore")
+        raise pytest.UsageError("--smoke cannot be combined with --known-failures or --explore")
     version = said("--format-version")
     parser = said("--parser", REFERENCE)
     if not parser.strip():
-        raise pytest.UsageError("--parser names no parser")
+        raise pytest.UsageError("--parser is empty")
     return Options(
         parser=parser,
         suite=FOLDER if _is_beside(config.invocation_params.dir) and not config.option.pyargs else PACKAGE,

@@ -84,7 +84,7 @@ def pytest_sessionstart(session: pytest.Session) -> None:
     if hasattr(session.config, "workerinput") or said.collectonly:
         return
     if options.explore and not os.access(Path.cwd(), os.W_OK):
-        raise pytest.UsageError("--explore writes what it finds into explored/, and nothing can be written here")
+        raise pytest.UsageError("--explore writes cases into explored/, but this folder is not writable")
     try:
         if options.certificate is not None:
             make_room(options.certificate)

@@ -72,7 +72,7 @@ def _goes_on(setup: Setup) -> Judgement:
         case Answered(answer=Rejected()):
             pass
         case Answered(answer=Accepted()):
-            why = "it accepts what is wrong"
+            why = "the parser accepts an invalid description"
             return Judgement(Verdict.FAILED, why, (Difference("/outcome", "rejected", "accepted", why),))
         case _:
             return judge_outcome(rejected, "rejected")
@@ -81,10 +81,10 @@ def _goes_on(setup: Setup) -> Judgement:
             return PASSED
         case Answered(answer=Accepted(robot=one)), Answered(answer=Accepted(robot=other)) if one and other:
             found = canonical_differences(one, other, setup.valid.expected.bodies)
-            reason = "after a rejected description it reads another robot from the same files"
+            reason = "after a rejected description the same files give another canonical description"
             return Judgement(Verdict.FAILED, reason, tuple(found)) if found else PASSED
         case Answered(answer=Accepted()), Answered(answer=Accepted()):
-            return Judgement(Verdict.FAILED, "of two times that it reads the same files, it says once what it has read")
+            return Judgement(Verdict.FAILED, "only one of two answers on the same files has a canonical description")
         case Answered(answer=Accepted()), _:
             return judge_outcome(again, "accepted")
     return judge_outcome(first, "accepted")

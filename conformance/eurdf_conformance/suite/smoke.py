@@ -66,22 +66,22 @@ def smoke_lines(wrong: Sequence[Result], asked: bool) -> Iterator[str]:
         asked: Whether there was anything to ask.
     """
     if not asked:
-        yield "nothing was asked: your parser claims nothing of what you asked for"
+        yield "nothing was tested: your parser claims none of the requested levels"
         return
     adapter = [result for result in wrong if result.verdict in OF_THE_ADAPTER]
     parser = [result for result in wrong if result.verdict not in OF_THE_ADAPTER]
-    yield from _part("adapter", "it keeps the protocol", adapter)
+    yield from _part("adapter", "it follows the protocol", adapter)
     if adapter and not parser:
-        yield "your parser: nothing can be said of it before the adapter is right"
+        yield "your parser was not tested: fix the adapter first"
     else:
-        yield from _part("parser", "it gives the right answers", parser)
+        yield from _part("parser", "its answers are correct", parser)
 
 
 def _part(name: str, right: str, wrong: list[Result]) -> Iterator[str]:
     if not wrong:
-        yield f"your {name} is right so far: {right}"
+        yield f"your {name} works so far: {right}"
         return
-    yield f"your {name} is wrong:"
+    yield f"your {name} fails:"
     for result in wrong:
         why = "".join(result.differences[:1]).partition("\n")[0]
         yield f"  {result.item.id}/{result.item.level}: {result.verdict}{f': {why}' if why else ''}"

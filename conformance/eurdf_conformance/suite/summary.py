@@ -67,4 +67,4 @@ def _times(run: Run) -> str:
     total = sum(result.seconds for result in run.results)
     parser = sum(result.seconds_in_parser for result in run.results)
     share = f", {parser / total:.0%} of it in the parser" if total else ""
-    return f"{len(run.results)} items, {total:.1f} s of asking{share}"
+    return f"{len(run.results)} items in {total:.1f} s{share}"

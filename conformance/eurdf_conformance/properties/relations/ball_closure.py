@@ -33,13 +33,13 @@ def ball_closure(harness: Harness, example: Example, version: Version, level: Le
     projected = after[kept]
     wrong = []
     if after.shape[1] != before.shape[1]:
-        why = "mobility of the mechanism whose 3d closures are 6d ones on balls"
+        why = "mobility with each 3d closure as a 6d closure on a spherical joint"
         wrong.append(Difference("/values/0/jacobian", before.shape[1], after.shape[1], why))
     elif before.size:
         basis = np.linalg.qr(projected)[0]
         off = float(np.abs(basis - before @ (before.T @ basis)).max())
         if off > _NEAR:
-            why = "how far motions of that mechanism are from those of the one with 3d closures"
+            why = "distance between the motions of the two mechanisms"
             wrong.append(Difference("/values/0/jacobian", 0.0, off, why))
     return wrong
 
@@ -97,7 +97,7 @@ def has_3d(mechanism: Mechanism) -> bool:
 PROPERTIES = (
     Property(
         "ball-closure",
-        "A 3d closure lets a mechanism move as a 6d one on a spherical joint does.",
+        "A 3d closure constrains a mechanism as a 6d closure on an added spherical joint does.",
         ("EU-CLO-009", "EU-CLO-008", "EU-CLO-010", "EU-JNT-015"),
         (Level.KINEMATICS,),
         ball_closure,

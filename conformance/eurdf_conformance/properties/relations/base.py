@@ -96,14 +96,14 @@ def _afloat(M: Matrix) -> Coordinates:
 PROPERTIES = (
     Property(
         "moving-base",
-        "A robot that stands elsewhere as a whole has the same residuals, K and M.",
+        "The pose of the whole robot does not change residuals, K and M.",
         ("EU-VER-004", "EU-JNT-025", "EU-CLO-008", "EU-CLO-009", "EU-CLO-010", "EU-INR-006"),
         (Level.KINEMATICS, Level.DYNAMICS),
         related(moving),
     ),
     Property(
         "floating-base",
-        "A root that floats moves no closure, and the joints weigh as much as on one that is fixed.",
+        "A floating root adds zero columns to K and does not change the M of the joints.",
         ("EU-VER-004", "EU-JNT-025", "EU-JNT-026", "EU-CLO-010", "EU-INR-006"),
         (Level.KINEMATICS, Level.DYNAMICS),
         related(floating),

@@ -54,14 +54,14 @@ def has_turns(mechanism: Mechanism) -> bool:
 PROPERTIES = (
     Property(
         "leaving-out",
-        "A joint that a configuration leaves out stands at its neutral.",
+        "A joint that a configuration omits has its neutral coordinates.",
         ("EU-JNT-025", "EU-CFG-005"),
         (Level.KINEMATICS, Level.DYNAMICS),
         related(leaving_out),
     ),
     Property(
         "turning",
-        "q and −q are one rotation, and a turn more of a continuous joint is none.",
+        "q and −q are the same rotation, and a full turn of a continuous joint changes nothing.",
         ("EU-JNT-025", "EU-JNT-015"),
         (Level.KINEMATICS, Level.DYNAMICS),
         related(turning),

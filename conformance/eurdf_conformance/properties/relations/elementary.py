@@ -103,7 +103,7 @@ def _in_rows(configuration: Configuration, rows: dict[str, JointRow]) -> Configu
 PROPERTIES = (
     Property(
         "elementary-joints",
-        "Universal, cylindrical, helical, planar and floating joints are rows of joints that slide and turn.",
+        "Universal, cylindrical, helical, planar and floating joints move as chains of prismatic and revolute joints.",
         ("EU-JNT-025", "EU-JNT-026", "EU-JNT-016", "EU-JNT-017", "EU-JNT-018", "EU-URD-032", "EU-JNT-015"),
         (Level.KINEMATICS, Level.DYNAMICS),
         related(elementary),

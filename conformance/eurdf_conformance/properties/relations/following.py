@@ -101,7 +101,7 @@ def has_mimic(mechanism: Mechanism) -> bool:
 PROPERTIES = (
     Property(
         "following",
-        "A joint that mimics moves as one that does not, held to its law.",
+        "A mimic joint moves as a free joint at the coordinate that its leader prescribes.",
         ("EU-URD-032", "EU-CLO-010", "EU-INR-006"),
         (Level.KINEMATICS, Level.DYNAMICS),
         related(following),

@@ -36,7 +36,7 @@ def has_locked(mechanism: Mechanism) -> bool:
 PROPERTIES = (
     Property(
         "locking",
-        "A joint that the description locks is one that is fixed in the URDF.",
+        "A joint that the description locks behaves as a fixed joint of the URDF.",
         ("EU-JNT-019", "EU-FRM-004", "EU-INR-005"),
         (Level.STRUCTURE, Level.KINEMATICS, Level.DYNAMICS),
         related(locking),

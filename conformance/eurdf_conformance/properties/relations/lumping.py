@@ -1,4 +1,4 @@
-"""What is fixed to a link weighs as if it were a part of it."""
+"""A link fixed to another one has the same effect as its inertia added to the other one's."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def has_fixed_mass(mechanism: Mechanism) -> bool:
 PROPERTIES = (
     Property(
         "lumping",
-        "What is fixed to a link weighs as if it were a part of it.",
+        "A link fixed to another one has the same effect as its inertia added to the other one's.",
         ("EU-INR-005", "EU-INR-006", "EU-JNT-019"),
         (Level.DYNAMICS,),
         related(lumping),

@@ -116,7 +116,7 @@ def has_merged(mechanism: Mechanism) -> bool:
 PROPERTIES = (
     Property(
         "merging",
-        "Merged joints are a spherical joint that turns as the three of them do.",
+        "A merged spherical joint moves as the three joints that it replaces.",
         ("EU-JNT-022", "EU-JNT-015", "EU-JNT-026", "EU-INR-005"),
         (Level.KINEMATICS, Level.DYNAMICS),
         related(merging),

@@ -102,7 +102,7 @@ def _pointer(pointer: str, joint: Name) -> str:
 PROPERTIES = (
     Property(
         "renaming",
-        "Other names, whatever letters they are of, change nothing but the names.",
+        "Other names, in any script, change only the names.",
         ("EU-URD-011", "EU-FRM-004", "EU-FRM-005", "EU-YML-011", "EU-YML-008"),
         (Level.STRUCTURE, Level.KINEMATICS, Level.DYNAMICS),
         related(renaming),

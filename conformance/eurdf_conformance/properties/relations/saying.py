@@ -78,7 +78,7 @@ def _with_frames(mechanism: Mechanism, say: Callable[[str | Spot], str | Spot]) 
 PROPERTIES = (
     Property(
         "frames",
-        "A closure's frame is the same whether it is a name, a pose in place, on a link or its joint, or a link.",
+        "A closure frame is the same whether given by name, by an inline pose on a link or its joint, or as a link.",
         ("EU-FRM-001", "EU-FRM-004", "EU-FRM-005", "EU-FRM-006", "EU-CLO-008", "EU-CLO-009"),
         (Level.KINEMATICS, Level.DYNAMICS),
         related(saying),

@@ -57,14 +57,14 @@ def shuffled_keys(value: Any, chance: Chance) -> Any:
 PROPERTIES = (
     Property(
         "reordering",
-        "Another order of links, joints, keys and elements changes nothing.",
+        "The order of links, joints, keys and elements changes nothing.",
         ("EU-CAN-005", "EU-JNT-025", "EU-CLO-010", "EU-INR-006"),
         (Level.STRUCTURE, Level.KINEMATICS, Level.DYNAMICS),
         related(reordering),
     ),
     Property(
         "yaml-style",
-        "Another style of YAML, with the same meaning under the core schema, changes nothing.",
+        "A different style of YAML with the same meaning under the core schema changes nothing.",
         ("EU-YML-011", "EU-YML-001", "EU-YML-005", "EU-YML-006", "EU-YML-010", "EU-FIL-003", "EU-SCH-002"),
         (Level.STRUCTURE, Level.KINEMATICS),
         related(restyling),

@@ -53,7 +53,7 @@ def swapping(example: Example, version: Version) -> Pair:
 PROPERTIES = (
     Property(
         "swapping",
-        "Where A and B change places, the residual is that of the inverse pose.",
+        "Swapping the frames A and B gives the residual of the inverse pose.",
         ("EU-CLO-008", "EU-CLO-009", "EU-CLO-010"),
         (Level.KINEMATICS,),
         related(swapping),

@@ -28,7 +28,7 @@ def twins(harness: Harness, example: Example, version: Version, level: Level) ->
     if LEVELS[level].compared is Compared.ROBOT:
         expected, given = read2(harness, one), harness.read(other)
         if given is None:
-            return [Difference("/robot", "what it has read", ABSENT, "the level structure asks for it")]
+            return [Difference("/robot", "a canonical description", ABSENT, "level structure requires it")]
         differences = canonical_differences(robot_of_version1(expected), given, robot.bodies)
         return [each.within("/robot") for each in differences]
     before, after = evaluate2(harness, one, level), harness.evaluate(other, LEVELS[level].quantities)
@@ -80,7 +80,7 @@ def values_of_version1(values: Values, mechanism: Mechanism) -> Values:
 PROPERTIES = (
     Property(
         "versions",
-        "What both versions can say, they say alike.",
+        "A mechanism that both versions can express is the same in both.",
         ("EU-ONE-001", "EU-ONE-004", "EU-ONE-005", "EU-ONE-006", "EU-ONE-007", "EU-VER-002"),
         (Level.STRUCTURE, Level.KINEMATICS, Level.DYNAMICS),
         twins,

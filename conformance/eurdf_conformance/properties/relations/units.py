@@ -68,14 +68,14 @@ def mass_unit(example: Example, version: Version) -> Pair:
 PROPERTIES = (
     Property(
         "length-unit",
-        "Another unit of length changes every number as its unit says.",
+        "Another unit of length scales every number as its unit requires.",
         ("EU-JNT-018", "EU-JNT-025", "EU-CLO-008", "EU-CLO-009", "EU-CLO-010", "EU-INR-006", "EU-JNT-026"),
         (Level.KINEMATICS, Level.DYNAMICS),
         related(length_unit),
     ),
     Property(
         "mass-unit",
-        "Another unit of mass changes M and the mass alone.",
+        "Another unit of mass scales only M and the mass.",
         ("EU-INR-006", "EU-INR-005", "EU-ACT-006"),
         (Level.DYNAMICS,),
         related(mass_unit),
