@@ -16,7 +16,7 @@ import pytest
 from pydantic import ValidationError
 
 from eurdf_conformance.comparison.text import same_text
-from eurdf_conformance.corpus import archive, expect, read
+from eurdf_conformance.corpus import archive, expect, read, show
 from eurdf_conformance.corpus.case import CASE, SCHEMA_FILE, InvalidCase, ValidCase, case_schema, schema_text
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.coverage import missing
@@ -234,6 +234,18 @@ def test_a_case_is_asked_at_the_levels_that_it_can_be(written: WriteCase) -> Non
         "evaluated": ("accept", "structure", "kinematics", "dynamics", "diagnose"),
         "invalid": ("accept", "diagnose"),
     }
+
+
+def test_a_case_is_shown_by_its_edit_and_its_files_are_written(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert show.main(["urdf/damping-fortran-exponent", "--out", str(tmp_path)]) == 0
+    out = capsys.readouterr().out
+    assert '-    <dynamics damping="0.15" friction="0.16"/>\n+    <dynamics damping="1.5d-1" friction="0.16"/>\n' in out
+    assert "invalid: urdf-bad-number at robot.urdf:79:24" in out
+    assert "1.5d-1" in (tmp_path / "robot.urdf").read_text(encoding="utf-8")
+    with pytest.raises(SystemExit):
+        show.main(["urdf/nothing"])
 
 
 # Expectations
