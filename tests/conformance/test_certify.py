@@ -112,7 +112,7 @@ def test_what_failed_is_shown_with_the_reason_and_the_command_that_runs_it_again
     assert len(shown) == MOST_SHOWN
     for topic, name in shown:
         assert f"-k {topic}/{name}/accept" in done.stdout
-    assert re.search(r"^\d+ more did not pass", done.stdout, re.MULTILINE)
+    assert re.search(r"^\d+ more failures", done.stdout, re.MULTILINE)
     assert done.stdout.endswith("always_accepted 1: Not certified at any level\n")
 
 
@@ -166,7 +166,7 @@ def test_whoever_explores_is_told_where_the_cases_are(capsys: pytest.CaptureFixt
     law = item("properties/agreement-2", Level.ACCEPT)
     failed = result(law, Verdict.FAILED, "it is not so")
     show(issue(run(planned=(*PLANNED, law), results=(failed,), explore=20, explore_seed=7)))
-    assert "what exploring from seed 7 has found, if anything, is in explored/" in capsys.readouterr().out
+    assert "exploring from seed 7 writes each failing mechanism as a case into explored/" in capsys.readouterr().out
     show(issue(run(planned=(*PLANNED, law), results=(failed,))))
     assert "explor" not in capsys.readouterr().out
 
@@ -317,10 +317,10 @@ def test_a_file_in_the_place_of_the_folder_is_told_before_the_run(
 @pytest.mark.parametrize(
     ("option", "said"),
     [
-        (("--date", "2026-13-01"), "'2026-13-01' is no day"),
-        (("--jobs", "-1"), "'-1' is no count"),
-        (("--parser-timeout", "0"), "'0' is no time"),
-        (("--parser-start-timeout", "nan"), "'nan' is no time"),
+        (("--date", "2026-13-01"), "'2026-13-01' is not a date"),
+        (("--jobs", "-1"), "'-1' is not a count"),
+        (("--parser-timeout", "0"), "'0' is not a time"),
+        (("--parser-start-timeout", "nan"), "'nan' is not a time"),
         (("--level", "everything"), "invalid choice"),
         (("--certificate", ""), "the folder name is empty"),
     ],
