@@ -380,7 +380,7 @@ def test_the_two_joints_of_a_universal_one_of_version_1_are_columns_of_their_own
 @pytest.mark.parametrize(
     ("configuration", "frames", "words"),
     [
-        ({"elbow": [0.0]}, [], "'elbow' is no joint with coordinates"),
+        ({"elbow": [0.0]}, [], "'elbow' is not a joint with coordinates"),
         ({"cardan": [0.0]}, [], "joint 'cardan' is given 1 coordinates; it has 2"),
         ({}, ["elbow"], "'elbow' is not a link, joint or frame"),
     ],

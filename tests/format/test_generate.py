@@ -155,7 +155,7 @@ def test_contradicting_type_names_decide_nothing() -> None:
         conventions(),
     )
     assert [closure.type for closure in found.closures] == [None]
-    assert found.warnings == ("the names of loop 'closedloop1' say both 3d and 6d: neither is taken from them",)
+    assert found.warnings == ("the names of loop 'closedloop1' state both 3d and 6d, so neither is used",)
 
 
 #: As onshape-to-robot names the frames of a revolute mate, with the joints that fix them.
@@ -375,8 +375,8 @@ def test_motors_are_not_merged() -> None:
 @pytest.mark.parametrize(
     ("patterns", "said"),
     [
-        ({"closures": ["loop(1"]}, r"'loop\(1' is no regular expression: .* at position 4"),
-        ({"motors": ["*"]}, "'\\*' is no regular expression: nothing to repeat"),
+        ({"closures": ["loop(1"]}, r"'loop\(1' is not a regular expression: .* at position 4"),
+        ({"motors": ["*"]}, "'\\*' is not a regular expression: nothing to repeat"),
         ({"closures": ["loop_(A|B)"]}, r"'loop_\(A\|B\)' has no group 'side'"),
     ],
 )
@@ -558,7 +558,7 @@ def test_bad_pattern_cannot_run(leg: Path, capsys: pytest.CaptureFixture[str], o
     assert main(["generate", str(leg), option, "a)b"]) == 2
     out, err = capsys.readouterr()
     assert out == ""
-    assert "'a)b' is no regular expression" in err
+    assert "'a)b' is not a regular expression" in err
 
 
 def test_contradicting_names_write_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -446,13 +446,13 @@ def test_frame_between_universal_axes_is_refused() -> None:
 @pytest.mark.parametrize(
     ("other", "said"),
     [
-        ("closed_loop: [[rod_tip, finger]]\ntype: [6d]\n", "closure 'closure_1' is another"),
-        ("closed_loop: []\n", "closure 'closure_1' is gone"),
-        ("closed_loop: [[rod_tip, slider]]\nname_mot: [motor]\n", "the actuators are others, or in another order"),
-        ("closed_loop: [[rod_tip, slider]]\njoint_name: [pivot]\njoint_type: [FIXED]\n", "joint 'pivot' is another"),
+        ("closed_loop: [[rod_tip, finger]]\ntype: [6d]\n", "closure 'closure_1' differs"),
+        ("closed_loop: []\n", "closure 'closure_1' is missing"),
+        ("closed_loop: [[rod_tip, slider]]\nname_mot: [motor]\n", "the actuators or their order differ"),
+        ("closed_loop: [[rod_tip, slider]]\njoint_name: [pivot]\njoint_type: [FIXED]\n", "joint 'pivot' differs"),
         (
             "closed_loop: [[rod_tip, slider]]\njoint_name: [pivot]\njoint_type: [UJOINT_XY]\n",
-            "joint 'pivot' is another",
+            "joint 'pivot' differs",
         ),
     ],
 )
@@ -464,7 +464,7 @@ def test_different_model_is_detected(other: str, said: str) -> None:
 def test_different_axes_are_a_different_model(axes: str) -> None:
     text = "joint_name: [pivot]\njoint_type: [{}]\n"
     found = differences(linked(text.format("UJOINT_XY")), linked(text.format(axes)))
-    assert found == ["joint 'pivot' is another"]
+    assert found == ["joint 'pivot' differs"]
 
 
 def test_mechanism_without_split_joints_is_unchanged() -> None:

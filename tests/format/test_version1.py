@@ -145,15 +145,15 @@ FAULTS = [
     ("closed_loop: [[a, b], c]\n", "wrong-type", "/closed_loop/1", 1, 23, "item 2 of 'closed_loop' must be a list"),
     ("closed_loop: [[a, b], [c]]\n", "wrong-length", "/closed_loop/1", 1, 23, "must have 2 items, not 1"),
     ("closed_loop: [[a, b, c]]\n", "wrong-length", "/closed_loop/0", 1, 15, "must have 2 items, not 3"),
-    ("closed_loop: [[a, 3]]\n", "wrong-type", "/closed_loop/0/1", 1, 19, "put in quotes"),
-    ("closed_loop: [[a, true]]\n", "wrong-type", "/closed_loop/0/1", 1, 19, "put in quotes"),
+    ("closed_loop: [[a, 3]]\n", "wrong-type", "/closed_loop/0/1", 1, 19, "quote a name"),
+    ("closed_loop: [[a, true]]\n", "wrong-type", "/closed_loop/0/1", 1, 19, "quote a name"),
     ('closed_loop: [[a, ""]]\n', "wrong-value", "/closed_loop/0/1", 1, 19, "is empty"),
-    ("closed_loop:\n", "wrong-type", "/closed_loop", 1, None, "leave the key out"),
+    ("closed_loop:\n", "wrong-type", "/closed_loop", 1, None, "remove the key"),
     ("closed_loop: [[a, b]]\ntype: 3d\n", "wrong-type", "/type", 2, 7, "write it as a list: [3d]"),
     ("closed_loop: [[a, b]]\ntype: [4d]\n", "wrong-value", "/type/0", 2, 8, "'3d', '3D', '6d' or '6D', not '4d'"),
     ("closed_loop: [[a, b]]\ntype: [3]\n", "wrong-type", "/type/0", 2, 8, "not 3"),
     ("closed_loop: [[a, b]]\ntype: []\n", "length-mismatch", "/type", 2, 7, "'closed_loop' has 1 and 'type' 0"),
-    ("closed_loop: [[a, b]]\ntype: [3d, 6d]\n", "length-mismatch", "/closed_loop", 1, 14, "one by one"),
+    ("closed_loop: [[a, b]]\ntype: [3d, 6d]\n", "length-mismatch", "/closed_loop", 1, 14, "same length"),
     ("type: [3d]\n", "length-mismatch", "/type", 1, 7, "'closed_loop' has 0 and 'type' 1"),
     ("name_mot: motor\n", "wrong-type", "/name_mot", 1, 11, "write it as a list: [motor]"),
     ("name_mot: [1]\n", "wrong-type", "/name_mot/0", 1, 12, "must be text, not 1"),
@@ -187,4 +187,4 @@ def test_number_of_reported_errors_is_bounded() -> None:
     found = list(diagnostics)
     assert len(found) == 100
     assert found[-1].hint is not None
-    assert "19,900 more faults" in found[-1].hint
+    assert "19,900 more errors" in found[-1].hint

@@ -188,7 +188,7 @@ def test_missing_joint_is_at_neutral() -> None:
 def test_unknown_joint_or_wrong_length_is_refused() -> None:
     mechanism = one_joint(Joint("ball", JointType.SPHERICAL, "base", "tip"))
     model = build_model(mechanism)
-    with pytest.raises(ValueError, match="'knee' is no joint with coordinates"):
+    with pytest.raises(ValueError, match="'knee' is not a joint with coordinates"):
         configuration_vector(mechanism, model, {"knee": (0.0,)})
     with pytest.raises(ValueError, match="joint 'ball' is given 3 coordinates; it has 4: x, y, z, w"):
         configuration_vector(mechanism, model, {"ball": (0.0, 0.0, 0.0)})

@@ -72,7 +72,7 @@ def test_number_of_velocities_is_bounded(tmp_path: Path) -> None:
     spherical = "joints: {j0: spherical}\n"
     at, beyond = (write(tmp_path / str(count), VERSION2 + spherical, star(count)) for count in (3998, 3999))
     assert eurdf.load(at, geometry=False).model.nv == VELOCITY_LIMIT
-    assert refusal(beyond) == "the joints of the robot have 4,001 velocities; they may have 4,000"
+    assert refusal(beyond) == "the joints of the robot have 4,001 velocities; the maximum is 4,000"
 
 
 def test_mimic_joint_counts_toward_bound(tmp_path: Path) -> None:
@@ -80,18 +80,18 @@ def test_mimic_joint_counts_toward_bound(tmp_path: Path) -> None:
     leader = joint("j0", "l0", "l1")
     joints = [leader, *(joint(f"j{i}", "l0", f"l{i + 1}", content=content) for i in range(1, 4001))]
     path = write(tmp_path, None, robot(numbered(4002), joints))
-    assert refusal(path) == "the joints of the robot have 4,001 velocities; they may have 4,000"
+    assert refusal(path) == "the joints of the robot have 4,001 velocities; the maximum is 4,000"
 
 
 def test_number_of_joints_is_bounded(tmp_path: Path) -> None:
     path = write(tmp_path, None, chain(JOINT_LIMIT + 1, "fixed"))
-    assert refusal(path) == "the robot has 10,001 joints; it may have 10,000"
+    assert refusal(path) == "the robot has 10,001 joints; the maximum is 10,000"
 
 
 def test_number_of_rows_is_bounded(tmp_path: Path) -> None:
     at, beyond = (write(tmp_path / str(count), *shared(count, 200)) for count in (6666, 6667))
     assert eurdf.load(at, geometry=False).mechanism.nc == ROW_LIMIT - 2
-    assert refusal(beyond) == "the closures of the robot have 20,001 constraint rows; they may have 20,000"
+    assert refusal(beyond) == "the closures of the robot have 20,001 constraint rows; the maximum is 20,000"
 
 
 def refusal(path: Path) -> str:

@@ -225,7 +225,7 @@ def test_closing_only_beyond_limits_is_reported(advice, edit, lower, upper, expe
     assert codes(found) == expected
     if expected == ["x-closes-beyond-limits"]:
         assert (found[0].severity, found[0].clause, found[0].pointer) == ("warning", None, "/closures/0")
-        assert "at the best, 'rocker_pin' by " in found[0].message
+        assert "least open: 'rocker_pin' by " in found[0].message
         side, limit = ("below", lower) if lower > 0.0 else ("above", upper)
         hint = rf"they close with 'free_rocker' (\S+) rad {side} its \w+ limit {limit}: correct"
         match = re.search(hint, found[0].hint or "")
@@ -650,4 +650,4 @@ def test_too_large_loops_are_named(advice, monkeypatch) -> None:
     monkeypatch.setattr("eurdf.kinematics.analysis._MOST_WORK", 10.0)
     (found,) = advice("digit_leg_3d", typed("6d", "achilles"))
     assert (found.code, found.pointer) == ("x-loops-not-checked", "/closures")
-    assert "ranks are not computed" in found.message
+    assert "ranks were not computed" in found.message

@@ -78,7 +78,7 @@ def test_eurdf_yaml_is_preferred_among_several(tmp_path: Path, name: str) -> Non
     (tmp_path / "config.yaml").write_text("rate: 100\n", encoding="utf-8")
     assert len(eurdf.load(tmp_path).constraint_models) == 1
     (tmp_path / "arm.eurdf.yaml").write_text("closed_loop: []\n", encoding="utf-8")
-    with pytest.raises(eurdf.RobotNotFound, match="name the one you mean"):
+    with pytest.raises(eurdf.RobotNotFound, match="name one of them"):
         eurdf.load(tmp_path)
 
 

@@ -204,11 +204,11 @@ def test_hint_of_unlisted_diagnostic_is_not_computed() -> None:
 
 def test_message_with_endless_name_stays_readable() -> None:
     diagnostics = Diagnostics()
-    diagnostics.report("unknown-joint", f"'{'n' * 100_000}' is no joint of the robot", Place("robot.yaml"))
+    diagnostics.report("unknown-joint", f"'{'n' * 100_000}' is not a joint of the robot", Place("robot.yaml"))
     (found,) = diagnostics
     assert len(found.message) < LONGEST
     assert found.message.startswith("'nnnn")
-    assert found.message.endswith("nnnn' is no joint of the robot")
+    assert found.message.endswith("nnnn' is not a joint of the robot")
 
 
 def test_intended_name_is_found_among_many() -> None:

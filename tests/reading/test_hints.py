@@ -136,11 +136,11 @@ SCHEMA = [
     ),
     (
         "joints:\nelbow: spherical\n",
-        "if 'elbow' on line 4 belongs to it, indent it deeper than 'joints'; leave the key out",
+        "if 'elbow' on line 4 belongs to it, indent it deeper than 'joints'; remove the key if it has no value",
     ),
     (
         "joints:\n  elbow:\n  type: spherical\n",
-        "if 'type' on line 5 belongs to it, indent it deeper than 'elbow'; leave",
+        "if 'type' on line 5 belongs to it, indent it deeper than 'elbow'; remove",
     ),
     (
         "joints:\n  stage:\n    limits:\n    velocity: 3\n",

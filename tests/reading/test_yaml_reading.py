@@ -371,7 +371,7 @@ def test_duplicate_key_is_refused_at_second_place(text: str) -> None:
     assert (diagnostic.line, diagnostic.column) != (None, None)
     assert meant(text, diagnostic.place).strip("'") in ("b", '"\\x62"')
     first = 1 if text.startswith("a: {") else 2
-    assert diagnostic.hint == f"it stands first on line {first}"
+    assert diagnostic.hint == f"it first occurs on line {first}"
     assert diagnostic.column is not None
     assert diagnostic.line is not None
     assert (diagnostic.line, diagnostic.column) > (first, 5)
@@ -542,7 +542,7 @@ def test_any_text_gives_document_or_error(text: str) -> None:
     ("text", "what"),
     [
         ("", "empty"),
-        ("# only a comment\n", "nothing but comments"),
+        ("# only a comment\n", "contains only comments"),
         ("---\n...\n", "empty"),
         ("null\n", "empty"),
         ("[1, 2]\n", "a list"),
@@ -578,7 +578,7 @@ def test_other_yaml_version_is_refused(version: str) -> None:
     [
         ("a:\n\tb: 1\n", (2, 1), "a tab is used as indentation", "indent with spaces"),
         ("a:\n  b: 1\n\tc: 2\n", (3, 1), "a tab is used as indentation", "indent with spaces"),
-        ("é: ü: x\n", (1, 5), "':' stands where no key can be", "quote"),
+        ("é: ü: x\n", (1, 5), "':' is where no key is allowed", "quote"),
         ("a: 1\nbc\nd: 2\n", (2, 1), "no ':' after it", "key: value"),
         ("a:\n  b: 1\n c: 2\n", (3, 2), "the mapping that begins on line 1", "like 'b'"),
         ("a:\n  - 1\n  b: 2\n", (3, 3), "the list that begins on line 2", "'- '"),
@@ -590,16 +590,16 @@ def test_other_yaml_version_is_refused(version: str) -> None:
         ("a: 'it's'\n", (1, 8), "after the end of a value", "quote"),
         ("a: @b\n", (1, 4), "no value can begin with '@'", "quote"),
         ("a: - b\n", (1, 4), "a list item cannot begin here", "line of its own"),
-        ('日本: "\\d"\n', (1, 6), "an escape", "single quotes"),
+        ('日本: "\\d"\n', (1, 6), "unknown escape", "single quotes"),
         ("a: ]\n", (1, 4), "a value is missing", None),
         ("{a: 1} b\n", (1, 8), "belongs to nothing", None),
-        ("a: &é 1\n", (1, 5), "no name for an anchor", "ASCII letters"),
-        ("a: & 1\n", (1, 5), "no name for an anchor", "ASCII letters"),
-        ("a: &an:chor 1\n", (1, 4), "no name for an anchor", "ASCII letters"),
-        ("a: {b: !!str &an:c 1}\n", (1, 14), "no name for an anchor", "ASCII letters"),
-        ("a: &b 1\nc: *b:\n", (2, 4), "no name for an anchor", "ASCII letters"),
-        ("a: {?b: 1}\n", (1, 6), "right before a key", "quote"),
-        ("a: [?b]\n", (1, 6), "right before a key", "quote"),
+        ("a: &é 1\n", (1, 5), "not a valid anchor name", "ASCII letters"),
+        ("a: & 1\n", (1, 5), "not a valid anchor name", "ASCII letters"),
+        ("a: &an:chor 1\n", (1, 4), "not a valid anchor name", "ASCII letters"),
+        ("a: {b: !!str &an:c 1}\n", (1, 14), "not a valid anchor name", "ASCII letters"),
+        ("a: &b 1\nc: *b:\n", (2, 4), "not a valid anchor name", "ASCII letters"),
+        ("a: {?b: 1}\n", (1, 6), "directly before a key", "quote"),
+        ("a: [?b]\n", (1, 6), "directly before a key", "quote"),
         ("%MINE 1\n---\na: 1\n", (1, 6), "only the directives", "leave the line out"),
     ],
 )

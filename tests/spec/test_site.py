@@ -60,7 +60,7 @@ def test_every_diagnostic_has_anchor(site: Path) -> None:
 
 def test_diagnostic_shows_printed_message(site: Path) -> None:
     page = (site / "diagnostics.html").read_text(encoding="utf-8")
-    assert "is no link, joint or frame of the robot" in page
+    assert "is not a link, joint or frame of the robot" in page
     assert "did you mean" in page
 
 

@@ -75,7 +75,7 @@ def load(
         raise InvalidRobot(description.path, tuple(diagnostics))
     files: dict[str, str] = {}
     lacks_mesh = False
-    no_geometry = f"the geometry of {description.path} cannot be built; load it with geometry=False to do without"
+    no_geometry = f"the geometry of {description.path} cannot be built; load it with geometry=False"
     if geometry:
         files, missing = find_meshes(description.urdf, package_dirs)
         for found in missing:

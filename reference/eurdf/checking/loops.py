@@ -50,7 +50,7 @@ def closure_diagnostics(description: Linked, robot: Robot, assembly: Assembly | 
             return diagnostics
         diagnostics.report(
             "closure-cannot-close",
-            f"no configuration was found that closes the loops; at the best, {_told(assembly.open)}",
+            f"no configuration was found that closes the loops; least open: {_told(assembly.open)}",
             description.place_of_closure(closure),
             f"{_closed_to(assembly.open)}: write the numbers of the files with more digits"
             if _is_rounding(robot, assembly.open)

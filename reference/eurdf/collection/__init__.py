@@ -80,7 +80,7 @@ def find_robot(path: Given, urdf: Given | None = None) -> RobotFiles:
         return RobotFiles(folder / name / "robot.yaml", _given_urdf(urdf))
     near = near_path(name, collection_names())
     hint = f"did you mean '{near}'?" if near else "`eurdf robots` lists the collection"
-    raise RobotNotFound(name, f"there is no '{name}': it is no file, no folder, and no robot of the collection; {hint}")
+    raise RobotNotFound(name, f"there is no '{name}': it is not a file, a folder, or a robot of the collection; {hint}")
 
 
 def _given_urdf(urdf: Given | None) -> Path | Source | None:
@@ -113,7 +113,7 @@ def _in_folder(folder: Path, given: Path | Source | None) -> RobotFiles:
     if not descriptions:
         urdfs = [path for path in files if path.suffix.lower() == ".urdf"]
         if given is not None:
-            raise RobotNotFound(str(folder), f"folder '{folder}' holds no YAML file to use with the URDF given")
+            raise RobotNotFound(str(folder), f"folder '{folder}' contains no YAML file to use with the given URDF")
         if (folder / "robot.urdf") in urdfs:
             return RobotFiles(None, folder / "robot.urdf")
         if len(urdfs) == 1:
@@ -122,6 +122,6 @@ def _in_folder(folder: Path, given: Path | Source | None) -> RobotFiles:
         xacro = next((path.name for path in files if path.suffix.lower() == ".xacro"), None)
         if xacro is not None and not urdfs:
             what += f", but '{xacro}'"
-        raise RobotNotFound(str(folder), f"folder '{folder}' holds {what}; name the file")
+        raise RobotNotFound(str(folder), f"folder '{folder}' contains {what}; name the file")
     names = ", ".join(path.name for path in descriptions)
-    raise RobotNotFound(str(folder), f"folder '{folder}' holds no robot.yaml but {names}; name the one you mean")
+    raise RobotNotFound(str(folder), f"folder '{folder}' contains no robot.yaml but {names}; name one of them")

@@ -17,7 +17,7 @@ OWN_KEY = "^x-"
 #: reads one version.
 STRICT = ConfigDict(strict=True, allow_inf_nan=False, frozen=True, defer_build=True)
 
-_OWN_DATA = {"title": "Own data", "description": "The user's own data: kept, never read."}
+_OWN_DATA = {"title": "Own data", "description": "User data: kept, not interpreted."}
 
 
 def is_own_key(key: str) -> bool:

@@ -52,7 +52,7 @@ class Indentation:
             return None
         return (
             f"if '{following[0]}' on line {next_one.line} belongs to it, indent it deeper than '{pointer[-1]}'; "
-            "leave the key out where there is nothing to say"
+            "remove the key if it has no value"
         )
 
 

@@ -74,7 +74,7 @@ def _version(reporter: YamlReporter) -> Literal["1", "2.0"] | None:
     if misspelt is not None:
         reporter.report(
             "missing-key",
-            f"the file lacks '{VERSION_KEY}', the key that says its version, but has {quoted(misspelt)}",
+            f"the file lacks '{VERSION_KEY}', the key for its version, but has {quoted(misspelt)}",
             (misspelt,),
             f"did you mean '{VERSION_KEY}'?",
             key=True,
@@ -105,7 +105,7 @@ def _written_version(reporter: YamlReporter) -> Literal["2.0"] | None:
         reporter.report("unsupported-version", message, pointer, f"leave '{VERSION_KEY}' out")
         return None
     if isinstance(value, str):
-        hint = f"the version known is {VERSION}: {quoted}"
+        hint = f"the known version is {VERSION}: {quoted}"
         reporter.report(
             "unsupported-version", f"version {described(value)} of Extended URDF is not known", pointer, hint
         )
@@ -126,10 +126,10 @@ def _warn_of_near_misses(reporter: YamlReporter) -> None:
         if key in _VERSION1_KEYS or is_own_key(key):
             continue
         if key in _VERSION2_KEYS:
-            message = f"'{key}' is a key of version {VERSION}; in this file of version 1 it is data of your own"
+            message = f"'{key}' is a key of version {VERSION}; in this file of version 1 it is your own data"
             hint = f'a file of version {VERSION} begins with {VERSION_KEY}: "{VERSION}" and has no key of version 1'
         elif meant := near(key, (*_VERSION1_KEYS, VERSION_KEY)):
-            message = f"{quoted(key)} is nearly '{meant}', but is read as data of your own"
+            message = f"{quoted(key)} is similar to '{meant}', but is read as your own data"
             hint = f"did you mean '{meant}'?"
         else:
             continue
@@ -153,7 +153,7 @@ def _lengths_agree(model: Version1, reporter: YamlReporter) -> bool:
             agree = False
             shorter = min((key for key in lengths if key in model.model_fields_set), key=lambda key: lengths[key])
             counts = f"'{first}' has {lengths[first]} and '{second}' {lengths[second]} items"
-            message = f"{counts}, but they go together one by one"
+            message = f"{counts}, but they must have the same length"
             reporter.report(
                 "length-mismatch",
                 message,

@@ -60,7 +60,7 @@ class Version1(BaseModel):
     joint_name: list[UrdfJointName] = Field(
         default=[],
         title="Replaced joints",
-        description="Joints of the URDF that stand for joints URDF lacks; goes with 'joint_type'.",
+        description="Joints of the URDF that get a type which URDF does not have; needs 'joint_type'.",
         examples=[["hip_ball", "knee_cardan"]],
     )
     joint_type: list[JointType] = Field(

@@ -92,13 +92,13 @@ class Pose(StrictMapping):
     xyz: Vector = Field(
         default=[0.0, 0.0, 0.0],
         title="Position",
-        description="Origin x, y, z in the frame it stands on, m.",
+        description="Origin x, y, z in its parent frame, m.",
         examples=[[0, 0, 0.31]],
     )
     rpy: Vector = Field(
         default=[0.0, 0.0, 0.0],
         title="Orientation",
-        description="Roll, pitch, yaw about the fixed axes x, y, z of the frame it stands on, rad.",
+        description="Roll, pitch, yaw about the fixed axes x, y, z of its parent frame, rad.",
         examples=[[0, 1.5707963267948966, 0]],
     )
 
@@ -177,7 +177,7 @@ class Closure(StrictMapping):
     type: ClosureType = Field(
         title="Type",
         description="3d: the origin of frame B is held on that of A (3 rows, m). 6d: position and orientation are (6"
-        " rows, m and rad). A type of the user's own begins with x-.",
+        " rows, m and rad). A user-defined type begins with x-.",
         examples=["6d", "3d"],
     )
     frames: Annotated[list[FrameReference], Field(min_length=2, max_length=2)] = Field(
@@ -231,19 +231,19 @@ class JointProperties(StrictMapping):
     damping: MayLack[NonNegativePerVelocity] = Field(
         default=None,
         title="Damping",
-        description="Viscous damping, N·m·s/rad or N·s/m, not negative: a number, or a list with one a velocity.",
+        description="Viscous damping, N·m·s/rad or N·s/m, not negative: a number, or a list, one for each velocity.",
         examples=[0.1, [0.1, 0.2]],
     )
     friction: MayLack[NonNegativePerVelocity] = Field(
         default=None,
         title="Friction",
-        description="Dry friction, N·m or N, not negative: a number, or a list with one a velocity.",
+        description="Dry friction, N·m or N, not negative: a number, or a list, one for each velocity.",
         examples=[0.5, [0.5, 0.5]],
     )
     armature: MayLack[NonNegativePerVelocity] = Field(
         default=None,
         title="Armature",
-        description="Reflected inertia, kg·m² or kg, not negative: a number, or a list with one a velocity.",
+        description="Reflected inertia, kg·m² or kg, not negative: a number, or a list, one for each velocity.",
         examples=[0.02, [0.02, 0.02]],
     )
 
@@ -318,7 +318,7 @@ class Helical(JointProperties):
     )
     pitch: float = Field(
         title="Pitch",
-        description="Advance along the axis, m per revolution; right-handed where positive.",
+        description="Advance along the axis, m per revolution; positive for a right-handed screw.",
         examples=[0.005],
     )
 
@@ -453,13 +453,13 @@ class Version2(StrictMapping):
         title="Configurations",
         description="By name, the coordinates of joints: a number or a list. Angle in rad, length in m; spherical: a"
         " unit quaternion x y z w; universal: two angles; cylindrical: length, angle; planar: x, y, angle; floating: x"
-        " y z and a quaternion. A joint left out stands at its neutral. All closures are closed at 'assembled'.",
+        " y z and a quaternion. Other joints are neutral. All closures are closed at 'assembled'.",
         examples=[{"assembled": {"motor_knee": 0.4, "hip_ball": [0, 0, 0, 1]}}],
     )
     metadata: dict[str, Any] = Field(
         default={},
         title="Metadata",
-        description="What the file says of itself, such as license and source.",
+        description="Information about the file, such as license and source.",
         examples=[{"license": "BSD-3-Clause", "source": "CAD export of 2025-03-01"}],
     )
 

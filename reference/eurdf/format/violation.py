@@ -48,7 +48,7 @@ _JOINT_TYPE_HINTS = {
     "helical": "a helical joint needs its pitch: {type: helical, pitch: 0.005}",
     **dict.fromkeys(
         ("revolute", "continuous", "prismatic", "planar", "floating"),
-        "a joint that is not given a type keeps the one of the URDF",
+        "a joint without a type keeps its URDF type",
     ),
 }
 
@@ -108,7 +108,7 @@ def violations(error: ValidationError, document: YamlDocument) -> list[Diagnosti
     diagnostics.sort(key=lambda diagnostic: (diagnostic.line or 0, diagnostic.column or 0))
     if len(details) > MOST:
         last = diagnostics.pop()
-        more = f"{len(details) - MOST:,} more faults of the file are not listed"
+        more = f"{len(details) - MOST:,} more errors of the file are not listed"
         diagnostics.append(
             Diagnostic(last.code, last.message, last.place, f"{last.hint}; {more}" if last.hint else more)
         )
@@ -274,7 +274,7 @@ def _unknown_key(violation: _Violation, meant: str | None, document: YamlDocumen
     if meant is None and (outside := key_of_the_file_hint(violation.pointer)):
         hint = outside
     elif not mapping and key in FROM_VERSION1:
-        hint = f"it is a key of version 1; version 2.0 says it under '{FROM_VERSION1[key]}'"
+        hint = f"it is a key of version 1; in version 2.0, use '{FROM_VERSION1[key]}'"
     elif likely is not None:
         hint = f"did you mean '{likely}'?"
         if meant is None and (beside := another_entry_hint(violation.pointer, document)):
@@ -283,16 +283,16 @@ def _unknown_key(violation: _Violation, meant: str | None, document: YamlDocumen
         hint = beside
     else:
         known = ", ".join(f"'{known}'" for known in keys)
-        hint = f"the keys here are {known}; a key of your own begins with 'x-'"
+        hint = f"the keys here are {known}; your own keys begin with 'x-'"
     return Diagnostic("unknown-key", f"{subject(mapping)} has an unknown key {quoted(key)}", place, hint)
 
 
 def _type_hint(must: str, pointer: Pointer, value: Any) -> str | None:
     """How to write what is meant, where that can be guessed."""
     if value is None:
-        return None if isinstance(pointer[-1], int) else "leave the key out where there is nothing to say"
+        return None if isinstance(pointer[-1], int) else "remove the key if it has no value"
     if ("text" in must or "name" in must) and isinstance(value, bool | int | float):
-        return "a name that looks like a number, true or false is put in quotes"
+        return "quote a name that looks like a number, true or false"
     if must == "must be a list" and isinstance(value, dict):
         return "begin each item with '- '"
     if must == "must be a list" and isinstance(value, str | int | float) and len(str(value)) <= 60:

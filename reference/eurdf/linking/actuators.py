@@ -60,16 +60,16 @@ def link_actuators(
             hint: Hint = partial(did_you_mean, name, movable)
             if name in urdf.links:
                 hint = f"'{name}' is a link; name the joint that moves it"
-            reporter.report("unknown-actuator", f"actuator '{name}' is no joint of the robot", pointer, hint)
+            reporter.report("unknown-actuator", f"actuator '{name}' is not a joint of the robot", pointer, hint)
         elif name in listed:
             reporter.report("actuator-duplicate", f"joint '{name}' is actuated twice", pointer, "remove one")
         elif joint.type is JointType.FIXED:
-            hint = "actuate a joint that moves, or take it out"
+            hint = "actuate a moving joint, or remove it"
             reporter.report("actuator-immobile", f"joint '{name}' is fixed and cannot be actuated", pointer, hint)
         elif joint.mimic is not None:
             reporter.report(
                 "actuator-mimic",
-                f"joint '{name}' mimics '{joint.mimic.joint}' and cannot be actuated by itself",
+                f"joint '{name}' is a mimic joint of '{joint.mimic.joint}' and cannot be actuated",
                 pointer,
                 f"actuate '{joint.mimic.joint}'",
             )

@@ -37,7 +37,7 @@ def link_closures(
                 "duplicate-closure-name",
                 f"there is already a closure '{entry.name}'",
                 (*entry.pointer, "name"),
-                "give every closure a name of its own",
+                "give every closure a unique name",
             )
             continue
         taken[entry.name] = entry
@@ -58,7 +58,7 @@ def link_closures(
         if kind is None:
             reporter.report(
                 "closure-type-unknown",
-                f"closure '{entry.name}' has the type '{entry.type}', which is not part of the format; it is left out",
+                f"closure '{entry.name}' has the type '{entry.type}', not one of the format; the model ignores it",
                 (*entry.pointer, "type"),
             )
             continue
@@ -77,7 +77,7 @@ def _movable(
     if a.body == b.body and a.pose == b.pose:
         same = not a.frame or not b.frame or a.frame == b.frame
         what = f"a frame on '{a.body}'" if not a.frame else f"'{a.frame}'"
-        message = f"{what} to itself" if same else f"'{a.frame}' to '{b.frame}', which are one and the same frame"
+        message = f"{what} to itself" if same else f"'{a.frame}' to '{b.frame}', which are the same frame"
         reporter.report(
             "closure-same-frame",
             f"closure '{entry.name}' joins {message}",
@@ -91,7 +91,7 @@ def _movable(
             "closure-same-body",
             f"closure '{entry.name}' joins two frames of one rigid body, {which}",
             entry.pointer,
-            "a closure must join frames that a joint can move against each other",
+            "a closure must join frames that a joint can move relative to each other",
         )
         return False
     return True

@@ -66,14 +66,14 @@ def _joint(
         return joint
     hint: Hint = None
     if joint is None:
-        why = "is no joint of the robot"
+        why = "is not a joint of the robot"
         free = (other.name for other in joints.values() if other.type is not JointType.FIXED and not other.mimic)
         hint = partial(did_you_mean, name, free)
     elif name in merged:
         why = f"was merged into the spherical joint '{merged[name]}'"
         hint = f"give the coordinates of '{merged[name]}', a quaternion x, y, z, w"
     elif joint.mimic is not None:
-        why = f"mimics '{joint.mimic.joint}' and has no coordinate of its own"
+        why = f"is a mimic joint of '{joint.mimic.joint}' and has no coordinate"
     else:
         why = "is fixed and has no coordinate"
     reporter.report(

@@ -30,7 +30,7 @@ from eurdf.reading.xacro import expand, is_xacro
 from eurdf.reading.xml_reader import read_xml
 from eurdf.reading.yaml_reader import YamlDocument, read_yaml
 
-_NO_XACRO = "only a .xacro file takes arguments; give one as the robot or as its URDF"
+_NO_XACRO = "only a .xacro file accepts arguments; give one as the robot or as its URDF"
 
 #: What to do about errors in which joint mimics which: report and refuse the URDF, only report, or not even that.
 _MimicErrors = Literal["refused", "kept", "ignored"]
@@ -254,7 +254,7 @@ def _urdf_not_found(path: Path, extension: Extension, diagnostics: Diagnostics) 
     home = document.source.folder
     message = f"the URDF '{extension.urdf}' does not exist"
     if extension.version != "1" and "urdf" not in document.data:
-        message += ", the one meant where the key 'urdf' is left out"
+        message += ", the default without the key 'urdf'"
     diagnostics.report("urdf-not-found", message, document.place(("urdf",)), _urdf_hint(path, home, extension))
 
 

@@ -98,7 +98,7 @@ class FrameNames:
         candidates = chain(self._frames, self._urdf.links, self._urdf.joints, self._joints)
         self._reporter.report(
             "unknown-frame",
-            f"'{name}' is no link, joint or frame of the robot",
+            f"'{name}' is not a link, joint or frame of the robot",
             reference.pointer,
             partial(did_you_mean, name, candidates),
         )
@@ -119,7 +119,7 @@ class FrameNames:
             kind, name, candidates = "joint", reference.joint, chain(self._urdf.joints, self._joints)
         self._reporter.report(
             "unknown-frame",
-            f"'{name}' is no {kind} of the robot",
+            f"'{name}' is not a {kind} of the robot",
             (*reference.pointer, kind),
             partial(did_you_mean, name, candidates),
         )

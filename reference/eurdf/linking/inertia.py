@@ -79,8 +79,8 @@ def check_inertias(urdf: Urdf, diagnostics: Diagnostics) -> set[str]:
                 diagnostics,
                 link,
                 "inertia-triangle",
-                f"no body has the inertia of link '{link.name}': of its principal moments {moments[0]:.3g}, "
-                f"{moments[1]:.3g}, {moments[2]:.3g} kg·m² the last is more than the sum of the others",
+                f"the inertia of link '{link.name}' is not physical: of its principal moments {moments[0]:.3g}, "
+                f"{moments[1]:.3g}, {moments[2]:.3g} kg·m² the last exceeds the sum of the others",
                 "inertia",
             )
     return faulty
@@ -138,7 +138,7 @@ def _immaterial(joint: Joint, members: Sequence[Member]) -> str | None:
     kind = joint.type
     mass = sum(inertia.mass for _, inertia in members)
     if mass == 0.0 and not any(any(inertia.moments) for _, inertia in members):
-        return "has no mass and carries nothing that has"
+        return "has no mass, and no link attached to it has mass"
     if mass == 0.0 and kind in _SLIDES:
         return "has no mass"
     scale = sum(_trace_about_origin(pose, inertia) for pose, inertia in members)

@@ -80,13 +80,13 @@ def _refuse_too_large(mechanism: Mechanism, urdf: Urdf, extension: Extension | N
     joints = len(mechanism.joints)
     velocities = sum(joint.coordinates.nv for joint in mechanism.joints)
     if joints > JOINT_LIMIT:
-        message = f"the robot has {joints:,} joints; it may have {JOINT_LIMIT:,}"
+        message = f"the robot has {joints:,} joints; the maximum is {JOINT_LIMIT:,}"
         diagnostics.report("file-too-large", message, urdf.document.place(urdf.document.root))
     elif velocities > VELOCITY_LIMIT:
-        message = f"the joints of the robot have {velocities:,} velocities; they may have {VELOCITY_LIMIT:,}"
+        message = f"the joints of the robot have {velocities:,} velocities; the maximum is {VELOCITY_LIMIT:,}"
         diagnostics.report("file-too-large", message, urdf.document.place(urdf.document.root))
     elif mechanism.nc > ROW_LIMIT and extension is not None:
-        message = f"the closures of the robot have {mechanism.nc:,} constraint rows; they may have {ROW_LIMIT:,}"
+        message = f"the closures of the robot have {mechanism.nc:,} constraint rows; the maximum is {ROW_LIMIT:,}"
         key = "closed_loop" if mechanism.version == "1" else "closures"
         diagnostics.report("file-too-large", message, extension.document.place((key,)))
 
@@ -173,7 +173,7 @@ def _own_keys(extension: Extension, urdf: Urdf, reporter: YamlReporter) -> None:
         if among_joints and pointer[-1] in urdf.joints:
             reporter.report(
                 "own-key-is-joint",
-                f"'{pointer[-1]}' is a joint, but as a key that begins with 'x-' it is the user's own, without effect",
+                f"'{pointer[-1]}' is a joint, but keys that begin with 'x-' are your own data and have no effect",
                 pointer,
                 "rename the joint in the URDF",
                 key=True,
@@ -210,7 +210,7 @@ def _reserve_names(extension: Extension, reporter: YamlReporter, root: Root) -> 
         if name in reserved:
             reporter.report(
                 "urdf-reserved-name",
-                f"'{name}' is a name that the model needs for itself, and cannot be that of a {kind}",
+                f"'{name}' is reserved for the model, and cannot be the name of a {kind}",
                 pointer,
                 f"give the {kind} another name",
                 key=key,
@@ -223,7 +223,7 @@ def _reserve_root_joint(urdf: Urdf, diagnostics: Diagnostics) -> None:
         if item is not None:
             diagnostics.report(
                 "urdf-reserved-name",
-                f"'{ROOT_JOINT}' is the joint that a floating root hangs from, and cannot be the name of a {kind}",
+                f"'{ROOT_JOINT}' is the joint of a floating root, and cannot be the name of a {kind}",
                 urdf.document.place(item.element, "name"),
                 "rename it, or make the root fixed",
             )

@@ -75,7 +75,7 @@ def check_chain(
     for upper, lower in itertools.pairwise(chain):
         if lower.parent != upper.child:
             raise NotMergeable(
-                "merge-not-chain", f"joint '{lower.name}' does not hang from the link that '{upper.name}' carries"
+                "merge-not-chain", f"joint '{lower.name}' is not attached to the child link of '{upper.name}'"
             )
         siblings = urdf.children.get(upper.child, ())
         if len(siblings) != 1:
@@ -86,10 +86,10 @@ def check_chain(
         if link.inertia is not None and link.inertia.mass >= MASSLESS:
             raise NotMergeable(
                 "merge-inertia",
-                f"link '{link.name}' between them weighs {link.inertia.mass:g} kg; it must be below {MASSLESS:g} kg",
+                f"link '{link.name}' between them has mass {link.inertia.mass:g} kg; it must be below {MASSLESS:g} kg",
             )
         if link.name in closure_links:
-            raise NotMergeable("merge-closure-frame", f"link '{link.name}' between them carries a frame of a closure")
+            raise NotMergeable("merge-closure-frame", f"link '{link.name}' between them has a frame of a closure")
     zero, lines = _lines(chain)
     return Chain(chain, zero, tuple(direction for _, direction in lines), _meeting_point(lines))
 
@@ -205,8 +205,8 @@ def _meeting_point(lines: list[tuple[Vector3, Vector3]]) -> Vector3:
         if distance > MEETING:
             raise NotMergeable(
                 "merge-axes",
-                f"their axes do not meet in one point: one passes it at {distance * 1e3:.3g} mm, "
-                f"and may at {MEETING * 1e3:g} mm",
+                f"their axes do not intersect in one point: one misses it by {distance * 1e3:.3g} mm, "
+                f"the tolerance is {MEETING * 1e3:g} mm",
             )
     return point
 

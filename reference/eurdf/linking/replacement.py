@@ -88,9 +88,9 @@ def replace_joints(
         if entry.name in merged and entry.name in urdf.joints:
             reporter.report(
                 "duplicate-replacement",
-                f"joint '{entry.name}' is changed, and merged into '{merged[entry.name]}' too",
+                f"joint '{entry.name}' is both changed and merged into '{merged[entry.name]}'",
                 entry.pointer,
-                f"say it of '{merged[entry.name]}', or leave '{entry.name}' out of its 'merges'",
+                f"change '{merged[entry.name]}' instead, or remove '{entry.name}' from its 'merges'",
             )
             continue
         if entry.name in seen:
@@ -161,7 +161,7 @@ class _Replacement:
                 hint = f"'{name}' is a link; name the joint that moves it"
             self.reporter.report(
                 "unknown-joint",
-                f"'{name}' is no joint of the robot",
+                f"'{name}' is not a joint of the robot",
                 pointer,
                 hint,
                 key=key,
@@ -180,7 +180,7 @@ class _Replacement:
             "joint-mimics",
             f"joint '{joint.name}' cannot be changed: {why}",
             pointer,
-            "take the <mimic> out of the URDF, or leave the joint as it is",
+            "remove <mimic> from the URDF, or do not change the joint",
         )
         return True
 
@@ -194,7 +194,7 @@ class _Replacement:
             if name in entry.merges[:index]:
                 self.reporter.report(
                     "duplicate-replacement",
-                    f"joint '{name}' stands twice among those that are merged",
+                    f"joint '{name}' occurs twice among the joints to merge",
                     pointer,
                     "name three different joints",
                 )
@@ -283,7 +283,7 @@ class _Replacement:
         axes = self.entry.axes
         for index, axis in enumerate(axes):
             if not any(axis):
-                message = f"an axis of universal joint '{joint.name}' has no direction"
+                message = f"an axis of universal joint '{joint.name}' is zero"
                 self.report("joint-axis-zero", message, "axes", index)
                 return None
         first, second = map(direction, axes)
@@ -305,7 +305,7 @@ class _Replacement:
             if name in self.urdf.joints:
                 self.reporter.report(
                     "duplicate-joint-name",
-                    f"universal joint '{joint.name}' makes a joint '{name}', and there already is one",
+                    f"universal joint '{joint.name}' creates a joint '{name}', which already exists",
                     self.entry.pointer,
                     "rename the other joint in the URDF",
                 )
@@ -340,7 +340,7 @@ class _Replacement:
         pitch = self.entry.pitch
         assert pitch is not None
         if pitch == 0.0:
-            self.report("joint-pitch-zero", f"helical joint '{joint.name}' has no pitch", "pitch")
+            self.report("joint-pitch-zero", f"the pitch of helical joint '{joint.name}' is 0", "pitch")
             return None
         properties = joint.properties
         if joint.type is JointType.PRISMATIC:
@@ -400,10 +400,10 @@ class _Replacement:
                 left_out = {"lower", "upper"} - set(changes)
                 self.report(
                     "joint-limits-reversed",
-                    f"joint '{joint.name}' has its lower limit {lower:g} above its upper limit {upper:g}",
+                    f"joint '{joint.name}': lower limit {lower:g} is above upper limit {upper:g}",
                     "limits",
                     key,
-                    hint=f"the {left_out.pop()} limit is the URDF's; state it too" if left_out else "swap them",
+                    hint=f"the {left_out.pop()} limit comes from the URDF; state it, too" if left_out else "swap them",
                 )
                 return None
         return replace(joint, properties=properties)

@@ -25,7 +25,7 @@ def differences(one: Mechanism, other: Mechanism) -> list[str]:
     a, b = with_universal_joints(one), with_universal_joints(other)
     found = []
     if a.name != b.name or a.root != b.root:
-        found.append("the root is another")
+        found.append("the root differs")
     for what, before, after in (
         ("body", _by_name(a.bodies), _by_name(b.bodies)),
         ("joint", _by_name(a.joints), _by_name(b.joints)),
@@ -36,9 +36,9 @@ def differences(one: Mechanism, other: Mechanism) -> list[str]:
     ):
         found += _differing(what, before, after)
     if not found and a.constraints != b.constraints:
-        found.append("the closures come in another order")
+        found.append("the order of the closures differs")
     if a.actuators != b.actuators:
-        found.append("the actuators are others, or in another order")
+        found.append("the actuators or their order differ")
     return found
 
 
@@ -111,7 +111,7 @@ def _by_name(items: Iterable[_Named]) -> dict[str, _Named]:
 
 
 def _differing(what: str, before: Mapping[str, object], after: Mapping[str, object]) -> list[str]:
-    found = [f"{what} '{name}' is gone" for name in before if name not in after]
+    found = [f"{what} '{name}' is missing" for name in before if name not in after]
     found += [f"{what} '{name}' is new" for name in after if name not in before]
-    found += [f"{what} '{name}' is another" for name in before if name in after and before[name] != after[name]]
+    found += [f"{what} '{name}' differs" for name in before if name in after and before[name] != after[name]]
     return found

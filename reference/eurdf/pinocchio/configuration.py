@@ -29,15 +29,15 @@ def configuration_vector(
         mechanism: The mechanism.
         model: What `build_model` made of it.
         coordinates: For each joint its coordinates as files have them (`eurdf.mechanism.joint_type.COORDINATES`), for a
-            floating root those of a floating joint under ``root_joint``. A joint left out stands at its neutral.
-            Quaternions are brought to unit length. What is said of a joint that follows another is not looked at.
+            floating root those of a floating joint under ``root_joint``. Other joints are
+            neutral. Quaternions are normalized. Coordinates of mimic joints are ignored.
         at: The `slots` of mechanism and model, where the caller has them.
 
     Returns:
         q, of shape (nq,).
 
     Raises:
-        ValueError: A name is no joint with coordinates, or a joint is given too few or too many of them, or a
+        ValueError: A name is not a joint with coordinates, or a joint is given too few or too many of them, or a
             quaternion of length 0.
     """
     q: Vector = pin.neutral(model)
@@ -52,7 +52,7 @@ def configuration_vector(
         if slot is None:
             if name in mimics:
                 continue
-            raise ValueError(f"'{name}' is no joint with coordinates")
+            raise ValueError(f"'{name}' is not a joint with coordinates")
         values = _checked(name, values, slot.joint.coordinates)
         if slot.nq > len(values):  # the last of them is an angle, which Pinocchio has as (cos, sin)
             values[-1:] = math.cos(values[-1]), math.sin(values[-1])

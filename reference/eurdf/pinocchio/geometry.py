@@ -127,7 +127,7 @@ def _read(shape: Shape, path: str) -> coal.BVHModelBase:
 def _reason(error: ValueError) -> str:
     """What coal's mesh reader says, without the places in its own source and its hint."""
     lines = str(error).rpartition("message:")[2].strip().splitlines()
-    return lines[1].strip().rstrip(".") if len(lines) > 1 else "it is no mesh"
+    return lines[1].strip().rstrip(".") if len(lines) > 1 else "it is not a mesh"
 
 
 def _color(shape: Shape) -> npt.NDArray[np.float64]:

@@ -116,7 +116,7 @@ def decoded(data: bytes, file: str, base: Path | None = None) -> Source:
     except UnicodeDecodeError as error:
         before = data[: error.start].decode()
         place = Source(file, before, b"", base).place(len(before))
-        message = f"the byte 0x{data[error.start]:02x} stands where UTF-8 text cannot have it"
+        message = f"the byte 0x{data[error.start]:02x} is not valid UTF-8"
         raise Fault("file-not-utf8", message, place, "save the file with the encoding UTF-8") from None
     return Source(file, text, data, base)
 
@@ -146,7 +146,7 @@ def _read_bytes(file: str, limit: int) -> bytes:
         reason = (error.strerror or str(error)).lower()
         raise Fault("file-unreadable", f"'{file}' cannot be read: {reason}", place) from None
     except ValueError:  # a NUL in the path
-        raise Fault("file-unreadable", f"{file!r} is no path of a file", place) from None
+        raise Fault("file-unreadable", f"{file!r} is not a valid path", place) from None
     if size > limit:
         raise too_large(file, f"{limit:,} bytes")
     return b"".join(chunks)
@@ -154,7 +154,7 @@ def _read_bytes(file: str, limit: int) -> bytes:
 
 def too_large(file: str, most: str) -> Fault:
     """The fault of a file that has more than it may have."""
-    return Fault("file-too-large", f"the file has more than {most}, the most it may have", Place(file))
+    return Fault("file-too-large", f"the file has more than {most}, the maximum", Place(file))
 
 
 def short(text: str) -> str:

@@ -88,7 +88,7 @@ def _not_closed(source: Source, problem: str, at: int, name: str, opened: int) -
     assert closing is not None
     line, _ = source.position(opened)
     name = short(name)
-    message = f"</{short(closing[0])}> stands where </{name}> must, which closes the <{name}> of line {line}"
+    message = f"</{short(closing[0])}> is where </{name}> is expected, which closes the <{name}> of line {line}"
     return Fault("xml-syntax", message, source.place(at - 2, closing.end()))
 
 
@@ -109,15 +109,15 @@ def _explain(text: str, problem: str, at: int) -> tuple[int, int, str, str | Non
         return at, end, f"{what} is never closed", None
     if problem == errors.XML_ERROR_DUPLICATE_ATTRIBUTE:
         end = _end_of_name(text, at)
-        return at, end, f"the attribute '{short(text[at:end])}' stands twice in one element", None
+        return at, end, f"the attribute '{short(text[at:end])}' occurs twice in one element", None
     if problem == errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT:
-        return at, end, "this stands after the end of the root element", "an XML file has one root element"
+        return at, end, "this is after the end of the root element", "an XML file has one root element"
     if problem == errors.XML_ERROR_UNDEFINED_ENTITY:
         end = _end_of_name(text, at + 1)
         hint = "XML knows &lt; &gt; &amp; &quot; and &apos;; a lone '&' is written &amp;"
         return at, end, f"the entity '{short(text[at:end])};' is unknown", hint
     if problem == errors.XML_ERROR_MISPLACED_XML_PI:
-        return at, end, "the XML declaration does not stand at the very beginning of the file", None
+        return at, end, "the XML declaration is not at the very beginning of the file", None
     return at, end, problem, None
 
 
@@ -125,19 +125,19 @@ def _stray_character(text: str, at: int) -> tuple[int, int, str, str | None]:
     end = min(at + 1, len(text))
     character = text[at:end]
     if text[at - 1 : at] == "&":
-        return at - 1, at, "a '&' stands alone", "write &amp; for it"
+        return at - 1, at, "a '&' is not escaped", "write &amp; for it"
     if text[at - 2 : at] == "--" and text.rfind("<!--", 0, at) > text.rfind("-->", 0, at):
-        return at - 2, at, "'--' cannot stand in a comment", None
+        return at - 2, at, "'--' is not allowed in a comment", None
     if text[:at].rstrip().endswith("="):
-        return at, end, "the value of an attribute must stand in quotes", None
+        return at, end, "the value of an attribute must be quoted", None
     if character == "<":
-        return at, end, "a '<' stands inside a tag", "close the tag before it with '>', or write &lt; in a value"
+        return at, end, "a '<' is inside a tag", "close the tag before it with '>', or write &lt; in a value"
     if character in (" ", "\t", "\n", "\r"):
-        return at, end, "white space cannot stand here", None
+        return at, end, "white space is not allowed here", None
     if not character:
         return at, at, "the file ends too early", None
     shown = f"'{character}'" if character.isprintable() else f"the character U+{ord(character):04X}"
-    return at, end, f"{shown} cannot stand here", None
+    return at, end, f"{shown} is not allowed here", None
 
 
 def _end_of_name(text: str, at: int) -> int:

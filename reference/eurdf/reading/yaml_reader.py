@@ -137,11 +137,11 @@ class _Reader:
         """The top level, a mapping."""
         document = self._next_event()
         if type(document) is StreamEndEvent:
-            what = "holds nothing but comments" if self._source.text.strip("\ufeff \t\r\n") else "is empty"
-            raise Fault("yaml-empty", f"the file {what}; it must hold a mapping", Place(self._source.file))
+            what = "contains only comments" if self._source.text.strip("\ufeff \t\r\n") else "is empty"
+            raise Fault("yaml-empty", f"the file {what}; it must contain a mapping", Place(self._source.file))
         if document.version is not None and document.version != (1, 2):
             version = ".".join(map(str, document.version))
-            message = f"the %YAML directive asks for version {version}; it must be 1.2"
+            message = f"the %YAML directive states version {version}; it must be 1.2"
             raise self._fault("yaml-version", message, document, "leave the directive out")
         while not self._file.data:
             event = self._next_event()
@@ -198,7 +198,7 @@ class _Reader:
             self._key(value, event)
             return
         if type(value) is float and not isfinite(value):
-            what = "is no finite number" if "n" in text.lower() else "is beyond the range of numbers"
+            what = "is not a finite number" if "n" in text.lower() else "is beyond the range of numbers"
             raise self._fault("yaml-not-finite", f"{_quote(text)} {what}", event)
         around.add(value, span)
 
@@ -238,12 +238,12 @@ class _Reader:
         value, target = self._anchors[name]
         collection = target if isinstance(target, Collection) else None
         if collection is not None and collection.is_open:
-            raise self._fault("yaml-alias", f"the alias '*{shown}' stands inside what it stands for", event)
+            raise self._fault("yaml-alias", f"the alias '*{shown}' refers to a node that contains it", event)
         self._next_node()
         self._aliases += 1
         self._copies += 1 if collection is None else collection.size
         if self._copies > NODE_LIMIT:
-            message = f"the aliases of the file stand for more than {NODE_LIMIT:,} keys and values"
+            message = f"the aliases of the file expand to more than {NODE_LIMIT:,} keys and values"
             raise self._fault("yaml-alias", message, event)
         around = self._open[-1]
         if around.awaits_key:
@@ -270,7 +270,7 @@ class _Reader:
         begin, _ = _span(event)
         if self._source.text[begin - 1 : begin] == "?":
             # EU-YML-012: within braces, to libyaml it marks a key whatever follows.
-            message = "a '?' stands right before a key, within braces or brackets"
+            message = "a '?' is directly before a key, inside braces or brackets"
             raise self._fault("yaml-syntax", message, event, "quote the key, and its '?' if it is a part of it")
         if type(value) is not str:
             text = event.value if isinstance(event, ScalarEvent) else ""
@@ -280,14 +280,14 @@ class _Reader:
         if value in mapping.keys:
             line, _ = self._source.position(mapping.keys[value][0])
             mapping.key, mapping.awaits_key = value, False  # for the pointer
-            message = f"the key {_quote(value)} stands twice in one mapping"
-            raise self._fault("yaml-duplicate-key", message, event, f"it stands first on line {line}")
+            message = f"the key {_quote(value)} occurs twice in one mapping"
+            raise self._fault("yaml-duplicate-key", message, event, f"it first occurs on line {line}")
         mapping.key, mapping.awaits_key = value, False
         mapping.keys[value] = _span(event)
 
     def _expect_end(self) -> None:
         end = self._next_event()
-        message = "a second document begins here; the file must hold one"
+        message = "a second document begins here; the file must contain only one"
         try:
             after = self._next_event()
         except MarkedYAMLError as error:

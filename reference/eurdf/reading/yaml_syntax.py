@@ -24,23 +24,23 @@ class _Meaning(NamedTuple):
     late: bool = False  # whether libyaml notices it only long after the place where the node around it begins
 
 
-_AFTER_VALUE = _Meaning("this stands after the end of a value", "quote the value as a whole")
-_UNUSUAL_NAME = _Meaning("this is no name for an anchor", "name it by ASCII letters, digits, '-' and '_'")
+_AFTER_VALUE = _Meaning("this is after the end of a value", "quote the value as a whole")
+_UNUSUAL_NAME = _Meaning("this is not a valid anchor name", "name it by ASCII letters, digits, '-' and '_'")
 _TAB = _Meaning("a tab is used as indentation", "indent with spaces")
 _MEANINGS = {
     "mapping values are not allowed in this context": _Meaning(
-        "a ':' stands where no key can be",
-        "quote a value that has ': ' in it, and indent the keys of one mapping alike",
+        "a ':' is where no key is allowed",
+        "quote a value that has ': ' in it, and indent the keys of one mapping equally",
     ),
-    "mapping keys are not allowed in this context": _Meaning("a '?' stands where no key can be"),
+    "mapping keys are not allowed in this context": _Meaning("a '?' is where no key is allowed"),
     "block sequence entries are not allowed in this context": _Meaning(
         "a list item cannot begin here", "begin the list on a line of its own"
     ),
     "did not find expected key": _Meaning(
-        "this does not continue the mapping that begins on line {line}", "indent the keys of one mapping alike"
+        "this does not continue the mapping that begins on line {line}", "indent the keys of one mapping equally"
     ),
     "did not find expected '-' indicator": _Meaning(
-        "this does not continue the list that begins on line {line}", "begin each item with '- ', all indented alike"
+        "this does not continue the list that begins on line {line}", "begin each item with '- ', all indented equally"
     ),
     "did not find expected ',' or ']'": _Meaning("a ',' or ']' is missing in the list that begins on line {line}"),
     "did not find expected ',' or '}'": _Meaning("a ',' or '}' is missing in the mapping that begins on line {line}"),
@@ -56,14 +56,14 @@ _MEANINGS = {
     "found a tab character that violates indentation": _TAB,
     "found a tab character where an indentation space is expected": _TAB,
     "found unknown escape character": _Meaning(
-        "an escape that double quotes do not have", r"write '\\' for a backslash, or use single quotes"
+        "an unknown escape in double quotes", r"write '\\' for a backslash, or use single quotes"
     ),
-    "did not find expected hexdecimal number": _Meaning("an escape lacks its hexadecimal digits"),
-    "found invalid Unicode character escape code": _Meaning("an escape stands for no Unicode character"),
+    "did not find expected hexdecimal number": _Meaning("an escape has too few hexadecimal digits"),
+    "found invalid Unicode character escape code": _Meaning("an escape is not a Unicode character"),
     "did not find expected alphabetic or numeric character": _UNUSUAL_NAME,
     "found unknown directive name": _Meaning("only the directives %YAML and %TAG are known", "leave the line out"),
     "found incompatible YAML document": _Meaning(
-        "the %YAML directive asks for another version than 1.2", "leave the directive out", "yaml-version"
+        "the %YAML directive states a version other than 1.2", "leave the directive out", "yaml-version"
     ),
     "found undefined tag handle": _Meaning("the tag has an unknown prefix", None, "yaml-unknown-tag"),
 }
@@ -89,8 +89,8 @@ def syntax_fault(source: Source, error: YAMLError | UnicodeDecodeError) -> Fault
         # Also what libyaml's reader says, whose position is in bytes.
         found = _NOT_PRINTABLE.search(text)
         if found is None:
-            return Fault("yaml-syntax", "the file holds an escape that is not UTF-8", source.place(0))
-        message = f"the character U+{ord(found[0]):04X} cannot stand in YAML"
+            return Fault("yaml-syntax", "the file contains an escape that is not UTF-8", source.place(0))
+        message = f"the character U+{ord(found[0]):04X} is not allowed in YAML"
         hint = f'in double quotes, write "\\u{ord(found[0]):04x}"'
         return Fault("yaml-syntax", message, source.place(found.start(), found.end()), hint)
     problem = min(error.problem_mark.index, len(text)) if error.problem_mark else 0

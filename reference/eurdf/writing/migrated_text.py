@@ -182,9 +182,7 @@ class _Migration:
         count = len(self.extension.closures)
         if count:
             to = f" to 'closure_{count}'" if count > 1 else ""
-            self.notes.append(
-                f"closures are named as version 1 counts them, 'closure_1'{to}: names of your own say more"
-            )
+            self.notes.append(f"closures are numbered as in version 1, 'closure_1'{to}; you can rename them")
 
     def frame(self, reference: FrameReference) -> str:
         """The name of a closure's frame; the second half of a universal joint is now the joint itself."""
@@ -206,7 +204,7 @@ class _Migration:
         for name in (*pointers, *self.merged):
             if is_own_key(name):
                 raise NotMigratable(
-                    f"joint '{name}' cannot be a key: version 2 takes keys that begin with 'x-' for data of your own",
+                    f"joint '{name}' cannot be a key: in version 2, keys that begin with 'x-' are your own data",
                     pointers.get(name, ()),
                 )
         for index, entry in enumerate(self.extension.joints):
@@ -216,12 +214,14 @@ class _Migration:
             yield Entry(lines_of(name, {"type": "spherical", "merges": list(joints)}))
         if self.merged:
             self.notes.append(
-                "merged from three revolutes, which version 1 does by itself and version 2 says: spherical "
+                "merged from three revolutes, which version 1 does implicitly and version 2 states: spherical "
                 + _joints(self.merged)
             )
         split = [entry.name for entry in self.extension.joints if entry.split]
         if split:
-            self.notes.append(f"one joint of two angles, where version 1 has two revolutes: universal {_joints(split)}")
+            self.notes.append(
+                f"one joint with two angles, for two revolute joints of version 1: universal {_joints(split)}"
+            )
 
     def joint(self, entry: JointEntry) -> Value:
         if not entry.split:
@@ -266,7 +266,7 @@ class _Migration:
         kept: set[int] = set()
         for key, name in own_keys(document.data).items():
             if name != key:
-                self.notes.append(f"'{key}', data of your own, is now '{name}'")
+                self.notes.append(f"'{key}', your own data, is now '{name}'")
             place = places[key]
             entries[key] = Entry(lines_of(name, document.data[key]))
             if place.end_column is None:

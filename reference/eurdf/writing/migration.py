@@ -56,7 +56,7 @@ def migrate(description: Described, urdf_path: str = "robot.urdf", schema: str |
     own = {str(key): value for (key,), value in extension.own_data.items()}
     expected = {json_pointer([name]): own[key] for key, name in own_keys(own).items()}
     if repr(expected) != repr(dict(after.own_data)):
-        found.append("your own data are others")
+        found.append("your own data differ")
     if found:
         raise NotMigratable(f"version 2 would not be the same model: {'; '.join(found)}", ())
     return Migration(result.text, (*result.notes, *_order(before, after)), after)
@@ -101,4 +101,4 @@ def _order(before: Mechanism, after: Mechanism) -> list[str]:
     names = [[joint.name for joint in mechanism.joints] for mechanism in (with_universal_joints(before), after)]
     if names[0] == names[1]:
         return []
-    return ["the joints, and with them the coordinates and velocities, come in another order"]
+    return ["the order of the joints, and so of coordinates and velocities, differs"]

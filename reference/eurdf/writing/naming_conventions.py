@@ -88,7 +88,7 @@ def conventions(
     for pattern in closing:
         if "side" not in pattern.groupindex:
             raise BadPattern(
-                f"the closure pattern '{pattern.pattern}' has no group 'side', which tells its two frames apart: "
+                f"the closure pattern '{pattern.pattern}' has no group 'side', which distinguishes its two frames: "
                 r"for instance '(?P<loop>loop\d+)_(?P<side>A|B)'"
             )
     return Conventions(
@@ -100,7 +100,7 @@ def _compiled(pattern: str) -> re.Pattern[str]:
     try:
         return re.compile(pattern)
     except (re.error, OverflowError, RecursionError) as error:
-        raise BadPattern(f"'{pattern}' is no regular expression: {error}") from None
+        raise BadPattern(f"'{pattern}' is not a regular expression: {error}") from None
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,7 +199,7 @@ def _closures(urdf: Urdf, patterns: Iterable[re.Pattern[str]], warnings: list[st
         else:
             joined[pair] = name
             if len(loop.types) > 1:
-                warnings.append(f"the names of loop '{name}' say both 3d and 6d: neither is taken from them")
+                warnings.append(f"the names of loop '{name}' state both 3d and 6d, so neither is used")
             type_ = next(iter(loop.types)) if len(loop.types) == 1 else None
             paired.append(NamedClosure(name, type_, (frames[0], frames[1])))
     names = {closure.name for closure in paired}
@@ -297,7 +297,7 @@ def _sphericals(urdf: Urdf, patterns: Sequence[re.Pattern[str]], warnings: list[
         elif joint.name in coupled:
             why = "mimics or is mimicked"
         elif is_own_key(joint.name):
-            why = "begins with 'x-', as only data of the user's own do"
+            why = "begins with 'x-', which is reserved for user data"
         else:
             yield joint.name
             continue

@@ -145,7 +145,7 @@ def _report_uncontrolled(description: Described, robot: Robot, analysis: Analysi
             "x-uncontrolled-motion",
             f"{count} {'motion is' if count == 1 else 'motions are'} possible with every actuator held, of {shown}",
             _place_of_key(description, _actuators_key(robot.mechanism)),
-            "actuate a joint of each, add the closure that is missing, or use type 6d where orientation is held too",
+            "actuate a joint of each, add the closure that is missing, or use type 6d if the orientation is fixed, too",
         )
 
 

@@ -70,7 +70,7 @@ def advise_on_massless_links(description: Described, robot: Robot, q: Vector, di
             fast = np.abs(motions).max(axis=0) > _NOTHING
             moving = dict.fromkeys(joint for joint, moves in zip(columns, fast, strict=True) if moves)
             names = " and ".join(f"'{model.names[joint]}'" for joint in moving)
-            why = f"can move by {names} while all that has mass is at rest: the mass matrix is singular"
+            why = f"can move by {names} without moving any mass: the mass matrix is singular"
             _report(
                 description, [child_of[model.names[joint]] for joint in moving if joint in massless], why, diagnostics
             )
@@ -93,7 +93,7 @@ def _report(description: Described, links: list[str], why: str, diagnostics: Dia
             "x-massless-link",
             f"link '{known.name}' of a loop has no mass and {why}",
             partial(urdf.document.place, known.element),
-            "give it the mass and inertia that it has",
+            "state its mass and inertia",
         )
 
 

@@ -36,5 +36,5 @@ def advise_on_mimics(description: Linked, diagnostics: Diagnostics) -> None:
         "x-mimic-ignored",
         f"{count} a <mimic>, which version 1 ignores, and no motor: {names}",
         partial(urdf.document.place, next(found[0].element.iterchildren("mimic"))),
-        "actuate what moves by itself, remove <mimic>, or write the description in version 2, which respects it",
+        "actuate the joints that move freely, remove <mimic>, or use version 2, which respects it",
     )

@@ -49,7 +49,8 @@ def advise_on_quaternions(description: Described, robot: Robot | None, diagnosti
                 quaternion = ", ".join(f"{value + 0.0:g}" for value in values[-4:])
                 diagnostics.report(
                     "x-quaternion-order",
-                    f"the quaternion of joint '{joint}' in configuration '{name}' is likely w first: {why} only then",
+                    f"the quaternion of joint '{joint}' in configuration '{name}' "
+                    f"is probably in the order w, x, y, z: {why} only then",
                     extension.document.place((*entries[name].pointer, joint)),
                     f"the order is x, y, z, w: {quaternion}",
                 )

@@ -52,7 +52,7 @@ def _type(reader: UrdfReader, element: Element) -> JointType | None:
         hint = did_you_mean(text, URDF_JOINT_TYPES)
         if text in ("spherical", "ball", "universal", "cylindrical", "helical", "screw"):
             hint = "write 'revolute' or 'continuous' here, and the type under 'joints' in the YAML file"
-        reader.report("urdf-joint-type", f"'{text}' is no joint type of URDF", element, "type", hint)
+        reader.report("urdf-joint-type", f"'{text}' is not a joint type of URDF", element, "type", hint)
     return kind
 
 
@@ -74,13 +74,13 @@ def _axis(reader: UrdfReader, name: str | None, kind: JointType, element: Elemen
         if x != 0.0 or y != 0.0:
             reader.report(
                 "urdf-planar-axis",
-                f"planar joint '{name}' moves in its own xy plane, whatever its axis says",
+                f"planar joint '{name}' moves in its own xy plane; its axis is ignored",
                 element,
                 "xyz",
                 "turn the joint's origin so that its z is the normal of the plane, and write the axis 0 0 1",
             )
     elif x == y == z == 0.0:
-        reader.report("urdf-zero-axis", f"the axis of joint '{name}' has no direction", element, "xyz")
+        reader.report("urdf-zero-axis", f"the axis of joint '{name}' is zero", element, "xyz")
         return None
     return (x, y, z)
 
@@ -118,7 +118,7 @@ def _check_order(reader: UrdfReader, name: str | None, lower: float, upper: floa
     if lower > upper:
         reader.report(
             "urdf-reversed-limits",
-            f"joint '{name}' has its lower limit {lower:g} above its upper limit {upper:g}",
+            f"joint '{name}': lower limit {lower:g} is above upper limit {upper:g}",
             element,
             "lower",
             "swap them",

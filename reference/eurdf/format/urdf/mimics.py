@@ -38,7 +38,7 @@ def _leader(reader: UrdfReader, joint: UrdfJoint, mimic: Mimic, joints: _Joints,
     if leader is None:
         reader.mimic_reporter.report(
             "urdf-mimic-unknown",
-            f"joint '{joint.name}' mimics '{mimic.joint}', which is no joint",
+            f"joint '{joint.name}' mimics '{mimic.joint}', which does not exist",
             element,
             "joint",
             partial(did_you_mean, mimic.joint, joints.keys() - {joint.name}, joint.name),

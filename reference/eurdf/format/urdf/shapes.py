@@ -69,7 +69,7 @@ def _primitive(reader: UrdfReader, element: Element, pose: Pose, look: Look) -> 
         shown = kind if isinstance(kind, str) else "?"
         reader.report(
             "urdf-geometry",
-            f"<{shown}> is no shape; it must be box, cylinder, sphere, capsule or mesh",
+            f"<{shown}> is not a shape; it must be box, cylinder, sphere, capsule or mesh",
             element,
             hint=did_you_mean(shown, ("box", "cylinder", "sphere", "capsule", "mesh")),
         )

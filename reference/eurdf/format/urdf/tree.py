@@ -47,7 +47,7 @@ def _links_by_name(reader: UrdfReader, links: Sequence[UrdfLink]) -> dict[str, U
     by_name: dict[str, UrdfLink] = {}
     for link in links:
         if link.name in by_name:
-            reader.report("urdf-duplicate-link", f"there is a second link '{link.name}'", link.element, "name")
+            reader.report("urdf-duplicate-link", f"two links are named '{link.name}'", link.element, "name")
         by_name[link.name] = link
     return by_name
 
@@ -57,7 +57,7 @@ def _joints_by_name(reader: UrdfReader, joints: Sequence[UrdfJoint]) -> dict[str
     by_name: dict[str, UrdfJoint] = {}
     for joint in joints:
         if joint.name in by_name:
-            reader.report("urdf-duplicate-joint", f"there is a second joint '{joint.name}'", joint.element, "name")
+            reader.report("urdf-duplicate-joint", f"two joints are named '{joint.name}'", joint.element, "name")
         by_name[joint.name] = joint
     return by_name
 
