@@ -1,4 +1,4 @@
-"""Time of the conformance suite on the reference: of an item in the reader and in the runner, and of the whole run."""
+"""Time of the conformance suite on the reference: of an item in the parser and in the runner, and of the whole run."""
 
 from __future__ import annotations
 
@@ -41,12 +41,12 @@ def _cases() -> None:
         for item in items:
             begin, before = time.perf_counter(), session.seconds_in_parser
             judge(item.case, item.item.level, conversation)
-            in_reader = session.seconds_in_parser - before
-            levels[item.item.level].append((in_reader, time.perf_counter() - begin - in_reader))
+            in_parser = session.seconds_in_parser - before
+            levels[item.item.level].append((in_parser, time.perf_counter() - begin - in_parser))
     levels["all"] = [each for times in list(levels.values()) for each in times]
-    print(f"{'level':12} {'items':>6} {'reader':>8} {'runner':>8}  ms an item, mean")
+    print(f"{'level':12} {'items':>6} {'parser':>8} {'runner':>8}  ms an item, mean")
     for level, times in levels.items():
-        reader, runner = (1e3 * sum(each) / len(times) for each in zip(*times, strict=True))
-        print(f"{level:12} {len(times):6} {reader:8.3f} {runner:8.3f}  {reader / (reader + runner):5.1%} in the reader")
-    requests = sum(in_reader > 0 for in_reader, _ in levels["all"])
+        parser, runner = (1e3 * sum(each) / len(times) for each in zip(*times, strict=True))
+        print(f"{level:12} {len(times):6} {parser:8.3f} {runner:8.3f}  {parser / (parser + runner):5.1%} in the parser")
+    requests = sum(in_parser > 0 for in_parser, _ in levels["all"])
     print(f"a request in the runner  {1e3 * sum(runner for _, runner in levels['all']) / requests:6.3f} ms")

@@ -49,7 +49,7 @@ def main(folder: Path | None = None) -> Followed:
     pin.forwardKinematics(robot.model, robot.data, q)
     foot = pin.updateFramePlacement(robot.model, robot.data, robot.model.getFrameId("foot"))
 
-    # From where it stands the foot goes back and up, over to the front, and down again.
+    # From its start the foot moves back and up, to the front, and down again.
     t = np.linspace(0.0, PERIOD, SAMPLES + 1)
     angle = 2.0 * np.pi * t / PERIOD
     offset = np.column_stack([-FORWARD * np.sin(angle), np.zeros_like(t), UPWARD * (1.0 - np.cos(angle))])
@@ -83,7 +83,7 @@ if __name__ == "__main__":
     result = main(target)
     largest = np.degrees(np.abs(np.diff(result.q[:, result.robot.actuation.idx_q], axis=0)).max())
     opening = max(np.abs(eurdf.residual(result.robot, q)).max() for q in result.q)
-    print(f"foot off its way by   {result.error:.1e} m or rad at most")
+    print(f"error of the foot     {result.error:.1e} m or rad at most")
     print(f"closures open by      {opening:.1e} m or rad at most")
     print(f"a motor turns by      {largest:.2f} degrees between two samples at most")
     print(f"written: {target / 'foot_trajectory.csv'}")

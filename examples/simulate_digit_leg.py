@@ -28,7 +28,7 @@ class Held(NamedTuple):
 
     Attributes:
         motion: What was simulated.
-        sag: By how much each motor has given way, at most (nu,), rad.
+        sag: Largest deflection of each motor (nu,), rad.
         opening: How far closures come open, at most: the largest row of their residual, m or rad.
         energy: Kinetic and potential energy (n + 1,), J.
         energy_error: What the energy differs by from what the motors put into it, at most, J.
@@ -70,7 +70,7 @@ def main() -> Held:
 if __name__ == "__main__":
     result = main()
     print(f"simulated          {result.motion.t[-1]:.3f} s in {len(result.motion.t) - 1} steps")
-    print(f"motors give way by {np.degrees(result.sag).max():.3f} degrees at most")
+    print(f"largest motor deflection {np.degrees(result.sag).max():.3f} degrees")
     print(f"closures open by   {result.opening:.1e} m or rad at most")
     print(f"energy             from {result.energy[0]:.4f} J to {result.energy[-1]:.4f} J")
     print(f"unexplained of it  {result.energy_error:.1e} J at most")

@@ -241,5 +241,5 @@ def test_missing_mesh_is_an_error(tmp_path: Path) -> None:
     shape = Shape("mesh", (1.0, 1.0, 1.0), filename="package://lost.stl")
     mechanism = Mechanism("m", "", "fixed", (Body("base", None, (shape,)),), ())
     for resolve in (Finder(tmp_path), None):
-        with pytest.raises(FileNotFoundError, match=r"there is no mesh 'package://lost\.stl'"):
+        with pytest.raises(FileNotFoundError, match=r"mesh 'package://lost\.stl' does not exist"):
             build_robot(mechanism, geometry=True, resolve=resolve)

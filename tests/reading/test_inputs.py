@@ -283,7 +283,7 @@ def test_missing_urdf_or_folder_suggests_similar_one(
     assert main([command, "arm.yaml", "--urdf", "arms.urdf"]) == 2
     assert capsys.readouterr().err == "eurdf: the URDF 'arms.urdf' does not exist; did you mean 'arm.urdf'?\n"
     assert main([command, "arm.yaml", "--urdf", "arm.urdf", "--package-dir", "package"]) == 2
-    assert capsys.readouterr().err == "eurdf: --package-dir: 'package' is no folder; did you mean 'packages'?\n"
+    assert capsys.readouterr().err == "eurdf: --package-dir: 'package' is not a folder; did you mean 'packages'?\n"
 
 
 # --- commands that write a description -------------------------------------------------------------------------------
@@ -292,7 +292,7 @@ def test_missing_urdf_or_folder_suggests_similar_one(
 def test_description_is_generated_from_standard_input(folder: Path) -> None:
     done = eurdf_with(URDF, "generate", "-", "--motor", "shoulder", "-o", "arm.yaml")
     assert done.returncode == 0
-    assert "the URDF came from <stdin>: write it to 'robot.urdf'" in done.stderr
+    assert "the URDF came from <stdin>; write it to 'robot.urdf'" in done.stderr
     (folder / "robot.urdf").write_text(URDF, encoding="utf-8")
     assert eurdf.load("arm.yaml").actuation.joints == ("shoulder",)
 

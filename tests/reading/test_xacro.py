@@ -125,7 +125,7 @@ def test_arguments_without_xacro_are_refused(folder: Path) -> None:
     (folder / "robot.urdf").write_text('<robot name="r"><link name="base"/></robot>', encoding="utf-8")
     (folder / "robot.yaml").write_text('extended_urdf: "2.0"\n', encoding="utf-8")
     for path in ("robot.urdf", "robot.yaml", '<robot name="r"><link name="base"/></robot>'):
-        with pytest.raises(eurdf.CannotExpand, match=r"only a \.xacro file takes arguments"):
+        with pytest.raises(eurdf.CannotExpand, match=r"only a \.xacro file accepts arguments"):
             eurdf.check(path, xacro_args={"mass": "1"})
 
 

@@ -147,20 +147,20 @@ def _described(urdf: Urdf, extension: Extension, reporter: YamlReporter, root: R
     )
 
 
-def _led(mechanism: Mechanism, laws: Mapping[str, Mimic]) -> Mapping[str, Mapping[str, tuple[float, ...]]]:
+def _led(mechanism: Mechanism, mimics: Mapping[str, Mimic]) -> Mapping[str, Mapping[str, tuple[float, ...]]]:
     """The named configurations, in which each free mimic joint has the value that its leader would give it."""
     joints = {joint.name: joint for joint in mechanism.joints}
     led = {
-        name: law
-        for name, law in laws.items()
-        if all(other in joints and joints[other].type in MIMIC_TYPES for other in (name, law.joint))
+        name: mimic
+        for name, mimic in mimics.items()
+        if all(other in joints and joints[other].type in MIMIC_TYPES for other in (name, mimic.joint))
     }
     if not led:
         return mechanism.configurations
     configurations = {}
     for key, stated in mechanism.configurations.items():
         followed = {
-            name: (law.multiplier * stated.get(law.joint, (0.0,))[0] + law.offset,) for name, law in led.items()
+            name: (mimic.multiplier * stated.get(mimic.joint, (0.0,))[0] + mimic.offset,) for name, mimic in led.items()
         }
         configurations[key] = MappingProxyType({**followed, **stated})
     return MappingProxyType(configurations)

@@ -1,4 +1,4 @@
-"""Mimic joints: which joints can be one, and which joint drives each of them in the end."""
+"""Mimic joints: the joint types that allow it, and the leader of each chain."""
 
 from __future__ import annotations
 
@@ -21,29 +21,29 @@ class Mimic:
 
 
 def drivers(mimics: Mapping[str, Mimic]) -> dict[str, Mimic]:
-    """For each mimic joint, the joint at the end of its chain, and the law between the two.
+    """For each mimic joint, the joint at the end of its chain, and the relation between the two.
 
     A chain q₂ = m₂ q₁ + o₂, q₁ = m₁ q + o₁ becomes q₂ = m₂ m₁ q + (m₂ o₁ + o₂). A joint whose chain ends in a cycle is
-    left out.
+    skipped.
 
     Args:
-        mimics: For each mimic joint, the joint that it names and the law between the two, in rad or m.
+        mimics: For each mimic joint, the joint that it names and the relation between the two, in rad or m.
     """
-    laws: dict[str, Mimic] = {}
+    resolved: dict[str, Mimic] = {}
     endless: set[str] = set()
     for name in mimics:
         chain: dict[str, None] = {}
-        while name in mimics and not (name in laws or name in chain or name in endless):
+        while name in mimics and not (name in resolved or name in chain or name in endless):
             chain[name] = None
             name = mimics[name].joint
         if name in chain or name in endless:
             endless.update(chain)
             continue
-        for follower in reversed(chain):
-            mimic = mimics[follower]
-            step = laws.get(mimic.joint)
+        for joint in reversed(chain):
+            mimic = mimics[joint]
+            step = resolved.get(mimic.joint)
             if step is not None:
                 offset = mimic.multiplier * step.offset + mimic.offset
                 mimic = Mimic(step.joint, mimic.multiplier * step.multiplier, offset)
-            laws[follower] = mimic
-    return laws
+            resolved[joint] = mimic
+    return resolved

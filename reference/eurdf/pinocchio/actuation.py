@@ -16,7 +16,7 @@ from eurdf.pinocchio.coordinates import Slot, slots
 
 @dataclass(frozen=True, eq=False)
 class Actuation:
-    """The actuated joints, in file order, and where they stand in a model, along each of their velocities (EU-ACT-007).
+    """The actuated joints, in file order, and their indices in a model, one for each velocity (EU-ACT-007).
 
     Attributes:
         joints: Their names.
@@ -34,7 +34,7 @@ class Actuation:
     def selection(self) -> npt.NDArray[np.float64]:
         """S, of shape (nv, nu): motor torques u act on the mechanism as S u.
 
-        Column k is the unit vector of ``idx_v[k]``. The matrix is dense, and made when first asked for.
+        Column k is the unit vector of ``idx_v[k]``. The matrix is dense; it is computed on first use.
         """
         selection = np.zeros((self.nv, len(self.idx_v)))
         selection[self.idx_v, np.arange(len(self.idx_v))] = 1.0
@@ -46,8 +46,8 @@ def build_actuation(mechanism: Mechanism, model: pin.Model, at: Mapping[str, Slo
 
     Args:
         mechanism: The mechanism.
-        model: What `build_model` made of it.
-        at: The `slots` of the two, where the caller has them.
+        model: The result of `build_model`.
+        at: The `slots` of the two, if the caller has them.
     """
     if not mechanism.actuators:
         return Actuation((), np.empty(0, np.intp), np.empty(0, np.intp), model.nv)

@@ -27,11 +27,11 @@ def configuration_vector(
 
     Args:
         mechanism: The mechanism.
-        model: What `build_model` made of it.
+        model: The result of `build_model`.
         coordinates: For each joint its coordinates as files have them (`eurdf.mechanism.joint_type.COORDINATES`), for a
             floating root those of a floating joint under ``root_joint``. Other joints are
             neutral. Quaternions are normalized. Coordinates of mimic joints are ignored.
-        at: The `slots` of mechanism and model, where the caller has them.
+        at: The `slots` of mechanism and model, if the caller has them.
 
     Returns:
         q, of shape (nq,).
@@ -67,7 +67,7 @@ def own_coordinates(mechanism: Mechanism, model: pin.Model, q: Vector) -> dict[s
 
     Args:
         mechanism: The mechanism.
-        model: What `build_model` made of it.
+        model: The result of `build_model`.
         q: Configuration, of shape (nq,).
 
     Returns:
@@ -97,7 +97,7 @@ def joint_coordinates(mechanism: Mechanism, model: pin.Model, q: Vector) -> dict
 
     Args:
         mechanism: The mechanism.
-        model: What `build_model` made of it.
+        model: The result of `build_model`.
         q: Configuration, of shape (nq,).
 
     Returns:
@@ -106,13 +106,13 @@ def joint_coordinates(mechanism: Mechanism, model: pin.Model, q: Vector) -> dict
     """
     own = own_coordinates(mechanism, model, q)
     found = {ROOT_JOINT: own[ROOT_JOINT]} if mechanism.root == "floating" else {}
-    laws = following(mechanism).laws
+    mimics = following(mechanism).mimics
     for joint in mechanism.joints:
         if joint.name in own:
             found[joint.name] = own[joint.name]
-        elif joint.name in laws:
-            law = laws[joint.name]
-            found[joint.name] = (law.multiplier * own[law.joint][0] + law.offset,)
+        elif joint.name in mimics:
+            mimic = mimics[joint.name]
+            found[joint.name] = (mimic.multiplier * own[mimic.joint][0] + mimic.offset,)
     return found
 
 

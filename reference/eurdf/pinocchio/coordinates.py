@@ -1,4 +1,4 @@
-"""Where the coordinates and velocities of each joint stand in a model's vectors."""
+"""Indices of the coordinates and velocities of each joint in a model's vectors."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from eurdf.pinocchio.mimic import following
 
 
 class Slot(NamedTuple):
-    """A joint that has coordinates of its own, and where they stand.
+    """A joint with its own coordinates, and their indices.
 
     Attributes:
         joint: The joint.
@@ -31,11 +31,11 @@ class Slot(NamedTuple):
 
 
 def slots(mechanism: Mechanism, model: pin.Model) -> dict[str, Slot]:
-    """The slots of all joints but fixed ones and mimic joints.
+    """The slots of all joints except fixed joints and mimic joints.
 
     Args:
         mechanism: The mechanism.
-        model: What `build_model` made of it.
+        model: The result of `build_model`.
     """
     led = following(mechanism)
     idx_qs, idx_vs = model.idx_qs.tolist(), model.idx_vs.tolist()
@@ -44,10 +44,12 @@ def slots(mechanism: Mechanism, model: pin.Model) -> dict[str, Slot]:
     for joint in mechanism.joints:
         if joint.type is JointType.FIXED:
             continue
-        if joint.name not in led.laws:
+        if joint.name not in led.mimics:
             coordinates = joint.coordinates
             nq = len(coordinates.names)
-            if joint.type is JointType.PLANAR or (joint.type is JointType.CONTINUOUS and joint.name not in led.counted):
+            if joint.type is JointType.PLANAR or (
+                joint.type is JointType.CONTINUOUS and joint.name not in led.unwrapped
+            ):
                 nq += 1  # Pinocchio has their angle as (cos, sin)
             found[joint.name] = Slot(joint, idx_qs[joint_id], nq, idx_vs[joint_id], coordinates.nv)
         joint_id += 1

@@ -16,7 +16,7 @@ from eurdf.pinocchio.frames import body_frame_ids
 from eurdf.pinocchio.placement import placement_of
 
 Resolve = Callable[[str], str | None]
-#: Meshes that were read, by path and scale.
+#: Cache of meshes, by path and scale.
 Meshes = dict[tuple[str, tuple[float, ...]], coal.BVHModelBase]
 
 _GRAY = np.array((0.9, 0.9, 0.9, 1.0))
@@ -24,13 +24,13 @@ _BLACK = np.array((0.0, 0.0, 0.0, 1.0))
 _FULL_SIZE = np.ones(3)
 
 
-class UnreadableMesh(EurdfError, ValueError):  # noqa: N818 - like InvalidRobot, it says what the thing is
-    """A mesh file that is no mesh.
+class UnreadableMesh(EurdfError, ValueError):  # noqa: N818 - named like InvalidRobot
+    """A mesh file cannot be read as a mesh.
 
     Attributes:
-        uri: As the URDF writes it.
-        path: Where it was read from.
-        reason: What the reader of meshes said.
+        uri: The URI in the URDF.
+        path: Path of the file.
+        reason: The message of the mesh loader.
     """
 
     def __init__(self, uri: str, path: str, reason: str) -> None:
@@ -58,11 +58,11 @@ def build_geometry(
         kind: ``pin.VISUAL`` or ``pin.COLLISION``.
         resolve: Path of the file that a URI of the URDF means. It must find every mesh; a texture that it does not find
             is left out.
-        meshes: Those read so far; they are shared, and those read here are added. (The ``coal.CachedMeshLoader`` that
+        meshes: Cache of meshes, which are shared; meshes read here are added. (The ``coal.CachedMeshLoader`` that
             Python sees reads a mesh anew each time.)
 
     Raises:
-        UnreadableMesh: A mesh file is no mesh.
+        UnreadableMesh: A mesh file cannot be read as a mesh.
         FileNotFoundError: `resolve` does not find a mesh.
     """
     geometry_model = pin.GeometryModel()
@@ -111,7 +111,7 @@ def _geometry(
         case "mesh":
             path = resolve(shape.filename)
             if path is None:
-                raise FileNotFoundError(f"there is no mesh '{shape.filename}'")
+                raise FileNotFoundError(f"mesh '{shape.filename}' does not exist")
             if (path, size) not in meshes:
                 meshes[path, size] = _read(shape, path)
             return meshes[path, size], path, np.array(size)
@@ -125,7 +125,7 @@ def _read(shape: Shape, path: str) -> coal.BVHModelBase:
 
 
 def _reason(error: ValueError) -> str:
-    """What coal's mesh reader says, without the places in its own source and its hint."""
+    """The message of coal's mesh loader, without places in its source code and its hint."""
     lines = str(error).rpartition("message:")[2].strip().splitlines()
     return lines[1].strip().rstrip(".") if len(lines) > 1 else "it is not a mesh"
 

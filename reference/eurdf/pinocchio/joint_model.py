@@ -26,18 +26,18 @@ _FLOATING = pin.JointModel(pin.JointModelFreeFlyer())
 _SPHERICAL = pin.JointModel(pin.JointModelSpherical())
 
 
-def joint_model(joint: Joint, *, counts_turns: bool = False) -> pin.JointModel:
+def joint_model(joint: Joint, *, unwrapped: bool = False) -> pin.JointModel:
     """The model of a moving joint. It may be shared: copy it before changing it.
 
     Args:
         joint: Any joint but a fixed one.
-        counts_turns: Whether a continuous joint is held as one angle rather than as (cos, sin).
+        unwrapped: Whether the coordinate of a continuous joint is an unwrapped angle instead of (cos, sin).
     """
     match joint.type:
         case JointType.REVOLUTE:
             return _revolute(joint.axes[0])
         case JointType.CONTINUOUS:
-            return _revolute(joint.axes[0]) if counts_turns else _continuous(joint.axes[0])
+            return _revolute(joint.axes[0]) if unwrapped else _continuous(joint.axes[0])
         case JointType.PRISMATIC:
             return _prismatic(joint.axes[0])
         case JointType.SPHERICAL:

@@ -1,4 +1,4 @@
-"""Limits, dissipation and motor constants of all joints, one vector a property."""
+"""Limits, dissipation and motor constants of all joints, one vector for each property."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ _INF = math.inf
 def set_limits(model: pin.Model, joints: Sequence[tuple[Joint, int]], root_nq: int, root_nv: int) -> None:
     """Write the properties of the joints into the model's vectors.
 
-    Where Pinocchio holds an angle as (cos, sin), or an orientation as a quaternion, position limits have no place in
-    the model. The properties of a root joint, the first in the model, stay as they are.
+    The model has no position limits for (cos, sin) pairs and quaternions. The properties of a root joint, the first in
+    the model, are not changed.
 
     Args:
         model: All joints are in it, with Pinocchio's default properties.

@@ -1,4 +1,4 @@
-"""Which joint follows which, in the terms of Pinocchio's mimic joints."""
+"""The mimic joints of a mechanism, in the form that Pinocchio supports."""
 
 from __future__ import annotations
 
@@ -13,41 +13,43 @@ from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic, drivers
 
 @dataclass(frozen=True, slots=True)
 class Following:
-    """How joints follow others, where Pinocchio is particular.
+    """The mimic joints of a mechanism, in the form that Pinocchio supports.
 
     Attributes:
-        laws: For each joint that mimics, the joint that leads it in the end and the law between the two: Pinocchio's
+        mimics: For each mimic joint, the leader at the end of its chain and the relation between the two: Pinocchio's
             mimic joints cannot be chained.
-        late: The leaders that come after one of their followers, in order. In Pinocchio a leader comes first.
-        counted: Names of the continuous joints to hold as one angle. Pinocchio holds a continuous joint as (cos, sin),
-            which has lost the number of turns that a multiplier such as 0.5 is in want of, and lets only continuous
-            joints follow one, which follow no other. A coupling counts turns as well.
+        late: The leaders that come after one of their mimic joints, in order. Pinocchio needs the leader first.
+        unwrapped: Names of the continuous joints with an unwrapped angle as coordinate. Pinocchio's (cos, sin) pair
+            loses the number of turns, which matters for a multiplier such as 0.5 and for a coupling. And only a
+            continuous joint can mimic a joint with such a pair.
     """
 
-    laws: Mapping[str, Mimic] = field(default_factory=dict)
+    mimics: Mapping[str, Mimic] = field(default_factory=dict)
     late: tuple[Joint, ...] = ()
-    counted: frozenset[str] = frozenset()
+    unwrapped: frozenset[str] = frozenset()
 
 
 def following(mechanism: Mechanism) -> Following:
-    """EU-URD-032: which joint follows which, and by what law."""
+    """EU-URD-032: the leader of each mimic joint, and the relation between the two."""
     mimics = {
         joint.name: joint.mimic for joint in mechanism.joints if joint.mimic is not None and joint.type in MIMIC_TYPES
     }
     if not mimics and not mechanism.couplings:
         return Following()
-    laws = drivers(mimics)
+    resolved = drivers(mimics)
     place = {joint.name: index for index, joint in enumerate(mechanism.joints)}
-    overtaken = {law.joint for name, law in laws.items() if place[name] < place[law.joint]}
+    overtaken = {mimic.joint for name, mimic in resolved.items() if place[name] < place[mimic.joint]}
     late = tuple(joint for joint in mechanism.joints if joint.name in overtaken)
-    return Following(laws, late, _counted(mechanism, laws))
+    return Following(resolved, late, _unwrapped(mechanism, resolved))
 
 
-def _counted(mechanism: Mechanism, laws: Mapping[str, Mimic]) -> frozenset[str]:
+def _unwrapped(mechanism: Mechanism, resolved: Mapping[str, Mimic]) -> frozenset[str]:
     continuous = {joint.name for joint in mechanism.joints if joint.type is JointType.CONTINUOUS}
-    # A turn of the leader is a whole number of turns of a follower, or makes a difference.
-    whole = {name for name, law in laws.items() if law.multiplier.is_integer()}
-    # One joint with a plain coordinate makes all that lead it, or are led with it, have one.
-    plain = {law.joint for name, law in laws.items() if not ({name, law.joint} <= continuous and name in whole)}
+    # With an integer multiplier, a turn of the leader is a whole number of turns of the mimic joint.
+    whole = {name for name, mimic in resolved.items() if mimic.multiplier.is_integer()}
+    # If one joint of a leader needs an unwrapped angle, so do the leader and its other mimic joints.
+    plain = {
+        mimic.joint for name, mimic in resolved.items() if not ({name, mimic.joint} <= continuous and name in whole)
+    }
     plain.update(name for coupling in mechanism.couplings for name in coupling.joints)
-    return frozenset(continuous & (plain | {name for name, law in laws.items() if law.joint in plain}))
+    return frozenset(continuous & (plain | {name for name, mimic in resolved.items() if mimic.joint in plain}))

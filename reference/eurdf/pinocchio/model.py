@@ -64,7 +64,7 @@ def build_model(mechanism: Mechanism) -> pin.Model:
     free: list[tuple[Joint, int]] = []  # joints with coordinates of their own, in the model's order
     sources: dict[str, _Indices] = {}  # where these coordinates stand, if there are followers
     for joint in led.late:
-        moving = joint_model(joint, counts_turns=joint.name in led.counted)
+        moving = joint_model(joint, unwrapped=joint.name in led.unwrapped)
         free.append((joint, moving.nq))
         # It hangs from a floating root, whose own coordinates stay the first.
         coordinate = model.addJoint(joint_id, moving, _HERE, _coordinate_name(joint, mechanism))
@@ -84,15 +84,15 @@ def build_model(mechanism: Mechanism) -> pin.Model:
             joint_id = parent_joint
             joint_frame = add_frame(pin.Frame(joint.name, joint_id, parent_frame, placement, _FIXED_JOINT, inertia))
         else:
-            moving = joint_model(joint, counts_turns=joint.name in led.counted)
-            law = led.laws.get(joint.name) or (Mimic(joint.name) if joint.name in sources else None)
-            if law is None:
+            moving = joint_model(joint, unwrapped=joint.name in led.unwrapped)
+            mimic = led.mimics.get(joint.name) or (Mimic(joint.name) if joint.name in sources else None)
+            if mimic is None:
                 free.append((joint, moving.nq))
                 joint_id = add_joint(parent_joint, moving, placement, joint.name)
-                if led.laws:
+                if led.mimics:
                     sources[joint.name] = _indices(model, joint_id)
             else:
-                joint_id = add_joint(parent_joint, _follower(moving, law, sources), placement, joint.name)
+                joint_id = add_joint(parent_joint, _follower(moving, mimic, sources), placement, joint.name)
             if joint.offset is IDENTITY:
                 placement = _HERE
                 joint_frame = add_joint_frame(joint_id, parent_frame)
@@ -132,11 +132,11 @@ def _indices(model: pin.Model, joint_id: int) -> _Indices:
     return joint_id, joint.idx_q, joint.idx_v, joint.idx_vExtended
 
 
-def _follower(moving: pin.JointModel, law: Mimic, sources: Mapping[str, _Indices]) -> pin.JointModelMimic:
+def _follower(moving: pin.JointModel, mimic: Mimic, sources: Mapping[str, _Indices]) -> pin.JointModelMimic:
     # The constructor takes the joint that leads from the indices of the joint that it is given.
     moving = pin.JointModel(moving)
-    moving.setIndexes(*sources[law.joint])
-    return pin.JointModelMimic(moving, law.multiplier, law.offset)
+    moving.setIndexes(*sources[mimic.joint])
+    return pin.JointModelMimic(moving, mimic.multiplier, mimic.offset)
 
 
 def _coordinate_name(leader: Joint, mechanism: Mechanism) -> str:
