@@ -573,7 +573,7 @@ def massless(*names: str) -> Callable[[str], str]:
 def test_loop_link_without_mass_is_reported(advice, name: str, part: str) -> None:
     (found,) = advice(name, urdf=massless(part))
     assert found.code == "x-massless-link"
-    assert f"link '{part}' of a loop has no mass and reaches" in found.message
+    assert f"link '{part}' of a loop has no mass but extends" in found.message
     assert found.pointer.startswith("/robot/link[")
 
 

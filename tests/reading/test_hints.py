@@ -32,7 +32,11 @@ def found_in(text: str) -> list[Diagnostic]:
 
 #: After the head of a description: lines of which one is indented wrongly; line and column of the error; its hint.
 SYNTAX = [
-    (" root: fixed\n", (3, 6), "indent 'root' by 0 spaces, like 'urdf' on line 2; a key with a value on its line has"),
+    (
+        " root: fixed\n",
+        (3, 6),
+        "indent 'root' by 0 spaces, like 'urdf' on line 2; a key with a value on its line cannot",
+    ),
     (
         "closures:\n  - name: a\n     type: 3d\n",
         (5, 10),

@@ -203,7 +203,7 @@ def test_silent_program_is_error() -> None:
 def test_slow_pipe_writer_is_awaited(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     os.mkfifo("pipe")
     monkeypatch.setattr(given, "PATIENCE", 0.2)
-    assert "nobody writes" in str(eurdf.check("pipe").diagnostics[0])
+    assert "nothing writes" in str(eurdf.check("pipe").diagnostics[0])
     writer = subprocess.Popen(["sh", "-c", "exec > pipe; sleep 0.5; cat robot"], text=True)
     (folder / "robot").write_text(URDF, encoding="utf-8")
     monkeypatch.setattr(given, "PATIENCE", 30)

@@ -79,7 +79,7 @@ class Version1(BaseModel):
             lacking = _TOGETHER[present == _TOGETHER[0]]
             raise PydanticCustomError(
                 "missing-key",
-                "has '{present}' but lacks '{key}', which goes with it",
+                "has '{present}' but lacks '{key}', which it needs",
                 {"key": lacking, "present": present},
             )
         return self

@@ -490,7 +490,7 @@ EXCLUDED: Mapping[str, Mapping[str, str]] = {
     "frame on link": {"joint": "'link' and 'joint' exclude one another"},
     **{
         f"{kind} joint": {
-            key: f"'{key}' goes with type '{owner}', not with type '{kind}'"
+            key: f"'{key}' belongs to type '{owner}', not to type '{kind}'"
             for key, owner in _TOLD_BY.items()
             if owner != kind
         }

@@ -51,7 +51,7 @@ def link_actuators(
             first, second = split[name]
             reporter.report(
                 "unknown-actuator",
-                f"joint '{name}' was split in two",
+                f"joint '{name}' was split into two joints by version 1",
                 pointer,
                 f"actuate '{first}' or '{second}'",
             )

@@ -85,7 +85,7 @@ class FrameNames:
             if child is not None and child != name:
                 self._reporter.report(
                     "ambiguous-frame",
-                    f"'{name}' is both a link and a joint, and the joint carries another link, '{child}'",
+                    f"'{name}' is both a link and a joint, and the child of the joint is another link, '{child}'",
                     reference.pointer,
                     f"write {{link: {name}}} or {{joint: {name}}}",
                 )

@@ -139,7 +139,7 @@ def _first_chunk(descriptor: int, file: str) -> bytes:
         if chunk or has_event:
             return chunk
         if time.monotonic() > end:
-            raise Fault("file-unreadable", f"nobody writes into the pipe '{file}'", Place(file))
+            raise Fault("file-unreadable", f"nothing writes to the pipe '{file}'", Place(file))
 
 
 def _chunks(descriptor: int, limit: int) -> Iterator[bytes]:

@@ -55,10 +55,10 @@ def indentation_hint(text: str, line: int) -> str | None:
     hint = f"indent {what} {', or '.join(map(_like, nearest))}"
     item = next((level for level in every_level if level.key is None and level.column == column), None)
     if item is not None:
-        hint += f"; an item of the list begins with '- ', like line {item.line}"
+        hint += f"; items of the list begin with '- ', like line {item.line}"
     over = nearest[0]
     if over.has_value and over.key is not None and column > over.column:
-        hint += "; a key with a value on its line has nothing below it"
+        hint += "; a key with a value on its line cannot have lines below it"
     return hint
 
 

@@ -46,7 +46,7 @@ _MEANINGS = {
     "did not find expected ',' or '}'": _Meaning("a ',' or '}' is missing in the mapping that begins on line {line}"),
     "did not find expected node content": _Meaning("a value is missing here"),
     "did not find expected <document start>": _Meaning(
-        "this belongs to nothing before it", "after a directive, a line '---' must follow"
+        "this does not continue anything before it", "after a directive, a line '---' must follow"
     ),
     "could not find expected ':'": _Meaning(
         "a key has no ':' after it", "write 'key: value', with a space after the ':'", late=True
@@ -110,7 +110,7 @@ def syntax_fault(source: Source, error: YAMLError | UnicodeDecodeError) -> Fault
     if meaning.code == "yaml-syntax" and (better := _about_indentation(source, error.problem, problem)):
         advice = better
         if error.problem == _TOO_DEEP:
-            message = "this key does not line up with those before it"
+            message = "this key is not aligned with those before it"
     start = context if meaning.late else problem
     return Fault(meaning.code, message, source.place(start, min(start + 1, len(text))), advice)
 
@@ -135,4 +135,4 @@ def _cannot_begin(text: str, index: int) -> _Meaning:
     character = text[index : index + 1]
     if character == "\t":
         return _TAB
-    return _Meaning(f"no value can begin with '{character}'", "quote the value")
+    return _Meaning(f"a value cannot begin with '{character}'", "quote the value")

@@ -70,7 +70,7 @@ def advise_on_massless_links(description: Described, robot: Robot, q: Vector, di
             fast = np.abs(motions).max(axis=0) > _NOTHING
             moving = dict.fromkeys(joint for joint, moves in zip(columns, fast, strict=True) if moves)
             names = " and ".join(f"'{model.names[joint]}'" for joint in moving)
-            why = f"can move by {names} without moving any mass: the mass matrix is singular"
+            why = f"and can move by {names} without moving any mass: the mass matrix is singular"
             _report(
                 description, [child_of[model.names[joint]] for joint in moving if joint in massless], why, diagnostics
             )
@@ -80,7 +80,7 @@ def advise_on_massless_links(description: Described, robot: Robot, q: Vector, di
                 continue
             reach = _reach(model, joint, children, anchors)
             if reach > _REACH:
-                why = f"reaches {reach:.3g} m from its joint: its mass is missing from the dynamics"
+                why = f"but extends {reach:.3g} m from its joint: its mass is missing from the dynamics"
                 _report(description, [child_of[model.names[joint]]], why, diagnostics)
 
 
@@ -91,7 +91,7 @@ def _report(description: Described, links: list[str], why: str, diagnostics: Dia
     if known is not None:
         diagnostics.report(
             "x-massless-link",
-            f"link '{known.name}' of a loop has no mass and {why}",
+            f"link '{known.name}' of a loop has no mass {why}",
             partial(urdf.document.place, known.element),
             "state its mass and inertia",
         )
