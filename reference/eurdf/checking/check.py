@@ -26,7 +26,7 @@ def check(
     package_dirs: Sequence[str | os.PathLike[str]] = (),
     xacro_args: Mapping[str, str] | None = None,
 ) -> Report:
-    """Check a robot: EU-DIA-001, EU-DIA-003, each fault is told that no error hides.
+    """Check a robot: EU-DIA-001, EU-DIA-003: every error that no other error hides is reported.
 
     Beside what breaks a clause it gives advice (EU-DIA-006): warnings without a clause, whose codes begin with ``x-``.
 

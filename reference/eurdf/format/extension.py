@@ -1,6 +1,6 @@
 """The description in the YAML file, of either version, before any name in it is looked up.
 
-Every entry keeps the pointer to where it stands, as a tuple of keys and indices; `YamlDocument.place` turns it into a
+Every entry keeps the pointer to its place, as a tuple of keys and indices; `YamlDocument.place` turns it into a
 line and a column.
 """
 
@@ -21,7 +21,7 @@ class FrameReference:
     """A frame by its name, or as a pose on a link or on a joint's frame.
 
     Attributes:
-        pointer: Where it stands.
+        pointer: Its place.
         name: Name; None for a pose written in place.
         link: Link that the pose is on, or None.
         joint: Joint whose frame (on the child's side) the pose is on, or None.
@@ -53,7 +53,7 @@ class JointEntry:
     """What the description says of one joint.
 
     Attributes:
-        pointer: Where it stands (its value).
+        pointer: The place of its value.
         name: Joint of the URDF; of merged joints, the one that results.
         type: New type, or None to keep the URDF's own.
         split: A universal joint of version 1: two revolutes ``name_A`` and ``name_B``, for letters such as ``XY``.

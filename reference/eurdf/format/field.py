@@ -13,7 +13,7 @@ from typing_extensions import TypeAliasType
 #: What the user's own keys begin with, at any level of a version 2 file (EU-EXT-002).
 OWN_KEY = "^x-"
 
-#: Strict: no string stands for a number, a bool is no number, an int is one. Built at first use, since one run mostly
+#: Strict: no string is a number, a bool is no number, an int is one. Built at first use, since one run mostly
 #: reads one version.
 STRICT = ConfigDict(strict=True, allow_inf_nan=False, frozen=True, defer_build=True)
 
@@ -77,7 +77,7 @@ def _without_own_keys(value: Any) -> Any:
 
 
 def either(form: Callable[[Any], str | None], expected: str) -> Discriminator:
-    """A union told apart before it is read, so that a fault is told of the one form that is meant.
+    """A union whose form is decided before validation, so that errors refer to the intended form only.
 
     Args:
         form: From a value the tag of the form it is meant to be, or None. No tag is a key of the format.
@@ -98,7 +98,7 @@ _T = TypeVar("_T")
 #: A value that may be left out, but not be null.
 MayLack = Annotated[_T | None, _NotNull()]
 
-#: A mapping from names to values, beside which the user's own keys may stand.
+#: A mapping from names to values, which can also contain user-defined keys.
 ByName = Annotated[dict[Annotated[str, Field(min_length=1)], _T], _OwnKeysApart()]
 
 

@@ -25,7 +25,7 @@ def near(name: str, known: Iterable[str]) -> str | None:
 def _is_near(name: str, known: str) -> bool:
     most = 1 if len(known) < SHORT else 2
     if abs(len(name) - len(known)) > most or len({*name} ^ {*known}) > most:
-        return False  # told by the way: an edit changes the length, and the set of characters, by one at most
+        return False  # a quick check: an edit changes the length, and the set of characters, by one at most
     return edits(name, known) <= most
 
 

@@ -158,7 +158,7 @@ def _numbers(value: float | list[float] | None) -> float | tuple[float, ...] | N
 
 
 def _own_data(value: object, pointer: Pointer) -> Iterator[tuple[Pointer, object]]:
-    """EU-EXT-002: what stands under a key ``x-…``, at any level; within it, nothing is looked for."""
+    """EU-EXT-002: the value of a key ``x-…``, at any level; its content is ignored."""
     if isinstance(value, Mapping):
         for key, inner in value.items():
             if is_own_key(key):

@@ -48,7 +48,7 @@ def read_extension(document: YamlDocument, diagnostics: Diagnostics) -> Extensio
             _warn_of_near_misses(reporter)
             one = Version1.model_validate(data)
             return from_version1(one, document) if _lengths_agree(one, reporter) else None
-        if data[VERSION_KEY] != VERSION:  # told already: what else is wrong is told as well
+        if data[VERSION_KEY] != VERSION:  # already reported; report other errors too
             known, data = False, {**data, VERSION_KEY: VERSION}
         two = Version2.model_validate(data)
     except ValidationError as error:

@@ -69,7 +69,7 @@ def json_schema(version: Literal["1", "2"], names: Names | None = None) -> Schem
 
 
 def _put_names(schema: Schema, version: Literal["1", "2"], names: Names) -> None:
-    """Put the names of one robot where names stand."""
+    """Insert the names of one robot where names are expected."""
     definitions = schema["$defs"]
     movable: Schema = {"enum": list(names.movable_joints)}
     frames: Schema = {"enum": list(dict.fromkeys((*names.links, *names.joints)))}

@@ -17,7 +17,7 @@ _TOGETHER = ("joint_name", "joint_type")
 
 
 def _refuse_names(value: Any) -> Any:
-    """EU-ONE-001: pass on what is no list of names; of a pair that lacks its brackets, one fault is told, not two."""
+    """EU-ONE-001: pass on values that are not lists of names: a pair without brackets gives one error, not two."""
     if isinstance(value, list) and value and all(isinstance(item, str) for item in value):
         raise PydanticCustomError("wrong-type", "must be a list of pairs: [[A, B], …]")
     return value

@@ -1,4 +1,4 @@
-"""Version 2.0 of the YAML file, as pydantic models: what may stand where, before any name is looked up."""
+"""Version 2.0 of the YAML file, as pydantic models: its structure, before names are resolved."""
 
 from __future__ import annotations
 
@@ -331,7 +331,7 @@ class Fixed(JointProperties):
     type: Literal["fixed"] = Field(title="Type", description="Locked at its zero position.", examples=["fixed"])
 
 
-#: The key that tells the type of a joint whose type is left out by mistake.
+#: The key that implies the type of a joint whose type is missing.
 _TOLD_BY = {"axes": "universal", "pitch": "helical", "merges": "spherical"}
 
 _JOINT_MODELS: dict[str, type[JointProperties]] = {
@@ -478,7 +478,7 @@ KEYS: Mapping[str, tuple[str, ...]] = {
     **{f"{kind} joint": tuple(model.model_fields) for kind, model in _JOINT_MODELS.items()},
 }
 
-#: Every tag that tells one form of a value from another; none is a key of the format.
+#: The tags that distinguish forms of a value; none is a key of the format.
 TAGS = frozenset(
     {"by name", "one number", "list of numbers", "known type", "own type", "letters", "two vectors", "type alone"}
     | (KEYS.keys() - {"", "closures", "limits"})

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from eurdf.reading.yaml_reader import YamlDocument
 
-#: So many faults of one file are told; a file with more is no description at all.
+#: Maximum number of reported errors of one file; a file with more is not a description.
 MOST = 100
 
 _EXPECTED = {
@@ -39,7 +39,7 @@ _EXPECTED = {
 #: Lengths of pairs and vectors, which must be met exactly; other lists may have from 1 to 6 or 7 items.
 _EXACT_LENGTHS = (2, 3)
 
-#: Only the user's own keys have a pattern; the values that have one are told apart by it beforehand.
+#: Only the user's own keys have a pattern; values with a pattern are distinguished by it beforehand.
 _UNKNOWN_KEY = "string_pattern_mismatch"
 
 #: What to write in place of a joint type that is none of the file's.
@@ -61,7 +61,7 @@ class _Violation:
         type: Pydantic's name of the error, or the code of ours that a model raised.
         message: What pydantic or a model says.
         context: Numbers and names that the message is made of.
-        value: What stands there.
+        value: The value.
         pointer: Where that is.
         mapping: Last field or tag on the way to the mapping or list that holds it: the key of `KEYS`.
     """
@@ -75,7 +75,7 @@ class _Violation:
 
 
 def violations(error: ValidationError, document: YamlDocument) -> list[Diagnostic]:
-    """The faults that a model found in a file, in file order, each told once.
+    """The errors that a model found in a file, in file order, each reported once.
 
     Args:
         error: What pydantic raised.

@@ -10,7 +10,7 @@ from eurdf.reading.core_schema import resolve
 
 Value = str | int | float | bool | Sequence["Value"] | Mapping[str, "Value"] | None
 
-#: Columns that a list or mapping may take to stand on one line.
+#: Maximum width of a list or mapping on one line.
 WIDTH = 100
 
 #: Characters that a key may have to stand before its colon without a question mark; YAML sets 1024.
@@ -32,7 +32,7 @@ class Entry:
 
     Attributes:
         lines: Its text, without what indents it.
-        above: Comments that stand on lines of their own before it, each from its ``#`` on.
+        above: Comments on their own lines before it, each from its ``#`` on.
         beside: Comment at the end of its first line, or empty.
     """
 

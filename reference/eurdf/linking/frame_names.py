@@ -1,4 +1,4 @@
-"""What a frame's name stands for."""
+"""Resolution of frame names."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class FrameNames:
         self._joints = joints
         # Joints that an entry at fault speaks of: where there are none of that name, it has been said why.
         self._faulty = faulty
-        # None for a frame that is at fault itself: what uses it is not told so again.
+        # None for an invalid frame: its uses are not reported again.
         self._frames: dict[str, Anchor | None] = {}
         self._reporter = reporter
 

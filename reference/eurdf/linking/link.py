@@ -122,7 +122,7 @@ def _described(urdf: Urdf, extension: Extension, reporter: YamlReporter, root: R
     if extension.root == "floating":
         named = {**named, ROOT_JOINT: Joint(ROOT_JOINT, JointType.FLOATING, "", urdf.root)}
     configurations = link_configurations(extension.configurations, named, joints.merged, faulty, reporter)
-    if root == "fixed":  # whatever the description says: then there is nothing that the root could stand on
+    if root == "fixed":  # whatever the description says
         for coordinates in configurations.values():
             coordinates.pop(ROOT_JOINT, None)
     for entry in entries:

@@ -43,7 +43,7 @@ class Joints:
     """The joints of the mechanism in the making.
 
     Attributes:
-        by_name: The joints as they stand.
+        by_name: The current joints.
         bodies: Virtual bodies that splits made.
         merged: For each joint that was merged away, the joint it became part of.
         split: For each joint that was split, the two that it became.
@@ -360,7 +360,7 @@ class _Replacement:
     # -- overrides ------------------------------------------------------------------------------------------------
 
     def override(self, joint: Joint) -> Joint | None:
-        """EU-JNT-009, EU-JNT-010: what the description states of a joint stands in place of the URDF's."""
+        """EU-JNT-009, EU-JNT-010: properties in the description replace those of the URDF."""
         entry = self.entry
         if joint.type is JointType.FIXED:
             stated = [key for key in _PROPERTIES if getattr(entry, key) is not None]

@@ -1,4 +1,4 @@
-"""The mechanism that a text would describe, told before the text becomes a file."""
+"""The mechanism that a text describes, before the text is written to a file."""
 
 from __future__ import annotations
 

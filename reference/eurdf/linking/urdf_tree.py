@@ -18,7 +18,7 @@ def bodies_of(urdf: Urdf) -> dict[str, Body]:
 
 
 def joint_of(joint: UrdfJoint) -> Joint:
-    """A joint of the URDF as it stands, before the description changes it.
+    """A joint of the URDF, before the description changes it.
 
     Limits and dynamics of planar and floating joints are not read, as in Pinocchio: URDF has one number for all of
     their coordinates, of different units.

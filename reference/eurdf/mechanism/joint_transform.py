@@ -16,7 +16,7 @@ _Z = (0.0, 0.0, 1.0)
 def joint_transform(joint: Joint, coordinates: Sequence[float]) -> Pose:
     """EU-JNT-015 to -018, EU-JNT-025: pose of a joint's moving frame in its frame at rest, jMj'(c).
 
-    Its child body stands at ``joint.placement * joint_transform(joint, c) * joint.offset`` in its parent. With R(a, θ)
+    Its child body is at ``joint.placement * joint_transform(joint, c) * joint.offset`` in its parent. With R(a, θ)
     the rotation about a by θ, a the unit vector of an axis, as (rotation, translation):
 
     - revolute, continuous: R(a, θ), 0; prismatic: 1, d a; helical: R(a, θ), pitch θ / 2π a;

@@ -62,7 +62,7 @@ def build_model(mechanism: Mechanism) -> pin.Model:
     root_nq, root_nv = model.nq, model.nv
 
     free: list[tuple[Joint, int]] = []  # joints with coordinates of their own, in the model's order
-    sources: dict[str, _Indices] = {}  # where these coordinates stand, if there are followers
+    sources: dict[str, _Indices] = {}  # indices of the leaders' coordinates
     for joint in led.late:
         moving = joint_model(joint, unwrapped=joint.name in led.unwrapped)
         free.append((joint, moving.nq))

@@ -1,1 +1,1 @@
-"""Reading: YAML and XML as trees that remember where each part stands."""
+"""Reading: YAML and XML as trees with positions."""

@@ -1,4 +1,4 @@
-"""The YAML 1.2 core schema: which value a scalar stands for (YAML 1.2.2, section 10.3.2)."""
+"""The YAML 1.2 core schema: the value of a scalar (YAML 1.2.2, section 10.3.2)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from sys import float_info
 
 Scalar = str | int | float | bool | None
 
-#: What the shorthand ``!!`` stands for.
+#: The meaning of the shorthand ``!!``.
 TAG_PREFIX = "tag:yaml.org,2002:"
 
 _NULL: dict[str, None] = dict.fromkeys(("", "~", "null", "Null", "NULL"))

@@ -1,4 +1,4 @@
-"""The text of a file, and where in it a character stands."""
+"""The text of a file, and the positions of its characters."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Source:
         A line ends at ``\n``, ``\r\n`` or ``\r``, as in YAML 1.2, XML and most editors; other Unicode breaks are text.
 
         Args:
-            index: Index in ``text``; its length stands for the end of the file.
+            index: Index in ``text``; its length means the end of the file.
         """
         if not self._starts:
             # str.splitlines would break at form feeds, U+2028 and more as well.
@@ -106,7 +106,7 @@ def decoded(data: bytes, file: str, base: Path | None = None) -> Source:
     Raises:
         Fault: ``file-not-utf8``.
     """
-    # The first bytes tell UTF-16 and UTF-32 apart from UTF-8, with or without a byte order mark (YAML 1.2.2, 5.2).
+    # The first bytes distinguish UTF-16 and UTF-32 from UTF-8, with or without a byte order mark (YAML 1.2.2, 5.2).
     if data[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\0" in data[:2]:
         message = "the file begins as UTF-16, UTF-32 or binary data; it must be UTF-8 text"
         raise Fault("file-not-utf8", message, Place(file, 1, 1), "save it with the encoding UTF-8")

@@ -31,7 +31,7 @@ class XmlDocument:
     Attributes:
         source: The text.
         root: Its root element, without comments and processing instructions. Names are as they are written, in no
-            default namespace, since no reader of URDF heeds one.
+            default namespace, since no URDF parser respects one.
     """
 
     __slots__ = ("_ordinals", "_starts", "_totals", "root", "source")
@@ -164,7 +164,7 @@ def _refuse_other_encoding(source: Source) -> None:
 
 
 def _refuse_doctype(source: Source) -> None:
-    """Look after what may stand before it, so that no parser ever sees an entity being declared."""
+    """Check what precedes it, so that no parser ever sees an entity being declared."""
     before = _BEFORE_DOCTYPE.match(source.text)
     if before is not None and source.text.startswith("<!DOCTYPE", before.end()):
         place = source.place(before.end(), before.end() + len("<!DOCTYPE"))

@@ -14,7 +14,7 @@ from eurdf.reading.source import Source, short
 DEPTH_LIMIT = 256
 
 #: libxml2's errors of a namespace that is no URI, or a relative one, and of a prefix that is not declared (xmlerror.h).
-#: No reader of URDF heeds namespaces, and many a URDF has such faults.
+#: URDF parsers ignore namespaces, and many URDFs have such errors.
 NAMESPACE_ERRORS = (99, 100, 201)
 
 #: libxml2's errors of what is well-formed but too much for it; which one, depends on its version.

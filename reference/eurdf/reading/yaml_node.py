@@ -1,4 +1,4 @@
-"""The nodes of a YAML file: what they are and where they stand."""
+"""The nodes of a YAML file, with their places."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ class Collection:
 
     Attributes:
         data: The plain ``dict`` or ``list``.
-        span: Where it stands.
+        span: Its place.
         is_open: Whether it is still being read.
         is_mapping: Whether it is a mapping.
         awaits_key: Whether it is a mapping in which a key comes next.
         key: In a mapping, the last key that came.
-        keys: In a mapping, where each key stands.
+        keys: In a mapping, the place of each key.
         nodes: The node of each value, by key or index.
         size: Number of nodes in it, keys and itself included, aliases expanded; while it is being read, number of nodes
             in the file before it.

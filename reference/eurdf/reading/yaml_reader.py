@@ -1,6 +1,6 @@
 """Reading YAML 1.2 into plain values, with the place of each.
 
-libyaml finds the nodes; what they stand for is decided here, by the core schema, since the constructors that come with
+libyaml finds the nodes; their values are decided here, by the core schema, since the constructors that come with
 libyaml's Python binding follow YAML 1.1.
 """
 
@@ -128,7 +128,7 @@ class _Reader:
         self._original = original
         self._anchors: dict[str, tuple[Any, Span | Collection]] = {}
         self._count = 0  # of nodes, of which an alias is one
-        self._copies = 0  # of nodes that aliases stand for
+        self._copies = 0  # of nodes that aliases refer to
         self._aliases = 0
         self._file = Collection([], _span(next_event()), 0)  # whose one item is the top level
         self._open = [self._file]  # from the outermost to the innermost

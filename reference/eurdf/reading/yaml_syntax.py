@@ -11,7 +11,7 @@ from eurdf.diagnostics import Fault, Place
 from eurdf.reading.indentation import first_line_hint, indentation_hint
 from eurdf.reading.source import Source
 
-#: What may not stand in a YAML file even in quotes (YAML 1.2.2, section 5.1).
+#: Characters that are not allowed in a YAML file, even in quotes (YAML 1.2.2, section 5.1).
 _NOT_PRINTABLE = re.compile("[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
@@ -127,7 +127,7 @@ def _about_indentation(source: Source, said: str, problem: int) -> str | None:
 
 
 def _line_before(source: Source, index: int) -> str:
-    """What stands on the line of a character, before it."""
+    """The text before a character on its line."""
     return source.text[index + 1 - source.position(index)[1] : index]
 
 

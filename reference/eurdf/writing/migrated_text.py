@@ -38,8 +38,8 @@ _MODELINE = re.compile(r"#\s*yaml-language-server:\s*\$schema=(.*)")
 _SECTIONS = {"closures": ("closed_loop", "type"), "joints": ("joint_name", "joint_type"), "actuators": ("name_mot",)}
 
 
-class NotMigratable(Exception):  # noqa: N818 - said to the user as it stands
-    """Version 2 cannot say what the file says; its text tells what.
+class NotMigratable(Exception):  # noqa: N818 - shown to the user as it is
+    """Version 2 cannot state something that the file states; the text says what.
 
     Attributes:
         pointer: Where the file says it.

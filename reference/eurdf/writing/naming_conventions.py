@@ -53,13 +53,13 @@ MOTOR_LAST = r"(?i)^(?!(?:free|passive|frame|fixed)[_.-]).*(?<![^\W_])mot(?:or)?
 SPHERICAL = r"(?i)spherical|to_rotule"
 
 
-class BadPattern(ValueError):  # noqa: N818 - said to the user as it stands
+class BadPattern(ValueError):  # noqa: N818 - shown to the user as it is
     """A pattern that is no regular expression, or lacks a group; its text says which."""
 
 
 @dataclass(frozen=True, slots=True)
 class Conventions:
-    """Regular expressions (as of Python) that tell what a name means.
+    """Regular expressions (Python syntax) that give the meaning of a name.
 
     Attributes:
         closures: Match the whole name of a link or a joint, which then is one frame of a closure. The group ``side``

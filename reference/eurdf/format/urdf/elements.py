@@ -204,7 +204,7 @@ class UrdfReader:
             self.report("urdf-reserved-name", message, element, "name")
 
     def children(self, parent: Element) -> dict[str, Element]:
-        """EU-URD-006: the child elements that may stand once, by tag. Unknown ones are looked at for near misses."""
+        """EU-URD-006: the child elements that may occur once, by tag. Unknown ones are looked at for near misses."""
         found: dict[str, Element] = {}
         known = _KNOWN_CHILDREN[str(parent.tag)]
         for child in parent:

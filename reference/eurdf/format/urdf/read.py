@@ -82,7 +82,7 @@ def _is_robot(reader: UrdfReader, root: Element) -> bool:
 
 
 def _is_of_other_dialect(reader: UrdfReader, element: Element) -> bool:
-    """EU-URD-027: whether an element of the robot states a closure in another dialect, of which is told."""
+    """EU-URD-027: whether an element of the robot states a closure in another dialect, which is reported."""
     local = re.split("[}:]", str(element.tag))[-1]
     if local not in _CLOSURE_DIALECTS and not local.endswith("_constraint"):
         return False
