@@ -76,7 +76,7 @@ def test_hover_shows_meaning_and_unit(tmp_path: Path) -> None:
     assert "m per revolution" in text
 
 
-#: One fault of each kind that a schema can see: the file's body, the place that is underlined, and part of the message.
+#: One error of each kind that a schema can see: the file's body, the place that is underlined, and part of the message.
 FAULTS = [
     ("|closurs: []\n", "Property closurs is not allowed"),
     ("root: |flying\n", 'Valid values: "fixed", "floating"'),
@@ -94,7 +94,7 @@ FAULTS = [
 
 @pytest.fixture(scope="module")
 def underlined(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[tuple[int, int, str]]]:
-    """What is underlined in the file of each fault, all opened in one editor."""
+    """What is underlined in the file of each error, all opened in one editor."""
     folder = tmp_path_factory.mktemp("faults")
 
     async def session(editor: Editor) -> dict[str, list[tuple[int, int, str]]]:

@@ -1,4 +1,4 @@
-"""From version 1 of the format to version 2: the same model, the comments and the user's own data kept."""
+"""From version 1 of the format to version 2: the same model, the comments and user data kept."""
 
 from __future__ import annotations
 

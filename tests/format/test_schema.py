@@ -232,7 +232,7 @@ own = st.dictionaries(st.sampled_from(["x-a", "x-"]), st.sampled_from(JUNK), max
 
 
 def mapping(required: dict[str, Any], **optional: Any) -> st.SearchStrategy[dict[str, Any]]:
-    """Mappings with some keys, and sometimes one of the user's own."""
+    """Mappings with some keys, and sometimes one defined by the user."""
     return st.builds(lambda known, more: {**known, **more}, st.fixed_dictionaries(required, optional=optional), own)
 
 

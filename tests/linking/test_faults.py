@@ -1,4 +1,4 @@
-"""Every fault that the two files can have: exactly one diagnostic, with its code, its line and column, its hint.
+"""Every error that the two files can have: exactly one diagnostic, with its code, its line and column, its hint.
 
 Each case is a sound robot with one edit, so that only that edit can be what is found.
 """
@@ -212,7 +212,7 @@ def test_one_error_gives_one_diagnostic(
     found = [diagnostic for diagnostic in report.diagnostics if diagnostic.code == code]
     others = [str(diagnostic) for diagnostic in report.diagnostics if diagnostic.code != code]
     assert len(found) == 1, [str(diagnostic) for diagnostic in report.diagnostics]
-    # A name taken from a frame leaves what referred to it dangling: two faults from one edit.
+    # A name taken from a frame leaves what referred to it dangling: two errors from one edit.
     if says is not None:
         assert others == []
     fault = found[0]

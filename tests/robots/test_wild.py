@@ -14,7 +14,7 @@ if not FACTS:
     pytest.skip("no published robots: put their folder at ../shared/wild, beside the checkout", allow_module_level=True)
 
 
-#: Faults of the published files: everything that `check` finds, but for the meshes that were left out.
+#: Errors of the published files: everything that `check` finds, but for the meshes that were left out.
 FAULTS = {name: {"urdf-no-range"} for name in FACTS}
 FAULTS["kangaroo_like"] |= {"closure-cannot-close"}
 

@@ -181,7 +181,7 @@ HOSTILE = {
     "a scalar of 16 MB": _yaml("urdf-not-found", f"{VERSION2}urdf: {'x' * 16_000_000}\n"),
     "8,000 keys that are near misses": _yaml("", "type: []\n" + "".join(f"name_mo{i}: 1\n" for i in range(8_000))),
     "20,000 unknown keys": _yaml("unknown-key", VERSION2 + "".join(f"clos{i}: 1\n" for i in range(20_000))),
-    # a fault over and over
+    # an error over and over
     "40,000 links of one name": _urdf("urdf-duplicate-link", lambda: robot(["a"] * 40_000, [])),
     "60,000 different unknown elements": _urdf(
         "urdf-no-link", lambda: '<robot name="r">' + "".join(f"<a{i}/>" for i in range(60_000)) + "</robot>"

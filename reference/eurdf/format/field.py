@@ -10,7 +10,7 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 from typing_extensions import TypeAliasType
 
-#: What the user's own keys begin with, at any level of a version 2 file (EU-EXT-002).
+#: What user-defined keys begin with, at any level of a version 2 file (EU-EXT-002).
 OWN_KEY = "^x-"
 
 #: Strict: no string is a number, a bool is no number, an int is one. Built at first use, since one run mostly
@@ -70,7 +70,7 @@ class _OwnKeysApart:
 
 
 def _without_own_keys(value: Any) -> Any:
-    """EU-EXT-004: the user's own keys are no names."""
+    """EU-EXT-004: user-defined keys are no names."""
     if isinstance(value, dict):
         return {key: item for key, item in value.items() if not is_own_key(key)}
     return value

@@ -69,7 +69,7 @@ def from_version2(model: Version2, document: YamlDocument) -> Extension:
 
     Args:
         model: The file, accepted.
-        document: The same as it was written, in which the user's own keys are sought.
+        document: The same as it was written, in which user-defined keys are sought.
     """
     return Extension(
         document,

@@ -1,6 +1,6 @@
 """What a model finds wrong in a file, said in codes, places and plain sentences.
 
-The models and the JSON Schemas drawn from them say what is right (EU-SCH-001 to EU-SCH-006, EU-EXT-001); here one fault
+The models and the JSON Schemas drawn from them say what is right (EU-SCH-001 to EU-SCH-006, EU-EXT-001); here one error
 gives one diagnostic.
 """
 
@@ -39,7 +39,7 @@ _EXPECTED = {
 #: Lengths of pairs and vectors, which must be met exactly; other lists may have from 1 to 6 or 7 items.
 _EXACT_LENGTHS = (2, 3)
 
-#: Only the user's own keys have a pattern; values with a pattern are distinguished by it beforehand.
+#: Only user-defined keys have a pattern; values with a pattern are distinguished by it beforehand.
 _UNKNOWN_KEY = "string_pattern_mismatch"
 
 #: What to write in place of a joint type that is none of the file's.
@@ -193,7 +193,7 @@ def _grouped(pointers: Iterable[Pointer]) -> dict[Pointer, list[str]]:
 
 
 def _lacking(mapping: Pointer, keys: Sequence[str], document: YamlDocument) -> Diagnostic:
-    """The diagnostic of a mapping that lacks keys, of which one or all are one fault (EU-DIA-001)."""
+    """The diagnostic of a mapping that lacks keys, of which one or all are one error (EU-DIA-001)."""
     said = sorted((" or ".join(f"'{other}'" for other in _alternatives(key)) for key in keys), key=len)
     listed = f"{', '.join(said[:-1])} and {said[-1]}" if len(said) > 1 else said[0]
     hint = next(filter(None, (key_outside_hint(mapping, key, document) for key in keys)), None)

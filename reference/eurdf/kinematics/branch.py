@@ -42,7 +42,7 @@ _SAME = 1e-6  # largest difference of configurations that count as the same (rad
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Point:
-    """A closed configuration on a branch, and K there, free of unit.
+    """A closed configuration on a branch, and K there, dimensionless.
 
     Attributes:
         q: The configuration (nq,).

@@ -81,7 +81,7 @@ class ConstraintStack:
         return self._stacked([kind.drift(motions).ravel() for kind, _, _ in self._kinds])
 
     def scale(self, length: float) -> Vector:
-        """Factors (m,) that make the rows free of unit, with the robot's characteristic length, m."""
+        """Factors (m,) that make the rows dimensionless, with the robot's characteristic length, m."""
         return self._stacked([kind.scale(length).ravel() for kind, _, _ in self._kinds])
 
     def openings(self, at: State) -> list[tuple[float, float]]:

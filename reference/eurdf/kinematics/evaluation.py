@@ -1,4 +1,4 @@
-"""Residual and Jacobian of one group of constraints, free of unit, over and over."""
+"""Residual and Jacobian of one group of constraints, dimensionless, over and over."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Evaluation:
 
     Attributes:
         group: The group.
-        row_scale: Factors (m,) that make the rows of its residual free of unit.
+        row_scale: Factors (m,) that make the rows of its residual dimensionless.
         unit: Unit (n,) of each of its velocities.
     """
 
@@ -34,7 +34,7 @@ class Evaluation:
         Args:
             robot: The robot.
             group: The group.
-            row_scale: Factors (nc,) that make the rows of the residual of the whole robot free of unit.
+            row_scale: Factors (nc,) that make the rows of the residual of the whole robot dimensionless.
             velocity_scale: Unit (nv,) of each velocity of the robot.
             data: Memory as in `FramePairs.memory`. Groups that go from one configuration to the next together may
                 share it.
@@ -48,7 +48,7 @@ class Evaluation:
 
     @cached_property
     def _scale(self) -> Matrix:
-        """Factors (m, n) that make the derivative free of unit."""
+        """Factors (m, n) that make the derivative dimensionless."""
         with np.errstate(over="ignore", invalid="ignore"):
             return self.row_scale[:, None] * self.unit
 
@@ -58,7 +58,7 @@ class Evaluation:
         return self._stack.residual(self._at)
 
     def jacobian(self) -> Matrix:
-        """Derivative (m, n) of the rows by the velocities, where `residual` last was, free of unit."""
+        """Derivative (m, n) of the rows by the velocities, where `residual` last was, dimensionless."""
         return self._stack.jacobian(self._here) * self._scale
 
     def openings(self) -> list[tuple[float, float]]:

@@ -33,7 +33,7 @@ def link_configurations(
         entries: As written.
         joints: Joints of the mechanism, and that of a floating root.
         merged: For each joint that was merged away, the joint it became part of.
-        skip: Joints that are not looked at, since their own entry is at fault.
+        skip: Joints that are not looked at, since their own entry is invalid.
         reporter: Gets what is found.
     """
     configurations = {}

@@ -27,7 +27,7 @@ class FrameNames:
     ) -> None:
         self._urdf = urdf
         self._joints = joints
-        # Joints that an entry at fault speaks of: where there are none of that name, it has been said why.
+        # Joints that an invalid entry refers to: where there are none of that name, it has been said why.
         self._faulty = faulty
         # None for an invalid frame: its uses are not reported again.
         self._frames: dict[str, Anchor | None] = {}

@@ -97,7 +97,7 @@ def check_leaves(
         mechanism: The mechanism.
         urdf: To point into.
         diagnostics: Gets what is found.
-        faulty: Links whose inertia is at fault by itself: leaves that they are part of are passed over.
+        faulty: Links whose own inertia is invalid: leaves that they are part of are passed over.
     """
     root = mechanism.bodies[0].name
     rigid = rigid_roots(root, mechanism.joints)

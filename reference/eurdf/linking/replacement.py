@@ -77,7 +77,7 @@ def replace_joints(
         merges_revolutes: Whether version 1's rule holds.
 
     Returns:
-        Names of the joints that an entry at fault speaks of, or would have made.
+        Names of the joints that an invalid entry refers to, or would have made.
     """
     faulty: set[str] = set()
     mimicking = {joint.name: joint.mimic.joint for joint in urdf.joints.values() if joint.mimic}

@@ -20,7 +20,7 @@ def differences(one: Mechanism, other: Mechanism) -> list[str]:
     """What is not the same in two mechanisms, one sentence each; nothing of it where they are the same model.
 
     Two revolutes that version 1 made of a joint are the same as one universal joint; their coordinates are the same two
-    angles. The order of joints follows from their names. Versions, metadata and the user's own data are not compared.
+    angles. The order of joints follows from their names. Versions, metadata and user data are not compared.
     """
     a, b = with_universal_joints(one), with_universal_joints(other)
     found = []

@@ -54,7 +54,7 @@ def build_geometry(
 
     Args:
         mechanism: The mechanism.
-        model: What `build_model` made of it.
+        model: The result of `build_model`.
         kind: ``pin.VISUAL`` or ``pin.COLLISION``.
         resolve: Path of the file that a URI of the URDF means. It must find every mesh; a texture that it does not find
             is left out.

@@ -177,7 +177,7 @@ class PinocchioTree:
     def jacobian_along(self, joints: Sequence[int], q: Vector) -> Matrix:
         """The world Jacobian (6, nvExtended) at q (nq,), zero but in the columns of the joints and of their ancestors.
 
-        Rows are linear, of the point at the origin of the world, and angular. A joint that mimics another has columns
+        Rows are linear, of the point at the origin of the world, and angular. A mimic joint has columns
         of its own, those from ``model.idx_vExtendeds[joint]``.
         """
         model, needed = self.model, {0}

@@ -153,7 +153,7 @@ def _read_bytes(file: str, limit: int) -> bytes:
 
 
 def too_large(file: str, most: str) -> Fault:
-    """The fault of a file that has more than it may have."""
+    """The error of a file that has more than it may have."""
     return Fault("file-too-large", f"the file has more than {most}, the maximum", Place(file))
 
 

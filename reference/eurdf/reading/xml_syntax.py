@@ -24,11 +24,11 @@ _NAME = re.compile(r"[^\s<>/=&;\"'()]*")
 
 
 class _TooDeep(Exception):  # noqa: N818 - never seen outside
-    """Ends the look for the fault."""
+    """Ends the look for the error."""
 
 
 def syntax_fault(source: Source, error: Any = None) -> Fault | None:
-    """The fault that says what is wrong with the text, or None if it has only `NAMESPACE_ERRORS`.
+    """The error that says what is wrong with the text, or None if it has only `NAMESPACE_ERRORS`.
 
     Args:
         source: The text.
@@ -70,7 +70,7 @@ def syntax_fault(source: Source, error: Any = None) -> Fault | None:
 
 
 def refused(source: Source, code: int, message: str, line: int) -> Fault:
-    """The fault of a file that is well-formed, but that libxml2 does not take, for the error that it gives."""
+    """The error of a file that is well-formed, but that libxml2 does not take, for the error that it gives."""
     if code in _RESOURCE_ERRORS:
         message = "a name, a text or the value of an attribute is too long for the XML parser"
         return Fault("file-too-large", message, source.place_of_line(line))

@@ -73,12 +73,12 @@ _NOT_CONTINUED = ("did not find expected key", "did not find expected '-' indica
 
 
 def unusual_name(place: Place) -> Fault:
-    """The fault of an anchor or an alias whose name libyaml would end too early."""
+    """The error of an anchor or an alias whose name libyaml would end too early."""
     return Fault(_UNUSUAL_NAME.code, _UNUSUAL_NAME.message, place, _UNUSUAL_NAME.hint)
 
 
 def syntax_fault(source: Source, error: YAMLError | UnicodeDecodeError) -> Fault:
-    """The fault that says what libyaml stumbled over.
+    """The error that says what libyaml stumbled over.
 
     Args:
         source: The text; libyaml may have read one with other characters, but the same number of them.

@@ -118,5 +118,5 @@ def _merges(urdf: Urdf, found: Found, version: Literal["1", "2"]) -> dict[str, t
     }
     excluded = {*found.sphericals, *coupled, *(found.motors if version == "2" else ())}
     chains = [tuple(joint.name for joint in chain.joints) for chain in find_chains(urdf, joints, excluded, links)]
-    # A key that begins with x- would be data of the user's own.
+    # A key that begins with x- would be user data.
     return {third: (first, second, third) for first, second, third in chains if version == "1" or not is_own_key(third)}

@@ -35,7 +35,7 @@ class Migration:
 def migrate(description: Described, urdf_path: str = "robot.urdf", schema: str | None = None) -> Migration:
     """Write a robot's description of version 1 in version 2.
 
-    What version 1 does by itself is said; the user's own data and the comments are kept. The text is read once more,
+    What version 1 does by itself is said; user data and the comments are kept. The text is read once more,
     and only returned where it describes the same model.
 
     Args:

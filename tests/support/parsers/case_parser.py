@@ -74,7 +74,7 @@ class Lenient(Right):
 
 
 class Misread(Right):
-    """Reads another upper limit, sees one link elsewhere, and tells of a fault one column off."""
+    """Reads another upper limit, sees one link elsewhere, and tells of an error one column off."""
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported | Skipped:
         reply = super().load(description, urdf)

@@ -36,7 +36,7 @@ def say(answer):
     write(json.dumps(answer) + "\n")
 
 
-# -- Ways that show when a fault is to be loaded; each takes the request ---------------------------------------------
+# -- Ways that show when an error is to be loaded; each takes the request ---------------------------------------------
 
 
 def sound(request):

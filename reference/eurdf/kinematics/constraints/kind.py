@@ -70,7 +70,7 @@ class Kind(ABC, Generic[AnyConstraint]):
 
     @abstractmethod
     def scale(self, length: float) -> Matrix:
-        """Factors (k, r) that make the rows free of unit; ``length`` (m) is the robot's characteristic length."""
+        """Factors (k, r) that make the rows dimensionless; ``length`` (m) is the robot's characteristic length."""
 
     @abstractmethod
     def openings(self, at: State) -> list[tuple[float, float]]:
