@@ -200,7 +200,7 @@ def test_indefinite_mass_matrix_is_reported_with_place(copy):
     ("old", "new", "error"),
     [
         ("type: [3d]", "type: [6d]", "closure 'rocker_pin' differs"),
-        ("[motor_crank]", "[free_rocker]", "the actuators are others"),
+        ("[motor_crank]", "[free_rocker]", "the actuators or their order differ"),
         ("[rocker_pin_a, rocker_pin_b]", "[rocker_pin_b, rocker_pin_a]", "closure 'rocker_pin' differs"),
         ("[motor_crank]", "[motor_crank]\njoint_name: [free_rocker]\njoint_type: [SPHERICAL]", "joint 'free_rocker'"),
     ],
