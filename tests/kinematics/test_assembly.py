@@ -194,9 +194,9 @@ def test_unknown_held_joint_is_refused_with_nearest_name() -> None:
 @pytest.mark.parametrize(
     ("q0", "reason"),
     [
-        (np.zeros(3), r"shape \(3,\); this robot needs \(4,\)"),
+        (np.zeros(3), r"shape \(3,\); expected \(4,\)"),
         (np.array([1.0, 0.0, 0.0, np.nan]), "not finite"),
-        (np.zeros(4), "length zero"),
+        (np.zeros(4), "length is zero"),
     ],
 )
 def test_invalid_start_is_refused(q0: Any, reason: str) -> None:

@@ -116,7 +116,7 @@ def test_nothing_moves_without_motors() -> None:
 def test_invalid_twist_frame_or_threshold_is_refused() -> None:
     robot = arm()
     for twist in (np.ones(5), [np.nan] * 6, np.ones((6, 1))):
-        with pytest.raises(ValueError, match="give six finite numbers"):
+        with pytest.raises(ValueError, match=r"^twist.*expected .*\(6,\)"):
             eurdf.differential_inverse_kinematics(robot, np.zeros(2), "end", twist)
     with pytest.raises(ValueError, match="no frame 'emd'; did you mean 'end'"):
         eurdf.differential_inverse_kinematics(robot, np.zeros(2), "emd", np.ones(6))

@@ -491,7 +491,7 @@ def test_redundant_motors_share_least_torque() -> None:
     np.testing.assert_allclose(unseen @ (weights * dear), 0.0, atol=1e-8)
     for u in (found.u, dear):
         np.testing.assert_allclose(forward_dynamics(robot, q, v, u).a, a, rtol=1e-7, atol=1e-7)
-    with pytest.raises(ValueError, match="must be positive"):
+    with pytest.raises(ValueError, match="expected positive numbers"):
         inverse_dynamics(robot, q, v, a, weights=np.array([1.0, 0.0, 1.0]))
 
 
@@ -623,7 +623,7 @@ def test_invalid_vector_is_refused() -> None:
             forward_dynamics(robot, **{"q": q, "v": v, **arguments})
     with pytest.raises(ValueError, match="did you mean 'motor_crank'"):
         forward_dynamics(robot, q, v, external={"motor_crnak": np.zeros(6)})
-    with pytest.raises(ValueError, match="acceleration"):
+    with pytest.raises(ValueError, match="a has the shape"):
         inverse_dynamics(robot, q, v, np.zeros(2))
 
 

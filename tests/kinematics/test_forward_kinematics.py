@@ -125,7 +125,7 @@ def test_joints_are_given_by_name_with_file_coordinates() -> None:
     assert np.abs(residual(leg, q)).max() <= 1e-10
     first = leg.model.joints[leg.model.getJointId("free_foot1")].idx_q
     assert q[first] == 0.1
-    with pytest.raises(ValueError, match=r"'ball_rod1_end' is given 3 coordinates; it has 4"):
+    with pytest.raises(ValueError, match=r"actuated\['ball_rod1_end'\] has the shape \(3,\); expected \(4,\)"):
         forward_kinematics(leg, {**told, "ball_rod1_end": [0.0, 0.0, 1.0]})
 
 
@@ -168,7 +168,7 @@ def test_start_that_cannot_close_is_refused() -> None:
 
 def test_invalid_coordinates_are_refused() -> None:
     robot = robot_called("digit_leg")
-    with pytest.raises(ValueError, match=r"have the shape \(7,\); this robot needs \(6,\)"):
+    with pytest.raises(ValueError, match=r"has the shape \(7,\); expected \(6,\)"):
         forward_kinematics(robot, np.zeros(7))
     with pytest.raises(ValueError, match=r"no moving joint 'motor_kne'; did you mean 'motor_knee'\?"):
         forward_kinematics(robot, {"motor_kne": 0.1})

@@ -329,9 +329,9 @@ def test_result_is_deterministic() -> None:
     ("targets", "reason"),
     [
         ({"fooot": [0, 0, 0]}, r"no frame 'fooot'; did you mean 'foot'\?"),
-        ({"foot": [0.0, 0.0]}, "target of frame 'foot' is neither a pose"),
-        ({"foot": [0.0, 0.0, np.nan]}, "neither a pose"),
-        ({"foot": "here"}, "neither a pose"),
+        ({"foot": [0.0, 0.0]}, r"targets\['foot'\] has the shape \(2,\); expected \(3,\), or a pose"),
+        ({"foot": [0.0, 0.0, np.nan]}, r"expected finite numbers of shape \(3,\), or a pose"),
+        ({"foot": "here"}, r"expected finite numbers of shape \(3,\), or a pose"),
         ({"foot": pin.SE3(2.0 * np.eye(3), np.zeros(3))}, "is not a pose"),
         ({"foot": pin.SE3(-np.eye(3), np.zeros(3))}, "is not a pose"),
         ({"foot": pin.SE3(np.eye(3), np.full(3, np.inf))}, "is not a pose"),

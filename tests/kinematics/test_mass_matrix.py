@@ -86,5 +86,5 @@ def test_matches_pinocchio_without_mimic_joints() -> None:
 
 
 def test_invalid_configuration_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"has the shape \(2,\); this robot needs \(3,\)"):
+    with pytest.raises(ValueError, match=r"has the shape \(2,\); expected \(3,\)"):
         eurdf.mass_matrix(load(hand()), np.zeros(2))

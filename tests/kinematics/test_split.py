@@ -74,11 +74,11 @@ def test_robot_without_motors_is_all_free() -> None:
 
 def test_wrong_size_is_refused_with_both_sizes() -> None:
     robot = mixed()
-    with pytest.raises(ValueError, match=r"the configuration has the shape \(9,\); this robot needs \(12,\)"):
+    with pytest.raises(ValueError, match=r"q has the shape \(9,\); expected \(12,\)"):
         split_configuration(robot, np.zeros(9))
-    with pytest.raises(ValueError, match=r"the velocity has the shape \(12,\); this robot needs \(9,\)"):
+    with pytest.raises(ValueError, match=r"v has the shape \(12,\); expected \(9,\)"):
         split_velocity(robot, np.zeros(12))
-    with pytest.raises(ValueError, match=r"the actuated part of the configuration .* \(5,\); this robot needs \(6,\)"):
+    with pytest.raises(ValueError, match=r"q_actuated has the shape \(5,\); expected \(6,\)"):
         merge_configuration(robot, np.zeros(5), np.zeros(6))
-    with pytest.raises(ValueError, match=r"the free part of the velocity .* \(4, 1\); this robot needs \(4,\)"):
+    with pytest.raises(ValueError, match=r"v_free has the shape \(4, 1\); expected \(4,\)"):
         merge_velocity(robot, np.zeros(5), np.zeros((4, 1)))

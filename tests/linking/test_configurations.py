@@ -194,5 +194,5 @@ def test_coordinates_of_named_configuration_match_file() -> None:
 @pytest.mark.parametrize("shape", [(0,), (3,), (1, 12)])
 def test_wrong_shape_is_refused(shape: tuple[int, ...]) -> None:
     robot = eurdf.load(WORKBENCH, geometry=False)
-    with pytest.raises(ValueError, match="the configuration has the shape"):
+    with pytest.raises(ValueError, match="q has the shape"):
         robot.coordinates(np.zeros(shape))

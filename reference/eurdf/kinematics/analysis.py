@@ -160,7 +160,7 @@ def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
     actuated: Mask = np.zeros(model.nv, dtype=bool)
     actuated[robot.actuation.idx_v] = True
     assembler = Assembler(robot)
-    assembly = assembler.assemble(start(robot, q))
+    assembly = assembler.assemble(start(robot, q, "q"))
     nv, nc = model.nv, sum(len(evaluation.group.rows) for evaluation in assembler.evaluations)
     names = velocity_names(model)
     loops: tuple[LoopAnalysis, ...] = ()

@@ -24,6 +24,7 @@ from eurdf.kinematics.position_limit import JointAtLimit, Limits, PositionLimits
 from eurdf.kinematics.residual import CLOSED, Opening
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
 from eurdf.kinematics.several import several
+from eurdf.pinocchio.arguments import checked_array, checked_count, checked_tolerance
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -126,15 +127,16 @@ def assemble(
         The closed configuration, or the least open one found.
 
     Raises:
-        ValueError: ``q0`` is not a configuration, or ``hold`` has a name that is not a joint of the model.
+        ValueError: ``q0`` is not a configuration, ``hold`` has a name that is not a joint of the model, or
+            ``tolerance`` or ``restarts`` is negative.
     """
     q, held = start(robot, q0), several(hold)
     # Removed from the cache while in use, so that no other thread uses the same memory.
     idle: dict[tuple[str, ...], Assembler] = robot.derived.setdefault(Assembler, {})
     assembler = idle.pop(held, None) or Assembler(robot, held)
-    assembler.tolerance = tolerance
+    assembler.tolerance = checked_tolerance(tolerance)
     assembler.limits = chosen_limits(robot.model, limits)
-    assembly = assembler.assemble(q, restarts)
+    assembly = assembler.assemble(q, checked_count("restarts", restarts, 0))
     if robot.model.nv <= _MOST_VELOCITIES_WITH_DATA:  # else the cache takes too much memory
         if len(idle) >= _MOST_KEPT:
             idle.clear()
@@ -142,8 +144,10 @@ def assemble(
     return assembly
 
 
-def start(robot: Robot, q0: Vector | None = None) -> Vector:
+def start(robot: Robot, q0: Vector | None = None, name: str = "q0") -> Vector:
     """The given configuration, checked and normalized; by default `assembled`, or else the neutral configuration.
+
+    ``name`` is that of the argument.
 
     Raises:
         ValueError: Its shape is not (nq,), it is not finite, or it cannot be normalized.
@@ -153,14 +157,9 @@ def start(robot: Robot, q0: Vector | None = None) -> Vector:
         q0 = robot.configurations.get("assembled")
     if q0 is None:
         return robot.tree.neutral()
-    q = np.asarray(q0, dtype=np.float64)
-    if q.shape != (model.nq,):
-        raise ValueError(f"the configuration has the shape {q.shape}; this robot needs ({model.nq},)")
-    if not np.isfinite(q).all():
-        raise ValueError("the configuration has a number that is not finite")
-    q = robot.tree.normalized(q)
+    q = robot.tree.normalized(checked_array(name, q0, (model.nq,)))
     if not np.isfinite(q).all() or not robot.tree.is_normalized(q):
-        raise ValueError("the configuration has a quaternion, or a (cos, sin) pair, of length zero")
+        raise ValueError(f"{name} has a quaternion, or a (cos, sin) pair, whose length is zero or overflows")
     return q
 
 
@@ -199,7 +198,7 @@ class Assembler:
         self.iterations = 0
         self._work = 0.0  # of the current assembly, in multiplications
         self._gave_up = False  # whether the last assembly gave up
-        self.tolerance = tolerance
+        self.tolerance = checked_tolerance(tolerance)
         self.limits = chosen_limits(model, limits)
 
     def assemble(self, q: Vector, restarts: int = 20) -> Assembly:

@@ -14,6 +14,7 @@ from eurdf.kinematics.frame_index import frame_index
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.pinocchio.arguments import checked_array
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -72,13 +73,11 @@ def differential_inverse_kinematics(
         ValueError: The frame is unknown or ambiguous; ``q`` is not a configuration; ``twist`` is not six finite
             numbers; ``singular`` is not between 0 and 1.
     """
-    wanted = np.asarray(twist, dtype=np.float64)
-    if wanted.shape != (6,) or not np.isfinite(wanted).all():
-        raise ValueError(f"twist is {twist!r}; give six finite numbers, linear (m/s), then angular (rad/s)")
+    wanted = checked_array("twist", twist, (6,))
     if not 0.0 < singular < 1.0:
         raise ValueError(f"singular is {singular!r}; give a number between 0 and 1")
     model, index = robot.model, frame_index(robot.model, frame)
-    q = start(robot, q)
+    q = start(robot, q, "q")
     spaces = TangentSpaces(robot)
     C = _actuated_motions(robot, q, spaces)
     J = pin.computeFrameJacobian(model, model.createData(), q, index, reference).reshape(6, -1)

@@ -30,6 +30,7 @@ from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import acceleration_drift, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.kinematics.velocity_names import velocity_names
+from eurdf.pinocchio.arguments import checked_array, checked_data, checked_tolerance
 from eurdf.pinocchio.constraint import NoConstraintModel
 
 if TYPE_CHECKING:
@@ -117,7 +118,7 @@ def forward_dynamics(
     """
     motion = _Motion(robot, q, v, data)
     force = motion.applied(u, tau, external, dissipation)
-    constraint_models, kp, kd = _stabilised(robot, gains)
+    constraint_models, kp, kd = _stabilised(robot, None if gains is None else checked_array("gains", gains, (2,)))
     target = -motion.drift - kd * (motion.K @ motion.v) - kp * motion.r
     if len(target) and constraint_models is not None and not len(robot.model.mimicking_joints):
         solved = _proximal(motion, constraint_models, force, target)
@@ -169,9 +170,9 @@ def inverse_dynamics(
         UnderactuatedMotion: The motors cannot produce this motion.
     """
     motion = _Motion(robot, q, v, data)
-    a = checked_vector(a, robot.model.nv, "the acceleration")
+    a = checked_array("a", a, (robot.model.nv,))
     S, norm = robot.actuation.selection, _norm(robot, weights)
-    motion.refuse_open(a, tolerance)
+    motion.refuse_open(a, checked_tolerance(tolerance))
     force = motion.bias - motion.applied(None, tau, external, dissipation)
     inertial = motion.mass(a)
     deviation, missing = _uncontrolled(motion, inertial, force)
@@ -221,8 +222,8 @@ def achievable_acceleration(
         UnderactuatedMotion: A motion without inertia would need a force.
     """
     motion = _Motion(robot, q, v, data)
-    a = checked_vector(a, robot.model.nv, "the acceleration")
-    motion.refuse_open(a, tolerance)
+    a = checked_array("a", a, (robot.model.nv,))
+    motion.refuse_open(a, checked_tolerance(tolerance))
     force = motion.bias - motion.applied(None, tau, external, dissipation)
     deviation, missing = _uncontrolled(motion, motion.mass(a), force)
     if missing.any():
@@ -246,9 +247,9 @@ class _Motion:
     def __init__(self, robot: Robot, q: Vector, v: Vector, data: Any) -> None:
         model = robot.model
         self.robot = robot
-        self.q = start(robot, q)
-        self.v = checked_vector(v, model.nv, "the velocity")
-        self.data = model.createData() if data is None else data
+        self.q = start(robot, q, "q")
+        self.v = checked_array("v", v, (model.nv,))
+        self.data = checked_data(model, data)
         self.loops = find_loops(robot)
         self.r, self.K = residual_and_jacobian(robot, self.q, self.data)
         self.drift = acceleration_drift(robot, self.q, self.v, self.data)
@@ -298,9 +299,9 @@ class _Motion:
         model, S = self.robot.model, self.robot.actuation.selection
         force: Vector = np.zeros(model.nv)
         if u is not None:
-            force += S @ checked_vector(u, S.shape[1], "the motor torques")
+            force += S @ checked_array("u", u, (S.shape[1],))
         if tau is not None:
-            force += checked_vector(tau, model.nv, "the generalized force")
+            force += checked_array("tau", tau, (model.nv,))
         if external:
             at_joints = _at_joints(model, self.data, self.q, external)
             still = np.zeros(model.nv)
@@ -410,7 +411,7 @@ def _refuse_uncontrolled(motion: _Motion, a: Vector, deviation: Vector, missing:
         raise UnderactuatedMotion(_by_joint(model, force), float(np.abs(deviation / motion.unit).max()))
 
 
-def _stabilised(robot: Robot, gains: tuple[float, float] | None) -> tuple[Any, Vector, Vector]:
+def _stabilised(robot: Robot, gains: Vector | None) -> tuple[Any, Vector, Vector]:
     """The constraint models with their Baumgarte gains, and these for each row, kp (nc,) and kd (nc,).
 
     Where Pinocchio does not have a kind, there are none, and the gains are those given, or zero.
@@ -418,7 +419,7 @@ def _stabilised(robot: Robot, gains: tuple[float, float] | None) -> tuple[Any, V
     try:
         own = robot.constraint_models
     except NoConstraintModel:
-        kp, kd = gains or (0.0, 0.0)
+        kp, kd = (0.0, 0.0) if gains is None else gains
         nc = sum(constraint.rows for constraint in robot.constraints)
         return None, np.full(nc, float(kp)), np.full(nc, float(kd))
     constraint_models, kps, kds = pin.StdVec_RigidConstraintModel(), [], []
@@ -442,7 +443,7 @@ def _at_joints(model: Any, data: Any, q: Vector, external: External) -> Any:
         joint = frame.parentJoint
         values = given.vector if isinstance(given, pin.Force) else given
         upright = pin.SE3(data.oMi[joint].rotation.T, frame.placement.translation)
-        forces[joint] += upright.act(pin.Force(checked_vector(values, 6, f"the force at '{name}'")))
+        forces[joint] += upright.act(pin.Force(checked_array(f"external['{name}']", values, (6,))))
     at_joints = pin.StdVec_Force()
     for force in forces:
         at_joints.append(force)
@@ -454,9 +455,9 @@ def _norm(robot: Robot, weights: Vector | None) -> Vector:
     nu = robot.actuation.selection.shape[1]
     if weights is None:
         return np.ones(nu)
-    given = checked_vector(weights, nu, "the weights")
+    given = checked_array("weights", weights, (nu,))
     if not (given > 0.0).all():
-        raise ValueError("weights of motors must be positive")
+        raise ValueError(f"weights[{int(np.argmin(given))}] is {given.min()}; expected positive numbers")
     return np.asarray(1.0 / np.sqrt(given))
 
 
@@ -473,13 +474,3 @@ def _by_joint(model: Any, values: Vector) -> dict[str, tuple[float, ...]]:
         if width and (np.abs(own) > least).any():
             found[names[first]] = tuple(own.tolist())
     return found
-
-
-def checked_vector(given: ArrayLike, size: int, what: str) -> Vector:
-    """The given numbers as a finite array (size,)."""
-    values = np.asarray(given, dtype=np.float64)
-    if values.shape != (size,):
-        raise ValueError(f"{what} has the shape {values.shape}; this robot needs ({size},)")
-    if not np.isfinite(values).all():
-        raise ValueError(f"{what} has a number that is not finite")
-    return values

@@ -15,6 +15,7 @@ from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.residual import closure_openings, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.mechanism.mechanism import ROOT_JOINT
+from eurdf.pinocchio.arguments import checked_array
 from eurdf.pinocchio.configuration import configuration_vector
 from eurdf.pinocchio.coordinates import slots
 
@@ -74,7 +75,7 @@ def forward_kinematics(
     given = _given(robot, actuated)
     goal = np.array(first.q)
     goal[given.coordinates] = given.values
-    goal = start(robot, goal)
+    goal = start(robot, goal, "actuated")
     path = robot.tree.difference(first.q, goal)  # zero except for the given joints
     assembler, spaces = Assembler(robot, given.joints, tolerance=tolerance), TangentSpaces(robot)
     data = model.createData()
@@ -124,34 +125,36 @@ class _Given:
 def _given(robot: Robot, values: Vector | Mapping[str, float | Sequence[float]]) -> _Given:
     if isinstance(values, Mapping):
         return _given_by_name(robot, values)
-    actuation, values = robot.actuation, np.asarray(values, dtype=np.float64)
-    count = len(actuation.idx_q)
-    if values.shape != (count,):
-        raise ValueError(f"the actuated coordinates have the shape {values.shape}; this robot needs ({count},)")
+    actuation = robot.actuation
+    values = checked_array("actuated", values, (len(actuation.idx_q),))
     return _Given(actuation.joints, actuation.idx_q, actuation.idx_v, values)
 
 
 def _given_by_name(robot: Robot, by_name: Mapping[str, float | Sequence[float]]) -> _Given:
     mechanism, model = robot.mechanism, robot.model
-    # For each joint: index of its first coordinate, their number, index of its first velocity, their number.
-    at = {name: (slot.idx_q, slot.nq, slot.idx_v, slot.nv) for name, slot in slots(mechanism, model).items()}
+    # For each joint: index of its first coordinate, their number, index of its first velocity, their number, and the
+    # number of its coordinates in files.
+    at = {
+        name: (slot.idx_q, slot.nq, slot.idx_v, slot.nv, len(slot.joint.coordinates.names))
+        for name, slot in slots(mechanism, model).items()
+    }
     if mechanism.root == "floating":
-        at[ROOT_JOINT] = (0, 7, 0, 6)
+        at[ROOT_JOINT] = (0, 7, 0, 6, 7)
     coordinates: list[int] = []
     velocities: list[int] = []
-    for name in by_name:
+    as_in_files: dict[str, list[float]] = {}
+    for name, values in by_name.items():
         if name not in at:
             if any(joint.name == name and joint.mimic is not None for joint in mechanism.joints):
                 raise ValueError(f"joint '{name}' is a mimic joint; give the coordinate of its leader instead")
             near = difflib.get_close_matches(name, at, n=1)
             hint = f"; did you mean '{near[0]}'?" if near else ""
             raise ValueError(f"the robot has no moving joint '{name}'{hint}")
-        first_q, nq, first_v, nv = at[name]
+        first_q, nq, first_v, nv, count = at[name]
+        shapes = [(1,), ()] if count == 1 else [(count,)]
+        as_in_files[name] = np.atleast_1d(checked_array(f"actuated['{name}']", values, *shapes)).tolist()
         coordinates += range(first_q, first_q + nq)
         velocities += range(first_v, first_v + nv)
-    as_in_files = {
-        name: np.atleast_1d(np.asarray(values, dtype=np.float64)).tolist() for name, values in by_name.items()
-    }
     q = configuration_vector(mechanism, model, as_in_files)
     indices = np.array(coordinates, dtype=np.intp)
     return _Given(tuple(by_name), indices, np.array(velocities, dtype=np.intp), q[indices])

@@ -19,6 +19,7 @@ from eurdf.kinematics.position_limit import BEYOND, JointAtLimit, Limits, chosen
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import Opening, closure_openings, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.pinocchio.arguments import checked_array, checked_count, checked_tolerance
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -148,8 +149,8 @@ def inverse_kinematics(
         ValueError: ``q0`` is not a configuration; a frame is unknown or ambiguous; a target is neither a pose nor a
             finite position.
     """
-    search = _Search(robot, targets, limits, tolerance)
-    return search.run(start(robot, q0), restarts)
+    search = _Search(robot, targets, limits, checked_tolerance(tolerance))
+    return search.run(start(robot, q0), checked_count("restarts", restarts, 0))
 
 
 class _Search:
@@ -310,7 +311,8 @@ class _Search:
         errors, jacobians = [np.empty(0)], [np.empty((0, model.nv))]
         for _, index, target in self.targets:
             oMf = pin.updateFramePlacement(model, data, index)
-            J = pin.getFrameJacobian(model, data, index, pin.LOCAL).reshape(6, -1)
+            # Without velocities, getFrameJacobian of Pinocchio 4.1 reads memory that is not its own.
+            J = pin.getFrameJacobian(model, data, index, pin.LOCAL).reshape(6, -1) if model.nv else np.empty((6, 0))
             position = target.translation if isinstance(target, pin.SE3) else target
             errors.append((oMf.translation - position) / self.spaces.length)
             jacobians.append(oMf.rotation @ J[:3] / self.spaces.length)
@@ -346,13 +348,8 @@ def _target(name: str, target: Any) -> Any:
         R, p = target.rotation, target.translation
         if np.isfinite(p).all() and np.abs(R.T @ R - np.eye(3)).max() <= 1e-6 and np.linalg.det(R) > 0.0:
             return target
-        raise ValueError(
-            f"the target of frame '{name}' is not a pose: its rotation is not orthonormal, or a number is not finite"
-        )
+        raise ValueError(f"targets['{name}'] is not a pose: its rotation is not orthonormal, or a number is not finite")
     try:
-        position = np.asarray(target, dtype=np.float64)
-    except (TypeError, ValueError):
-        position = np.empty(0)
-    if position.shape != (3,) or not np.isfinite(position).all():
-        raise ValueError(f"the target of frame '{name}' is neither a pose (pin.SE3) nor three finite numbers")
-    return position
+        return checked_array(f"targets['{name}']", target, (3,))
+    except ValueError as error:
+        raise ValueError(f"{error}, or a pose (pin.SE3)") from None

@@ -17,6 +17,7 @@ from eurdf.kinematics.loop import find_loops
 from eurdf.kinematics.residual import CLOSED, closure_openings, residual
 from eurdf.kinematics.several import several
 from eurdf.mechanism.mechanism import ROOT_JOINT
+from eurdf.pinocchio.arguments import checked_tolerance
 from eurdf.pinocchio.configuration import joint_coordinates
 from eurdf.pinocchio.coordinates import slots
 from eurdf.pinocchio.robot import Geometry, Robot, build_robot
@@ -80,7 +81,7 @@ def lock(
     names = set(several(joints))
     if ROOT_JOINT in names and robot.mechanism.root == "floating":
         raise CannotLock(ROOT_JOINT, "it is the floating root; load the robot with root='fixed' instead")
-    q = start(robot, q)
+    q, tolerance = start(robot, q, "q"), checked_tolerance(tolerance)
     locked = lock_joints(robot.mechanism, names, joint_coordinates(robot.mechanism, robot.model, q))
     _check_closed(robot, q, {constraint.name for constraint in locked.constraints}, tolerance)
     built = build_robot(locked.mechanism, geometry=False)

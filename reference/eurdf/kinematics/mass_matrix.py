@@ -8,6 +8,7 @@ import numpy as np
 
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import start
+from eurdf.pinocchio.arguments import checked_data
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -32,8 +33,8 @@ def mass_matrix(robot: Robot, q: Vector, *, data: Any = None) -> Matrix:
         rad/s.
 
     Raises:
-        ValueError: ``q`` is not a configuration.
+        ValueError: ``q`` is not a configuration, or ``data`` is of another model.
     """
     tree = robot.tree
-    M = tree.mass_times(start(robot, q), np.eye(tree.nv), tree.memory() if data is None else data)
+    M = tree.mass_times(start(robot, q, "q"), np.eye(tree.nv), checked_data(robot.model, data))
     return np.asarray(0.5 * (M + M.T))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from eurdf.kinematics.array import Matrix, Vector
+from eurdf.pinocchio.arguments import checked_array
 
 
 def metric(weights: Vector | Matrix | None, nv: int) -> Matrix:
@@ -20,12 +21,10 @@ def metric(weights: Vector | Matrix | None, nv: int) -> Matrix:
     """
     if weights is None:
         return np.eye(nv)
-    given = np.asarray(weights, dtype=np.float64)
-    if given.shape not in ((nv,), (nv, nv)):
-        raise ValueError(f"weights have the shape {given.shape}; this robot needs ({nv},) or ({nv}, {nv})")
+    given = checked_array("weights", weights, (nv,), (nv, nv))
     W = np.diag(given) if given.ndim == 1 else given
-    if not np.isfinite(W).all() or np.abs(W - W.T).max(initial=0.0) > 1e-9 * np.abs(W).max(initial=0.0):
-        raise ValueError("weights are not a symmetric matrix of finite numbers")
+    if np.abs(W - W.T).max(initial=0.0) > 1e-9 * np.abs(W).max(initial=0.0):
+        raise ValueError("weights are not a symmetric matrix")
     try:
         np.linalg.cholesky(W)
     except np.linalg.LinAlgError:

@@ -16,6 +16,7 @@ from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.metric import metric, nearest
 from eurdf.kinematics.residual import acceleration_drift, residual, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.pinocchio.arguments import checked_array, checked_tolerance
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -52,8 +53,8 @@ def project_configuration(
         NotClosable: No closed configuration was found; the error lists the closures that stay open.
         ValueError: ``q`` is not a configuration, or ``weights`` is not a metric.
     """
-    tree, W = robot.tree, metric(weights, robot.tree.nv)
-    q = start(robot, q)
+    tree, W, tolerance = robot.tree, metric(weights, robot.tree.nv), checked_tolerance(tolerance)
+    q = start(robot, q, "q")
     if np.abs(residual(robot, q)).max(initial=0.0) <= tolerance:
         return q
     assembler, spaces, data = Assembler(robot, tolerance=tolerance), TangentSpaces(robot), tree.memory()
@@ -116,8 +117,8 @@ def project_velocity(robot: Robot, q: Vector, v: Vector, weights: Vector | Matri
         ValueError: ``q`` or ``v`` has another shape or is not finite, or ``weights`` is not a metric.
     """
     W = metric(weights, robot.model.nv)
-    v = _velocity(robot, v, "velocity")
-    _, K = residual_and_jacobian(robot, start(robot, q))
+    v = checked_array("v", v, (robot.model.nv,))
+    _, K = residual_and_jacobian(robot, start(robot, q, "q"))
     return nearest(TangentSpaces(robot).at(K).basis, W, v)
 
 
@@ -145,20 +146,11 @@ def project_acceleration(
         ValueError: ``q``, ``v`` or ``a`` has another shape or is not finite, or ``weights`` is not a metric.
     """
     W = metric(weights, robot.model.nv)
-    v, a, q = _velocity(robot, v, "velocity"), _velocity(robot, a, "acceleration"), start(robot, q)
+    v, a, q = checked_array("v", v, (robot.model.nv,)), checked_array("a", a, (robot.model.nv,)), start(robot, q, "q")
     _, K = residual_and_jacobian(robot, q)
     space = TangentSpaces(robot).at(K)
     forced = -space.inverse @ acceleration_drift(robot, q, v)
     return forced + nearest(space.basis, W, a - forced)
-
-
-def _velocity(robot: Robot, values: Vector, what: str) -> Vector:
-    vector = np.asarray(values, dtype=np.float64)
-    if vector.shape != (robot.model.nv,):
-        raise ValueError(f"the {what} has the shape {vector.shape}; this robot needs ({robot.model.nv},)")
-    if not np.isfinite(vector).all():
-        raise ValueError(f"the {what} has a number that is not finite")
-    return vector
 
 
 def _downhill(H: Matrix, slope: Vector) -> Vector:

@@ -12,7 +12,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from eurdf.kinematics.array import Matrix, Vector
-from eurdf.kinematics.constraint_stack import all_constraints
+from eurdf.kinematics.constraint_stack import ConstraintStack, all_constraints
+from eurdf.kinematics.constraints.kind import State
+from eurdf.pinocchio.arguments import checked_array, checked_data
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -32,9 +34,12 @@ def residual(robot: Robot, q: Vector, data: Any = None) -> Vector:
 
     Returns:
         r (nc,): m and rad.
+
+    Raises:
+        ValueError: ``q`` has another shape or is not finite, or ``data`` is of another model.
     """
-    stack = all_constraints(robot)
-    return stack.residual(stack.at(q, stack.memory(data)))
+    stack, at = _constraints_at(robot, q, data)
+    return stack.residual(at)
 
 
 def residual_and_jacobian(robot: Robot, q: Vector, data: Any = None) -> tuple[Vector, Matrix]:
@@ -47,9 +52,11 @@ def residual_and_jacobian(robot: Robot, q: Vector, data: Any = None) -> tuple[Ve
 
     Returns:
         r (nc,), and K (nc, nv), in m and rad over the units of v.
+
+    Raises:
+        ValueError: As in `residual`.
     """
-    stack = all_constraints(robot)
-    at = stack.at(q, stack.memory(data))
+    stack, at = _constraints_at(robot, q, data)
     return stack.residual(at), stack.jacobian(at)
 
 
@@ -66,8 +73,12 @@ def acceleration_drift(robot: Robot, q: Vector, v: Vector, data: Any = None) -> 
 
     Returns:
         d (nc,), m/s² and rad/s², in the rows of the residual.
+
+    Raises:
+        ValueError: As in `residual`, also for ``v``.
     """
-    return all_constraints(robot).drift(q, v, robot.tree.memory() if data is None else data)
+    q, v = checked_array("q", q, (robot.model.nq,)), checked_array("v", v, (robot.model.nv,))
+    return all_constraints(robot).drift(q, v, checked_data(robot.model, data))
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +118,16 @@ def closure_openings(robot: Robot, q: Vector, data: Any = None) -> tuple[Opening
         robot: The robot.
         q: Configuration (nq,).
         data: A `pin.Data` of the model to compute in, or None: see `residual`.
+
+    Raises:
+        ValueError: As in `residual`.
     """
-    stack = all_constraints(robot)
-    openings = stack.openings(stack.at(q, stack.memory(data)))
+    stack, at = _constraints_at(robot, q, data)
+    openings = stack.openings(at)
     return tuple(Opening(found.name, *opening) for found, opening in zip(stack.constraints, openings, strict=True))
+
+
+def _constraints_at(robot: Robot, q: Vector, data: Any) -> tuple[ConstraintStack, State]:
+    stack = all_constraints(robot)
+    data = None if data is None else checked_data(robot.model, data)
+    return stack, stack.at(checked_array("q", q, (robot.model.nq,)), stack.memory(data))

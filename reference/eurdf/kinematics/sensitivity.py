@@ -47,7 +47,7 @@ def dq_dq_actuated(robot: Robot, q: Vector, weights: Vector | Matrix | None = No
         ValueError: ``q`` is not a configuration, or ``weights`` is not a metric.
     """
     W = metric(weights, robot.model.nv)
-    _, K = residual_and_jacobian(robot, start(robot, q))
+    _, K = residual_and_jacobian(robot, start(robot, q, "q"))
     spaces = TangentSpaces(robot)
     basis = spaces.at(K).basis
     selection = robot.actuation.selection.T
@@ -82,7 +82,7 @@ def actuated_jacobian(
         ValueError: The frame is unknown or ambiguous, ``q`` is not a configuration, or ``weights`` is not a metric.
     """
     model, index = robot.model, frame_index(robot.model, frame)
-    q = start(robot, q)
+    q = start(robot, q, "q")
     J = pin.computeFrameJacobian(model, model.createData(), q, index, reference)
     return np.asarray(J.reshape(6, -1) @ dq_dq_actuated(robot, q, weights), dtype=np.float64)
 

@@ -9,10 +9,11 @@ import numpy as np
 
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import assemble, start
-from eurdf.kinematics.dynamics import External, checked_vector, forward_dynamics
+from eurdf.kinematics.dynamics import External, forward_dynamics
 from eurdf.kinematics.exceptions import NotClosable, SimulationDiverged
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.pinocchio.arguments import checked_array
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -78,7 +79,7 @@ def simulate(
     count = round(duration / step)
     times: Vector = np.linspace(0.0, count * step, count + 1)
     qs, vs = np.empty((count + 1, tree.nq)), np.empty((count + 1, tree.nv))
-    assembly = assemble(robot, start(robot, q))
+    assembly = assemble(robot, start(robot, q, "q"))
     if not assembly.closes:
         raise NotClosable("the simulation cannot start from an open configuration", assembly.open, assembly.q)
 
@@ -97,7 +98,7 @@ def simulate(
         _, K = residual_and_jacobian(robot, q, data)
         return q, v - spaces.at(K).inverse @ (K @ v)
 
-    initial = checked_vector(np.zeros(tree.nv) if v is None else v, tree.nv, "the velocity")
+    initial = checked_array("v", np.zeros(tree.nv) if v is None else v, (tree.nv,))
     qs[0], vs[0] = closed(assembly.q, initial, 0)
     for n in range(count):
         t, q, v, still = float(times[n]), qs[n], vs[n], np.zeros(tree.nv)

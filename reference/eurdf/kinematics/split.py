@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eurdf.kinematics.array import Indices, Vector
+from eurdf.pinocchio.arguments import checked_array
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -26,18 +27,18 @@ def split_configuration(robot: Robot, q: Vector) -> tuple[Vector, Vector]:
         q_actuated, joint by joint in the order of ``robot.actuation.joints``, and q_free, in the order of the model.
 
     Raises:
-        ValueError: ``q`` has a wrong shape.
+        ValueError: ``q`` has a wrong shape or is not finite.
     """
-    return _split("configuration", q, robot.actuation.idx_q, robot.model.nq)
+    return _split("q", q, robot.actuation.idx_q, robot.model.nq)
 
 
 def merge_configuration(robot: Robot, q_actuated: Vector, q_free: Vector) -> Vector:
     """The inverse of `split_configuration`: the configuration (nq,).
 
     Raises:
-        ValueError: One of the parts has a wrong shape.
+        ValueError: One of the parts has a wrong shape or is not finite.
     """
-    return _merge("configuration", q_actuated, q_free, robot.actuation.idx_q, robot.model.nq)
+    return _merge("q", q_actuated, q_free, robot.actuation.idx_q, robot.model.nq)
 
 
 def split_velocity(robot: Robot, v: Vector) -> tuple[Vector, Vector]:
@@ -51,35 +52,28 @@ def split_velocity(robot: Robot, v: Vector) -> tuple[Vector, Vector]:
         v_actuated (nu,), in the order of ``robot.actuation``, and v_free (nv - nu,), in the order of the model.
 
     Raises:
-        ValueError: ``v`` has a wrong shape.
+        ValueError: ``v`` has a wrong shape or is not finite.
     """
-    return _split("velocity", v, robot.actuation.idx_v, robot.model.nv)
+    return _split("v", v, robot.actuation.idx_v, robot.model.nv)
 
 
 def merge_velocity(robot: Robot, v_actuated: Vector, v_free: Vector) -> Vector:
     """The inverse of `split_velocity`: the velocity (nv,).
 
     Raises:
-        ValueError: One of the parts has a wrong shape.
+        ValueError: One of the parts has a wrong shape or is not finite.
     """
-    return _merge("velocity", v_actuated, v_free, robot.actuation.idx_v, robot.model.nv)
+    return _merge("v", v_actuated, v_free, robot.actuation.idx_v, robot.model.nv)
 
 
-def _split(what: str, whole: Vector, actuated: Indices, size: int) -> tuple[Vector, Vector]:
-    whole = _of_size(f"the {what}", whole, size)
+def _split(name: str, whole: Vector, actuated: Indices, size: int) -> tuple[Vector, Vector]:
+    whole = checked_array(name, whole, (size,))
     return whole[actuated], np.delete(whole, actuated)
 
 
-def _merge(what: str, of_actuated: Vector, of_others: Vector, actuated: Indices, size: int) -> Vector:
+def _merge(name: str, of_actuated: Vector, of_others: Vector, actuated: Indices, size: int) -> Vector:
     whole = np.empty(size)
-    whole[actuated] = _of_size(f"the actuated part of the {what}", of_actuated, len(actuated))
+    whole[actuated] = checked_array(f"{name}_actuated", of_actuated, (len(actuated),))
     others = np.delete(np.arange(size), actuated)
-    whole[others] = _of_size(f"the free part of the {what}", of_others, len(others))
+    whole[others] = checked_array(f"{name}_free", of_others, (len(others),))
     return whole
-
-
-def _of_size(what: str, values: Vector, size: int) -> Vector:
-    vector = np.asarray(values, dtype=np.float64)
-    if vector.shape != (size,):
-        raise ValueError(f"{what} has the shape {vector.shape}; this robot needs ({size},)")
-    return vector

@@ -15,6 +15,7 @@ from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.position_limit import Limits, PositionLimits, chosen_limits
 from eurdf.kinematics.scale import characteristic_length
 from eurdf.mechanism.joint_type import JointType
+from eurdf.pinocchio.arguments import checked_count, checked_data
 from eurdf.pinocchio.coordinates import slots
 
 if TYPE_CHECKING:
@@ -111,9 +112,11 @@ def sweep(
 
     Raises:
         NotClosable: The loops cannot be closed at q0.
-        ValueError: ``actuator`` is not actuated, or has several coordinates; ``q0`` is not a configuration.
+        ValueError: ``actuator`` is not actuated, or has several coordinates; ``q0`` is not a configuration;
+            ``steps`` is less than 1; ``data`` is of another model.
     """
-    kept = chosen_limits(robot.model, limits)
+    steps, kept = checked_count("steps", steps, 1), chosen_limits(robot.model, limits)
+    data = checked_data(robot.model, data)
     first = assemble(robot, q0, tolerance=_TOLERANCE)
     if not first.closes:
         raise NotClosable("no closed configuration was found near the start", first.open, first.q)

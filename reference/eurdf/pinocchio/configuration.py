@@ -11,6 +11,7 @@ import pinocchio as pin
 
 from eurdf.mechanism.joint_type import COORDINATES, Coordinates, JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
+from eurdf.pinocchio.arguments import checked_array
 from eurdf.pinocchio.coordinates import Slot, slots
 from eurdf.pinocchio.mimic import following
 
@@ -75,12 +76,9 @@ def own_coordinates(mechanism: Mechanism, model: pin.Model, q: Vector) -> dict[s
         as (cos, sin) is from -pi to pi.
 
     Raises:
-        ValueError: q does not have the shape (nq,).
+        ValueError: q does not have the shape (nq,), or is not finite.
     """
-    values = np.asarray(q, dtype=float)
-    if values.shape != (model.nq,):
-        raise ValueError(f"the configuration has the shape {values.shape}; this robot needs ({model.nq},)")
-    numbers = values.tolist()
+    numbers = checked_array("q", q, (model.nq,)).tolist()
     found: dict[str, tuple[float, ...]] = {}
     if mechanism.root == "floating":
         found[ROOT_JOINT] = tuple(numbers[:7])

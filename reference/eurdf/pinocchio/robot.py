@@ -126,7 +126,7 @@ class Robot:
             without limits that Pinocchio has as (cos, sin) is from -pi to pi.
 
         Raises:
-            ValueError: q does not have the shape (nq,).
+            ValueError: q does not have the shape (nq,), or is not finite.
         """
         return own_coordinates(self.mechanism, self.model, q)
 

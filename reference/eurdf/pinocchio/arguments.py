@@ -1,0 +1,82 @@
+"""The arguments of public functions, checked before they reach Pinocchio.
+
+Pinocchio's Python interface does not check every size: a wrong one can read memory that is not its own.
+"""
+
+from __future__ import annotations
+
+import operator
+import reprlib
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pinocchio as pin
+
+
+def checked_array(name: str, given: Any, *shapes: tuple[int, ...]) -> npt.NDArray[np.float64]:
+    """The given numbers as an array of one of the shapes.
+
+    Args:
+        name: Name of the argument.
+        given: What was passed for it.
+        shapes: The shapes that it can have.
+
+    Raises:
+        ValueError: It has another shape, or something in it is not a finite number.
+    """
+    expected = " or ".join(map(str, shapes))
+    try:
+        as_given = np.asarray(given)
+        if as_given.dtype.kind not in "biufO":  # no text, and no complex numbers
+            raise TypeError
+        values = as_given.astype(np.float64, copy=False)
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"{name} is {reprlib.repr(given)}; expected finite numbers of shape {expected}") from None
+    if values.shape not in shapes:
+        raise ValueError(f"{name} has the shape {values.shape}; expected {expected}")
+    if not np.isfinite(values).all():
+        at = [int(index) for index in np.argwhere(~np.isfinite(values))[0]]
+        place = f"{name}{at}" if at else name
+        raise ValueError(f"{place} is {values[tuple(at)]}, not finite; expected finite numbers of shape {expected}")
+    return values
+
+
+def checked_count(name: str, given: Any, least: int) -> int:
+    """The given integer.
+
+    Raises:
+        ValueError: It is no integer, or is less than ``least``.
+    """
+    try:
+        count = operator.index(given)
+    except TypeError:
+        raise ValueError(f"{name} is {reprlib.repr(given)}; expected an integer of at least {least}") from None
+    if count < least:
+        raise ValueError(f"{name} is {count}; expected an integer of at least {least}")
+    return count
+
+
+def checked_tolerance(given: Any, name: str = "tolerance") -> float:
+    """The given tolerance.
+
+    Raises:
+        ValueError: It is no finite number, or is negative.
+    """
+    value = float(checked_array(name, given, ()))
+    if value < 0.0:
+        raise ValueError(f"{name} is {value}; expected a number of at least 0")
+    return value
+
+
+def checked_data(model: Any, data: Any) -> Any:
+    """The given `pin.Data`, or a new one if it is None.
+
+    Raises:
+        ValueError: It is no `pin.Data`, or one of another model.
+    """
+    if data is None:
+        return model.createData()
+    if not isinstance(data, pin.Data) or not model.check(data):
+        raise ValueError("data is not a pin.Data of the robot's model; pass robot.data or robot.model.createData()")
+    return data

@@ -1,0 +1,238 @@
+"""Wrong arguments of public functions: each gives a ValueError that names the argument and the expected shape."""
+
+from __future__ import annotations
+
+import inspect
+import re
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+import eurdf
+
+#: Annotations of parameters that are arrays, or mappings to arrays.
+ARRAY = re.compile(r"\b(Vector|Matrix|ArrayLike|External|Mapping\[str, Any\]|tuple\[float)")
+
+#: A valid call of each public function, and of each method of a robot, that takes an array.
+CALLS: dict[str, dict[str, Any]] = {
+    "Robot.coordinates": {"q": "q"},
+    "achievable_acceleration": {"q": "q", "v": "v", "a": "v", "tau": "v", "external": {"coupler": 6}},
+    "actuated_jacobian": {"q": "q", "frame": "coupler", "weights": "v"},
+    "analyze": {"q": "q"},
+    "assemble": {"q0": "q"},
+    "closure_openings": {"q": "q"},
+    "differential_inverse_kinematics": {"q": "q", "frame": "coupler", "twist": 6},
+    "dq_dq_actuated": {"q": "q", "weights": "v"},
+    "forward_dynamics": {
+        "q": "q",
+        "v": "v",
+        "u": "u",
+        "tau": "v",
+        "external": {"coupler": 6},
+        "gains": 2,
+    },
+    "forward_kinematics": {"actuated": {"motor_crank": 1}, "q0": "q"},
+    "inverse_dynamics": {
+        "q": "q",
+        "v": "v",
+        "a": "v",
+        "tau": "v",
+        "external": {"coupler": 6},
+        "weights": "u",
+    },
+    "inverse_kinematics": {"targets": {"coupler": 3}, "q0": "q"},
+    "lock": {"joints": (), "q": "q"},
+    "mass_matrix": {"q": "q"},
+    "merge_configuration": {"q_actuated": "qa", "q_free": "qf"},
+    "merge_velocity": {"v_actuated": "u", "v_free": "vf"},
+    "project_acceleration": {"q": "q", "v": "v", "a": "v", "weights": "v"},
+    "project_configuration": {"q": "q", "weights": "v"},
+    "project_velocity": {"q": "q", "v": "v", "weights": "v"},
+    "residual": {"q": "q"},
+    "residual_and_jacobian": {"q": "q"},
+    "simulate": {"q": "q", "v": "v", "external": {"coupler": 6}, "duration": 0.002},
+    "split_configuration": {"q": "q"},
+    "split_velocity": {"v": "v"},
+    "sweep": {"actuator": "motor_crank", "q0": "q"},
+}
+
+
+@cache
+def robot() -> eurdf.Robot:
+    return eurdf.load("four_bar", geometry=False)
+
+
+def sizes() -> dict[str, int]:
+    nq, nv, actuation = robot().model.nq, robot().model.nv, robot().actuation
+    nu, of_actuators = len(actuation.idx_v), len(actuation.idx_q)
+    return {"q": nq, "v": nv, "u": nu, "qa": of_actuators, "qf": nq - of_actuators, "vf": nv - nu}
+
+
+def valid(name: str) -> dict[str, Any]:
+    """The arguments of a valid call."""
+    arguments = {}
+    for parameter, given in CALLS[name].items():
+        if parameter in ("frame", "actuator", "joints", "duration"):
+            arguments[parameter] = given
+        elif isinstance(given, Mapping):
+            arguments[parameter] = {key: np.ones(size) for key, size in given.items()}
+        else:
+            arguments[parameter] = array(parameter, given)
+    return arguments
+
+
+def array(parameter: str, given: Any) -> Any:
+    if given == "q":
+        return np.array(robot().configurations["assembled"])
+    size = sizes()[given] if isinstance(given, str) else given
+    return np.ones(size) if parameter in ("weights", "gains", "twist") else np.zeros(size)
+
+
+def functions() -> dict[str, Callable[..., Any]]:
+    """The public functions, and the methods of a robot."""
+    found = {name: getattr(eurdf, name) for name in eurdf.__all__ if inspect.isfunction(getattr(eurdf, name))}
+    methods = inspect.getmembers(eurdf.Robot, inspect.isfunction)
+    return found | {f"Robot.{name}": method for name, method in methods if not name.startswith("_")}
+
+
+def call(name: str, arguments: Mapping[str, Any]) -> Any:
+    return functions()[name](robot(), **arguments)
+
+
+def array_parameters() -> Iterator[tuple[str, str]]:
+    for name, function in functions().items():
+        for parameter in inspect.signature(function).parameters.values():
+            if ARRAY.search(str(parameter.annotation)):
+                yield name, parameter.name
+
+
+def parameters_called(*names: str) -> list[tuple[str, str]]:
+    return [(name, own) for name, function in functions().items() for own in names if takes(function, own)]
+
+
+def takes(function: Callable[..., Any], name: str) -> bool:
+    return name in inspect.signature(function).parameters
+
+
+def test_every_function_that_takes_an_array_is_tested() -> None:
+    stated = {(name, parameter) for name, given in CALLS.items() for parameter in given}
+    assert set(array_parameters()) <= stated
+    assert len(list(array_parameters())) > 40
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_valid_call_succeeds(name: str) -> None:
+    try:
+        call(name, valid(name))
+    except (eurdf.UnderactuatedMotion, eurdf.InconsistentMotion):
+        assert name in ("inverse_dynamics", "achievable_acceleration")
+
+
+def wrong(size: int) -> dict[str, Any]:
+    return {
+        "empty": [],
+        "short": np.zeros(size - 1),
+        "long": np.zeros(size + 1),
+        "far too long": np.zeros(10_000),
+        "column": np.zeros((size, 1)),
+        "row": np.zeros((1, size + 1)),
+        "nan": np.full(size, np.nan),
+        "inf": [0.0] * (size - 1) + [np.inf],
+        "text": "abc",
+        "complex": np.zeros(size, dtype=complex),
+        "mapping": {0: 1.0},
+        "ragged": [[0.0], [0.0, 1.0]],
+    }
+
+
+@pytest.mark.parametrize(("name", "parameter"), list(array_parameters()))
+def test_wrong_array_is_a_value_error(name: str, parameter: str) -> None:
+    given = valid(name)[parameter]
+    if isinstance(given, Mapping):
+        [(key, values)] = given.items()
+        for what, bad in wrong(len(values)).items():
+            refused(name, parameter, {key: bad}, rf"{parameter}\['{key}'\]", len(values), what)
+        return
+    for what, bad in wrong(len(given)).items():
+        if not (parameter == "actuated" and what == "mapping"):
+            refused(name, parameter, bad, parameter, len(given), what)
+
+
+def refused(name: str, parameter: str, bad: Any, names: str, size: int, what: str) -> None:
+    with pytest.raises(ValueError, match=rf"^{names}[ \[].*expected .*\({size},\)"):
+        pytest.fail(f"{name} accepts {what}: {call(name, valid(name) | {parameter: bad})}")
+
+
+@pytest.mark.parametrize("name", ["actuated_jacobian", "dq_dq_actuated", "project_velocity"])
+def test_metric_of_wrong_shape_is_a_value_error(name: str) -> None:
+    nv = robot().model.nv
+    for weights in (np.eye(nv + 1), np.eye(nv)[:-1], np.full((nv, nv), np.nan)):
+        with pytest.raises(ValueError, match=rf"^weights.*expected .*\({nv},\) or \({nv}, {nv}\)"):
+            call(name, valid(name) | {"weights": weights})
+
+
+@pytest.mark.parametrize(("name", "parameter"), parameters_called("data"))
+def test_data_of_another_model_is_a_value_error(name: str, parameter: str) -> None:
+    for data in (pin.Model().createData(), eurdf.load("delta", geometry=False).data, "data", 3):
+        with pytest.raises(ValueError, match=r"^data is not a pin.Data of the robot's model"):
+            call(name, valid(name) | {parameter: data})
+    call(name, {**valid(name), **{p: np.zeros(robot().model.nv) for p in ("a", "v") if p in CALLS[name]}})
+
+
+@pytest.mark.parametrize(("name", "parameter"), parameters_called("tolerance", "restarts", "steps"))
+@pytest.mark.parametrize("bad", [-1, np.nan, np.inf, "1", None])
+def test_number_out_of_range_is_a_value_error(name: str, parameter: str, bad: Any) -> None:
+    with pytest.raises(ValueError, match=rf"^{parameter} is .*expected"):
+        call(name, valid(name) | {parameter: bad})
+
+
+def test_sweep_of_no_steps_is_a_value_error() -> None:
+    with pytest.raises(ValueError, match="steps is 0; expected an integer of at least 1"):
+        eurdf.sweep(robot(), "motor_crank", steps=0)
+
+
+#: Expressions that give a robot without moving joints, and a link of it.
+STILL = {
+    "one link": ("""eurdf.load('<robot name="r"><link name="only"/></robot>', geometry=False)""", "only"),
+    "locked": (
+        "eurdf.lock(eurdf.load('four_bar', geometry=False), ['motor_crank', 'free_coupler', 'free_rocker'])",
+        "coupler",
+    ),
+}
+
+
+@pytest.mark.parametrize("which", STILL)
+def test_robot_without_moving_joints_is_accepted(which: str) -> None:
+    """In a process of its own: Pinocchio ends the process where it does not check sizes."""
+    robot, link = STILL[which]
+    code = f"""
+import eurdf, numpy as np, pinocchio as pin
+robot = {robot}
+none = np.empty(0)
+for target in (np.ones(3), pin.SE3.Random()):
+    found = eurdf.inverse_kinematics(robot, {{{link!r}: target}}, none)
+    assert not found.converged
+for function, *arguments in [
+    (eurdf.achievable_acceleration, none, none, none), (eurdf.actuated_jacobian, none, {link!r}), (eurdf.analyze, none),
+    (eurdf.assemble, none), (eurdf.closure_openings, none), (eurdf.closure_openings, none, robot.data),
+    (eurdf.differential_inverse_kinematics, none, {link!r}, np.ones(6)), (eurdf.dq_dq_actuated, none),
+    (eurdf.forward_dynamics, none, none, none), (eurdf.forward_kinematics, none), (eurdf.forward_kinematics, {{}}),
+    (eurdf.inverse_dynamics, none, none, none), (eurdf.lock, []), (eurdf.mass_matrix, none),
+    (eurdf.merge_configuration, none, none), (eurdf.merge_velocity, none, none),
+    (eurdf.project_acceleration, none, none, none), (eurdf.project_configuration, none),
+    (eurdf.project_velocity, none, none), (eurdf.residual, none), (eurdf.residual, none, robot.data),
+    (eurdf.residual_and_jacobian, none), (eurdf.residual_and_jacobian, none, robot.data),
+    (eurdf.split_configuration, none), (eurdf.split_velocity, none),
+]:
+    function(robot, *arguments)
+eurdf.simulate(robot, none, duration=0.01)
+print("done")
+"""
+    ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert ended.stdout == "done\n", ended.stderr
