@@ -389,7 +389,7 @@ def test_the_archive_says_what_it_writes_and_replaces_nothing_unasked(
     (out / f"{archive.NAME}.zip").unlink()
     (out / f"{archive.NAME}.json").write_text("mine", encoding="utf-8")
     assert archived(out) == 2
-    assert "exists already; --force replaces it" in capsys.readouterr().err
+    assert "already exists; --force replaces it" in capsys.readouterr().err
     assert [path.read_text() for path in out.iterdir()] == ["mine"]
     assert archived(out, "--force") == 0
     assert len(list(out.iterdir())) == 2

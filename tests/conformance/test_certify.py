@@ -133,12 +133,12 @@ def test_a_first_try_tells_a_wrong_adapter_from_a_wrong_parser(folder: Path) -> 
     parser = certify("--parser", REJECTS, "--smoke")
     assert parser.returncode == 1
     assert parser.stdout.startswith("your adapter works so far")
-    assert "your parser is wrong" in parser.stdout
+    assert "your parser fails:" in parser.stdout
     told = '/accept: failed: /outcome: the parser rejects a valid description: expected "accepted", got "rejected"\n'
     assert told in parser.stdout
     adapter = certify("--parser", fake("always_rejected_with_chatter"), "--smoke")
     assert adapter.returncode == 1
-    assert adapter.stdout.startswith("your adapter is wrong")
+    assert adapter.stdout.startswith("your adapter fails")
 
 
 def test_a_first_try_says_of_each_failure_what_it_is_before_it_says_why() -> None:

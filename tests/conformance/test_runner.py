@@ -38,10 +38,10 @@ WAYS = [
     ("exits_with_success", Crashed, "exit code 0", False),
     ("segfaults", Crashed, "SIGSEGV", False),
     ("aborts_with_a_line", Crashed, "SIGABRT", False),
-    ("another_id", Misplaced, "answered by an answer to", False),
-    ("answer_before", Misplaced, "answered by an answer to", False),
+    ("another_id", Misplaced, "the answer to request 3 has the id", False),
+    ("answer_before", Misplaced, "the answer to request 3 has the id", False),
     ("late", TimedOut, "no answer in 0.5 s", False),
-    ("twice", Chatter, "a line on standard output unexpected", True),
+    ("twice", Chatter, "an unexpected line on standard output", True),
     ("garbage", Malformed, "not JSON: Expecting value at character 1", False),
     ("nothing_but_a_line_end", Malformed, "not JSON", False),
     ("not_utf8", Malformed, "not UTF-8, from byte 44 on", False),
@@ -57,7 +57,7 @@ WAYS = [
     ("wrong_type", Malformed, "/issues/0/line: Input should be a valid integer", True),
     ("no_outcome", Malformed, "'outcome'", True),
     ("unknown_outcome", Malformed, "'valid'", True),
-    ("no_id", Malformed, "without the 'id'", False),
+    ("no_id", Malformed, "the 'id' of the request, an integer, is missing", False),
     ("wrong_kind", Malformed, "'evaluated' is not an answer to 'load'", True),
     ("not_a_number", Malformed, "/robot/own/~1x-a: NaN is not JSON", True),
     ("number_too_large", Malformed, "/robot/own/~1x-a: a number is beyond the range of a double", True),
@@ -65,8 +65,8 @@ WAYS = [
     ("nested_deep", Malformed, "JSON nested too deep", False),
     ("endless_line", Malformed, "a line of more than 1,048,576 bytes", False),
     ("endless_lines", Malformed, "not JSON", False),
-    ("chatter_before", Chatter, "2 lines on standard output unexpected", True),
-    ("chatter_after", Chatter, "a line on standard output unexpected", True),
+    ("chatter_before", Chatter, "2 unexpected lines on standard output", True),
+    ("chatter_after", Chatter, "an unexpected line on standard output", True),
     ("floods_stderr_for_ever", TimedOut, "no answer in 0.5 s", False),
     ("dies_before_its_child", Crashed, "exit code 5", False),
     ("closes_stdout", Crashed, "closed its standard output", False),
@@ -120,7 +120,7 @@ def test_a_late_answer_is_not_taken_for_that_to_the_next_request() -> None:
 def test_what_ends_before_it_is_greeted_has_answered_nothing() -> None:
     with Session("cmd:sh -c 'exit 127'") as session, pytest.raises(NotStarted) as refusal:
         _ = session.started
-    assert str(refusal.value).splitlines()[0] == "crashed: ended with exit code 127 without an answer"
+    assert str(refusal.value).splitlines()[0] == "crashed: ended with exit code 127 without answering"
 
 
 def test_a_crash_after_an_answer_is_told_at_the_next_request_and_said_to_be_from_before() -> None:
@@ -129,7 +129,7 @@ def test_a_crash_after_an_answer_is_told_at_the_next_request_and_said_to_be_from
         time.sleep(0.2)
         outcome = load(session, "next")
         assert outcome == Crashed(4, None, "", before=True)
-        assert "after it had answered the request before" in str(outcome)
+        assert "after answering the previous request" in str(outcome)
         assert accepts(load(session, "next"), "next")
 
 
@@ -173,7 +173,7 @@ def test_values_at_another_number_of_configurations_are_malformed() -> None:
     with Session(fake("sound")) as session:
         outcome = session.evaluate([{}, {}], [], ["mass"])
         assert isinstance(outcome, Malformed)
-        assert "values at 1 configurations; 2 were asked for" in str(outcome)
+        assert "values at 1 configurations, expected 2" in str(outcome)
 
 
 def test_the_log_of_what_went_wrong_is_kept_and_bounded() -> None:
@@ -258,9 +258,9 @@ def test_who_answers_to_start_that_it_failed_does_not_keep_the_rule_of_starting(
 @pytest.mark.parametrize(
     ("parser", "words"),
     [
-        ("cmd:/no/such/program", "there is no program '/no/such/program'"),
-        ("cmd:no-such-program", "there is no program 'no-such-program' where programs are (PATH)"),
-        ("cmd:", "there is no command"),
+        ("cmd:/no/such/program", "program '/no/such/program' does not exist"),
+        ("cmd:no-such-program", "program 'no-such-program' is not in PATH"),
+        ("cmd:", "the command after 'cmd:' is missing"),
         ("cmd:'unclosed", "closing quotation"),
         ("parser.py", "neither 'package.module:object' nor 'cmd:'"),
         ("my-package:parser", "neither"),
@@ -277,14 +277,14 @@ def test_what_cannot_be_started_is_said_so(parser: str, words: str) -> None:
 @pytest.mark.parametrize(
     ("parser", "text", "mode", "words"),
     [
-        ("cmd:mine.py", "", 0o644, "the file that is here is './mine.py', and it must be executable"),
+        ("cmd:mine.py", "", 0o644, "write './mine.py' for the file in this folder"),
         ("cmd:./mine.py", "", 0o644, "'./mine.py' is not executable"),
-        ("cmd:./mine.py", "print(1)", 0o755, "'./mine.py' is no program; a script begins with a line"),
+        ("cmd:./mine.py", "print(1)", 0o755, "'./mine.py' is not a program; a script needs a first line"),
         (
             "cmd:./mine.py",
             "#!/no/such/python",
             0o755,
-            "'./mine.py' names in its first line a program that there is not",
+            "the interpreter in the first line of './mine.py' does not exist",
         ),
         ("cmd:./folder", "", 0o644, "'./folder' is a folder"),
     ],

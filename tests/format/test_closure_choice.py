@@ -89,7 +89,7 @@ def test_note_says_where_motion_was_not_computed(monkeypatch: pytest.MonkeyPatch
     choice = choose_types(weld, [name], [name])
     assert choice.types == {name: "6d"}
     (note,) = choice.notes
-    assert note.startswith(f"'{name}' is 6d: ranks are not computed: the loops that share joints with that of '{name}'")
+    assert note.startswith(f"'{name}' is 6d: ranks were not computed: the loops that share joints with that")
 
 
 def test_types_in_names_are_final() -> None:

@@ -63,7 +63,7 @@ def test_other_file_is_replaced_only_with_force(
     mine.write_text("mine", encoding="utf-8")
     assert main(argv) == 2
     said = capsys.readouterr().err
-    assert f"'{mine.name}' exists already" in said
+    assert f"'{mine.name}' already exists" in said
     assert "--force" in said
     assert "--schema none" in said
     assert not (folder / "new.yaml").exists()

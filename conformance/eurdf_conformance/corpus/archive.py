@@ -181,7 +181,7 @@ def _refusal(folder: Path, force: bool) -> str | None:
         return f"'{folder}' is a file, and is to be a folder"
     there = [path for path in archive_paths(folder) if path.exists()]
     if there and not force:
-        return f"'{there[0]}' exists already; --force replaces it"
+        return f"'{there[0]}' already exists; --force replaces it"
     return None
 
 
