@@ -43,7 +43,7 @@ BROKEN = [
     ("case", INVALID, "robot.yaml, replace", "robot.yaml, line: 2, replace", "0 times in line 2 of 'robot.yaml'"),
     ("case", INVALID, "robot.yaml, replace", "other.yaml, replace", "there is no file 'other.yaml' to edit"),
     ("id", INVALID, "id: bad001", "id: good01", "id 'good01' is another case's too"),
-    ("title", INVALID, "on no joint", "on a joint", "another case has the same title"),
+    ("title", INVALID, "on no joint", "on a joint", "another case of version 2 has the same title"),
     ("clauses", VALID, "[EU-ACT-001]", "[EU-ACT-001, EU-ONE-003]", "EU-ONE-003 is no clause of version 2"),
     ("clauses", VALID, "[EU-ACT-001]", "[EU-ACT-001, EU-ACT-001]", "a clause stands twice"),
     ("clauses", VALID, "[EU-ACT-001]", "[EU-ACT-001, EU-ACT-999]", "there is no clause EU-ACT-999"),
@@ -125,7 +125,7 @@ def test_the_command_says_what_is_wrong_and_what_is_not_tested(
     assert "EU-ACT-001 (version 2)" not in out
     assert lint.main([root, "--complete"]) == 1
     assert lint.main([str(laid(tmp_path, INVALID, "on no joint", "on a joint"))]) == 1
-    assert "title: another case has the same title" in capsys.readouterr().out
+    assert "title: another case of version 2 has the same title" in capsys.readouterr().out
 
 
 # The lines of a file

@@ -53,9 +53,9 @@ class Corpus:
         return Counter(case.id for case in self.cases)
 
     @cached_property
-    def titles(self) -> Counter[str]:
-        """How many cases have each title."""
-        return Counter(case.case.title for case in self.cases)
+    def titles(self) -> Counter[tuple[str, str]]:
+        """How many cases of a version have each title."""
+        return Counter((case.case.version, case.case.title) for case in self.cases)
 
 
 #: Given a case, what is wrong with it.
@@ -99,8 +99,8 @@ def _id(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
 
 
 def _title(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
-    if corpus.titles[case.case.title] > 1:
-        yield "another case has the same title"
+    if corpus.titles[case.case.version, case.case.title] > 1:
+        yield f"another case of version {case.case.version} has the same title"
 
 
 def _clauses(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
