@@ -224,6 +224,26 @@ def test_stated_properties_replace_kept_ones() -> None:
     assert model.upperDryFrictionLimit[v : v + 3].tolist() == [31, 32, 33]
 
 
+@pytest.mark.parametrize(
+    "stated",
+    ["damping: [0.1, 0.2]", "friction: [1]", "armature: [1, 2]", "limits: {effort: [1]}", "limits: {lower: 0}"],
+)
+@pytest.mark.parametrize("of", ["ball", "j3"])
+@pytest.mark.parametrize("frame", ["base", "l3", "ball", "j3"])
+def test_invalid_property_of_merged_ball_is_the_only_error(stated: str, of: str, frame: str) -> None:
+    """What else names the ball, its links or the joints that it replaces is checked against the ball."""
+    urdf = _chain(X, Y, Z)
+    yaml = (
+        f"joints: {{{of}: {{type: spherical, merges: [j1, j2, j3], {stated}}}}}\n"
+        f"closures: [{{name: c, type: 3d, frames: [{frame}, {{link: l3, xyz: [0.1, 0.2, 0.3]}}]}}]\n"
+        f"actuators: [{of}]\nconfigurations: {{bent: {{{of}: [0, 0, 0, 1]}}}}\n"
+    )
+    found = [code for code in codes(urdf, yaml) if not code.startswith("x-")]
+    assert "joint-property" in found
+    sound = yaml.replace(f", {stated}", "")
+    assert set(found) - {"joint-property"} <= set(codes(urdf, sound))
+
+
 def test_continuous_joints_merge_on_request() -> None:
     urdf = _chain(X, Y, Z, kinds=("continuous", "revolute", "continuous"))
     assert load(urdf, "joints: {j3: {type: spherical, merges: [j1, j2, j3]}}\n").model.nv == 3

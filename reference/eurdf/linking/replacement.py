@@ -147,9 +147,8 @@ class _Replacement:
                 joint = self.retype(joint)
         if joint is None:
             return
-        joint = self.override(joint)
-        if joint is not None:
-            self.joints.by_name[joint.name] = joint
+        # The type is valid even if an override is not, and what else names the joint means the new one.
+        self.joints.by_name[joint.name] = self.override(joint) or joint
 
     def target(self, name: str, pointer: Pointer) -> Joint | None:
         """EU-JNT-001: a joint that the description speaks of is one of the URDF's."""
