@@ -553,3 +553,32 @@ def test_json_contains_text_and_changes(folder: Path, capsys: pytest.CaptureFixt
     assert (answer["from"], answer["to"], answer["output"]) == ("1", "2.0", None)
     assert answer["text"] == MIGRATED
     assert any("wrist_z" in note for note in answer["notes"])
+
+
+@pytest.mark.parametrize("mark", ["\x85", "\u2028", "\u2029"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "note: a{}b\n",
+        "note: {}\n",
+        "note: 'a{}b'\n",
+        'note: "a{}b"\n',
+        "note: |\n  a{}b\n",
+        "note: {{a: b{}c}}\n",
+        "a{}b: 1\n",
+        "? a{}b\n: c\n",
+        "# c{} note: [\n",
+        "note: c # d{}e: [\n",
+    ],
+)
+def test_line_breaks_of_yaml_1_1_are_ordinary_characters(tmp_path: Path, text: str, mark: str) -> None:
+    (tmp_path / "robot.urdf").write_text(PLAIN_WORKBENCH, encoding="utf-8")
+    (tmp_path / "robot.yaml").write_text(f"closed_loop: []\n{text.format(mark)}", encoding="utf-8", newline="")
+    assert main(["migrate", str(tmp_path), "-o", str(tmp_path / "new.yaml")]) == 0
+    new = (tmp_path / "new.yaml").read_text(encoding="utf-8")
+    if "#" in text:
+        assert text.format(mark).split("#")[1].strip("\n") in new
+    else:
+        old = read_yaml(Source("robot.yaml", text.format(mark), text.format(mark).encode())).data
+        data = read_yaml(Source("new.yaml", new, new.encode())).data
+        assert {key.removeprefix("x-"): data[key] for key in data if key.startswith("x-")} == old

@@ -88,7 +88,8 @@ def read_yaml(source: Source) -> YamlDocument:
     """
     if len(source.data) > FILE_LIMIT:
         raise too_large(source.file, f"{FILE_LIMIT:,} bytes")
-    data, original = _without_other_breaks(source)
+    text, original = without_other_breaks(source)
+    data = text.encode() if original else source.data
     text = source.text.rstrip(" ")
     if text != source.text and text[-1:] in "\r\n":
         data += b"\n"  # of a last line of blanks, without which libyaml would not see that it is one
@@ -100,15 +101,15 @@ def read_yaml(source: Source) -> YamlDocument:
         raise syntax_fault(source, error) from None
 
 
-def _without_other_breaks(source: Source) -> tuple[bytes, dict[int, str]]:
-    """The file with U+0085, U+2028 and U+2029 replaced, and what turns them back in the values.
+def without_other_breaks(source: Source) -> tuple[str, dict[int, str]]:
+    """The text with U+0085, U+2028 and U+2029 replaced, and what turns them back in the values.
 
     They are ordinary characters in YAML 1.2, but libyaml breaks lines at them, as YAML 1.1 does. What replaces them is
     characters that the file does not have; it cannot have all of this range, which takes more bytes than it may have.
     """
     breaks = [] if source.text.isascii() else [mark for mark in "\x85\u2028\u2029" if mark in source.text]
     if not breaks:
-        return source.data, {}
+        return source.text, {}
     used = set(source.text)
     free = (chr(code) for code in range(0x10000, 0x110000) if chr(code) not in used)
     replaced = source.text
@@ -116,7 +117,7 @@ def _without_other_breaks(source: Source) -> tuple[bytes, dict[int, str]]:
     for mark, replacement in zip(breaks, free, strict=False):
         replaced = replaced.replace(mark, replacement)
         original[ord(replacement)] = mark
-    return replaced.encode(), original
+    return replaced, original
 
 
 class _Reader:

@@ -13,10 +13,9 @@ from yaml.tokens import BlockEntryToken, FlowSequenceStartToken, KeyToken
 
 from eurdf.reading.source import Source
 from eurdf.reading.yaml_node import Pointer
-from eurdf.reading.yaml_reader import YamlDocument
+from eurdf.reading.yaml_reader import YamlDocument, without_other_breaks
 
-# Where libyaml ends a line, and so a comment.
-_COMMENT = re.compile("#[^\r\n\x85\u2028\u2029]*")
+_COMMENT = re.compile("#[^\r\n]*")
 
 # What opens something: a comment behind it speaks of what comes after.
 _OPENING = (BlockEntryToken, FlowSequenceStartToken, KeyToken)
@@ -54,11 +53,12 @@ def comments_of(source: Source) -> list[Comment]:
     text = source.text
     found = []
     end, busy_line = 0, 0
-    for token in yaml.scan(text, Loader=CLoader):
+    scanned, _ = without_other_breaks(source)  # with as many characters
+    for token in yaml.scan(scanned, Loader=CLoader):
         # Between two tokens there is nothing but white space and comments.
         for comment in _COMMENT.finditer(text, end, token.start_mark.index):
             line, column = source.position(comment.start())
-            found.append(Comment(comment.group().rstrip(), comment.start(), line, column, line == busy_line))
+            found.append(Comment(comment.group().rstrip(" \t"), comment.start(), line, column, line == busy_line))
         end = max(end, token.end_mark.index)
         if token.start_mark.index < end and not isinstance(token, _OPENING):
             busy_line, _ = source.position(end - 1)
