@@ -321,3 +321,51 @@ def test_configuration_is_not_written_to_standard_input(folder: Path) -> None:
     done = eurdf_with(text, "assemble", "-", "--urdf", str(FOUR_BAR / "robot.urdf"), "--write")
     assert (done.returncode, done.stdout) == (2, "")
     assert "--write needs a file" in done.stderr
+
+
+# --- a folder whose files cannot be read -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["robot.yaml", "robot.yml", "leg.yaml", "leg.eurdf.yaml"])
+@pytest.mark.parametrize("target", ["nowhere.yaml", ".", "loop"])
+def test_unreadable_description_beside_urdf_is_an_error(folder: Path, name: str, target: str) -> None:
+    """Else the closures that it states would be dropped in silence."""
+    (folder / "robot.urdf").write_text(URDF, encoding="utf-8")
+    (folder / name).symlink_to(name if target == "loop" else target)
+    report = eurdf.check(folder)
+    if target == ".":  # a folder is no description
+        assert report.ok
+        return
+    assert [found.code for found in report.diagnostics] == ["file-unreadable"]
+    with pytest.raises(eurdf.InvalidRobot):
+        eurdf.load(folder)
+    ended = eurdf_with("", "check", ".")
+    assert (ended.returncode, "sound" in ended.stdout) == (1, False)
+
+
+def test_pipe_named_as_description_is_an_error(folder: Path) -> None:
+    (folder / "robot.urdf").write_text(URDF, encoding="utf-8")
+    os.mkfifo(folder / "robot.yaml")
+    assert [found.code for found in eurdf.check(folder).diagnostics] == ["file-unreadable"]
+
+
+def test_folder_that_cannot_be_read_is_an_error(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(path: object) -> None:
+        raise PermissionError(13, "Permission denied", os.fspath(folder))
+
+    monkeypatch.setattr(os, "scandir", refuse)
+    monkeypatch.setattr(os, "listdir", refuse)
+    report = eurdf.check(folder)
+    assert [found.code for found in report.diagnostics] == ["file-unreadable"]
+    assert f"the folder '{folder}' cannot be read: permission denied" in report.diagnostics[0].message
+
+
+@pytest.mark.parametrize("given_to", ["path", "urdf"])
+def test_empty_path_is_not_the_working_directory(folder: Path, given_to: str) -> None:
+    (folder / "robot.urdf").write_text(URDF, encoding="utf-8")
+    (folder / "robot.yaml").write_text(DESCRIPTION, encoding="utf-8")
+    for function in (eurdf.check, eurdf.load):
+        with pytest.raises(eurdf.RobotNotFound, match="is empty"):
+            function(**{"path": "robot.yaml", given_to: ""})
+    argv = ["check", ""] if given_to == "path" else ["check", "robot.yaml", "--urdf", ""]
+    assert eurdf_with("", *argv).returncode == 2

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from eurdf.collection.near_paths import near_path
+from eurdf.diagnostics import Fault, Place
 from eurdf.exceptions import RobotNotFound
 from eurdf.reading.given import Given, is_stream, is_xml, shown, source_of
 from eurdf.reading.source import Source
@@ -52,7 +53,7 @@ def find_robot(path: Given, urdf: Given | None = None) -> RobotFiles:
 
     Raises:
         RobotNotFound: Where there is no such thing.
-        Fault: A stream or a text cannot be read.
+        Fault: A stream, a text or a folder cannot be read.
     """
     if urdf is not None and is_stream(path) and path == urdf:
         raise RobotNotFound(shown(path), f"{shown(path)} cannot be both the description and its URDF")
@@ -83,6 +84,21 @@ def find_robot(path: Given, urdf: Given | None = None) -> RobotFiles:
     raise RobotNotFound(name, f"there is no '{name}': it is not a file, a folder, or a robot of the collection; {hint}")
 
 
+def _files(folder: Path) -> list[Path]:
+    """What is in a folder, except folders: a link to nothing, or a pipe, is an error where it is read.
+
+    Raises:
+        Fault: The folder cannot be read.
+    """
+    try:
+        names = os.listdir(folder)
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        place = Place(os.fspath(folder))
+        raise Fault("file-unreadable", f"the folder '{folder}' cannot be read: {reason}", place) from None
+    return sorted(folder / name for name in names if not os.path.isdir(folder / name))
+
+
 def _given_urdf(urdf: Given | None) -> Path | Source | None:
     if urdf is None:
         return None
@@ -90,6 +106,8 @@ def _given_urdf(urdf: Given | None) -> Path | Source | None:
     if source is not None:
         return source
     assert not isinstance(urdf, bytes)
+    if os.fspath(urdf) == "":  # Path takes it for the working directory
+        raise RobotNotFound("", "the path of the URDF is empty")
     return Path(urdf)
 
 
@@ -102,9 +120,9 @@ def _refuse_second_urdf(path: Given, urdf: Given | None) -> None:
 def _in_folder(folder: Path, given: Path | Source | None) -> RobotFiles:
     for ending in _YAML:
         description = folder / f"robot{ending}"
-        if description.is_file():
+        if os.path.lexists(description) and not os.path.isdir(description):
             return RobotFiles(description, given)
-    files = sorted(path for path in folder.iterdir() if path.is_file())
+    files = _files(folder)
     descriptions = [path for path in files if path.suffix.lower() in _YAML]
     # By the ending that catalogues of schemas know, other YAML files beside it aside.
     descriptions = [path for path in descriptions if path.stem.lower().endswith(".eurdf")] or descriptions

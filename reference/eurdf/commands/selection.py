@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 from collections.abc import Iterable
@@ -9,6 +10,7 @@ from pathlib import Path
 
 from eurdf.collection import find_robot
 from eurdf.commands.cannot_run import CannotRun
+from eurdf.diagnostics import Fault
 from eurdf.exceptions import RobotNotFound
 from eurdf.reading.given import is_stream, is_text
 from eurdf.reading.source import FILE_LIMIT
@@ -63,7 +65,8 @@ def _robots_at(path: str, allow_none: bool) -> list[str]:
         if allow_none:
             return [path] if _holds_urdf(path) else []
     if not (is_stream(path) or is_text(path)):  # their content is read once, when they are checked
-        find_robot(path)
+        with contextlib.suppress(Fault):  # it is reported when the robot is checked
+            find_robot(path)
     return [path]
 
 
@@ -73,6 +76,8 @@ def _holds_urdf(folder: str) -> bool:
         return find_robot(folder).description is None
     except RobotNotFound:
         return False
+    except Fault:
+        return True  # it is reported when the robot is checked
 
 
 def _robots_below(folder: str) -> list[str]:
