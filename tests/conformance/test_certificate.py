@@ -25,15 +25,16 @@ from eurdf_conformance.certificate.certificate import (
 from eurdf_conformance.certificate.comparison_page import comparison_page
 from eurdf_conformance.certificate.fingerprint import clauses_hash, corpus_hash, files_hash
 from eurdf_conformance.certificate.issue import issue
-from eurdf_conformance.certificate.replay import (
+from eurdf_conformance.certificate.report import report
+from eurdf_conformance.certificate.write import write_certificate
+from eurdf_conformance.command import replay as replay_module
+from eurdf_conformance.command.replay import (
     file_differences,
     own_errors,
     replay_differences,
     replay_schema,
     suite_differences,
 )
-from eurdf_conformance.certificate.report import report
-from eurdf_conformance.certificate.write import write_certificate
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.read import CASES, read_case, read_cases
 from eurdf_conformance.judging.known_failures import KnownFailure, KnownFailures
@@ -495,7 +496,7 @@ def test_a_certificate_of_another_corpus_is_told_apart(failed: Certificate) -> N
 
 
 def test_the_schema_of_a_replay_is_current() -> None:
-    file = Path(certificate_module.__file__).with_name("replay.schema.json")
+    file = Path(replay_module.__file__).with_name("replay.schema.json")
     assert json.loads(file.read_text(encoding="utf-8")) == replay_schema()
 
 

@@ -20,8 +20,8 @@ import pytest
 from eurdf.commands.main import main
 from eurdf_conformance.certificate.certificate import certificate_schema, read_certificate
 from eurdf_conformance.certificate.issue import issue
-from eurdf_conformance.certificate.replay import replay_schema
 from eurdf_conformance.command.output import show
+from eurdf_conformance.command.replay import replay_schema
 from eurdf_conformance.corpus.case import InvalidCase
 from eurdf_conformance.corpus.read import read_cases
 from eurdf_conformance.judging.verdict import Verdict

@@ -22,13 +22,13 @@ from eurdf_conformance.properties.catalogue import property_of
 from eurdf_conformance.properties.culprit import culprit
 from eurdf_conformance.properties.document import configuration
 from eurdf_conformance.properties.example import frozen_examples
-from eurdf_conformance.properties.explore import explore, search
+from eurdf_conformance.properties.explore import Trial, explore, search, try_property
 from eurdf_conformance.properties.harness import Harness
 from eurdf_conformance.properties.mechanism import Mechanism
 from eurdf_conformance.properties.smaller import smaller
 from eurdf_conformance.properties.strategies.mechanisms import mechanisms
 from eurdf_conformance.properties.truth import truth
-from eurdf_conformance.properties.trying import Trial, try_example, try_property
+from eurdf_conformance.properties.trying import try_example
 from eurdf_conformance.runner.in_process import InProcess
 from eurdf_conformance.runner.outcome import Crashed, Outcome
 from support.parsers.oracle import OracleParser

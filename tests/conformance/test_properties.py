@@ -19,12 +19,13 @@ from eurdf_conformance.properties.conditioning import has_clear_ranks, is_well_c
 from eurdf_conformance.properties.counts import Counts, counts_of
 from eurdf_conformance.properties.document import configuration
 from eurdf_conformance.properties.example import FROZEN, frozen_examples, frozen_text
+from eurdf_conformance.properties.explore import Trial, try_property
 from eurdf_conformance.properties.features import features
 from eurdf_conformance.properties.harness import Harness
 from eurdf_conformance.properties.mechanism import Mechanism
 from eurdf_conformance.properties.property import LARGEST, Property
 from eurdf_conformance.properties.truth import truth
-from eurdf_conformance.properties.trying import Trial, try_example, try_frozen, try_property
+from eurdf_conformance.properties.trying import try_example, try_frozen
 from eurdf_conformance.protocol.message import Accepted, Evaluated, Unsupported
 from eurdf_conformance.protocol.reply import unsupported
 from eurdf_conformance.protocol.serve import PythonParser

@@ -1,1 +1,5 @@
-"""``eurdf certify``: `certify` is the entry point, `run` does what the arguments ask, `output` shows the result."""
+"""``eurdf certify``.
+
+`certify` is the entry point, and `run` does what the arguments ask: `suite_run` runs the suite, `replay` compares a
+second run with a certificate, `output` shows the result.
+"""

@@ -18,16 +18,16 @@ from eurdf.commands.robot_options import ending
 from eurdf.diagnostics.text import Line, visible
 from eurdf_conformance.certificate.certificate import Certificate, NoCertificate, read_certificate
 from eurdf_conformance.certificate.comparison_page import comparison_page
-from eurdf_conformance.certificate.replay import (
+from eurdf_conformance.certificate.write import NoRoom, make_room, write_certificate
+from eurdf_conformance.command.output import show
+from eurdf_conformance.command.replay import (
     Replay,
     file_differences,
     own_errors,
     replay_differences,
     suite_differences,
 )
-from eurdf_conformance.certificate.suite_run import CannotRunSuite, Progress, SuiteRun, run_suite
-from eurdf_conformance.certificate.write import NoRoom, make_room, write_certificate
-from eurdf_conformance.command.output import show
+from eurdf_conformance.command.suite_run import CannotRunSuite, Progress, SuiteRun, run_suite
 from eurdf_conformance.judging.known_failures import WrongKnownFailures, read_known_failures
 from eurdf_conformance.level import Level
 from eurdf_conformance.named_folder import named_folder

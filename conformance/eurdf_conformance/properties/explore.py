@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import hypothesis
@@ -13,6 +13,7 @@ from hypothesis.configuration import set_hypothesis_home_dir
 from hypothesis.errors import Flaky, FlakyFailure, Unsatisfiable
 from hypothesis.strategies import SearchStrategy
 
+from eurdf_conformance.judging.conversation import Parser
 from eurdf_conformance.judging.judge import PASSED, Judgement
 from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level, Version
@@ -23,7 +24,7 @@ from eurdf_conformance.properties.harness import Harness
 from eurdf_conformance.properties.property import LARGEST, Property
 from eurdf_conformance.properties.smaller import smaller
 from eurdf_conformance.properties.strategies.mechanisms import mechanisms
-from eurdf_conformance.properties.trying import Trial, try_example, with_log
+from eurdf_conformance.properties.trying import try_example, try_frozen, with_log
 from eurdf_conformance.properties.write_case import how_to_keep, write_case
 
 #: Where cases are written that were found, from where the suite is run.
@@ -35,6 +36,37 @@ SHRINKING = 30.0
 
 class _Wrong(Exception):  # noqa: N818 - it says what the parser is
     """The parser departs from the property."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """What a property is tried with.
+
+    Attributes:
+        parser: The parser that answers.
+        version: Version of the format that the files are of.
+        explore: Number of further random mechanisms to try; 0 for the frozen ones alone.
+        folder: Empty, to write files into.
+        seed: What further mechanisms are drawn from.
+    """
+
+    parser: Parser
+    version: Version
+    explore: int
+    folder: Path
+    seed: int = 0
+
+
+def try_property(prop: Property, level: Level, trial: Trial) -> Judgement:
+    """Whether a property holds of a parser; if the user explores, also whether it fails on a smaller mechanism."""
+    harness = Harness(trial.parser, trial.folder)
+    judgement = try_frozen(prop, level, trial.version, harness)
+    if not trial.explore:
+        return judgement
+    further = explore(prop, level, trial, harness)
+    if judgement.verdict == Verdict.PASSED:
+        return further
+    return with_log(judgement, further.log)
 
 
 def explore(prop: Property, level: Level, trial: Trial, harness: Harness, folder: Path = EXPLORED) -> Judgement:

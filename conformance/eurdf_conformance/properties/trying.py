@@ -1,12 +1,10 @@
-"""A property, tried on a parser: on the frozen examples, and then on as many more as are asked for."""
+"""A property, tried on a parser: on one example, and on the frozen ones."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import replace
 
-from eurdf_conformance.judging.conversation import Parser
 from eurdf_conformance.judging.failure_text import where_it_stood
 from eurdf_conformance.judging.judge import PASSED, Judgement, judge_outcome
 from eurdf_conformance.judging.verdict import Verdict
@@ -15,40 +13,6 @@ from eurdf_conformance.properties.example import Example
 from eurdf_conformance.properties.harness import Harness, NotAnswered
 from eurdf_conformance.properties.property import Property
 from eurdf_conformance.properties.shape import WrongShape
-
-
-@dataclass(frozen=True)
-class Trial:
-    """What a property is tried with.
-
-    Attributes:
-        parser: The parser that answers.
-        version: Version of the format that the files are of.
-        explore: Number of further random mechanisms to try; 0 for the frozen ones alone.
-        folder: Empty, to write files into.
-        seed: What further mechanisms are drawn from.
-    """
-
-    parser: Parser
-    version: Version
-    explore: int
-    folder: Path
-    seed: int = 0
-
-
-def try_property(prop: Property, level: Level, trial: Trial) -> Judgement:
-    """Whether a property holds of a parser; if the user explores, also whether it fails on a smaller mechanism."""
-    harness = Harness(trial.parser, trial.folder)
-    judgement = try_frozen(prop, level, trial.version, harness)
-    if not trial.explore:
-        return judgement
-    # Hypothesis is needed only here.
-    from eurdf_conformance.properties.explore import explore
-
-    further = explore(prop, level, trial, harness)
-    if judgement.verdict == Verdict.PASSED:
-        return further
-    return with_log(judgement, further.log)
 
 
 def try_frozen(prop: Property, level: Level, version: Version, harness: Harness) -> Judgement:

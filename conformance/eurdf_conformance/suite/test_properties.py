@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from eurdf_conformance.judging.judge import Judgement
-from eurdf_conformance.properties.trying import Trial, try_property
+from eurdf_conformance.properties.explore import Trial, try_property
 from eurdf_conformance.suite.item import PropertyItem, property_items
 from eurdf_conformance.suite.item_runner import ItemRunner
 from eurdf_conformance.suite.options import options_of
