@@ -143,10 +143,32 @@ def _dimensions(info: RobotInfo) -> Table:
         rows.append(("singularity", f"{info.singularity:.2g}", "distance to singularity; 0 if the closures lose rank"))
     if info.actuation_singularity is not None:
         rows.append(("", f"{info.actuation_singularity:.2g}", "the same with every actuator held"))
+    after = next(index for index, row in enumerate(rows) if row[0] == "mobility") + 1
+    rows[after:after] = _mobilities(info)
     for name, value, meaning in rows:
-        style = "red" if value == "open" else "green" if value == "close" else "bold"
+        shaky = name == "finite" and value != info.mobility
+        style = "red" if value == "open" else "green" if value == "close" else "yellow" if shaky else "bold"
         table.add_row(name, cell("-" if value is None else str(value), style), cell(meaning, "dim"))
     return table
+
+
+def _mobilities(info: RobotInfo) -> list[tuple[str, int | str | None, str]]:
+    """The other mobilities, where the rank alone does not decide them."""
+    rows: list[tuple[str, int | str | None, str]] = []
+    if info.rounded_mobility is not None:
+        meaning = f"degrees of freedom if the loops may be open by {info.rounded_tolerance:.0e}, by rounded numbers"
+        rows.append(("rounded", info.rounded_mobility, meaning))
+    if any(loops.evidence != "constant rank" for loops in info.loop_list):
+        if info.infinitesimal_mobility != info.mobility:
+            rows.append(
+                ("first order", info.infinitesimal_mobility, "degrees of freedom to first order here: singular")
+            )
+        meaning = "degrees of freedom of motions that continue from here"
+        orders = [loops.rigid_order for loops in info.loop_list if loops.rigid_order]
+        if max(orders, default=1) > 1:
+            meaning += f"; shaky: rigid to order {max(orders)} only"
+        rows.append(("finite", info.finite_mobility, meaning))
+    return rows
 
 
 def _closures(info: RobotInfo) -> Table:

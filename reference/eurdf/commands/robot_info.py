@@ -117,6 +117,16 @@ class LoopInfo(_Entry):
     """Its distance to singularity, as for the whole robot."""
     actuation_singularity: float | None
     """Its distance to a singularity of the actuation, as for the whole robot."""
+    infinitesimal_mobility: Count
+    """Degrees of freedom to first order at the analysed configuration."""
+    finite_mobility: Count | Literal["unknown"]
+    """Degrees of freedom of motions that continue from the analysed configuration; 'unknown' if it was not decided."""
+    evidence: Literal["constant rank", "second order", "continuation"] | None
+    """What decides the finite mobility: a proof in the first two cases, else numerical evidence; null if unknown."""
+    branches: tuple[Count, ...]
+    """Degrees of freedom of each branch found that passes through the analysed configuration."""
+    rigid_order: Count | None
+    """Order of rigidity, if the finite mobility is 0: at 2 and above, the loops are shaky. Else null."""
 
 
 class MotionInfo(_Entry):
@@ -163,6 +173,14 @@ class RobotInfo(_Entry):
     """Distance to singularity: least singular value of the dimensionless constraint Jacobian; null without loops."""
     actuation_singularity: float | None
     """The same for the constraint Jacobian stacked with the rows that select the actuated velocities."""
+    infinitesimal_mobility: Count | None
+    """Degrees of freedom to first order at the analysed configuration; null if the loops do not close."""
+    finite_mobility: Count | Literal["unknown"] | None
+    """Degrees of freedom of motions that continue from it; 'unknown' if undecided, null if the loops do not close."""
+    rounded_mobility: Count | None
+    """Degrees of freedom of loops that fail to close only by the rounding of numbers in the files; else null."""
+    rounded_tolerance: float | None
+    """How far open the loops may be for 'rounded_mobility', rad or characteristic lengths; else null."""
     mass: float | None
     """Mass of all links, including the root, kg."""
     residual: float | None
@@ -221,6 +239,10 @@ def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
         dependent=analysis.dependent,
         singularity=_finite(analysis.singularity),
         actuation_singularity=_finite(analysis.actuation_singularity),
+        infinitesimal_mobility=analysis.infinitesimal_mobility,
+        finite_mobility=analysis.finite_mobility,
+        rounded_mobility=analysis.rounded_mobility,
+        rounded_tolerance=analysis.rounded_tolerance,
         mass=_finite(math.fsum(body.inertia.mass for body in mechanism.bodies if body.inertia)),
         residual=_finite(analysis.residual),
         closes=analysis.closes,
@@ -251,6 +273,11 @@ def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
                 controlled=loops.controlled,
                 singularity=_finite(loops.singularity),
                 actuation_singularity=_finite(loops.actuation_singularity),
+                infinitesimal_mobility=loops.infinitesimal_mobility,
+                finite_mobility=loops.finite_mobility,
+                evidence=loops.evidence,
+                branches=loops.branches,
+                rigid_order=loops.rigid_order,
             )
             for loops in analysis.loops
         ),

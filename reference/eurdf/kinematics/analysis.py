@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import Assembler, Assembly, start
 from eurdf.kinematics.evaluation import Evaluation
+from eurdf.kinematics.finite_mobility import Evidence, FiniteMobility, MobilityTest
 from eurdf.kinematics.loop import LoopGroup
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.sparse_basis import sparse_basis
@@ -64,6 +65,13 @@ class LoopAnalysis:
         actuation_singularity: See `Analysis`.
         dependent_actuators: See `Analysis`.
         motions: Its uncontrolled motions: see `Analysis`.
+        infinitesimal_mobility: nv - rank of K at the analysed configuration.
+        finite_mobility: See `Analysis`.
+        evidence: What decides its finite mobility: the rank is the same all around (a proof), the second-order test (a
+            proof), or continuation (numerical evidence); None if it is unknown.
+        branches: Dimension of each branch of closed configurations that was found to pass through the analysed one.
+        rigid_order: If its finite mobility is 0: the order p of rigidity. A motion of size h opens it by about hᵖ, so
+            at p = 2 and above it is shaky. Else None.
     """
 
     closures: tuple[str, ...]
@@ -80,6 +88,11 @@ class LoopAnalysis:
     actuation_singularity: float
     dependent_actuators: tuple[tuple[str, ...], ...]
     motions: tuple[Motion, ...]
+    infinitesimal_mobility: int
+    finite_mobility: int | Literal["unknown"]
+    evidence: Evidence | None
+    branches: tuple[int, ...]
+    rigid_order: int | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -115,6 +128,14 @@ class Analysis:
         closes: Whether the loops close: each closure is open by at most 1e-6 (m, rad) at q.
         q: The analysed configuration (nq,): closed, or the least open one found.
         left_out: Why the ranks were not computed though the loops close; else empty.
+        infinitesimal_mobility: nv - rank of K at ``q``: degrees of freedom to first order. Above ``mobility`` at a
+            singular ``q``.
+        finite_mobility: Dimension of the closed configurations around ``q``: degrees of freedom of motions that
+            continue; that of the largest branch. Below ``infinitesimal_mobility`` at a singular ``q`` and for a shaky
+            structure. "unknown" if it was not decided.
+        rounded_mobility: For loops that do not close, but only by rounding of the numbers in the files: the degrees of
+            freedom that they have if they may be open by ``rounded_tolerance``. Else None, and if it was not decided.
+        rounded_tolerance: That tolerance, dimensionless (rad, or characteristic lengths): ten times the least residual.
     """
 
     nq: int
@@ -136,6 +157,10 @@ class Analysis:
     closes: bool
     q: Vector
     left_out: str = ""
+    infinitesimal_mobility: int | None = None
+    finite_mobility: int | Literal["unknown"] | None = None
+    rounded_mobility: int | None = None
+    rounded_tolerance: float | None = None
 
 
 def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
@@ -148,6 +173,8 @@ def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
     around it, so a straight or folded start does not change the result. The others are small steps along the null space
     of K, closed again. K is dimensionless (lengths divided by the characteristic length of the robot); the rank of each
     group of loops is its `numerical_rank`.
+
+    The finite mobility is that at q itself: see `eurdf.kinematics.finite_mobility`. Limits of joints are ignored.
 
     Args:
         robot: The robot.
@@ -167,15 +194,22 @@ def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
     motions: list[Motion] = []
     left_out = _left_out(assembler, assembly)
     ranked = assembly.closes and not left_out
+    outside: Mask = np.ones(nv, dtype=bool)
+    for evaluation in assembler.evaluations:
+        outside[evaluation.group.velocities] = False
+    others = int(outside.sum())
+    rounded = None if assembly.closes or left_out else MobilityTest(assembler).rounded(assembly.q)
     if ranked:
         closures = [constraint.name for constraint in robot.constraints]
         loops = tuple(
-            _analyze(evaluation, at, actuated[evaluation.group.velocities], names, closures)
-            for evaluation, at in zip(assembler.evaluations, _generic_jacobians(assembler, assembly.q), strict=True)
+            _analyze(evaluation, at, finite, actuated[evaluation.group.velocities], names, closures)
+            for evaluation, at, finite in zip(
+                assembler.evaluations,
+                _generic_jacobians(assembler, assembly.q),
+                MobilityTest(assembler).finite(assembly.q),
+                strict=True,
+            )
         )
-        outside = np.ones(nv, dtype=bool)
-        for evaluation in assembler.evaluations:
-            outside[evaluation.group.velocities] = False
         motions = [motion for loop in loops for motion in loop.motions]
         motions += [
             _unit_motion(names, velocity, assembly.q) for velocity in np.flatnonzero(outside & ~actuated).tolist()
@@ -202,7 +236,21 @@ def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
         closes=assembly.closes,
         q=assembly.q,
         left_out=left_out,
+        infinitesimal_mobility=others + sum(loop.infinitesimal_mobility for loop in loops) if ranked else None,
+        finite_mobility=_sum_of_finite(others, loops) if ranked else None,
+        rounded_mobility=None if rounded is None else others + rounded[0],
+        rounded_tolerance=None if rounded is None else 10.0 * rounded[1],
     )
+
+
+def _sum_of_finite(others: int, loops: Sequence[LoopAnalysis]) -> int | Literal["unknown"]:
+    """Finite mobility of the robot: that of all loops, and the velocities outside of them."""
+    total = others
+    for loop in loops:
+        if loop.finite_mobility == "unknown":
+            return "unknown"
+        total += loop.finite_mobility
+    return total
 
 
 def _left_out(assembler: Assembler, assembly: Assembly) -> str:
@@ -242,6 +290,7 @@ def _generic_jacobians(assembler: Assembler, q: Vector) -> list[list[tuple[Vecto
 def _analyze(
     evaluation: Evaluation,
     at: Sequence[tuple[Vector, Matrix]],
+    finite: FiniteMobility,
     actuated: Mask,
     names: Sequence[str],
     closures: Sequence[str],
@@ -251,6 +300,7 @@ def _analyze(
     Args:
         evaluation: The group.
         at: Closed configurations, each with its dimensionless block of K; the first is the one to analyse.
+        finite: What was found of its finite mobility.
         actuated: Which of its velocities (n,) are actuated.
         names: For each velocity of the robot, the name of its joint.
         closures: Names of the robot's closures.
@@ -278,6 +328,11 @@ def _analyze(
         actuation_singularity=_nth(_singular_values(stacked), held),
         dependent_actuators=_dependent_actuators(A, rank, held - rank, actuated, members),
         motions=_motions(A, held, actuated, evaluation, members, q),
+        infinitesimal_mobility=finite.infinitesimal,
+        finite_mobility="unknown" if finite.finite is None else finite.finite,
+        evidence=finite.evidence,
+        branches=finite.branches,
+        rigid_order=finite.rigid_order,
     )
 
 

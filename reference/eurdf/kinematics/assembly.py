@@ -289,7 +289,7 @@ class Assembler:
         for _ in range(_MOST_STEPS):
             moving = [descent for descent in descents if descent.error > self.tolerance and not descent.stuck]
             feasible = [descent for descent in moving if _feasible(descent.evaluation)]
-            self._work += sum(_work_of_step(descent.evaluation.group) for descent in feasible)
+            self._work += sum(work_of_step(descent.evaluation.group) for descent in feasible)
             if not feasible or self._work > _MOST_WORK:
                 break
             steps = [descent.step(self._room(q, descent.evaluation)) for descent in feasible]
@@ -327,10 +327,10 @@ class Assembler:
 
 
 def _feasible(evaluation: Evaluation) -> bool:
-    return _work_of_step(evaluation.group) <= _MOST_WORK
+    return work_of_step(evaluation.group) <= _MOST_WORK
 
 
-def _work_of_step(group: LoopGroup) -> float:
+def work_of_step(group: LoopGroup) -> float:
     """Multiplications for the smaller of A Aᵀ and Aᵀ A, and for the evaluation of A."""
     m, n = len(group.rows), len(group.velocities)
     return float(m) * n * min(m, n) + _WORK_OF_A_CLOSURE * len(group.closures)

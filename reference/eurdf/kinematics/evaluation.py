@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -45,6 +46,13 @@ class Evaluation:
         self._stack = ConstraintStack(robot.tree, [robot.constraints[i] for i in group.closures], group.velocities)
         self._memory = self._stack.memory(data)
         self._at: State | None = None
+        self._held: Vector | None = None
+
+    def holding(self, direction: Vector) -> Evaluation:
+        """The same group, whose `jacobian` is zero along a unit direction (n,): no step moves along it."""
+        other = copy.copy(self)
+        other._held = direction
+        return other
 
     @cached_property
     def _scale(self) -> Matrix:
@@ -59,7 +67,8 @@ class Evaluation:
 
     def jacobian(self) -> Matrix:
         """Derivative (m, n) of the rows by the velocities, where `residual` last was, dimensionless."""
-        return self._stack.jacobian(self._here) * self._scale
+        A = self._stack.jacobian(self._here) * self._scale
+        return A if self._held is None else A - np.outer(A @ self._held, self._held)
 
     def openings(self) -> list[tuple[float, float]]:
         """How far each constraint is open where `residual` last was, m and rad."""
