@@ -337,7 +337,7 @@ def test_ambiguous_limits_are_degrees_beside_others(tmp_path: Path) -> None:
     urdf = chain(joint("knee", "a", "b", limits="-100 100"), joint("hip", "b", "c", limits="-90 100"))
     (found,) = checked(tmp_path, urdf)
     assert "'hip' is -90 rad" in found.message
-    assert "3 other angles" in found.message
+    assert "3 more such angles" in found.message
 
 
 @pytest.mark.parametrize(("rpy", "expected"), [("90 0 0", 1), ("0 0 -7", 1), ("0 6.2832 -3.1416", 0), ("7.854 0 0", 0)])
@@ -360,7 +360,7 @@ def test_orientation_outside_links_and_joints_is_ignored(tmp_path: Path, rpy: st
     ("limits", "message"),
     [
         ("-90 1", "limit 'lower' of joint 'knee' is -90 rad, 14.3 turns"),
-        ("-90 90", "limit 'lower' of joint 'knee' is -90 rad, 14.3 turns; so is 1 other angle of this file"),
+        ("-90 90", "limit 'lower' of joint 'knee' is -90 rad, 14.3 turns; this file has 1 more such angle"),
     ],
 )
 def test_first_angle_in_degrees_is_named(tmp_path: Path, limits: str, message: str) -> None:
@@ -424,7 +424,7 @@ def test_single_outlier_length_is_reported_at_its_place(tmp_path: Path) -> None:
     far = chain(*arm).replace('<origin xyz="0.01 0 0"/>', '<origin xyz="0 120 0"/>', 1)
     (found,) = checked(tmp_path, far)
     assert (found.code, found.pointer) == ("x-length-in-millimetres", "/robot/link[1]/inertial/origin/@xyz")
-    assert "the centre of mass of link 'a' is 120 m" in found.message
+    assert "the distance of the centre of mass of link 'a' from its origin is 120 m" in found.message
     (found,) = checked(tmp_path, chain(*arm), "frames:\n  - {name: tip, link: c, xyz: [0, 0, 310]}\n")
     assert (found.code, found.pointer) == ("x-length-in-millimetres", "/frames/0/xyz")
     assert "310 mm are 0.31 m" in (found.hint or "")
@@ -527,7 +527,7 @@ def test_assembled_closing_only_w_first_has_hint(advice) -> None:
 
     (found,) = advice("digit_leg", edit)
     assert found.code == "assembled-open"
-    assert "w first" in (found.hint or "")
+    assert "read as w, x, y, z" in (found.hint or "")
 
 
 def test_coordinates_with_too_few_digits_are_named(advice) -> None:
@@ -536,7 +536,7 @@ def test_coordinates_with_too_few_digits_are_named(advice) -> None:
 
     (found,) = advice("four_bar", edit)
     assert found.code == "assembled-open"
-    assert "closed to" in (found.hint or "")
+    assert "stay open by" in (found.hint or "")
     assert "write more digits" in (found.hint or "")
 
 
@@ -637,7 +637,7 @@ def test_rounded_urdf_numbers_that_open_loops_are_named(advice) -> None:
         (found,) = advice("five_bar", without_configurations, out_of_plane(distance))
         assert found.code == "closure-cannot-close"
         assert ("with more digits" in (found.hint or "")) == rounded
-        assert ("closed to" in (found.hint or "")) == rounded
+        assert ("stay open by" in (found.hint or "")) == rounded
 
 
 @pytest.mark.parametrize("number", ["1e200", "-1e15"])

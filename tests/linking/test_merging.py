@@ -471,4 +471,4 @@ def test_only_remaining_joints_need_ranges(yaml: str, without: list[str]) -> Non
         return
     count = "1 joint has" if len(without) == 1 else f"{len(without)} joints have"
     named = ", ".join(f"'{name}'" for name in without[:3]) + (", ..." if len(without) > 3 else "")
-    assert told == [f"{count} the range 0 to 0: {named}"]
+    assert told == [f"{count} the position limits 0 and 0: {named}"]

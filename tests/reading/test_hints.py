@@ -270,7 +270,7 @@ def test_nearby_xacro_is_suggested_with_option(tmp_path: Path, monkeypatch: pyte
 
 def test_several_urdfs_suggest_none(tmp_path: Path) -> None:
     hint = hint_of(tmp_path, ["a.urdf", "b.urdf"], VERSION2)
-    assert hint == "there are 'a.urdf', 'b.urdf': write urdf: a.urdf, or another of them"
+    assert hint == "there are 'a.urdf', 'b.urdf': write urdf: a.urdf, or use another of these files"
 
 
 def test_missing_urdf_names_key_and_option(tmp_path: Path) -> None:
@@ -286,7 +286,7 @@ def test_version_1_is_not_told_to_add_key(tmp_path: Path, monkeypatch: pytest.Mo
     hint = hint_of(Path(), urdfs, "name_mot: []\n")
     assert "key 'urdf'" not in hint
     assert "write urdf" not in hint
-    assert "call it robot.urdf" in hint
+    assert "save it as robot.urdf" in hint
     assert "--urdf " + {0: "FILE", 1: "'leg one.urdf'", 2: "a.urdf"}[len(urdfs)] in hint
     if len(urdfs) == 1:
         os.rename(urdfs[0], "robot.urdf")

@@ -410,7 +410,7 @@ def test_any_text_gives_document_or_error(pieces: list[str]) -> None:
         (
             "<robot>\n <link>\n</robot>",
             (3, 1),
-            "</robot> is where </link> is expected, which closes the <link> of line 2",
+            "</robot> does not match the open <link> of line 2; </link> is expected",
             None,
         ),
         ("<robot>\n é<link>\n", (2, 3), "<link> is never closed", "</link>"),

@@ -578,7 +578,7 @@ def test_other_yaml_version_is_refused(version: str) -> None:
     [
         ("a:\n\tb: 1\n", (2, 1), "a tab is used as indentation", "indent with spaces"),
         ("a:\n  b: 1\n\tc: 2\n", (3, 1), "a tab is used as indentation", "indent with spaces"),
-        ("é: ü: x\n", (1, 5), "':' is where no key is allowed", "quote"),
+        ("é: ü: x\n", (1, 5), "':' is not allowed here", "quote"),
         ("a: 1\nbc\nd: 2\n", (2, 1), "no ':' after it", "key: value"),
         ("a:\n  b: 1\n c: 2\n", (3, 2), "the mapping that begins on line 1", "like 'b'"),
         ("a:\n  - 1\n  b: 2\n", (3, 3), "the list that begins on line 2", "'- '"),
@@ -600,7 +600,7 @@ def test_other_yaml_version_is_refused(version: str) -> None:
         ("a: &b 1\nc: *b:\n", (2, 4), "not a valid anchor name", "ASCII letters"),
         ("a: {?b: 1}\n", (1, 6), "directly before a key", "quote"),
         ("a: [?b]\n", (1, 6), "directly before a key", "quote"),
-        ("%MINE 1\n---\na: 1\n", (1, 6), "only the directives", "leave the line out"),
+        ("%MINE 1\n---\na: 1\n", (1, 6), "only the directives", "remove the line"),
     ],
 )
 def test_syntax_error_is_reported_plainly_at_its_place(

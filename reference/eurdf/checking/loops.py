@@ -43,9 +43,9 @@ def closure_diagnostics(description: Linked, robot: Robot, assembly: Assembly | 
         if assembly.reason == "given up":
             diagnostics.report(
                 "x-loops-not-checked",
-                "whether the loops can be closed was not computed: too many closures share their joints",
+                "the loops were not checked: too many closures share joints",
                 description.place_of_closure(closure),
-                "state a configuration 'assembled' (version 2): the loops are checked at it",
+                "state a configuration 'assembled' (version 2): then the loops are checked there",
             )
             return diagnostics
         diagnostics.report(
@@ -54,7 +54,7 @@ def closure_diagnostics(description: Linked, robot: Robot, assembly: Assembly | 
             description.place_of_closure(closure),
             f"{_closed_to(assembly.open)}: write the numbers of the files with more digits"
             if _is_rounding(robot, assembly.open)
-            else "check where its frames are, and that enough joints can move",
+            else "check where the frames of the closure are, and that enough joints can move",
         )
     return diagnostics
 
@@ -77,7 +77,7 @@ def assembled_diagnostics(description: Described, robot: Robot) -> Diagnostics:
 
 def _hint_for_assembled(robot: Robot, openings: Sequence[Opening]) -> str:
     if closes_w_first(robot, "assembled"):
-        return "they close where its quaternions are read w first: the order is x, y, z, w"
+        return "the loops close if its quaternions are read as w, x, y, z: the order is x, y, z, w"
     if not _is_rounding(robot, openings):
         return "`eurdf assemble --write --force` writes a configuration that closes them, if it finds one"
     from eurdf.kinematics.assembly import assemble
@@ -97,9 +97,9 @@ def _is_rounding(robot: Robot, openings: Iterable[Opening]) -> bool:
 
 
 def _closed_to(openings: Iterable[Opening]) -> str:
-    """How far the loops are closed, in the unit of the widest opening."""
+    """How far the loops stay open, in the unit of the widest opening."""
     widest = max(openings, key=_width)
-    return f"they are closed to {_width(widest):.0e} {'m' if widest.position >= widest.angle else 'rad'}"
+    return f"the loops stay open by {_width(widest):.0e} {'m' if widest.position >= widest.angle else 'rad'}"
 
 
 def _told(openings: Iterable[Opening]) -> str:

@@ -113,11 +113,11 @@ urdf-root-element          EU-URD-003 error   The root element is not <robot>.
 urdf-missing-element       EU-URD-004 error   A required child element is missing.
 urdf-missing-attribute     EU-URD-005 error   A required attribute is missing.
 urdf-repeated-element      EU-URD-006 error   An element occurs more than once where only one is allowed.
-urdf-bad-number            EU-URD-007 error   An attribute is not the required finite number or numbers.
+urdf-bad-number            EU-URD-007 error   A numeric attribute does not contain the required finite numbers.
 urdf-empty-name            EU-URD-008 error   A name is empty.
 urdf-duplicate-link        EU-URD-009 error   Two links have the same name.
 urdf-duplicate-joint       EU-URD-010 error   Two joints have the same name.
-urdf-reserved-name         EU-URD-011 error   A name is reserved for the model.
+urdf-reserved-name         EU-URD-011 error   A link, joint or frame has a reserved name.
 urdf-joint-type            EU-URD-012 error   A joint has an unknown type.
 urdf-zero-axis             EU-URD-013 error   The axis of a moving joint is zero.
 urdf-unknown-link          EU-URD-014 error   A joint names a link that does not exist.
@@ -126,15 +126,15 @@ urdf-two-parents           EU-URD-016 error   A link is the child of two joints.
 urdf-cycle                 EU-URD-017 error   Joints form a cycle, so the robot is not a tree.
 urdf-two-roots             EU-URD-018 error   More than one link has no parent.
 urdf-reversed-limits       EU-URD-019 error   A lower limit is above the upper limit.
-urdf-negative-limit        EU-URD-020 error   A limit of velocity or effort, a damping or a friction is negative.
+urdf-negative-limit        EU-URD-020 error   A velocity limit, effort limit, damping or friction is negative.
 urdf-mimic-unknown         EU-URD-021 error   A joint mimics a joint that does not exist.
 urdf-mimic-cycle           EU-URD-022 error   Joints mimic one another in a cycle.
 urdf-mimic-kind            EU-URD-023 error   A mimic joint or its leader does not have exactly one coordinate.
-urdf-mimic-fixed           EU-URD-036 warning A fixed joint is a mimic joint, which has no effect.
-urdf-geometry              EU-URD-024 error   A geometry is not one shape of positive size.
-urdf-no-range              EU-URD-025 warning A revolute or prismatic joint has the range 0 to 0, that is, none.
-urdf-unknown-element       EU-URD-026 warning An element or attribute is similar to one of URDF.
-urdf-closure-ignored       EU-URD-027 warning The URDF states a closure in a dialect that is not part of this format.
+urdf-mimic-fixed           EU-URD-036 warning A fixed joint has a <mimic>, which has no effect.
+urdf-geometry              EU-URD-024 error   A geometry is not exactly one shape with valid dimensions.
+urdf-no-range              EU-URD-025 warning A revolute or prismatic joint has the position limits 0 and 0.
+urdf-unknown-element       EU-URD-026 warning An unknown element or attribute has a name similar to one of URDF.
+urdf-closure-ignored       EU-URD-027 warning The URDF contains a closure of another dialect, which has no effect.
 urdf-mesh-missing          EU-URD-028 warning A mesh file is not found.
 urdf-unknown-material      EU-URD-029 warning A material is used but not defined.
 urdf-texture-missing       EU-URD-033 warning A texture file is not found.
@@ -149,14 +149,14 @@ unknown-frame              EU-FRM-001 error   A name is not a link, joint or fra
 ambiguous-frame            EU-FRM-002 error   A name refers to two different frames.
 duplicate-frame            EU-FRM-003 error   The name of a frame is already in use.
 duplicate-closure-name     EU-CLO-001 error   Two closures have the same name.
-closure-same-frame         EU-CLO-002 error   A closure joins a frame to itself.
-closure-same-body          EU-CLO-003 error   A closure joins two frames that cannot move relative to each other.
-closure-duplicate          EU-CLO-004 error   Two closures join the same two frames.
+closure-same-frame         EU-CLO-002 error   A closure connects a frame with itself.
+closure-same-body          EU-CLO-003 error   A closure connects two frames that cannot move relative to each other.
+closure-duplicate          EU-CLO-004 error   Two closures connect the same two frames.
 unknown-joint              EU-JNT-001 error   A name is not a joint of the robot.
 unknown-actuator           EU-ACT-001 error   An actuator names a joint that does not exist.
 own-key-is-joint           EU-EXT-003 warning A user-defined key is the name of a joint, but has no effect on it.
 length-mismatch            EU-ONE-003 error   Two corresponding lists have different lengths.
-duplicate-replacement      EU-JNT-002 error   A joint is listed twice.
+duplicate-replacement      EU-JNT-002 error   A joint is changed or merged more than once.
 duplicate-joint-name       EU-JNT-003 error   The name of a joint that the description creates is already in use.
 """,
     ),
@@ -167,16 +167,16 @@ actuator-immobile          EU-ACT-002 error   An actuated joint cannot move.
 actuator-duplicate         EU-ACT-003 error   A joint is listed as an actuator twice.
 actuator-mimic             EU-ACT-004 error   An actuated joint is a mimic joint.
 actuator-merged            EU-ACT-005 error   An actuated joint was merged into another.
-joint-mimics               EU-JNT-004 error   A mimic joint, or its leader, cannot be replaced.
+joint-mimics               EU-JNT-004 error   A mimic joint is changed or merged, or its leader is replaced or merged.
 joint-kind                 EU-JNT-005 error   The type of a joint does not allow this replacement.
-joint-axis-zero            EU-JNT-006 error   An axis is zero.
-joint-axes-parallel        EU-JNT-007 error   Axes that must differ are parallel.
+joint-axis-zero            EU-JNT-006 error   An axis of a universal joint is zero.
+joint-axes-parallel        EU-JNT-007 error   Two axes of a universal joint, or of joints to merge, are parallel.
 joint-pitch-zero           EU-JNT-008 error   The pitch of a helical joint is zero.
 joint-property             EU-JNT-009 error   A property does not fit the type of the joint.
 joint-limits-reversed      EU-JNT-010 error   A lower limit is above the upper limit.
 merge-not-chain            EU-JNT-011 error   Joints to merge are not a chain of three rotary joints.
-merge-inertia              EU-JNT-012 error   A link between joints to merge has inertia.
-merge-closure-frame        EU-JNT-013 error   A link between joints to merge carries a closure frame.
+merge-inertia              EU-JNT-012 error   A link between joints to merge has mass.
+merge-closure-frame        EU-JNT-013 error   A closure has a frame on a link between joints to merge.
 merge-axes                 EU-JNT-014 error   The axes of joints to merge do not intersect in one point.
 configuration-joint        EU-CFG-001 error   A configuration names a joint without coordinates.
 configuration-length       EU-CFG-002 error   A configuration has the wrong number of coordinates for a joint.
@@ -191,7 +191,7 @@ closure-type-unknown       EU-CLO-007 warning A closure has a user-defined type 
 negative-mass              EU-INR-001 error   A mass is negative.
 inertia-not-psd            EU-INR-002 error   A rotational inertia is not positive semidefinite.
 inertia-triangle           EU-INR-003 warning The principal moments of an inertia violate the triangle inequality.
-leaf-without-inertia       EU-INR-004 error   A moving leaf of the tree has no mass, or no inertia about its joint.
+leaf-without-inertia       EU-INR-004 error   The last moving link of a chain has no mass or no inertia about its joint.
 """,
     ),
     *_rules(
@@ -208,9 +208,9 @@ x-length-in-millimetres    A length is probably in millimetres, because it is la
 x-quaternion-order         A quaternion is probably in the order w, x, y, z.
 x-no-actuator              A robot with closures has no actuator.
 x-dependent-actuators      Actuators cannot move independently, or cannot move at all.
-x-uncontrolled-motion      With every actuator held, a motion other than the spin of a rod is possible.
+x-uncontrolled-motion      A motion other than the spin of a rod remains when every actuator is held.
 x-closes-beyond-limits     The loops close only with joints beyond their limits.
-x-mimic-ignored            A mimic joint moves freely, because version 1 ignores mimics and it has no actuator.
+x-mimic-ignored            A joint with a <mimic> moves freely: it has no actuator, and version 1 ignores <mimic>.
 x-massless-link            A link of a loop has no mass.
 x-xacro-warning            A xacro file was expanded with warnings.
 x-loops-not-checked        The loops were not checked in full: too many of them share joints.

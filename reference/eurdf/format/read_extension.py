@@ -74,7 +74,7 @@ def _version(reporter: YamlReporter) -> Literal["1", "2.0"] | None:
     if misspelt is not None:
         reporter.report(
             "missing-key",
-            f"the file lacks '{VERSION_KEY}', the key for its version, but has {quoted(misspelt)}",
+            f"the file has the key {quoted(misspelt)}, but not '{VERSION_KEY}', which states its version",
             (misspelt,),
             f"did you mean '{VERSION_KEY}'?",
             key=True,
@@ -152,8 +152,8 @@ def _lengths_agree(model: Version1, reporter: YamlReporter) -> bool:
         if lengths[first] != lengths[second]:
             agree = False
             shorter = min((key for key in lengths if key in model.model_fields_set), key=lambda key: lengths[key])
-            counts = f"'{first}' has {lengths[first]} and '{second}' {lengths[second]} items"
-            message = f"{counts}, but they must have the same length"
+            counts = f"{lengths[first]} and {lengths[second]}"
+            message = f"'{first}' and '{second}' must have the same number of items, not {counts}"
             reporter.report(
                 "length-mismatch",
                 message,

@@ -486,8 +486,8 @@ TAGS = frozenset(
 
 #: Keys that do not go with the form that a mapping has, by its tag, and why.
 EXCLUDED: Mapping[str, Mapping[str, str]] = {
-    "pose on link": {"joint": "'link' and 'joint' exclude one another"},
-    "frame on link": {"joint": "'link' and 'joint' exclude one another"},
+    "pose on link": {"joint": "use either 'link' or 'joint', not both"},
+    "frame on link": {"joint": "use either 'link' or 'joint', not both"},
     **{
         f"{kind} joint": {
             key: f"'{key}' belongs to type '{owner}', not to type '{kind}'"

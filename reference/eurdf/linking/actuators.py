@@ -45,7 +45,7 @@ def link_actuators(
                 "actuator-merged",
                 f"joint '{name}' cannot be actuated: it was merged into the spherical joint '{merged[name]}'",
                 pointer,
-                f"actuate '{merged[name]}', or keep the three joints apart",
+                f"actuate '{merged[name]}', or do not merge the three joints",
             )
         elif name in split:
             first, second = split[name]
@@ -64,12 +64,12 @@ def link_actuators(
         elif name in listed:
             reporter.report("actuator-duplicate", f"joint '{name}' is actuated twice", pointer, "remove one")
         elif joint.type is JointType.FIXED:
-            hint = "actuate a moving joint, or remove it"
+            hint = "remove it, or actuate a joint that moves"
             reporter.report("actuator-immobile", f"joint '{name}' is fixed and cannot be actuated", pointer, hint)
         elif joint.mimic is not None:
             reporter.report(
                 "actuator-mimic",
-                f"joint '{name}' is a mimic joint of '{joint.mimic.joint}' and cannot be actuated",
+                f"joint '{name}' mimics '{joint.mimic.joint}' and cannot be actuated",
                 pointer,
                 f"actuate '{joint.mimic.joint}'",
             )

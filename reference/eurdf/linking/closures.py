@@ -48,7 +48,7 @@ def link_closures(
         if pair in joined:
             reporter.report(
                 "closure-duplicate",
-                f"closure '{entry.name}' joins the same two frames as '{joined[pair]}'",
+                f"closure '{entry.name}' connects the same two frames as '{joined[pair]}'",
                 entry.pointer,
                 "remove one of them",
             )
@@ -58,7 +58,7 @@ def link_closures(
         if kind is None:
             reporter.report(
                 "closure-type-unknown",
-                f"closure '{entry.name}' has the type '{entry.type}', not one of the format; the model ignores it",
+                f"closure '{entry.name}' has the user-defined type '{entry.type}' and is left out of the model",
                 (*entry.pointer, "type"),
             )
             continue
@@ -77,21 +77,21 @@ def _movable(
     if a.body == b.body and a.pose == b.pose:
         same = not a.frame or not b.frame or a.frame == b.frame
         what = f"a frame on '{a.body}'" if not a.frame else f"'{a.frame}'"
-        message = f"{what} to itself" if same else f"'{a.frame}' to '{b.frame}', which are the same frame"
+        message = f"{what} with itself" if same else f"'{a.frame}' with '{b.frame}', which is the same frame"
         reporter.report(
             "closure-same-frame",
-            f"closure '{entry.name}' joins {message}",
+            f"closure '{entry.name}' connects {message}",
             entry.b.pointer,
-            "name the frame on the other side of the loop",
+            "name the frame on the other side of the cut",
         )
         return False
     if rigid[a.body] == rigid[b.body]:
         which = f"'{a.body}'" if a.body == b.body else f"'{a.body}' and '{b.body}', which are fixed to each other"
         reporter.report(
             "closure-same-body",
-            f"closure '{entry.name}' joins two frames of one rigid body, {which}",
+            f"closure '{entry.name}' connects two frames of one rigid body, {which}",
             entry.pointer,
-            "a closure must join frames that a joint can move relative to each other",
+            "connect frames that can move relative to each other",
         )
         return False
     return True

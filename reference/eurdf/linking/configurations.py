@@ -73,7 +73,7 @@ def _joint(
         why = f"was merged into the spherical joint '{merged[name]}'"
         hint = f"give the coordinates of '{merged[name]}', a quaternion x, y, z, w"
     elif joint.mimic is not None:
-        why = f"is a mimic joint of '{joint.mimic.joint}' and has no coordinate"
+        why = f"mimics '{joint.mimic.joint}' and has no coordinate of its own"
     else:
         why = "is fixed and has no coordinate"
     reporter.report(
@@ -116,7 +116,7 @@ def _coordinates(
                 "configuration-quaternion",
                 f"the quaternion of joint '{joint.name}' in configuration '{entry.name}' has length {norm:.6g}, not 1",
                 pointer,
-                f"x, y, z, w of unit length: {unit}",
+                f"write a unit quaternion x, y, z, w: {unit}",
             )
             return None
         return (*values[:start], *(value / norm for value in values[start : start + 4]))

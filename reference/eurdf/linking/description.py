@@ -254,7 +254,7 @@ def _urdf_not_found(path: Path, extension: Extension, diagnostics: Diagnostics) 
     home = document.source.folder
     message = f"the URDF '{extension.urdf}' does not exist"
     if extension.version != "1" and "urdf" not in document.data:
-        message += ", the default without the key 'urdf'"
+        message += "; it is the default if there is no key 'urdf'"
     diagnostics.report("urdf-not-found", message, document.place(("urdf",)), _urdf_hint(path, home, extension))
 
 
@@ -271,7 +271,7 @@ def _urdf_hint(path: Path, home: Path, extension: Extension) -> str:
     meant = likely or (near[0] if near else None)
     option = f"the option --urdf {'FILE' if meant is None else shlex.quote(os.path.normpath(home / meant))}"
     if extension.version == "1":
-        fix = f"version 1 names none, so call it robot.urdf beside this file, or use {option}"
+        fix = f"version 1 cannot name the URDF; save it as robot.urdf beside this file, or use {option}"
     elif meant is None:
         fix = f"write its path from this file under the key 'urdf', or use {option}"
     else:
@@ -281,7 +281,7 @@ def _urdf_hint(path: Path, home: Path, extension: Extension) -> str:
     if not near:
         return f"there is no URDF nearby: {fix}"
     shown = ", ".join(f"'{other}'" for other in near[:4]) + (f" and {len(near) - 4} more" if len(near) > 4 else "")
-    return f"there are {shown}: {fix}, or another of them"
+    return f"there are {shown}: {fix}, or use another of these files"
 
 
 def _files_near(path: Path, home: Path, suffix: str) -> list[str]:

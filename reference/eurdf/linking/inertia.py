@@ -54,7 +54,7 @@ def check_inertias(urdf: Urdf, diagnostics: Diagnostics) -> set[str]:
         if inertia is None:
             continue
         if inertia.mass < 0.0:
-            message = f"link '{link.name}' has a mass of {inertia.mass:g} kg"
+            message = f"link '{link.name}' has the negative mass {inertia.mass:g} kg"
             _report(urdf, diagnostics, link, "negative-mass", message, "mass")
             faulty.add(link.name)
             continue
@@ -79,8 +79,8 @@ def check_inertias(urdf: Urdf, diagnostics: Diagnostics) -> set[str]:
                 diagnostics,
                 link,
                 "inertia-triangle",
-                f"the inertia of link '{link.name}' is not physical: of its principal moments {moments[0]:.3g}, "
-                f"{moments[1]:.3g}, {moments[2]:.3g} kg·m² the last exceeds the sum of the others",
+                f"the inertia of link '{link.name}' is not physical: its principal moments are {moments[0]:.3g}, "
+                f"{moments[1]:.3g}, {moments[2]:.3g} kg·m², and the last exceeds the sum of the others",
                 "inertia",
             )
     return faulty

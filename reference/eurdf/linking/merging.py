@@ -70,7 +70,9 @@ def check_chain(
     """
     for joint in chain:
         if joint.type not in rotary:
-            raise NotMergeable("merge-not-chain", f"joint '{joint.name}' is {joint.type}; only revolute joints merge")
+            raise NotMergeable(
+                "merge-not-chain", f"joint '{joint.name}' is {joint.type}; it must be revolute or continuous"
+            )
     between = []
     for upper, lower in itertools.pairwise(chain):
         if lower.parent != upper.child:
@@ -80,7 +82,9 @@ def check_chain(
         siblings = urdf.children.get(upper.child, ())
         if len(siblings) != 1:
             other = next(joint.name for joint in siblings if joint.name != lower.name)
-            raise NotMergeable("merge-not-chain", f"link '{upper.child}' between them also carries joint '{other}'")
+            raise NotMergeable(
+                "merge-not-chain", f"link '{upper.child}' between them is also the parent of joint '{other}'"
+            )
         between.append(urdf.links[upper.child])
     for link in between:
         if link.inertia is not None and link.inertia.mass >= MASSLESS:
@@ -205,7 +209,7 @@ def _meeting_point(lines: list[tuple[Vector3, Vector3]]) -> Vector3:
         if distance > MEETING:
             raise NotMergeable(
                 "merge-axes",
-                f"their axes do not intersect in one point: one misses it by {distance * 1e3:.3g} mm, "
+                f"their axes do not pass through one point: one is {distance * 1e3:.3g} mm away from it; "
                 f"the tolerance is {MEETING * 1e3:g} mm",
             )
     return point

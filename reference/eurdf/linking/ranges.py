@@ -29,9 +29,9 @@ def check_ranges(urdf: Urdf, joints: Mapping[str, Joint], diagnostics: Diagnosti
     count = "1 joint has" if len(found) == 1 else f"{len(found)} joints have"
     diagnostics.report(
         "urdf-no-range",
-        f"{count} the range 0 to 0: {names}",
+        f"{count} the position limits 0 and 0: {names}",
         partial(urdf.document.place, next(found[0].element.iterchildren("limit"))),
-        "write 'lower' and 'upper', or make it 'continuous'",
+        "state 'lower' and 'upper', or use type 'continuous' if there are no limits",
     )
 
 

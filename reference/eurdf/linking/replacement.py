@@ -215,7 +215,7 @@ class _Replacement:
                 "duplicate-joint-name",
                 f"there is already a joint '{entry.name}'",
                 entry.pointer,
-                f"give the merged joint a new name, or that of the last one, '{entry.merges[2]}'",
+                f"give the merged joint a new name, or the name of the last of the three joints, '{entry.merges[2]}'",
                 key=True,
             )
             return None
@@ -246,7 +246,7 @@ class _Replacement:
                 "joint-kind",
                 f"joint '{joint.name}' is {joint.type} in the URDF and cannot become {entry.type}",
                 (*entry.pointer, "type"),
-                f"only a {' or '.join(wanted)} joint can",
+                f"only a {' or '.join(wanted)} joint can become {entry.type}",
             )
             return None
         if entry.type == "fixed":
@@ -365,7 +365,9 @@ class _Replacement:
             stated = [key for key in _PROPERTIES if getattr(entry, key) is not None]
             if stated:
                 keys = _PROPERTIES[stated[0]]
-                self.report("joint-property", f"fixed joint '{joint.name}' has no {keys[-1]}", *keys)
+                self.report(
+                    "joint-property", f"fixed joint '{joint.name}' cannot have the property '{keys[-1]}'", *keys
+                )
                 return None
             return joint
         changes: dict[str, tuple[float, ...]] = {}
@@ -375,12 +377,12 @@ class _Replacement:
                 continue
             bounds_position = attribute in ("lower", "upper")
             if bounds_position and joint.type not in _LIMITED:
-                self.report("joint-property", f"a {joint.type} joint has no position limits", *keys)
+                self.report("joint-property", f"{joint.type} joint '{joint.name}' cannot have position limits", *keys)
                 return None
             n = joint.coordinates.nv
             values = stated if isinstance(stated, tuple) else (stated,) * n
             if len(values) != n:
-                wanted = "be one number" if n == 1 else f"have {n}, or one for all"
+                wanted = "be one number" if n == 1 else f"have {n}, or be one number for all"
                 self.report(
                     "joint-property",
                     f"'{keys[-1]}' of {joint.type} joint '{joint.name}' has {len(values)} numbers; it must {wanted}",
@@ -402,7 +404,9 @@ class _Replacement:
                     f"joint '{joint.name}': lower limit {lower:g} is above upper limit {upper:g}",
                     "limits",
                     key,
-                    hint=f"the {left_out.pop()} limit comes from the URDF; state it, too" if left_out else "swap them",
+                    hint=f"the {left_out.pop()} limit comes from the URDF; state both limits"
+                    if left_out
+                    else "swap the two limits",
                 )
                 return None
         return replace(joint, properties=properties)

@@ -96,7 +96,7 @@ def _checked(data: bytes, file: str, limit: int) -> Source:
     if len(data) > limit:
         raise too_large(file, f"{limit:,} bytes")
     if not data.strip():
-        raise Fault("file-unreadable", f"{file} is empty: there is no URDF and no description in it", Place(file))
+        raise Fault("file-unreadable", f"{file} is empty; it must contain a URDF or a description", Place(file))
     return decoded(data, file, Path())
 
 

@@ -9,8 +9,8 @@ from urllib.parse import unquote
 
 #: What to do where a file of a package is not found.
 HINT = (
-    "put them beside the URDF, or name the folder that holds their package by --package-dir (package_dirs= in Python), "
-    "ROS_PACKAGE_PATH or AMENT_PREFIX_PATH"
+    "put them beside the URDF, or give the folder that contains their package with --package-dir (package_dirs= in "
+    "Python), ROS_PACKAGE_PATH or AMENT_PREFIX_PATH"
 )
 
 

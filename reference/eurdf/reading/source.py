@@ -109,7 +109,7 @@ def decoded(data: bytes, file: str, base: Path | None = None) -> Source:
     # The first bytes distinguish UTF-16 and UTF-32 from UTF-8, with or without a byte order mark (YAML 1.2.2, 5.2).
     if data[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\0" in data[:2]:
         message = "the file begins as UTF-16, UTF-32 or binary data; it must be UTF-8 text"
-        raise Fault("file-not-utf8", message, Place(file, 1, 1), "save it with the encoding UTF-8")
+        raise Fault("file-not-utf8", message, Place(file, 1, 1), "save it as UTF-8")
     data = data.removeprefix(BOM)
     try:
         text = data.decode()
@@ -117,7 +117,7 @@ def decoded(data: bytes, file: str, base: Path | None = None) -> Source:
         before = data[: error.start].decode()
         place = Source(file, before, b"", base).place(len(before))
         message = f"the byte 0x{data[error.start]:02x} is not valid UTF-8"
-        raise Fault("file-not-utf8", message, place, "save the file with the encoding UTF-8") from None
+        raise Fault("file-not-utf8", message, place, "save it as UTF-8") from None
     return Source(file, text, data, base)
 
 
@@ -154,7 +154,7 @@ def _read_bytes(file: str, limit: int) -> bytes:
 
 def too_large(file: str, most: str) -> Fault:
     """The error of a file that has more than it may have."""
-    return Fault("file-too-large", f"the file has more than {most}, the maximum", Place(file))
+    return Fault("file-too-large", f"the file has more than {most}, which is the maximum", Place(file))
 
 
 def short(text: str) -> str:

@@ -90,7 +90,7 @@ def _find_packages_in(homes: Sequence[str]) -> None:
                 if os.path.isdir(folder):
                     return folder
         raise LookupError(
-            f"package '{package}' is not found; name the folder that holds it by --package-dir "
+            f"package '{package}' is not found; give the folder that contains it with --package-dir "
             "(package_dirs= in Python), ROS_PACKAGE_PATH or AMENT_PREFIX_PATH"
         )
 

@@ -88,7 +88,7 @@ def _not_closed(source: Source, problem: str, at: int, name: str, opened: int) -
     assert closing is not None
     line, _ = source.position(opened)
     name = short(name)
-    message = f"</{short(closing[0])}> is where </{name}> is expected, which closes the <{name}> of line {line}"
+    message = f"</{short(closing[0])}> does not match the open <{name}> of line {line}; </{name}> is expected"
     return Fault("xml-syntax", message, source.place(at - 2, closing.end()))
 
 
@@ -111,10 +111,10 @@ def _explain(text: str, problem: str, at: int) -> tuple[int, int, str, str | Non
         end = _end_of_name(text, at)
         return at, end, f"the attribute '{short(text[at:end])}' occurs twice in one element", None
     if problem == errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT:
-        return at, end, "this is after the end of the root element", "an XML file has one root element"
+        return at, end, "there is content after the end of the root element", "an XML file has one root element"
     if problem == errors.XML_ERROR_UNDEFINED_ENTITY:
         end = _end_of_name(text, at + 1)
-        hint = "XML knows &lt; &gt; &amp; &quot; and &apos;; a lone '&' is written &amp;"
+        hint = "XML defines &lt; &gt; &amp; &quot; and &apos;; write &amp; for a single '&'"
         return at, end, f"the entity '{short(text[at:end])};' is unknown", hint
     if problem == errors.XML_ERROR_MISPLACED_XML_PI:
         return at, end, "the XML declaration is not at the very beginning of the file", None

@@ -143,7 +143,7 @@ class _Reader:
         if document.version is not None and document.version != (1, 2):
             version = ".".join(map(str, document.version))
             message = f"the %YAML directive states version {version}; it must be 1.2"
-            raise self._fault("yaml-version", message, document, "leave the directive out")
+            raise self._fault("yaml-version", message, document, "remove the directive")
         while not self._file.data:
             event = self._next_event()
             kind = type(event)
@@ -199,7 +199,7 @@ class _Reader:
             self._key(value, event)
             return
         if type(value) is float and not isfinite(value):
-            what = "is not a finite number" if "n" in text.lower() else "is beyond the range of numbers"
+            what = "is not a finite number" if "n" in text.lower() else "is too large for a number"
             raise self._fault("yaml-not-finite", f"{_quote(text)} {what}", event)
         around.add(value, span)
 
@@ -271,7 +271,7 @@ class _Reader:
         begin, _ = _span(event)
         if self._source.text[begin - 1 : begin] == "?":
             # EU-YML-012: within braces, to libyaml it marks a key whatever follows.
-            message = "a '?' is directly before a key, inside braces or brackets"
+            message = "a '?' is not allowed directly before a key inside braces or brackets"
             raise self._fault("yaml-syntax", message, event, "quote the key, and its '?' if it is a part of it")
         if type(value) is not str:
             text = event.value if isinstance(event, ScalarEvent) else ""
@@ -302,7 +302,7 @@ class _Reader:
     def _tag_fault(self, event: Any, what: str) -> Fault:
         shown = event.tag.replace(TAG_PREFIX, "!!", 1)
         if shown in _CORE_TAGS:
-            return self._fault("yaml-unknown-tag", f"{what} does not fit the tag '{shown}'", event)
+            return self._fault("yaml-unknown-tag", f"{what} does not match the tag '{shown}'", event)
         return self._fault("yaml-unknown-tag", f"the tag {_quote(shown)} is unknown", event, "remove it")
 
     def _fault(self, code: str, message: str, event: Event, hint: str | None = None) -> Fault:

@@ -24,15 +24,15 @@ class _Meaning(NamedTuple):
     late: bool = False  # whether libyaml notices it only long after the place where the node around it begins
 
 
-_AFTER_VALUE = _Meaning("this is after the end of a value", "quote the value as a whole")
-_UNUSUAL_NAME = _Meaning("this is not a valid anchor name", "name it by ASCII letters, digits, '-' and '_'")
+_AFTER_VALUE = _Meaning("there is text after the end of a value", "quote the value as a whole")
+_UNUSUAL_NAME = _Meaning("this is not a valid anchor name", "use only ASCII letters, digits, '-' and '_'")
 _TAB = _Meaning("a tab is used as indentation", "indent with spaces")
 _MEANINGS = {
     "mapping values are not allowed in this context": _Meaning(
-        "a ':' is where no key is allowed",
+        "a ':' is not allowed here",
         "quote a value that has ': ' in it, and indent the keys of one mapping equally",
     ),
-    "mapping keys are not allowed in this context": _Meaning("a '?' is where no key is allowed"),
+    "mapping keys are not allowed in this context": _Meaning("a '?' is not allowed here"),
     "block sequence entries are not allowed in this context": _Meaning(
         "a list item cannot begin here", "begin the list on a line of its own"
     ),
@@ -61,9 +61,9 @@ _MEANINGS = {
     "did not find expected hexdecimal number": _Meaning("an escape has too few hexadecimal digits"),
     "found invalid Unicode character escape code": _Meaning("an escape is not a Unicode character"),
     "did not find expected alphabetic or numeric character": _UNUSUAL_NAME,
-    "found unknown directive name": _Meaning("only the directives %YAML and %TAG are known", "leave the line out"),
+    "found unknown directive name": _Meaning("only the directives %YAML and %TAG are known", "remove the line"),
     "found incompatible YAML document": _Meaning(
-        "the %YAML directive states a version other than 1.2", "leave the directive out", "yaml-version"
+        "the %YAML directive states a version other than 1.2", "remove the directive", "yaml-version"
     ),
     "found undefined tag handle": _Meaning("the tag has an unknown prefix", None, "yaml-unknown-tag"),
 }

@@ -57,7 +57,7 @@ def advise_on_actuation(description: Described, robot: Robot, q: Vector, diagnos
     analysis = analyze(robot, q)
     if analysis.left_out:
         place = _place_of_key(description, _closures_key(mechanism))
-        diagnostics.report("x-loops-not-checked", analysis.left_out, place, "analyze parts of the robot by themselves")
+        diagnostics.report("x-loops-not-checked", analysis.left_out, place, "analyze parts of the robot separately")
         return
     dependent = [loop for loop in analysis.loops if loop.dependent_actuators]
     if dependent:
@@ -143,9 +143,9 @@ def _report_uncontrolled(description: Described, robot: Robot, analysis: Analysi
         shown = "; ".join(moved[:_MOTIONS_LISTED]) + ("; ..." if len(moved) > _MOTIONS_LISTED else "")
         diagnostics.report(
             "x-uncontrolled-motion",
-            f"{count} {'motion is' if count == 1 else 'motions are'} possible with every actuator held, of {shown}",
+            f"{count} {'motion remains' if count == 1 else 'motions remain'} when every actuator is held: {shown}",
             _place_of_key(description, _actuators_key(robot.mechanism)),
-            "actuate a joint of each, add the closure that is missing, or use type 6d if the orientation is fixed, too",
+            "actuate a joint of each motion, add the missing closure, or use type 6d if it also fixes the orientation",
         )
 
 

@@ -55,7 +55,7 @@ def _report(found: list[_Found], diagnostics: Diagnostics) -> None:
         return
     value, what, place = found[0]
     more = len(found) - 1
-    others = "" if not more else f"; so {'is 1 other angle' if more == 1 else f'are {more} other angles'} of this file"
+    others = "" if not more else f"; this file has {more} more such {'angle' if more == 1 else 'angles'}"
     diagnostics.report(
         "x-angle-in-degrees",
         f"{what} is {value:g} rad, {abs(value) / (2.0 * math.pi):.3g} turns{others}",

@@ -50,7 +50,7 @@ def advise_on_lengths(description: Linked, meshes: Mapping[str, str], diagnostic
         if mass <= _HEAVY * median:
             length, what, place = next(found for found in joints if found[0] >= median)
             weight = f", and all links weigh {mass:.3g} kg" if mass > 0.0 else ""
-            message = f"{what} is {length:.4g} m, the median of all joints {median:.4g} m{weight}"
+            message = f"{what} is {length:.4g} m; the median for all joints is {median:.4g} m{weight}"
             diagnostics.report("x-length-in-millimetres", message, place, _hint(length))
         return
     in_urdf, in_extension = (
@@ -63,11 +63,13 @@ def advise_on_lengths(description: Linked, meshes: Mapping[str, str], diagnostic
         if not long:
             continue
         length, what, place = long[0]
-        more = f"; {len(long) - 1} more are as long" if len(long) > 1 else ""
-        message = f"{what} is {length:.4g} m, {length / median:.3g} times the usual distance of joints, {median:.3g} m"
+        more = f"; {len(long) - 1} more are too large" if len(long) > 1 else ""
+        message = (
+            f"{what} is {length:.4g} m, {length / median:.3g} times the median distance between joints, {median:.3g} m"
+        )
         hint = _hint(length)
         if of_a_kind is in_meshes:
-            hint = """if it is drawn in millimetres, add scale="0.001 0.001 0.001" to <mesh>"""
+            hint = """if the mesh is in millimetres, add scale="0.001 0.001 0.001" to <mesh>"""
         diagnostics.report("x-length-in-millimetres", message + more, place, hint)
 
 
@@ -81,7 +83,7 @@ def _between_joints(urdf: Urdf) -> Iterator[_Found]:
         if joint.parent != urdf.root or joint.type is not JointType.FIXED:
             origin = joint.element.find("origin")
             place = partial(urdf.document.place, joint.element if origin is None else origin, "xyz")
-            yield math.hypot(*joint.placement.xyz), f"the origin of joint '{joint.name}'", place
+            yield math.hypot(*joint.placement.xyz), f"the distance of joint '{joint.name}' from its parent", place
 
 
 def _centres_of_mass(urdf: Urdf) -> Iterator[_Found]:
@@ -89,7 +91,11 @@ def _centres_of_mass(urdf: Urdf) -> Iterator[_Found]:
         if link.inertia is not None and link.inertial is not None and any(link.inertia.pose.xyz):
             origin = next(link.inertial.iterchildren("origin"))
             place = partial(urdf.document.place, origin, "xyz")
-            yield math.hypot(*link.inertia.pose.xyz), f"the centre of mass of link '{link.name}'", place
+            yield (
+                math.hypot(*link.inertia.pose.xyz),
+                f"the distance of the centre of mass of link '{link.name}' from its origin",
+                place,
+            )
 
 
 def _of_extension(description: Linked) -> Iterator[_Found]:
@@ -99,7 +105,7 @@ def _of_extension(description: Linked) -> Iterator[_Found]:
     for reference in description.extension.references:
         if any(reference.xyz):
             place = partial(description.extension.document.place, (*reference.pointer, "xyz"))
-            yield math.hypot(*reference.xyz), "the distance of a frame", place
+            yield math.hypot(*reference.xyz), "the distance of a frame from its link or joint", place
 
 
 def _of_meshes(urdf: Urdf, meshes: Mapping[str, str]) -> Iterator[_Found]:
@@ -112,4 +118,4 @@ def _of_meshes(urdf: Urdf, meshes: Mapping[str, str]) -> Iterator[_Found]:
             seen.add(shape.filename)
             size = mesh_size(meshes[shape.filename])
             if size is not None:
-                yield size, f"mesh '{shape.filename}'", partial(place_of_file, urdf, "mesh", shape.filename)
+                yield size, f"the size of mesh '{shape.filename}'", partial(place_of_file, urdf, "mesh", shape.filename)

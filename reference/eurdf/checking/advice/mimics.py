@@ -34,7 +34,7 @@ def advise_on_mimics(description: Linked, diagnostics: Diagnostics) -> None:
     count = "1 joint has" if len(found) == 1 else f"{len(found)} joints have"
     diagnostics.report(
         "x-mimic-ignored",
-        f"{count} a <mimic>, which version 1 ignores, and no actuator: {names}",
+        f"{count} a <mimic> but no actuator, and version 1 ignores <mimic>: {names}",
         partial(urdf.document.place, next(found[0].element.iterchildren("mimic"))),
         "actuate the joints that move freely, remove <mimic>, or use version 2, which respects it",
     )

@@ -145,7 +145,7 @@ class UrdfReader:
             hint = "write a point, not a comma, and separate numbers by spaces"
         elif "${" in text or "$(" in text:
             hint = (
-                "this looks like xacro: give the .xacro file itself, by --urdf if there is a description, or expand it"
+                "this looks like xacro: expand it first, or give the .xacro file, with --urdf if there is a description"
             )
         shown = text if len(text) <= 40 else text[:37] + "..."
         self.report(
@@ -200,7 +200,7 @@ class UrdfReader:
     def refuse_reserved(self, name: str, element: Element) -> None:
         """EU-URD-011: no link and no joint is named as the world is."""
         if name == "universe":
-            message = f"'universe' is the name of the world and cannot be a {element.tag}'s"
+            message = f"'universe' is the name of the world and cannot be the name of a {element.tag}"
             self.report("urdf-reserved-name", message, element, "name")
 
     def children(self, parent: Element) -> dict[str, Element]:

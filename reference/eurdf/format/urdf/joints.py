@@ -77,7 +77,7 @@ def _axis(reader: UrdfReader, name: str | None, kind: JointType, element: Elemen
                 f"planar joint '{name}' moves in its own xy plane; its axis is ignored",
                 element,
                 "xyz",
-                "turn the joint's origin so that its z is the normal of the plane, and write the axis 0 0 1",
+                "rotate the joint's origin until its z axis is normal to the plane, and write the axis 0 0 1",
             )
     elif x == y == z == 0.0:
         reader.report("urdf-zero-axis", f"the axis of joint '{name}' is zero", element, "xyz")
@@ -109,7 +109,7 @@ def _check_needs_no_limit(reader: UrdfReader, name: str | None, kind: JointType,
             "urdf-missing-element",
             f"{kind} joint '{name}' has no <limit>",
             joint,
-            hint="use type 'continuous' for a joint that turns without limits" if kind == "revolute" else None,
+            hint="use type 'continuous' for a joint that rotates without limits" if kind == "revolute" else None,
         )
 
 
@@ -121,7 +121,7 @@ def _check_order(reader: UrdfReader, name: str | None, lower: float, upper: floa
             f"joint '{name}': lower limit {lower:g} is above upper limit {upper:g}",
             element,
             "lower",
-            "swap them",
+            "swap the two limits",
         )
 
 
@@ -136,7 +136,7 @@ def _refuse_negative(reader: UrdfReader, element: Element, **values: float) -> N
     """EU-URD-020: what is a magnitude is not negative."""
     for attribute, value in values.items():
         if value < 0.0:
-            message = f"'{attribute}' of {named(element)} is negative"
+            message = f"'{attribute}' of {named(element)} is {value:g}; it must not be negative"
             reader.report("urdf-negative-limit", message, element, attribute)
 
 

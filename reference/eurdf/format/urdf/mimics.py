@@ -48,11 +48,11 @@ def _leader(reader: UrdfReader, joint: UrdfJoint, mimic: Mimic, joints: _Joints,
 
 def _can_mimic(reader: UrdfReader, joint: UrdfJoint, leader: UrdfJoint, element: Element) -> bool:
     """EU-URD-023: a mimic joint and its leader have one coordinate."""
-    for role, each in (("mimics another", joint), ("is mimicked", leader)):
+    for role, each in (("mimics another joint", joint), ("is the leader of a mimic joint", leader)):
         if each.type not in MIMIC_TYPES:
             reader.mimic_reporter.report(
                 "urdf-mimic-kind",
-                f"joint '{each.name}' {role}, but is {each.type}: only joints of one coordinate can",
+                f"joint '{each.name}' {role}, but is {each.type}; it must be revolute, continuous or prismatic",
                 element,
                 "joint",
             )

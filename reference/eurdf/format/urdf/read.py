@@ -88,8 +88,8 @@ def _is_of_other_dialect(reader: UrdfReader, element: Element) -> bool:
         return False
     reader.report(
         "urdf-closure-ignored",
-        f"<{local}> states a constraint that is not part of this format and has no effect",
+        f"<{local}> is a constraint of another dialect of URDF and has no effect here",
         element,
-        hint="state it under 'closures' in the YAML file",
+        hint="describe it under 'closures' in the YAML file",
     )
     return True

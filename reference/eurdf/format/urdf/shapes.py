@@ -37,7 +37,7 @@ def _only_shape(reader: UrdfReader, geometry: Element) -> Element | None:
     shapes = list(geometry)
     if len(shapes) == 1:
         return shapes[0]
-    message = f"<geometry> holds {len(shapes)} elements; it must hold exactly one shape"
+    message = f"<geometry> contains {len(shapes)} elements; it must contain exactly one shape"
     reader.report("urdf-geometry", message, geometry)
     return None
 
@@ -51,7 +51,7 @@ def _mesh(reader: UrdfReader, element: Element, pose: Pose, look: Look) -> Shape
     if name is None or scale is None:
         return None
     if 0.0 in scale:
-        reader.report("urdf-geometry", "'scale' of <mesh> has a zero", element, "scale")
+        reader.report("urdf-geometry", "'scale' of <mesh> contains a 0", element, "scale")
         return None
     return Shape("mesh", scale, pose, name, *look)
 
@@ -77,7 +77,7 @@ def _primitive(reader: UrdfReader, element: Element, pose: Pose, look: Look) -> 
     if size is None:
         return None
     if min(size) <= 0.0:
-        reader.report("urdf-geometry", f"a size of <{kind}> is not positive", element)
+        reader.report("urdf-geometry", f"<{kind}> has a dimension that is not positive", element)
         return None
     color, texture = look
     return Shape(cast(_Primitive, kind), size, pose, color=color, texture=texture)

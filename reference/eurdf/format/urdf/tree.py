@@ -69,7 +69,7 @@ def _check_links_of_joints(reader: UrdfReader, joints: Sequence[UrdfJoint], link
             if name not in links:
                 reader.report(
                     "urdf-unknown-link",
-                    f"joint '{joint.name}' names the {tag} link '{name}', which does not exist",
+                    f"the {tag} link '{name}' of joint '{joint.name}' does not exist",
                     next(joint.element.iterchildren(tag)),
                     "link",
                     partial(did_you_mean, name, links, joint.name),
@@ -87,7 +87,7 @@ def _parent_joints(reader: UrdfReader, joints: Sequence[UrdfJoint]) -> dict[str,
                 f"link '{joint.child}' is the child of two joints, '{other}' and '{joint.name}'",
                 next(joint.element.iterchildren("child")),
                 "link",
-                "keep one of the joints, and state the other under 'closures' in the YAML file",
+                "keep one of the joints, and describe the other under 'closures' in the YAML file",
             )
         parent_joint[joint.child] = joint
     return parent_joint
@@ -120,7 +120,7 @@ def _is_acyclic(
         "urdf-cycle",
         "links form a cycle: " + cycle_of(cycle),
         last.element,
-        hint="take one joint out of the cycle, and state it under 'closures' in the YAML file",
+        hint="remove one joint of the cycle, and describe it under 'closures' in the YAML file",
     )
     return False
 
@@ -135,6 +135,6 @@ def _has_one_root(reader: UrdfReader, roots: Sequence[UrdfLink]) -> bool:
         f"{len(roots)} links have no parent: {names}; a robot has one root",
         roots[1].element,
         "name",
-        "join them by a joint",
+        "connect them with a joint",
     )
     return False
