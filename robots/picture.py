@@ -1,6 +1,6 @@
 """Draws the picture of a robot: ``python -m robots.picture NAME…|--all [-o FILE]``.
 
-What is seen are the visual shapes of the loaded robot, in the colours of their materials, where it stands assembled. It
+The picture shows the visual shapes of the loaded robot, in the colours of their materials, in its assembled pose. It
 is rendered by VTK, which ``pip install -e ".[pictures]"`` brings; it needs no screen, but OpenGL or EGL.
 """
 
@@ -64,7 +64,7 @@ class Solid:
     Attributes:
         mesh: Its surface, m.
         color: Red, green, blue, alpha from 0 to 1.
-        round: Whether its faces stand for a curved surface.
+        round: Whether its faces approximate a curved surface.
     """
 
     mesh: pv.PolyData

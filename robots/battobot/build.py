@@ -44,7 +44,7 @@ X6_8 = Motor(effort=8.0, velocity=32.5)
 
 
 def draw() -> Drawing:
-    """The robot as it stands when every joint is at zero."""
+    """The robot with every joint at zero."""
     robot = Drawing(
         "battobot",
         materials={

@@ -39,7 +39,7 @@ def barrel(at: Vector3, axis: Vector3, radius: float = 0.012) -> Cylinder:
 
 
 def draw() -> Drawing:
-    """The linkage as it stands when every joint is at zero."""
+    """The linkage with every joint at zero."""
     robot = Drawing(
         "bennett",
         materials={"ground": (0.3, 0.3, 0.33, 1.0), "driven": (0.8, 0.35, 0.15, 1.0), "bar": (0.45, 0.55, 0.7, 1.0)},

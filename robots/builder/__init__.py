@@ -1,7 +1,7 @@
 """Robots drawn in one assembled pose, in world coordinates, and written as Extended URDF.
 
 Every body's frame has its origin at the joint that carries the body, and its axes parallel to the world's in the drawn
-pose; only those of a universal joint lie along its two axes. So the drawn pose is the one at which every joint stands
+pose; only those of a universal joint lie along its two axes. So the drawn pose is the one in which every joint is
 at zero, and every loop is closed there because both its sides are the same point of the drawing.
 """
 

@@ -76,7 +76,7 @@ class Drawing:
         name: Name of the robot.
         materials: Colours by name: red, green, blue, alpha from 0 to 1.
         metadata: What the description says of itself.
-        root: Whether its root stands in the world or floats.
+        root: Whether its root is fixed or floats.
         bodies: By name; parents before their children.
         closures: In the order drawn.
     """
@@ -192,7 +192,7 @@ class Drawing:
 
         Args:
             side: Part of the names of the bodies, joints and closures to be mirrored: ``left``.
-            other: What stands in its place in the names of the mirror images: ``right``.
+            other: What replaces it in the names of the mirror images: ``right``.
 
         Raises:
             ValueError: If something hangs from or holds a body of that side but is not named so.

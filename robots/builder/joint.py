@@ -34,7 +34,7 @@ class Motor:
     friction: float = 0.0
 
 
-#: Of a joint that nothing drives; the velocity is there because URDF asks for one wherever there are stops.
+#: Of a joint that nothing drives; the velocity is there because URDF requires one for every joint with stops.
 PASSIVE = Motor(effort=0.0, velocity=20.0)
 
 
@@ -44,7 +44,7 @@ class Joint:
 
     Attributes:
         name: Unique among the joints.
-        type: What the joint is. A spherical or universal one stands in the URDF as a continuous one about ``axis``.
+        type: What the joint is. In the URDF, a spherical or universal one is continuous, about ``axis``.
         parent: Body that it hangs the next one from.
         at: Its centre, m.
         axis: Unit vector; of a universal joint the first axis, fixed to the parent.

@@ -39,7 +39,7 @@ def mirrored_shape(shape: Shape) -> Shape:
 
 
 def mirrored_joint(joint: Joint, renamed: Renamed) -> Joint:
-    """The mirror image of a joint: where both have the same coordinate, what it carries stands in the mirror."""
+    """The mirror image of a joint: where both have the same coordinate, what it carries is mirrored."""
     x, y, z = joint.axes
     return replace(
         joint,

@@ -20,7 +20,7 @@ _HEAD = "# Written by build.py beside this file: change it there.\n"
 
 
 def yaml_text(drawing: Drawing) -> str:
-    """The description in version 2.0; a drawing is assembled where every joint stands at its neutral."""
+    """The description in version 2.0; a drawing is assembled with every joint at its neutral."""
     content: dict[str, Value] = {
         "extended_urdf": "2.0",
         "urdf": "robot.urdf",
@@ -84,7 +84,7 @@ def _block(value: Mapping[str, Value] | Sequence[Value]) -> Iterator[str]:
 
 
 def _entry(head: str, value: Value) -> Iterator[str]:
-    """One entry of a mapping or a list; a list of plain values stands on the same line if it fits there."""
+    """One entry of a mapping or a list; a list of plain values is on the same line if it fits there."""
     if isinstance(value, str | float):
         yield f"{head} {_scalar(value)}"
         return

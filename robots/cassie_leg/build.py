@@ -11,7 +11,7 @@ from pathlib import Path
 
 from robots.builder import Box, Cylinder, Drawing, Motor, Vector3, midpoint, revolute, write
 
-# Points of the published description, to 0.1 mm, where it stands with the knee at -68.7 degrees as in its keyframe,
+# Points of the published description, to 0.1 mm, in the pose with the knee at -68.7 degrees as in its keyframe,
 # roll and yaw at zero, the springs at rest, the sole flat and its middle below the hip.
 HIP_ROLL = (0.0210, 0.1350, 0.0000)
 HIP_YAW = (-0.0490, 0.1350, 0.0000)
@@ -43,7 +43,7 @@ FOOT_MOTOR = Motor(effort=45.0, velocity=11.52, damping=1.0)
 
 
 def draw() -> Drawing:
-    """The leg as it stands when every joint is at zero."""
+    """The leg with every joint at zero."""
     robot = Drawing(
         "cassie_leg",
         materials={

@@ -32,7 +32,7 @@ ARM_MOTOR = Motor(effort=200.0, velocity=12.0)
 
 
 def draw() -> Drawing:
-    """The robot as it stands when every joint is at zero: the platform in the middle, all arms alike."""
+    """The robot with every joint at zero: the platform in the middle, all arms alike."""
     robot = Drawing(
         "delta",
         materials={

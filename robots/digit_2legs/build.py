@@ -10,7 +10,7 @@ from robots.digit_leg.build import draw_leg, draw_torso
 
 
 def draw() -> Drawing:
-    """The robot as it stands when every joint is at zero."""
+    """The robot with every joint at zero."""
     robot = draw_torso("digit_2legs", "Agility Robotics' Digit without arms, drawn from primitive shapes", "floating")
     draw_leg(robot, prefix="left_", ends=("ball", "universal"))
     robot.mirror("left", "right")

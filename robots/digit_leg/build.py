@@ -14,7 +14,7 @@ from typing import Literal
 
 from robots.builder import Box, Cylinder, Drawing, End, Motor, Vector3, midpoint, revolute, write
 
-# Points of the published description, to 0.1 mm, where it stands with the knee at 0.3 rad, the springs at rest, the
+# Points of the published description, to 0.1 mm, in the pose with the knee at 0.3 rad, the springs at rest, the
 # yaw axis upright, the sole flat and the middle of the foot below the hip.
 HIP_ROLL = (-0.0010, 0.0910, 0.0000)
 HIP_YAW = (-0.0450, 0.0910, -0.0505)
@@ -51,7 +51,7 @@ TOE_MOTOR = Motor(effort=42.0, velocity=11.52, damping=1.0, friction=1.0)
 
 
 def draw() -> Drawing:
-    """The leg as it stands when every joint is at zero."""
+    """The leg with every joint at zero."""
     robot = draw_torso("digit_leg", "Left leg of Agility Robotics' Digit on a fixed torso, drawn from primitive shapes")
     draw_leg(robot)
     return robot

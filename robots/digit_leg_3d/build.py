@@ -10,7 +10,7 @@ from robots.digit_leg.build import draw_leg, draw_torso
 
 
 def draw() -> Drawing:
-    """The leg as it stands when every joint is at zero."""
+    """The leg with every joint at zero."""
     robot = draw_torso("digit_leg_3d", "Left leg of Agility Robotics' Digit, its whole rods held by 3d closures")
     draw_leg(robot, ends=("ball", "point"))
     return robot

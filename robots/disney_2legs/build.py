@@ -13,7 +13,7 @@ from robots.disney_leg.build import MATERIALS, draw_leg, draw_pelvis
 
 
 def draw() -> Drawing:
-    """The biped as it stands when every joint is at zero."""
+    """The biped with every joint at zero."""
     robot = Drawing(
         "disney_2legs",
         materials=MATERIALS,

@@ -34,11 +34,11 @@ def leg_point(forward: float, left: float, up: float) -> Vector3:
 class Chain:
     """One of the two chains from the pelvis to the ankle: a five-bar linkage on a hip that rolls.
 
-    The pivots are (forward, up) along the axes of the leg, mm, where it stands as published.
+    The pivots are (forward, up) along the axes of the leg, mm, in the published pose.
 
     Attributes:
         name: Of the chain.
-        side: Which way leads out of the leg: 1 is left.
+        side: The direction that leads out of the leg: 1 is left.
         hip: Pivot of the thigh; the hip rolls at its height.
         knee: Pivot of the shin on the thigh.
         ankle: Centre of the ankle.
@@ -61,7 +61,7 @@ class Chain:
         return leg_point(at[0], MIDDLE + self.side * out, at[1])
 
     def on_shin(self, part: float) -> Vector3:
-        """The point of the world (m) that part of the way from the knee to the ankle."""
+        """The point of the world (m) that part of the line from the knee to the ankle."""
         (knee_x, knee_z), (ankle_x, ankle_z) = self.knee, self.ankle
         return self.point((knee_x + part * (ankle_x - knee_x), knee_z + part * (ankle_z - knee_z)))
 
@@ -116,7 +116,7 @@ MATERIALS = {
 
 
 def draw() -> Drawing:
-    """The leg as it stands when every joint is at zero."""
+    """The leg with every joint at zero."""
     robot = Drawing(
         "disney_leg",
         materials=MATERIALS,

@@ -19,7 +19,7 @@ ELBOWS = {1: (-0.2788, 0.0, 0.5016), 2: (0.2788, 0.0, 0.5016)}
 RISE = math.sqrt(BAR**2 - 0.2788**2)
 TIP = (0.0, 0.0, 0.5016 + RISE)
 
-#: The tool stands 6.75 cm beyond the tip, on the line of forearm 2.
+#: The tool is 6.75 cm beyond the tip, on the line of forearm 2.
 TOOL = (TIP[0] - 0.2788 * 0.0675 / BAR, 0.0, TIP[2] + RISE * 0.0675 / BAR)
 
 # Planes of the bars, one behind the other: y, m.
@@ -45,7 +45,7 @@ MATERIALS = {
 
 
 def draw() -> Drawing:
-    """The linkage as it stands when every joint is at zero."""
+    """The linkage with every joint at zero."""
     robot = drawing("five_bar", "Planar five-bar linkage, two motors and five revolutes")
     draw_arms(robot)
     robot.body("forearm_1", elbow(1), forearm(1), material="bar")

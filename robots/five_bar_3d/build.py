@@ -20,13 +20,13 @@ from robots.five_bar.build import (
     tool,
 )
 
-# The hinge stands on forearm 1, 18 cm from the tip. Its axis lies in the plane of the linkage, across the bar.
+# The hinge is on forearm 1, 18 cm from the tip. Its axis lies in the plane of the linkage, across the bar.
 ACROSS_BAR = (RISE / BAR, 0.0, -0.2788 / BAR)
 HINGE = (TIP[0] - 0.2788 * 0.18 / BAR, 0.0, TIP[2] - RISE * 0.18 / BAR)
 
 
 def draw() -> Drawing:
-    """The linkage as it stands when every joint is at zero."""
+    """The linkage with every joint at zero."""
     robot = drawing("five_bar_3d", "Five-bar linkage, isostatic with a hinge across one forearm and a 3d closure")
     draw_arms(robot)
     robot.body("forearm_1", elbow(1), bar(ELBOWS[1], HINGE, FOREARM_PLANES[1]), material="bar")

@@ -13,7 +13,7 @@ ACROSS_BAR = (RISE, 0.0, -0.2788)
 
 
 def draw() -> Drawing:
-    """The linkage as it stands when every joint is at zero."""
+    """The linkage with every joint at zero."""
     robot = drawing("five_bar_6d", "Five-bar linkage, isostatic with a universal elbow, a ball and a 6d closure")
     draw_arms(robot)
     cross = universal("cardan_elbow_1", "arm_1", ELBOWS[1], INWARD[1], ACROSS_BAR)

@@ -31,7 +31,7 @@ def pin(at: Vector3) -> Cylinder:
 
 
 def draw() -> Drawing:
-    """The linkage as it stands when every joint is at zero."""
+    """The linkage with every joint at zero."""
     robot = Drawing(
         "four_bar",
         materials={"ground": (0.3, 0.3, 0.33, 1.0), "driven": (0.8, 0.35, 0.15, 1.0), "bar": (0.45, 0.55, 0.7, 1.0)},

@@ -13,7 +13,7 @@ from robots.kangaroo_leg.build import MATERIALS, PELVIS, draw_leg
 
 
 def draw() -> Drawing:
-    """The robot as it stands when every joint is at zero."""
+    """The robot with every joint at zero."""
     robot = Drawing(
         "kangaroo_2legs",
         materials=MATERIALS,

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from robots.builder import Box, Cylinder, Drawing, Motor, Sphere, Vector3, ball, cross, prismatic, revolute, unit, write
 
-# Points of the published description, to 0.1 mm, where it stands with the hip at zero, the sole flat and the nut of the
+# Points of the published description, to 0.1 mm, in the pose with the hip at zero, the sole flat and the nut of the
 # leg-length actuator 30 mm up its screw. From the knee down, all lies in planes y = const.
 YAW_MOUNT = (-0.1151, 0.0988, -0.0308)
 YAW_EAR = (-0.0260, 0.1185, -0.0308)
@@ -32,7 +32,7 @@ SOLE = (-0.0030, 0.1469, -0.8915)
 #: Up the screw of the leg-length actuator.
 SCREW = (-0.4596, 0.0, 0.8881)
 
-# The two actuators of hip pitch and roll stand beside each other: x and z of their points.
+# The two actuators of hip pitch and roll are beside each other: x and z of their points.
 HIP_BRACKET = (-0.0040, -0.0846)
 HIP_MOUNT = (0.0475, -0.0846)
 HIP_BALL = (0.0600, -0.1772)
@@ -138,7 +138,7 @@ ANKLE_CHAINS = (
 
 
 def draw() -> Drawing:
-    """The leg as it stands when every joint is at zero."""
+    """The leg with every joint at zero."""
     robot = Drawing(
         "kangaroo_leg",
         materials=MATERIALS,

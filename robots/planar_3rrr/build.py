@@ -50,7 +50,7 @@ PINS = {leg: on_circle(PLATFORM_RADIUS, angle + TO_ELBOW + TO_PIN) for leg, angl
 
 
 def draw() -> Drawing:
-    """The robot as it stands when every joint is at zero."""
+    """The robot with every joint at zero."""
     robot = Drawing(
         "planar_3rrr",
         materials={

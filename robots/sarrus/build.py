@@ -22,7 +22,7 @@ ELEVATION = math.degrees(math.atan2(4.0, 3.0))
 #: Where the plate is cut: between the part that leg A carries and the strip along the hinge of leg B.
 SEAM = (0.0, -0.06, 0.16)
 
-# About its axis, every hinge turns the way it does when the plate rises.
+# About its axis, every hinge turns in the direction in which the plate rises.
 FORWARD = (1.0, 0.0, 0.0)
 BACK = (-1.0, 0.0, 0.0)
 LEFT = (0.0, 1.0, 0.0)
@@ -49,7 +49,7 @@ def hinge(at: Vector3, axis: Vector3) -> Cylinder:
 
 
 def draw() -> Drawing:
-    """The linkage as it stands when every joint is at zero."""
+    """The linkage with every joint at zero."""
     robot = Drawing(
         "sarrus",
         materials={

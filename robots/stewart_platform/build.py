@@ -11,7 +11,7 @@ from pathlib import Path
 
 from robots.builder import Box, Cylinder, Drawing, Motor, Sphere, Vector3, ball, prismatic, universal, write
 
-# Six gimbals on a circle below and six above, in pairs; the pairs above stand 60 degrees from those below.
+# Six gimbals on a circle below and six above, in pairs; the pairs above are 60 degrees from those below.
 LOWER_RADIUS = 1.65
 UPPER_RADIUS = 1.60
 HEIGHT = 2.39
@@ -28,7 +28,7 @@ LEGS = (1, 2, 3, 4, 5, 6)
 
 
 def draw() -> Drawing:
-    """The platform in its neutral position, where every joint stands at zero."""
+    """The platform in its neutral position: every joint at zero."""
     robot = Drawing(
         "stewart_platform",
         materials={

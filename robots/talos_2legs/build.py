@@ -16,7 +16,7 @@ from robots.talos_leg.build import FORWARD, LEFT, UP, draw_leg, draw_pelvis
 BACK = (-1.0, 0.0, 0.0)
 DOWN = (0.0, 0.0, -1.0)
 
-# Points of the published description, to 0.1 mm, where torso and head stand straight, the upper arm is 10 degrees off
+# Points of the published description, to 0.1 mm, where torso and head are straight, the upper arm is 10 degrees off
 # the body and the elbow bent by 90: the forearm points forward.
 TORSO = (0.0000, 0.0000, 0.0722)
 HEAD = (0.0200, 0.0000, 0.3932)
@@ -81,7 +81,7 @@ GRIPPER_MOTOR = Motor(effort=1.0, velocity=1.0, damping=1.0, friction=1.0)
 
 
 def draw() -> Drawing:
-    """The robot as it stands when every joint is at zero."""
+    """The robot with every joint at zero."""
     robot = draw_pelvis("talos_2legs", "PAL Robotics' humanoid Talos, drawn from primitive shapes", "floating")
     draw_torso(robot)
     draw_leg(robot, prefix="left_", ends=("ball", "point"))
@@ -226,9 +226,9 @@ def draw_gripper(robot: Drawing) -> None:
 
 
 def draw_finger(robot: Drawing, name: str, finger: Finger, closing: Vector3, opening: Vector3) -> None:
-    """A finger of the left hand. As it closes, its links turn one way, and its tips back by the same angle."""
+    """A finger of the left hand. As it closes, its links turn in one direction, and its tips back by the same angle."""
     end = midpoint(finger.tips[0], finger.tips[-1])
-    way = (end[0] - finger.link[0], end[1] - finger.link[1], 0.0)
+    bar = (end[0] - finger.link[0], end[1] - finger.link[1], 0.0)
     robot.body(
         f"left_{name}_crank",
         revolute(
@@ -240,7 +240,7 @@ def draw_finger(robot: Drawing, name: str, finger: Finger, closing: Vector3, ope
             drawn=20.0,
             motor=GRIPPER_MOTOR,
         ),
-        Cylinder(finger.crank, along(finger.crank, way, 0.6), radius=0.01, mass=finger.crank_mass),
+        Cylinder(finger.crank, along(finger.crank, bar, 0.6), radius=0.01, mass=finger.crank_mass),
         material="rod",
     )
     robot.body(
@@ -274,9 +274,9 @@ def draw_finger(robot: Drawing, name: str, finger: Finger, closing: Vector3, ope
         )
 
 
-def along(point: Vector3, way: Vector3, part: float) -> Vector3:
-    """The point moved by a part of a way (m)."""
-    return (point[0] + part * way[0], point[1] + part * way[1], point[2] + part * way[2])
+def along(point: Vector3, bar: Vector3, part: float) -> Vector3:
+    """The point moved along a part of a bar (m)."""
+    return (point[0] + part * bar[0], point[1] + part * bar[1], point[2] + part * bar[2])
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ from typing import Literal
 from robots.builder import Box, Cylinder, Drawing, Motor, Vector3, midpoint, revolute, write
 from robots.builder.drawing import End
 
-# Points of the published description, to 0.1 mm, where it stands with the hip pitched by -24 degrees, the knee by 50
+# Points of the published description, to 0.1 mm, in the pose with the hip pitched by -24 degrees, the knee by 50
 # and the ankle by -26, so that the sole is flat. The three axes of the hip meet in one point.
 HIP = (-0.0200, 0.0850, -0.2711)
 KNEE = (0.1346, 0.0850, -0.6182)
@@ -52,7 +52,7 @@ MATERIALS = {
 
 
 def draw() -> Drawing:
-    """The leg as it stands when every joint is at zero."""
+    """The leg with every joint at zero."""
     robot = draw_pelvis("talos_leg", "Left leg of PAL Robotics' Talos on a fixed pelvis, drawn from primitive shapes")
     draw_leg(robot)
     return robot
@@ -207,7 +207,7 @@ def beside(point: Vector3, y: float) -> Vector3:
 
 
 def between(start: Vector3, end: Vector3, part: float) -> Vector3:
-    """The point at that part of the way from one point to another."""
+    """The point at that part of the line from one point to another."""
     x, y, z = (a + part * (b - a) for a, b in zip(start, end, strict=True))
     return (x, y, z)
 

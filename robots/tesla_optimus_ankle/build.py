@@ -14,7 +14,7 @@ KNEE = (0.0, 0.0, 0.40)
 ANKLE = (0.0, 0.0, 0.0)
 SOLE = (0.05, 0.0, -0.07)
 
-# The left one of two actuators that stand side by side behind the shank: the universal joint at its upper end, and the
+# The left one of two actuators side by side behind the shank: the universal joint at its upper end, and the
 # ball at the heel.
 TOP = (-0.05, 0.035, 0.34)
 HEEL = (-0.05, 0.035, 0.005)
@@ -28,7 +28,7 @@ ACTUATOR = Motor(effort=4000.0, velocity=0.25)
 
 
 def draw() -> Drawing:
-    """The ankle as it stands when every joint is at zero: the sole level, the actuators upright."""
+    """The ankle with every joint at zero: the sole level, the actuators upright."""
     robot = Drawing(
         "tesla_optimus_ankle",
         materials={

@@ -35,7 +35,7 @@ CRANK_PLANE = 0.028
 
 
 def draw() -> Drawing:
-    """The ankle as it stands when every joint is at zero: the sole level, the cranks across."""
+    """The ankle with every joint at zero: the sole level, the cranks across."""
     robot = Drawing(
         "unitree_g1_ankle",
         materials={

@@ -44,7 +44,7 @@ ACTUATOR = Motor(effort=600.0, velocity=0.5)
 
 
 def draw() -> Drawing:
-    """The leg as it stands when every joint is at zero."""
+    """The leg with every joint at zero."""
     robot = Drawing(
         "wl16_leg",
         materials={
