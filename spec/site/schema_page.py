@@ -91,9 +91,9 @@ def _property(owner: str, key: str, value: Schema, required: bool, titles: dict[
 
 def _other_keys(definition: Schema) -> Iterator[nodes.Node]:
     if definition.get("additionalProperties", True) is not False:
-        yield nodes.Text("Other keys are the user's own.")
+        yield nodes.Text("Other keys are user-defined.")
     elif any(pattern == "^x-" for pattern in definition.get("patternProperties", ())):
-        yield nodes.Text("Any other key is the user's own and begins with ")
+        yield nodes.Text("Any other key is user-defined and begins with ")
         yield nodes.literal("", "x-")
         yield nodes.Text(".")
     else:

@@ -1,4 +1,4 @@
-"""Version 1, the published dialect: five keys, no version key, everything else the user's own (EU-ONE-001)."""
+"""Version 1, the published dialect: five keys and no version key; other keys are user-defined (EU-ONE-001)."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _TOGETHER = ("joint_name", "joint_type")
 
 
 def _refuse_names(value: Any) -> Any:
-    """EU-ONE-001: pass on values that are not lists of names: a pair without brackets gives one error, not two."""
+    """EU-ONE-001: refuse a list of names, so that a pair without brackets gives one error, not two."""
     if isinstance(value, list) and value and all(isinstance(item, str) for item in value):
         raise PydanticCustomError("wrong-type", "must be a list of pairs: [[A, B], …]")
     return value
@@ -26,7 +26,7 @@ def _refuse_names(value: Any) -> Any:
 class Version1(BaseModel):
     """A robot's loop closures, actuators and joints beside its URDF, in the published dialect.
 
-    The file has no version key. Keys other than these five are the user's own.
+    The file has no version key. Keys other than these five are user-defined.
     """
 
     model_config = ConfigDict(
@@ -41,7 +41,7 @@ class Version1(BaseModel):
     ] = Field(
         default=[],
         title="Loop closures",
-        description="Pairs of frames, A and B, that are held together: names of links or joints of the URDF.",
+        description="Pairs of frames, A and B, that a closure joins: names of links or joints of the URDF.",
         examples=[[["rod_tip", "knee_crank"]]],
     )
     type: list[ClosureType] = Field(

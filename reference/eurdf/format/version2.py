@@ -67,7 +67,7 @@ Coordinates = TypeAliasType(
 
 
 class SaysSomething(StrictMapping):
-    """A mapping that is of no use unless it has at least one of some keys."""
+    """A mapping that must have at least one of some keys."""
 
     one_of: ClassVar[tuple[str, ...]] = ()
 
@@ -169,7 +169,7 @@ ClosureType = Annotated[
 
 
 class Closure(StrictMapping):
-    """Two frames that are held together."""
+    """Two frames that are joined."""
 
     model_config = ConfigDict(title="Closure")
 
@@ -426,7 +426,7 @@ class Version2(StrictMapping):
     closures: list[Closure] = Field(
         default=[],
         title="Loop closures",
-        description="Pairs of frames that are held together.",
+        description="Pairs of frames, each joined by a closure.",
         examples=[[{"name": "knee_rod", "type": "6d", "frames": ["rod_tip", "knee_crank"]}]],
     )
     joints: ByName[Joint] = Field(
