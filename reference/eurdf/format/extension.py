@@ -23,8 +23,8 @@ class FrameReference:
     Attributes:
         pointer: Its place.
         name: Name; None for a pose written in place.
-        link: Link that the pose is on, or None.
-        joint: Joint whose frame (on the child's side) the pose is on, or None.
+        link: Link whose frame the pose is in, or None.
+        joint: Joint whose frame (on the child's side) the pose is in, or None.
         xyz: m.
         rpy: rad, about fixed axes.
     """
@@ -39,7 +39,7 @@ class FrameReference:
 
 @dataclass(frozen=True, slots=True)
 class ClosureEntry:
-    """A loop closure as written; ``type`` may also be the user's own, ``x-…``."""
+    """A loop closure as written; ``type`` can also be user-defined, ``x-…``."""
 
     pointer: Pointer
     name: str
@@ -50,7 +50,7 @@ class ClosureEntry:
 
 @dataclass(frozen=True, slots=True)
 class JointEntry:
-    """What the description says of one joint.
+    """The entry of one joint in the description.
 
     Attributes:
         pointer: The place of its value.
@@ -124,8 +124,8 @@ class Extension:
         root: Whether the root link is fixed or floating.
         closures: In file order; likewise the other lists.
         merges_revolutes: Whether three revolute joints whose axes meet become one spherical joint (version 1).
-        metadata: What the file says of itself.
-        own_data: The user's own data, as plain values, by the pointer of their key: at any level of a version 2 file,
+        metadata: The file's metadata.
+        own_data: User data, as plain values, by the pointer of their key: at any level of a version 2 file,
             at the top of a version 1 file.
     """
 
@@ -144,7 +144,7 @@ class Extension:
 
     @property
     def references(self) -> tuple[FrameReference, ...]:
-        """The frames of the closures, and what the frames that are added are on."""
+        """The frames of the closures, and those on which frames are added."""
         sides = (side for closure in self.closures for side in (closure.a, closure.b))
         return (*sides, *(frame.reference for frame in self.frames))
 

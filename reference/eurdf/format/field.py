@@ -1,6 +1,6 @@
-"""What the models of both versions are made of: a strict mapping, and the types of its fields."""
+"""The parts of the models of both versions: a strict mapping, and the types of its fields."""
 
-# Annotations are evaluated here, not put off: older pydantic looks an inherited one up in the module that inherits it.
+# Annotations are evaluated in this module: older pydantic looks an inherited one up in the module that inherits it.
 
 from collections.abc import Callable
 from typing import Annotated, Any, TypeVar
@@ -21,12 +21,12 @@ _OWN_DATA = {"title": "Own data", "description": "User data: kept, not interpret
 
 
 def is_own_key(key: str) -> bool:
-    """Whether a key of a version 2 file is the user's own."""
+    """Whether a key of a version 2 file is user-defined."""
     return key.startswith("x-")
 
 
 class StrictMapping(BaseModel):
-    """A mapping that has its known keys, and the user's own ``x-…``, and no other."""
+    """A mapping that has its known keys and user-defined ones, ``x-…``, and no others."""
 
     model_config = ConfigDict(**STRICT, extra="allow")
     __pydantic_extra__: dict[Annotated[str, Field(pattern=OWN_KEY)], Any]
@@ -47,7 +47,7 @@ class StrictMapping(BaseModel):
 
 
 class _NotNull:
-    """Takes ``| None`` away from what may be written: in Python None says that the key is left out."""
+    """Removes ``| None`` from the values that a file may have: in Python, None means that the key is left out."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         schema = handler(source)
@@ -58,7 +58,7 @@ class _NotNull:
 
 
 class _OwnKeysApart:
-    """Of a mapping whose keys are names: keys that begin with ``x-`` are no names, and their values anything."""
+    """For a mapping whose keys are names: keys that begin with ``x-`` are not names and can have any value."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         return core_schema.no_info_before_validator_function(_without_own_keys, handler(source))
@@ -70,7 +70,7 @@ class _OwnKeysApart:
 
 
 def _without_own_keys(value: Any) -> Any:
-    """EU-EXT-004: user-defined keys are no names."""
+    """EU-EXT-004: user-defined keys are not names."""
     if isinstance(value, dict):
         return {key: item for key, item in value.items() if not is_own_key(key)}
     return value
@@ -80,14 +80,14 @@ def either(form: Callable[[Any], str | None], expected: str) -> Discriminator:
     """A union whose form is decided before validation, so that errors refer to the intended form only.
 
     Args:
-        form: From a value the tag of the form it is meant to be, or None. No tag is a key of the format.
-        expected: What the value must be, as it is said where it is none of them.
+        form: Gives the tag of the form that a value is meant to have, or None. No tag is a key of the format.
+        expected: What the value must be, as the message says if it has no such form.
     """
     return Discriminator(form, custom_error_type="wrong-type", custom_error_message=f"must be {expected}")
 
 
 def refuse_zero(number: float) -> float:
-    """Pass the number on, which must not be 0."""
+    """Pass on the number, which must not be 0."""
     if number == 0.0:
         raise PydanticCustomError("out-of-range", "must not be 0")
     return number
@@ -95,14 +95,14 @@ def refuse_zero(number: float) -> float:
 
 _T = TypeVar("_T")
 
-#: A value that may be left out, but not be null.
+#: A value that may be left out but must not be null.
 MayLack = Annotated[_T | None, _NotNull()]
 
 #: A mapping from names to values, which can also contain user-defined keys.
 ByName = Annotated[dict[Annotated[str, Field(min_length=1)], _T], _OwnKeysApart()]
 
 
-# Named types have definitions of their own in the schema, which is where the names of one robot are put.
+# Each named type has a definition of its own in the schema; the names of one robot are inserted there.
 LinkName = TypeAliasType(
     "LinkName", Annotated[str, Field(min_length=1, title="Link", description="Name of a link of the URDF.")]
 )

@@ -1,4 +1,4 @@
-"""Keys that are where the file does not expect them because they are indented too little or too much: what to try."""
+"""Hints for keys that are in the wrong mapping because they are indented too little or too much."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ _NAMED = ("joints", "configurations")
 
 
 class Indentation:
-    """What in one file is probably indented wrongly.
+    """Finds what is probably indented wrongly in one file.
 
     Args:
         document: The file.
-        faulty: Where something is wrong in it.
+        faulty: Pointers to the errors in it.
     """
 
     def __init__(self, document: YamlDocument, faulty: Iterable[Pointer]) -> None:
@@ -57,14 +57,14 @@ class Indentation:
 
 
 def key_of_the_file_hint(pointer: Pointer) -> str | None:
-    """For a key inside something else that is one of the whole file."""
+    """For a key inside another entry that belongs at the top of the file."""
     if len(pointer) < 2 or pointer[-1] not in KEYS[""]:
         return None
     return f"'{pointer[-1]}' is a key of the whole file: do not indent it"
 
 
 def another_entry_hint(pointer: Pointer, document: YamlDocument) -> str | None:
-    """For a key inside a joint or a configuration whose value is what another joint or configuration has."""
+    """For a key inside a joint or a configuration whose value looks like another joint or configuration."""
     if len(pointer) != 3 or pointer[0] not in _NAMED:
         return None
     name, key = pointer[1:]

@@ -1,4 +1,4 @@
-"""Names that are near one another, and so mostly one misspelt (chapter Scope and terms)."""
+"""Names that are near each other, so that one is probably the other misspelt (chapter Scope and terms)."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ _FOLD = str.maketrans(ascii_uppercase, ascii_lowercase)
 
 
 def near(name: str, known: Iterable[str]) -> str | None:
-    """The first of the known names that another is near, or None.
+    """The first known name that an unknown one is near, or None.
 
     Args:
-        name: A name that is none of them.
-        known: Names of the format, of which none is long.
+        name: The unknown name.
+        known: Names of the format; they are short.
     """
     folded = name.translate(_FOLD)
     return next((one for one in known if _is_near(folded, one.translate(_FOLD))), None)
@@ -30,7 +30,7 @@ def _is_near(name: str, known: str) -> bool:
 
 
 def edits(one: str, other: str) -> int:
-    """How often a character is to be put in, taken out, or exchanged with the next, to make one name of another."""
+    """Number of insertions, deletions and swaps of adjacent characters that turn one name into another."""
     before: list[int] = []
     row = list(range(len(other) + 1))
     for i, a in enumerate(one, 1):

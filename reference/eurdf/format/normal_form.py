@@ -1,4 +1,4 @@
-"""Both versions in one form: what a model has accepted, as an `Extension`."""
+"""Both versions in one form: a file that a model has accepted, as an `Extension`."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def from_version2(model: Version2, document: YamlDocument) -> Extension:
 
     Args:
         model: The file, accepted.
-        document: The same as it was written, in which user-defined keys are sought.
+        document: The file as written, which is searched for user-defined keys.
     """
     return Extension(
         document,

@@ -1,4 +1,4 @@
-"""Reading the YAML file: which version it is of, what is wrong with it, what it says."""
+"""Reading the YAML file: its version, its errors, its content."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ VERSION_KEY = "extended_urdf"
 
 _VERSION1_KEYS = tuple(Version1.model_fields)
 
-#: Keys of version 2.0; ``metadata`` may well be the user's own in a file of version 1.
+#: Keys of version 2.0; ``metadata`` is likely a user-defined key in a file of version 1.
 _VERSION2_KEYS = tuple(key for key in Version2.model_fields if key not in (VERSION_KEY, "metadata"))
 
 
@@ -59,12 +59,12 @@ def read_extension(document: YamlDocument, diagnostics: Diagnostics) -> Extensio
 
 
 def version_of(document: YamlDocument) -> Literal["1", "2.0"] | None:
-    """The version whose rules a file is to be read by; None if it has an error that leaves this unknown."""
+    """The version of a file; None if it has an error that leaves this unknown."""
     return _version(YamlReporter(document, Diagnostics()))
 
 
 def _version(reporter: YamlReporter) -> Literal["1", "2.0"] | None:
-    """The version whose rules a file is to be read by (EU-VER-002, EU-VER-003); None if unknown."""
+    """The version of a file (EU-VER-002, EU-VER-003); None if unknown."""
     data = reporter.document.data
     if VERSION_KEY in data:
         return _written_version(reporter)
@@ -94,7 +94,7 @@ def _version(reporter: YamlReporter) -> Literal["1", "2.0"] | None:
 
 
 def _written_version(reporter: YamlReporter) -> Literal["2.0"] | None:
-    """Version 2.0, or None if the file says another (EU-VER-001)."""
+    """Version 2.0, or None if the file states another (EU-VER-001)."""
     value = reporter.document.data[VERSION_KEY]
     pointer = (VERSION_KEY,)
     quoted = f'write {VERSION_KEY}: "{VERSION}", in quotes'
@@ -121,7 +121,7 @@ def _written_version(reporter: YamlReporter) -> Literal["2.0"] | None:
 
 
 def _warn_of_near_misses(reporter: YamlReporter) -> None:
-    """Warn of keys that are read as the user's own, but look as if they were meant for the reader (EU-ONE-002)."""
+    """Warn of keys that are read as user-defined, but look like keys of the format (EU-ONE-002)."""
     for key in reporter.document.data:
         if key in _VERSION1_KEYS or is_own_key(key):
             continue
@@ -143,7 +143,7 @@ def _warn_of_near_misses(reporter: YamlReporter) -> None:
 
 
 def _lengths_agree(model: Version1, reporter: YamlReporter) -> bool:
-    """Whether the lists of version 1 that go together are of one length (EU-ONE-003)."""
+    """Whether the lists of version 1 that belong together have the same length (EU-ONE-003)."""
     agree = True
     for first, second in (("closed_loop", "type"), ("joint_name", "joint_type")):
         if second not in model.model_fields_set:

@@ -17,19 +17,19 @@ from eurdf.mechanism.joint_type import JointType
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
-#: File of each version's schema, and what it is identified by.
+#: File and identifier of each version's schema.
 FILES: dict[Literal["1", "2"], str] = {"1": "extended-urdf-1.schema.json", "2": "extended-urdf-2.0.schema.json"}
 _IDS = {"1": "urn:extended-urdf:schema:1", "2": "urn:extended-urdf:schema:2.0"}
 
 Schema = dict[str, Any]
 
-#: Beside an enumeration of names: what is no name at all is judged elsewhere.
+#: Next to an enumeration of names: a value that is not a name is reported elsewhere.
 _OTHER_THAN_TEXT = {"not": {"type": "string"}}
 
 
 @dataclass(frozen=True, slots=True)
 class Names:
-    """The names of one robot, as its URDF has them.
+    """The names in the URDF of one robot.
 
     Attributes:
         links: Names of its links.
@@ -43,18 +43,18 @@ class Names:
 
 
 def names_of(urdf: Urdf) -> Names:
-    """The names that a URDF has."""
+    """The names in a URDF."""
     movable = tuple(name for name, joint in urdf.joints.items() if joint.type is not JointType.FIXED)
     return Names(tuple(urdf.links), tuple(urdf.joints), movable)
 
 
 def json_schema(version: Literal["1", "2"], names: Names | None = None) -> Schema:
-    """The schema of a version, as the models say it.
+    """The schema of a version, generated from the models.
 
-    With the names of one robot, an editor completes them. A file may itself make names that the URDF does not have:
-    by the key ``frames``, and by giving joints another type. Where names may be made so, an unknown one is accepted,
-    and the URDF's are offered; in a file that has neither key, and for names that no file can make (links, joints to
-    merge), an unknown one is refused.
+    With the names of one robot, an editor completes them. A file can itself define names that the URDF does not have:
+    by the key ``frames``, and by giving joints another type. Where a file can define names, the schema offers those of
+    the URDF and accepts others. It rejects unknown names in a file that has neither key, and where a file cannot define
+    names (links, joints to merge).
 
     Args:
         version: Version of the format.
@@ -100,7 +100,7 @@ def _put_names(schema: Schema, version: Literal["1", "2"], names: Names) -> None
 
 
 def _put_joint_keys(schema: Schema, names: Names) -> None:
-    """Put the names of joints where they are the keys of a mapping."""
+    """Insert the names of joints where they are the keys of a mapping."""
     joint = {"$ref": "#/$defs/Joint"}
     joints = schema["properties"]["joints"]
     joints["properties"] = {name: joint for name in names.joints if not is_own_key(name)}
@@ -111,7 +111,7 @@ def _put_joint_keys(schema: Schema, names: Names) -> None:
 
 
 def schema_text(schema: Schema) -> str:
-    """A schema as its file holds it."""
+    """The text of a schema's file."""
     return json.dumps(schema, indent=2, ensure_ascii=False) + "\n"
 
 

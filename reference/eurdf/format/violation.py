@@ -1,7 +1,7 @@
-"""What a model finds wrong in a file, said in codes, places and plain sentences.
+"""The errors that a model finds in a file, as diagnostics with codes, places and messages.
 
-The models and the JSON Schemas drawn from them say what is right (EU-SCH-001 to EU-SCH-006, EU-EXT-001); here one error
-gives one diagnostic.
+The models, and the JSON Schemas generated from them, define what is valid (EU-SCH-001 to EU-SCH-006, EU-EXT-001); here
+one error gives one diagnostic.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from eurdf.reading.yaml_reader import YamlDocument
 
-#: Maximum number of reported errors of one file; a file with more is not a description.
+#: Maximum number of reported errors per file; a file with more is not a description.
 MOST = 100
 
 _EXPECTED = {
@@ -36,13 +36,13 @@ _EXPECTED = {
     "model_type": "a mapping",
 }
 
-#: Lengths of pairs and vectors, which must be met exactly; other lists may have from 1 to 6 or 7 items.
+#: Lengths of pairs and vectors, which are exact; other lists can have from 1 to 6 or 7 items.
 _EXACT_LENGTHS = (2, 3)
 
 #: Only user-defined keys have a pattern; values with a pattern are distinguished by it beforehand.
 _UNKNOWN_KEY = "string_pattern_mismatch"
 
-#: What to write in place of a joint type that is none of the file's.
+#: What to write in place of a joint type that the file cannot state.
 _JOINT_TYPE_HINTS = {
     "universal": "a universal joint needs its axes: {type: universal, axes: xy}",
     "helical": "a helical joint needs its pitch: {type: helical, pitch: 0.005}",
@@ -58,12 +58,12 @@ class _Violation:
     """One error of pydantic's.
 
     Attributes:
-        type: Pydantic's name of the error, or the code of ours that a model raised.
-        message: What pydantic or a model says.
-        context: Numbers and names that the message is made of.
+        type: Pydantic's name of the error, or the code of this project that a model raised.
+        message: The message of pydantic or of a model.
+        context: Numbers and names in the message.
         value: The value.
-        pointer: Where that is.
-        mapping: Last field or tag on the way to the mapping or list that holds it: the key of `KEYS`.
+        pointer: Its place.
+        mapping: Last field or tag on the path to the mapping or list that contains it: the key of `KEYS`.
     """
 
     type: str
@@ -116,7 +116,7 @@ def violations(error: ValidationError, document: YamlDocument) -> list[Diagnosti
 
 
 def subject(pointer: Pointer) -> str:
-    """How a sentence names the value at a pointer."""
+    """How a message names the value at a pointer."""
     if not pointer:
         return "the file"
     if isinstance(pointer[-1], int):
@@ -126,13 +126,13 @@ def subject(pointer: Pointer) -> str:
 
 
 def quoted(text: str) -> str:
-    """A text as a sentence quotes it: cut where it is long, and its control characters escaped."""
+    """A text as a message quotes it: shortened if it is long, with control characters escaped."""
     shown = text if text.isprintable() else repr(text)[1:-1]
     return f"'{shown}'" if len(shown) <= 60 else f"'{shown[:57]}…'"
 
 
 def described(value: Any) -> str:
-    """What a value is, as a sentence says it."""
+    """What a value is, as a message describes it."""
     if value is None:
         return "null"
     if isinstance(value, bool):
@@ -147,7 +147,7 @@ def described(value: Any) -> str:
 
 
 def _located(detail: ErrorDetails, data: Any) -> _Violation:
-    """The error with its place, for which the tags are taken out of pydantic's location."""
+    """The error with its place: pydantic's location without the tags."""
     pointer: list[str | int] = []
     mapping = last = ""
     for step in detail["loc"]:
@@ -169,10 +169,10 @@ def _located(detail: ErrorDetails, data: Any) -> _Violation:
 
 
 def _likeliest_key(key: str, keys: Iterable[str]) -> str | None:
-    """The key that another is most like, for a hint: looser than `near`, and no dash or blank counts.
+    """The most similar known key, for a hint: looser than `near`, and dashes and blanks are ignored.
 
     Args:
-        key: A key that is not known.
+        key: An unknown key.
         keys: The known ones, in lower case and with underscores.
     """
     folded = key.casefold().replace("-", "_").replace(" ", "_")
@@ -185,7 +185,7 @@ def _alternatives(key: str | int) -> tuple[str, ...]:
 
 
 def _grouped(pointers: Iterable[Pointer]) -> dict[Pointer, list[str]]:
-    """The keys that pointers end with, by the mappings that they lead to before."""
+    """The last keys of the pointers, by the mappings that contain them."""
     found: dict[Pointer, list[str]] = {}
     for pointer in pointers:
         found.setdefault(pointer[:-1], []).append(str(pointer[-1]))
@@ -209,7 +209,7 @@ def _diagnostic(
         violation: What is wrong.
         meant: The required key that an unknown one misspells, or None.
         document: The file that was read.
-        indentation: Tells what is probably indented wrongly.
+        indentation: Finds what is probably indented wrongly.
     """
     pointer, value, context = violation.pointer, violation.value, violation.context
     name, place = subject(pointer), document.place(pointer)
@@ -252,7 +252,7 @@ def _diagnostic(
 
 
 def _wrong_choice(pointer: Pointer, value: Any, allowed: Sequence[str], document: YamlDocument) -> Diagnostic:
-    """The diagnostic of a value that is none of those allowed."""
+    """The diagnostic of a value that is not one of those allowed."""
     *others, last = (f"'{choice}'" for choice in allowed)
     choices = f"{', '.join(others)} or {last}" if others else last
     message = f"{subject(pointer)} must be {choices}, not {described(value)}"
@@ -288,7 +288,7 @@ def _unknown_key(violation: _Violation, meant: str | None, document: YamlDocumen
 
 
 def _type_hint(must: str, pointer: Pointer, value: Any) -> str | None:
-    """How to write what is meant, where that can be guessed."""
+    """How to write what is probably meant, if it can be guessed."""
     if value is None:
         return None if isinstance(pointer[-1], int) else "remove the key if it has no value"
     if ("text" in must or "name" in must) and isinstance(value, bool | int | float):

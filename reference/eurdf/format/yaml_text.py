@@ -1,4 +1,4 @@
-"""Plain values as YAML text that reads well, and reads back as the same values by the rules of YAML 1.2 and of 1.1."""
+"""Plain values as readable YAML text, which has the same values in YAML 1.2 and 1.1."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ Value = str | int | float | bool | Sequence["Value"] | Mapping[str, "Value"] | N
 #: Maximum width of a list or mapping on one line.
 WIDTH = 100
 
-#: Characters that a key may have to stand before its colon without a question mark; YAML sets 1024.
+#: Maximum length of a key before a colon without a question mark; YAML sets 1024.
 _LONGEST_KEY = 1000
 
-# Nothing in it means anything to YAML, neither in a block nor between brackets.
+# Text without a character that is special in YAML, in a block or between brackets.
 _SAFE = re.compile(r"[\w./](?:[\w./+ -]*[\w./+-])?")
 
-# Plain text by the core schema, that older readers take for a truth value or a number.
+# Plain text by the core schema that YAML 1.1 parsers read as a truth value or a number.
 _YAML_1_1_BOOL = frozenset({"y", "n", "yes", "no", "on", "off"})
 _YAML_1_1_NUMBER = re.compile(r"[-+.\d][\d_.eE+-]*|0[xob][\da-fA-F_]*|[-+]?\.(?:inf|nan)", re.IGNORECASE)
 
@@ -31,7 +31,7 @@ class Entry:
     """An entry of a mapping or a list, with the comments that go with it.
 
     Attributes:
-        lines: Its text, without what indents it.
+        lines: Its text, without indentation.
         above: Comments on their own lines before it, each from its ``#`` on.
         beside: Comment at the end of its first line, or empty.
     """
@@ -57,7 +57,7 @@ def scalar(value: str | float | bool | None) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     text = repr(value)
-    # "1e-05" is a number by the core schema, but a text to readers of YAML 1.1.
+    # "1e-05" is a number by the core schema, but a text in YAML 1.1.
     return text.replace("e", ".0e") if "e" in text and "." not in text else text
 
 
@@ -141,7 +141,7 @@ def _quoted(text: str) -> str:
 def _escaped(character: str) -> str:
     if character in _ESCAPES:
         return _ESCAPES[character]
-    # A byte order mark is printable to YAML, but not to a person.
+    # YAML counts a byte order mark as printable, but it is invisible.
     if character.isprintable():
         return character
     code = ord(character)

@@ -1,4 +1,4 @@
-"""From the files of a robot to its mechanism, with everything found on the way; no simulator is loaded for it."""
+"""From the files of a robot to its mechanism, with all diagnostics; no simulator is loaded."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def describe(
 ) -> Unlinked | Linked:
     """Read and link the files of a robot, and check its inertias.
 
-    EU-DIA-002: what needs a file that has an error is not looked at, so that nothing is told that only follows from it.
+    EU-DIA-002: what needs a file that has an error is not checked, so that no consequence of that error is reported.
 
     Args:
         path: What `find_robot` takes.

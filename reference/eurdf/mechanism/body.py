@@ -51,10 +51,10 @@ class Body:
     Attributes:
         name: Name of the link.
         inertia: None where the URDF gives none.
-        visuals: What is seen, in file order.
-        collisions: What collides, in file order.
-        virtual: Whether the body is no link of the URDF, but stands between the two revolutes that a universal joint
-            of version 1 was split into. It has neither inertia nor shape nor a frame of its own.
+        visuals: Visual shapes, in file order.
+        collisions: Collision shapes, in file order.
+        virtual: Whether the body is not a link of the URDF but connects the two revolutes that a universal joint of
+            version 1 was split into. It has neither inertia nor shape nor a frame of its own.
     """
 
     name: str

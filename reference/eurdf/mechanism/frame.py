@@ -10,7 +10,7 @@ from eurdf.mechanism.pose import IDENTITY, Pose
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """A named frame that is neither a body's nor a joint's own.
+    """A named frame that is neither that of a body nor that of a joint.
 
     Attributes:
         name: As the description gives it, or the name of a joint that version 1 split in two.

@@ -12,12 +12,12 @@ from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 
 @dataclass(frozen=True, slots=True)
 class JointProperties:
-    """Limits, losses and motor of a joint: one number a velocity, a limit of position one a coordinate.
+    """Limits, losses and motor of a joint: one number per velocity; for position limits, one per coordinate.
 
     An empty tuple means no limit, no loss and no motor.
 
     Attributes:
-        lower: Lower position limits, one a coordinate as in `Coordinates`; -inf where there is none.
+        lower: Lower position limits, one per coordinate as in `Coordinates`; -inf where there is none.
         upper: Upper position limits; inf where there is none.
         velocity: Velocity limits, rad/s or m/s; inf where there is none.
         effort: Effort limits, N·m or N; inf where there is none.
@@ -40,7 +40,7 @@ class JointProperties:
 
     @classmethod
     def unlimited(cls, kind: JointType) -> JointProperties:
-        """Those of a joint of a type without limits, losses and motor, every number written out."""
+        """The properties of a joint without limits, losses and motor, every number written out."""
         coordinates = COORDINATES[kind]
         n, nv = len(coordinates.names), coordinates.nv
         infinite, zero = (math.inf,) * nv, (0.0,) * nv
@@ -58,13 +58,13 @@ class Joint:
         child: Body it carries.
         placement: Pose of the joint in the frame of the parent body.
         offset: Pose of the child body's frame in the moving frame of the joint. The identity but for merged joints
-            whose axes meet away from the last one's origin. The frame that bears the joint's name is the child's.
+            whose axes meet away from the last one's origin. The joint's name refers to the child's frame.
         axes: Directions in the joint's frame, as written, of any length but zero: one for revolute, continuous,
             prismatic, helical, cylindrical; two, first and second, for universal; none otherwise. Planar moves in
             the joint's xy plane.
         pitch: Advance of a helical joint along its axis, m per revolution, right-handed; 0 otherwise.
         properties: Limits, losses and motor.
-        mimic: The joint this one follows, or None.
+        mimic: The leader that this joint mimics, or None.
     """
 
     name: str

@@ -20,7 +20,7 @@ class JointType(StrEnum):
     CYLINDRICAL = "cylindrical"
     HELICAL = "helical"
 
-    # As for the string it equals; the one of Enum is a Python function, and joints are looked up by type all the time.
+    # The hash of the string it equals: Enum's own is a Python function, and lookups by type are frequent.
     __hash__ = str.__hash__
 
 
@@ -29,7 +29,7 @@ class Coordinates:
     """How a joint's configuration is written.
 
     Attributes:
-        names: One name a number in files: angles in rad, lengths in m, a unit quaternion x y z w.
+        names: One name for each number in files: angles in rad, lengths in m, a unit quaternion x y z w.
         nv: Number of velocities.
         neutral: The configuration at which child and joint frame coincide.
         quaternion: Index of the first of the quaternion's four numbers, or None.

@@ -37,9 +37,9 @@ class Mechanism:
         closures: In file order.
         actuators: Names of the actuated joints, in file order.
         configurations: By name; for each joint its coordinates, for a floating root those of `ROOT_JOINT`. A joint left
-            out stands at its neutral.
-        metadata: What the file says of itself.
-        own_data: The user's own data in the file, as plain values, by the JSON pointer of their key.
+            out is at its neutral.
+        metadata: The file's metadata.
+        own_data: User data in the file, as plain values, by the JSON pointer of their key.
         couplings: Linear relations of joint coordinates, in file order.
     """
 

@@ -83,7 +83,7 @@ IDENTITY = Pose()
 
 
 def squarable(axis: Vector3) -> Vector3:
-    """The axis as it is, or of another length where the square of its own is out of range."""
+    """The axis, rescaled if the square of its length is out of range."""
     x, y, z = axis
     if 1e-290 < x * x + y * y + z * z < 1e290:
         return axis

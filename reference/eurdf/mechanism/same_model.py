@@ -17,7 +17,7 @@ _Named = TypeVar("_Named", Body, Joint, Frame, Constraint)
 
 
 def differences(one: Mechanism, other: Mechanism) -> list[str]:
-    """What is not the same in two mechanisms, one sentence each; nothing of it where they are the same model.
+    """The differences of two mechanisms, one sentence each; none if they are the same model.
 
     Two revolutes that version 1 made of a joint are the same as one universal joint; their coordinates are the same two
     angles. The order of joints follows from their names. Versions, metadata and user data are not compared.
@@ -68,7 +68,7 @@ def with_universal_joints(mechanism: Mechanism) -> Mechanism:
     closures = tuple(replace(closure, a=renamed(closure.a), b=renamed(closure.b)) for closure in mechanism.closures)
     actuators: list[str] = []
     for name in mechanism.actuators:
-        # Both halves, the first before the second, are the universal joint; either one alone is nothing but itself.
+        # Both halves, the first before the second, are the universal joint; one half alone stays a revolute.
         if name in halves and actuators and actuators[-1] == _other(name, halves, mechanism):
             actuators[-1] = halves[name]
         else:

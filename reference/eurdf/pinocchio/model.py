@@ -22,7 +22,7 @@ from eurdf.pinocchio.limits import set_limits
 from eurdf.pinocchio.mimic import following
 from eurdf.pinocchio.placement import placement_of
 
-_Indices = tuple[int, int, int, int]  # of a joint: its own, and where its q, its v and its v with followers start
+_Indices = tuple[int, int, int, int]  # of a joint: its own, and where its q, its v and its v with mimic joints start
 
 _UNIVERSE = 0
 _HERE = pin.SE3.Identity()
@@ -41,8 +41,8 @@ def build_model(mechanism: Mechanism) -> pin.Model:
 
     Pinocchio's own URDF parser fails on a joint that mimics one that comes later or itself mimics, and on one that
     mimics a continuous joint and is none, or the reverse. Here the coordinate of a leader that comes late belongs to a
-    joint of its own, named ``<leader>/coordinate``, which moves nothing and which the leader follows as its followers
-    do; chains are followed to their end; such a continuous joint is held as one angle with infinite limits.
+    joint of its own, named ``<leader>/coordinate``, which moves nothing and which the leader mimics as its mimic joints
+    do; a chain is resolved to its end; such a continuous joint is one angle with infinite limits.
 
     Its velocities are those of EU-JNT-026; the inertias of links that fixed joints hold together are summed
     (EU-INR-005), and armatures are part of the mass matrix (EU-INR-006).
@@ -66,7 +66,7 @@ def build_model(mechanism: Mechanism) -> pin.Model:
     for joint in led.late:
         moving = joint_model(joint, unwrapped=joint.name in led.unwrapped)
         free.append((joint, moving.nq))
-        # It hangs from a floating root, whose own coordinates stay the first.
+        # It hangs from a floating root, whose coordinates stay the first.
         coordinate = model.addJoint(joint_id, moving, _HERE, _coordinate_name(joint, mechanism))
         sources[joint.name] = _indices(model, coordinate)
 
@@ -133,7 +133,7 @@ def _indices(model: pin.Model, joint_id: int) -> _Indices:
 
 
 def _follower(moving: pin.JointModel, mimic: Mimic, sources: Mapping[str, _Indices]) -> pin.JointModelMimic:
-    # The constructor takes the joint that leads from the indices of the joint that it is given.
+    # The constructor finds the leader by the indices of the joint that it is given.
     moving = pin.JointModel(moving)
     moving.setIndexes(*sources[mimic.joint])
     return pin.JointModelMimic(moving, mimic.multiplier, mimic.offset)

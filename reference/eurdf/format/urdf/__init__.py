@@ -1,5 +1,5 @@
-"""The URDF as typed data, checked by itself: numbers, names, and one tree of links.
+"""The URDF as typed data, checked without the YAML file: numbers, names, and one tree of links.
 
-What urdfdom and Pinocchio swallow in silence (a link with two parents, a second root, a missing mass) is refused here,
-before any C++ sees the file.
+It rejects what urdfdom and Pinocchio accept silently (a link with two parents, a second root, a missing mass) before
+any C++ reads the file.
 """

@@ -24,7 +24,7 @@ class Limit(NamedTuple):
 
 
 class UrdfLink(NamedTuple):
-    """A ``link`` element as read; ``inertial`` is its element, to point at."""
+    """A ``link`` element as read; ``inertial`` is its element, for places in diagnostics."""
 
     name: str
     element: Element
@@ -40,15 +40,15 @@ class UrdfJoint(NamedTuple):
     Attributes:
         name: Its name.
         type: One of URDF's six types.
-        element: To point at.
+        element: The element, for places in diagnostics.
         parent: Name of the parent link.
         child: Name of the child link.
-        placement: Pose of the joint, which is that of the child link at zero, in the parent link.
+        placement: Pose of the joint in the parent link; the child link has this pose at zero.
         axis: As written, in the joint's frame; (1, 0, 0) where the URDF gives none.
         limit: None where the URDF gives none.
         damping: N·m·s/rad or N·s/m.
         friction: N·m or N.
-        mimic: The joint that it mimics as the file has it, or None. A fixed joint mimics none.
+        mimic: Its leader and the relation to it, as written, or None. A fixed joint has no leader.
     """
 
     name: str
@@ -69,7 +69,7 @@ class Urdf:
     """A sound URDF: unique names, known links, one tree.
 
     Attributes:
-        document: Where it was read from.
+        document: The file it was read from.
         name: Name of the robot.
         links: By name, in file order.
         joints: By name, in file order.

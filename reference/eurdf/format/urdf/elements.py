@@ -1,4 +1,4 @@
-"""What every element of a URDF is read with: its children, its attributes, and what is wrong with them."""
+"""Reads the children and attributes of any URDF element, and reports what is wrong with them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ URDF_JOINT_TYPES = {
     )
 }
 
-#: The elements that an element may have, but need not; of a joint that moves in a range, `limit` it must.
+#: The optional child elements of each element; `limit` is required for a joint that moves in a range.
 _OPTIONAL_CHILDREN: dict[str, tuple[str, ...]] = {
     "robot": ("link", "joint", "material"),
     "link": ("inertial", "visual", "collision"),
@@ -46,7 +46,7 @@ _KNOWN_CHILDREN: dict[str, frozenset[str]] = {
     tag: frozenset((*optional, *_REQUIRED_CHILDREN.get(tag, ()))) for tag, optional in _OPTIONAL_CHILDREN.items()
 }
 
-#: The attributes that an element may have, but need not.
+#: The optional attributes of each element.
 _OPTIONAL_ATTRIBUTES: dict[str, tuple[str, ...]] = {
     "origin": ("xyz", "rpy"),
     "mesh": ("scale",),
@@ -60,15 +60,15 @@ RANGED = frozenset({JointType.REVOLUTE, JointType.PRISMATIC})
 
 _ZERO: Vector3 = (0.0, 0.0, 0.0)
 
-#: White space of XML: a name of other blanks, such as one that does not break, is one like any other.
+#: White space of XML. A name can consist of other blanks, such as no-break spaces.
 _WHITE = " \t\r\n"
 
-#: Of so many different names that URDF lacks it is kept whether they are misspelt; of the rest it is asked again.
+#: Size of the cache of unknown names and whether they are misspelt.
 _MOST_STRANGE = 200
 
 
 def named(element: Element) -> str:
-    """How a sentence names an element: a link or joint by its name, what is in it by tag and owner."""
+    """How a message names an element: a link or joint by its name, any other by its tag and owner."""
     tag, name = str(element.tag), element.get("name")
     if tag in ("link", "joint") and name:
         return f"{tag} '{name}'"
@@ -77,31 +77,31 @@ def named(element: Element) -> str:
 
 
 def cycle_of(names: Sequence[str]) -> str:
-    """How a sentence names the members of a cycle, a few at most."""
+    """How a message names the members of a cycle, a few at most."""
     shown = names if len(names) <= 6 else [*names[:5], "..."]
     return " -> ".join(f"'{name}'" for name in [*shown, names[0]])
 
 
 def _floats(text: str, separator: str | None = None) -> tuple[float, ...] | None:
-    """Finite decimal numbers in ASCII; of what `float` takes beyond them (nan, inf, 1_0, other digits) none is URDF."""
+    """Finite decimal numbers in ASCII. What else `float` accepts (nan, inf, 1_0, other digits) is not URDF."""
     if "_" in text or not text.isascii():
         return None
     try:
         values = tuple(map(float, text.split(separator)))
     except ValueError:
         return None
-    # The sum is finite where all are, but for sums that overflow.
+    # The sum is finite if all numbers are, unless it overflows.
     return values if math.isfinite(sum(values)) or all(map(math.isfinite, values)) else None
 
 
 class UrdfReader:
     """Reads attributes and child elements, and reports what is wrong with them.
 
-    It knows the texts that come again and again in a file: numbers, poses, and names that URDF lacks.
+    It caches texts that occur often in a file: numbers, poses, and names that URDF does not have.
 
     Attributes:
         reporter: Gets what is found.
-        mimic_reporter: Gets what is wrong with which joint mimics which.
+        mimic_reporter: Gets what is wrong with mimic joints.
     """
 
     def __init__(self, reporter: XmlReporter, mimic_reporter: XmlReporter) -> None:
@@ -119,10 +119,10 @@ class UrdfReader:
         self.reporter.report(code, message, element, attribute, hint)
 
     def numbers(self, element: Element, attribute: str, text: str, count: int) -> tuple[float, ...] | None:
-        """EU-URD-007: an attribute of numbers holds as many finite decimal numbers as it must."""
+        """EU-URD-007: an attribute of numbers has the right number of finite decimal numbers."""
         values = self._floats.get(text)
         if values is None:
-            # Zeros, units and limits come again and again in a file.
+            # Zeros, units and limits occur often in a file.
             values = self._floats[text] = _floats(text)
         if values is not None and len(values) == count:
             return values
@@ -161,12 +161,12 @@ class UrdfReader:
 
         Args:
             element: The element.
-            attributes: What each is where it is left out; None where it must not be.
+            attributes: The default of each; None if it is required.
         """
         get = element.get
         texts = [get(attribute, default) for attribute, default in attributes.items()]
         if None not in texts:
-            # A comma in an attribute makes one number too many, and a blank is no number: so none slips through.
+            # A comma in an attribute makes one number too many, and a blank is not a number, so both are rejected.
             joined = ",".join(texts)  # type: ignore[arg-type]
             values = self._joined.get(joined)
             if values is None:
@@ -181,13 +181,13 @@ class UrdfReader:
         return None
 
     def missing_attribute(self, element: Element, attribute: str) -> None:
-        """EU-URD-005: report that an element lacks an attribute that it must have."""
+        """EU-URD-005: report that an element lacks a required attribute."""
         near = did_you_mean(attribute, [str(key) for key in element.keys()])  # noqa: SIM118 - an lxml element
         hint = near.replace("did you mean", "rename").replace("?", "") if near else None
         self.report("urdf-missing-attribute", f"{named(element)} has no attribute '{attribute}'", element, None, hint)
 
     def name(self, element: Element, attribute: str = "name") -> str | None:
-        """EU-URD-005, EU-URD-008: what must have a name has one, and it is not empty."""
+        """EU-URD-005, EU-URD-008: the name of an element that requires one; it is not empty."""
         name = element.get(attribute)
         if name is None:
             self.missing_attribute(element, attribute)
@@ -198,13 +198,13 @@ class UrdfReader:
         return name
 
     def refuse_reserved(self, name: str, element: Element) -> None:
-        """EU-URD-011: no link and no joint is named as the world is."""
+        """EU-URD-011: no link and no joint has a name reserved for the world."""
         if name == "universe":
             message = f"'universe' is the name of the world and cannot be the name of a {element.tag}"
             self.report("urdf-reserved-name", message, element, "name")
 
     def children(self, parent: Element) -> dict[str, Element]:
-        """EU-URD-006: the child elements that may occur once, by tag. Unknown ones are looked at for near misses."""
+        """EU-URD-006: the child elements that may occur once, by tag. Unknown ones are checked for near misses."""
         found: dict[str, Element] = {}
         known = _KNOWN_CHILDREN[str(parent.tag)]
         for child in parent:
@@ -218,7 +218,7 @@ class UrdfReader:
         return found
 
     def unknown(self, parent: Element, child: Element) -> None:
-        """EU-URD-026: an element that URDF lacks is left alone unless it is near one that may be left out."""
+        """EU-URD-026: an unknown element is ignored, with a warning if its name is near that of an optional one."""
         tag = child.tag
         if not isinstance(tag, str):
             return
@@ -229,7 +229,7 @@ class UrdfReader:
             self.report("urdf-unknown-element", f"<{parent.tag}> has an unknown element <{tag}>", child, hint=hint)
 
     def attributes(self, element: Element) -> None:
-        """EU-URD-026: an attribute that may be left out is not misspelt, which would leave it out."""
+        """EU-URD-026: warn of an unknown attribute whose name is near that of an optional one."""
         optional = _OPTIONAL_ATTRIBUTES[str(element.tag)]
         for attribute in map(str, element.keys()):
             hint = None if attribute in optional else self.near_miss(attribute, optional)
@@ -238,7 +238,7 @@ class UrdfReader:
                 self.report("urdf-unknown-element", message, element, hint=hint)
 
     def near_miss(self, name: str, optional: tuple[str, ...]) -> str | None:
-        """The hint for a name that URDF lacks, without a prefix; mostly the same few stand in each joint of a file."""
+        """The hint for an unknown name without a prefix. Cached, since the same few are in every joint of a file."""
         if (name, optional) in self._strange:
             return self._strange[name, optional]
         meant = None if "}" in name or ":" in name else near(name, optional)
@@ -248,14 +248,14 @@ class UrdfReader:
         return hint
 
     def need(self, parent: Element, found: Mapping[str, Element], tag: str) -> Element | None:
-        """EU-URD-004: an element has the child elements that it must have."""
+        """EU-URD-004: an element has its required child elements."""
         element = found.get(tag)
         if element is None:
             self.report("urdf-missing-element", f"{named(parent)} has no <{tag}>", parent)
         return element
 
     def origin(self, element: Element | None) -> Pose:
-        """The pose of an ``origin``, the identity where there is none or it has an error (EU-FRM-006)."""
+        """The pose of an ``origin``; the identity if there is none or it has an error (EU-FRM-006)."""
         if element is None:
             return IDENTITY
         text = (element.get("xyz"), element.get("rpy"))
@@ -267,6 +267,6 @@ class UrdfReader:
             rpy = _ZERO if text[1] is None else self.numbers(element, "rpy", text[1], 3)
             if xyz is None or rpy is None:
                 return IDENTITY
-            # What is seen and what collides mostly stand in the same place.
+            # The visual and the collision of a link often have the same pose.
             pose = self._poses[text] = Pose.from_xyz_rpy(xyz, rpy)  # type: ignore[arg-type]
         return pose

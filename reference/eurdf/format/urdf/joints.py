@@ -12,14 +12,14 @@ from eurdf.reading.reporter import Element
 
 _AXLESS = frozenset({JointType.FIXED, JointType.FLOATING})
 
-# Attributes of one number each, and what they are where they are left out.
+# Attributes of one number each, and their defaults.
 _LIMIT = {"effort": None, "velocity": None, "lower": "0", "upper": "0"}
 _DYNAMICS = {"damping": "0", "friction": "0"}
 _MIMIC = {"multiplier": "1", "offset": "0"}
 
 
 def read_joint(reader: UrdfReader, element: Element) -> UrdfJoint | None:
-    """A joint, or None where it lacks what a tree is made of, which was reported."""
+    """A joint; None if it lacks a name, a type or a link, which was reported."""
     name = reader.name(element)
     found = reader.children(element)
     kind = _type(reader, element)
@@ -57,7 +57,7 @@ def _type(reader: UrdfReader, element: Element) -> JointType | None:
 
 
 def _axis(reader: UrdfReader, name: str | None, kind: JointType, element: Element | None) -> Vector3 | None:
-    """EU-URD-013, EU-URD-035: the axis of a joint that turns about or slides along it is a direction, or else x."""
+    """EU-URD-013, EU-URD-035: the axis of a joint that turns about it or slides along it; x if left out."""
     if element is None:
         return (1.0, 0.0, 0.0)
     text = element.get("xyz")
@@ -103,7 +103,7 @@ def _limit(
 
 
 def _check_needs_no_limit(reader: UrdfReader, name: str | None, kind: JointType, joint: Element) -> None:
-    """EU-URD-004: a joint that moves in a range has a ``limit``."""
+    """EU-URD-004: a joint with a range of motion has a ``limit``."""
     if kind in RANGED:
         reader.report(
             "urdf-missing-element",
@@ -133,7 +133,7 @@ def _dynamics(reader: UrdfReader, element: Element) -> tuple[float, ...]:
 
 
 def _refuse_negative(reader: UrdfReader, element: Element, **values: float) -> None:
-    """EU-URD-020: what is a magnitude is not negative."""
+    """EU-URD-020: magnitudes are not negative."""
     for attribute, value in values.items():
         if value < 0.0:
             message = f"'{attribute}' of {named(element)} is {value:g}; it must not be negative"
@@ -141,7 +141,7 @@ def _refuse_negative(reader: UrdfReader, element: Element, **values: float) -> N
 
 
 def _mimic(reader: UrdfReader, name: str | None, kind: JointType, element: Element) -> Mimic | None:
-    """EU-URD-036: a fixed joint, which has no coordinate, has no use for a `<mimic>`."""
+    """EU-URD-036: a fixed joint has no coordinate, so a `<mimic>` in it has no effect."""
     joint = reader.name(element, "joint")
     reader.attributes(element)
     values = reader.single_numbers(element, _MIMIC)

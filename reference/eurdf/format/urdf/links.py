@@ -15,7 +15,7 @@ _INERTIA = dict.fromkeys(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
 
 
 def read_link(reader: UrdfReader, element: Element, materials: Materials | None) -> UrdfLink | None:
-    """A link, with its shapes where `materials` are given; None where it has no name, which was reported."""
+    """A link, with its shapes if `materials` are given; None if it has no name, which was reported."""
     name = reader.name(element)
     inertia: Inertia | None = None
     inertial: Element | None = None

@@ -21,7 +21,7 @@ class Materials:
         self._nameless = False  # whether a material of the robot has no name
 
     def define(self, element: Element) -> None:
-        """Take in a material of the robot."""
+        """Add a material of the robot."""
         name = self._reader.name(element)
         color = _color(self._reader, element)
         if name is None:
@@ -34,7 +34,7 @@ class Materials:
         name = element.get("name", "")
         if element.find("color") is None and element.find("texture") is None:
             if name not in self._known:
-                if self._nameless:  # it may be the one that lacks its name
+                if self._nameless:  # the material without a name may be the one meant
                     return None, ""
                 message = f"material '{name}' is not defined" if name else f"{named(element)} has no name and no color"
                 self._reader.report(

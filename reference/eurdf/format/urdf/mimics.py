@@ -1,4 +1,4 @@
-"""Which joint of a URDF mimics which."""
+"""The mimic joints of a URDF and their leaders."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def _can_mimic(reader: UrdfReader, joint: UrdfJoint, leader: UrdfJoint, element:
 def _check_chain(
     reader: UrdfReader, joint: UrdfJoint, leader: UrdfJoint, joints: _Joints, element: Element, done: set[str]
 ) -> None:
-    """EU-URD-022: no joint mimics itself through others; joints that are done are not followed again."""
+    """EU-URD-022: no joint mimics itself through others; each joint is followed once."""
     trail = dict.fromkeys([joint.name])
     at: UrdfJoint | None = leader
     while at is not None and at.name not in trail and at.name not in done:

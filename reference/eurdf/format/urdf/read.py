@@ -14,7 +14,7 @@ from eurdf.format.urdf.tree import build_tree
 from eurdf.reading.reporter import Element, XmlReporter
 from eurdf.reading.xml_reader import XmlDocument
 
-#: Elements by which other dialects state a closure or a coupling; a reader of this format would drop them.
+#: Elements by which other dialects state a closure or a coupling; a parser of this format would ignore them.
 _CLOSURE_DIALECTS = frozenset({"loop", "loop_joint", "constraint", "coupling"})
 
 
@@ -25,17 +25,17 @@ def read_urdf(
     geometry: bool = True,
     mimic_diagnostics: Diagnostics | None = None,
 ) -> Urdf | None:
-    """Read a URDF and check it by itself.
+    """Read a URDF and check it without the YAML file.
 
     Args:
         document: The XML file.
         diagnostics: Gets what is found.
-        geometry: Whether to read what is seen and what collides; else links have neither, and it is not checked.
-        mimic_diagnostics: Gets what is wrong with which joint mimics which, in place of `diagnostics`: for a caller
-            that ignores mimics, to whom this is no error.
+        geometry: Whether to read and check visuals and collisions; if not, links have none.
+        mimic_diagnostics: Gets what is wrong with mimic joints, in place of `diagnostics`: for a caller that ignores
+            mimics.
 
     Returns:
-        The URDF, or None where an error was added to `diagnostics`.
+        The URDF; None if an error was added to `diagnostics`.
     """
     before = diagnostics.error_count
     of_mimics = diagnostics if mimic_diagnostics is None else mimic_diagnostics

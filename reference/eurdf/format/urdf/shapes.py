@@ -1,4 +1,4 @@
-"""The shapes of links: what is seen, and what collides."""
+"""The visual and collision shapes of links."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from eurdf.reading.reporter import Element
 
 _Primitive = Literal["box", "cylinder", "sphere", "capsule"]
 
-# Attributes of one number each, and what they are where they are left out.
+# Attributes of one number each, and their defaults.
 _SPHERE = {"radius": None}
 _CYLINDER = {"radius": None, "length": None}
 
 
 def read_shape(reader: UrdfReader, element: Element, materials: Materials) -> Shape | None:
-    """The shape of a ``visual`` or ``collision``, or None where it has an error, which was reported."""
+    """The shape of a ``visual`` or ``collision``; None if it has an error, which was reported."""
     found = reader.children(element)
     pose = reader.origin(found.get("origin"))
     look: Look = (None, "")
@@ -33,7 +33,7 @@ def read_shape(reader: UrdfReader, element: Element, materials: Materials) -> Sh
 
 
 def _only_shape(reader: UrdfReader, geometry: Element) -> Element | None:
-    """EU-URD-024: a geometry holds one shape."""
+    """EU-URD-024: a geometry contains one shape."""
     shapes = list(geometry)
     if len(shapes) == 1:
         return shapes[0]

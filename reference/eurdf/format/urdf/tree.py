@@ -12,7 +12,7 @@ from eurdf.format.urdf.mimics import check_mimics
 
 
 def build_tree(reader: UrdfReader, name: str, links: Sequence[UrdfLink], joints: Sequence[UrdfJoint]) -> Urdf | None:
-    """The tree, or None where an error was found. What follows from an error is not looked at.
+    """The tree; None if an error was found. What follows from an error is not checked.
 
     Args:
         reader: Gets what is found.
@@ -77,7 +77,7 @@ def _check_links_of_joints(reader: UrdfReader, joints: Sequence[UrdfJoint], link
 
 
 def _parent_joints(reader: UrdfReader, joints: Sequence[UrdfJoint]) -> dict[str, UrdfJoint]:
-    """EU-URD-016: for each link but the root the joint that carries it; there is only one."""
+    """EU-URD-016: for each link except the root, the joint that carries it; there is only one."""
     parent_joint: dict[str, UrdfJoint] = {}
     for joint in joints:
         if joint.child in parent_joint:
@@ -113,7 +113,7 @@ def _is_acyclic(
         lost = parent_joint[lost].parent
     walked = list(path)
     cycle = walked[walked.index(lost) :][::-1]
-    # The last one in the file: whoever closed the cycle mostly wrote it last.
+    # The last one in the file: the joint that closed the cycle was probably written last.
     order = {name: index for index, name in enumerate(urdf.joints)}
     last = max((parent_joint[link] for link in cycle), key=lambda joint: order[joint.name])
     reader.report(
