@@ -30,6 +30,7 @@ from eurdf.kinematics.exceptions import DependentActuators as DependentActuators
 from eurdf.kinematics.exceptions import InconsistentMotion as InconsistentMotion
 from eurdf.kinematics.exceptions import LockedOpen as LockedOpen
 from eurdf.kinematics.exceptions import NotClosable as NotClosable
+from eurdf.kinematics.exceptions import NumericalOverflow as NumericalOverflow
 from eurdf.kinematics.exceptions import SimulationDiverged as SimulationDiverged
 from eurdf.kinematics.exceptions import UnderactuatedMotion as UnderactuatedMotion
 from eurdf.kinematics.exceptions import UndeterminedMotion as UndeterminedMotion

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import start
+from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.frame_index import frame_index
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import residual_and_jacobian
@@ -36,6 +37,7 @@ class FrameVelocity(NamedTuple):
     rank: int
 
 
+@overflow_refused("the velocity")
 def differential_inverse_kinematics(
     robot: Robot,
     q: Vector,
@@ -85,6 +87,7 @@ def differential_inverse_kinematics(
     left, values, right = np.linalg.svd(scale[:, None] * (J @ C), full_matrices=False)
     rank = int(np.count_nonzero(values > singular * values.max(initial=0.0)))
     v = C @ (right[:rank].T @ ((left[:, :rank].T @ (scale * wanted)) / values[:rank]))
+    finite("the velocity", v, J @ v)
     return FrameVelocity(v, v[robot.actuation.idx_v], J @ v, rank)
 
 

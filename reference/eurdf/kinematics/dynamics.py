@@ -24,6 +24,7 @@ from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.exceptions import InconsistentMotion, UnderactuatedMotion, UndeterminedMotion
+from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.frame_index import frame_index
 from eurdf.kinematics.loop import Loop, find_loops
 from eurdf.kinematics.rank import numerical_rank
@@ -115,7 +116,25 @@ def forward_dynamics(
     Raises:
         ValueError: A vector has a wrong shape or is not finite, or a frame is unknown.
         UndeterminedMotion: A joint without inertia can move.
+        NumericalOverflow: The result is not finite.
     """
+    with overflow_refused("the acceleration"):
+        solved = _forward_dynamics(robot, q, v, u, tau, external, dissipation, gains, data)
+    finite("the acceleration", solved.a, *solved.forces)
+    return solved
+
+
+def _forward_dynamics(
+    robot: Robot,
+    q: Vector,
+    v: Vector,
+    u: Vector | None,
+    tau: Vector | None,
+    external: External | None,
+    dissipation: bool,
+    gains: tuple[float, float] | None,
+    data: Any,
+) -> ForwardDynamics:
     motion = _Motion(robot, q, v, data)
     force = motion.applied(u, tau, external, dissipation)
     constraint_models, kp, kd = _stabilised(robot, None if gains is None else checked_array("gains", gains, (2,)))
@@ -168,20 +187,24 @@ def inverse_dynamics(
         ValueError: A vector has a wrong shape or is not finite, a frame is unknown, or a weight is not positive.
         InconsistentMotion: v or a does not keep the closures closed.
         UnderactuatedMotion: The motors cannot produce this motion.
+        NumericalOverflow: The result is not finite.
     """
-    motion = _Motion(robot, q, v, data)
-    a = checked_array("a", a, (robot.model.nv,))
-    S, norm = robot.actuation.selection, _norm(robot, weights)
-    motion.refuse_open(a, checked_tolerance(tolerance))
-    force = motion.bias - motion.applied(None, tau, external, dissipation)
-    inertial = motion.mass(a)
-    deviation, missing = _uncontrolled(motion, inertial, force)
-    _refuse_uncontrolled(motion, a, deviation, missing, tolerance)
-    required = force + inertial
-    controlled, _ = motion.by_motors
-    along = controlled.T @ motion.N.T
-    u = norm * (np.linalg.pinv(along @ S * norm) @ (along @ required))
-    return InverseDynamics(u, _per_closure(motion.loops, motion.P.T @ (required - S @ u)))
+    with overflow_refused("the motor torques"):
+        motion = _Motion(robot, q, v, data)
+        a = checked_array("a", a, (robot.model.nv,))
+        S, norm = robot.actuation.selection, _norm(robot, weights)
+        motion.refuse_open(a, checked_tolerance(tolerance))
+        force = motion.bias - motion.applied(None, tau, external, dissipation)
+        inertial = motion.mass(a)
+        deviation, missing = _uncontrolled(motion, inertial, force)
+        _refuse_uncontrolled(motion, a, deviation, missing, tolerance)
+        required = force + inertial
+        controlled, _ = motion.by_motors
+        along = controlled.T @ motion.N.T
+        u = norm * (np.linalg.pinv(along @ S * norm) @ (along @ required))
+        forces = _per_closure(motion.loops, motion.P.T @ (required - S @ u))
+    finite("the motor torques", u, *forces)
+    return InverseDynamics(u, forces)
 
 
 def achievable_acceleration(
@@ -220,15 +243,19 @@ def achievable_acceleration(
         ValueError: A vector has a wrong shape or is not finite, or a frame is unknown.
         InconsistentMotion: v or a does not keep the closures closed.
         UnderactuatedMotion: A motion without inertia would need a force.
+        NumericalOverflow: The result is not finite.
     """
-    motion = _Motion(robot, q, v, data)
-    a = checked_array("a", a, (robot.model.nv,))
-    motion.refuse_open(a, checked_tolerance(tolerance))
-    force = motion.bias - motion.applied(None, tau, external, dissipation)
-    deviation, missing = _uncontrolled(motion, motion.mass(a), force)
-    if missing.any():
-        raise UnderactuatedMotion(_by_joint(robot.model, missing), np.inf)
-    return a - deviation
+    with overflow_refused("the acceleration"):
+        motion = _Motion(robot, q, v, data)
+        a = checked_array("a", a, (robot.model.nv,))
+        motion.refuse_open(a, checked_tolerance(tolerance))
+        force = motion.bias - motion.applied(None, tau, external, dissipation)
+        deviation, missing = _uncontrolled(motion, motion.mass(a), force)
+        if missing.any():
+            raise UnderactuatedMotion(_by_joint(robot.model, missing), np.inf)
+        achievable = a - deviation
+    finite("the acceleration", achievable)
+    return achievable
 
 
 class _Motion:
@@ -257,6 +284,7 @@ class _Motion:
         space = spaces.at(self.K)
         self.P, self.unit, self._basis = space.inverse, spaces.scale, space.basis
         self.bias: Vector = robot.tree.inverse_dynamics(self.q, self.v, np.zeros(model.nv), self.data)
+        finite("the equation of motion", self.r, self.drift, self.bias, self.P)
 
     @cached_property
     def free(self) -> Matrix:

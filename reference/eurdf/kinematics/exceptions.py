@@ -143,3 +143,17 @@ class SimulationDiverged(EurdfError, ArithmeticError):  # noqa: N818 - part of t
         super().__init__(
             f"the simulation diverges at {t:.6g} s: the time step of {step:g} s is too long; use a smaller one"
         )
+
+
+class NumericalOverflow(EurdfError, ArithmeticError):  # noqa: N818 - part of the public interface
+    """A result is not finite, although the robot and the arguments are.
+
+    Attributes:
+        result: What is not finite.
+    """
+
+    def __init__(self, result: str) -> None:
+        self.result = result
+        super().__init__(
+            f"{result} would not be finite: lengths, inertias, coordinates or velocities are too large or too small"
+        )

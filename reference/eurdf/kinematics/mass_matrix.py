@@ -8,12 +8,14 @@ import numpy as np
 
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import start
+from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.pinocchio.arguments import checked_data
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 
+@overflow_refused("the mass matrix")
 def mass_matrix(robot: Robot, q: Vector, *, data: Any = None) -> Matrix:
     """Mass matrix M(q) of the spanning tree, the armature included: its kinetic energy is ½ vᵀ M v.
 
@@ -34,7 +36,10 @@ def mass_matrix(robot: Robot, q: Vector, *, data: Any = None) -> Matrix:
 
     Raises:
         ValueError: ``q`` is not a configuration, or ``data`` is of another model.
+        NumericalOverflow: M is not finite.
     """
     tree = robot.tree
     M = tree.mass_times(start(robot, q, "q"), np.eye(tree.nv), checked_data(robot.model, data))
-    return np.asarray(0.5 * (M + M.T))
+    symmetric = np.asarray(0.5 * (M + M.T))
+    finite("the mass matrix", symmetric)
+    return symmetric

@@ -13,6 +13,7 @@ import numpy as np
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import Assembler, start
 from eurdf.kinematics.exceptions import NotClosable
+from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.metric import metric, nearest
 from eurdf.kinematics.residual import acceleration_drift, residual, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
@@ -28,6 +29,7 @@ _MOST_HALVINGS = 20
 _DIFFERENCE = 1e-6
 
 
+@overflow_refused("the configuration")
 def project_configuration(
     robot: Robot, q: Vector, weights: Vector | Matrix | None = None, *, tolerance: float = 1e-10
 ) -> Vector:
@@ -98,6 +100,7 @@ def project_configuration(
     return here
 
 
+@overflow_refused("the velocity")
 def project_velocity(robot: Robot, q: Vector, v: Vector, weights: Vector | Matrix | None = None) -> Vector:
     """The velocity nearest to v that keeps the loops closed.
 
@@ -119,9 +122,12 @@ def project_velocity(robot: Robot, q: Vector, v: Vector, weights: Vector | Matri
     W = metric(weights, robot.model.nv)
     v = checked_array("v", v, (robot.model.nv,))
     _, K = residual_and_jacobian(robot, start(robot, q, "q"))
-    return nearest(TangentSpaces(robot).at(K).basis, W, v)
+    projected = nearest(TangentSpaces(robot).at(K).basis, W, v)
+    finite("the velocity", projected)
+    return projected
 
 
+@overflow_refused("the acceleration")
 def project_acceleration(
     robot: Robot, q: Vector, v: Vector, a: Vector, weights: Vector | Matrix | None = None
 ) -> Vector:
@@ -150,7 +156,9 @@ def project_acceleration(
     _, K = residual_and_jacobian(robot, q)
     space = TangentSpaces(robot).at(K)
     forced = -space.inverse @ acceleration_drift(robot, q, v)
-    return forced + nearest(space.basis, W, a - forced)
+    projected = forced + nearest(space.basis, W, a - forced)
+    finite("the acceleration", projected)
+    return projected
 
 
 def _downhill(H: Matrix, slope: Vector) -> Vector:

@@ -10,6 +10,7 @@ import pinocchio as pin
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.exceptions import DependentActuators
+from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.frame_index import frame_index
 from eurdf.kinematics.metric import metric, orthonormal
 from eurdf.kinematics.rank import numerical_rank
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 _PART = 1e-6
 
 
+@overflow_refused("the derivative")
 def dq_dq_actuated(robot: Robot, q: Vector, weights: Vector | Matrix | None = None) -> Matrix:
     """Derivative of the closed configuration with respect to the actuated coordinates: v = D u.
 
@@ -53,9 +55,12 @@ def dq_dq_actuated(robot: Robot, q: Vector, weights: Vector | Matrix | None = No
     selection = robot.actuation.selection.T
     _refuse_dependent(robot, spaces.scale, basis)
     Z = orthonormal(basis, W)
-    return np.asarray(Z @ np.linalg.pinv(selection @ Z), dtype=np.float64)
+    D = np.asarray(Z @ np.linalg.pinv(selection @ Z), dtype=np.float64)
+    finite("the derivative", D)
+    return D
 
 
+@overflow_refused("the Jacobian")
 def actuated_jacobian(
     robot: Robot, q: Vector, frame: str, reference: Any = pin.LOCAL, weights: Vector | Matrix | None = None
 ) -> Matrix:
@@ -84,7 +89,9 @@ def actuated_jacobian(
     model, index = robot.model, frame_index(robot.model, frame)
     q = start(robot, q, "q")
     J = pin.computeFrameJacobian(model, model.createData(), q, index, reference)
-    return np.asarray(J.reshape(6, -1) @ dq_dq_actuated(robot, q, weights), dtype=np.float64)
+    actuated = np.asarray(J.reshape(6, -1) @ dq_dq_actuated(robot, q, weights), dtype=np.float64)
+    finite("the Jacobian", actuated)
+    return actuated
 
 
 def _refuse_dependent(robot: Robot, scale: Vector, basis: Matrix) -> None:

@@ -11,6 +11,7 @@ from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import assemble, start
 from eurdf.kinematics.dynamics import External, forward_dynamics
 from eurdf.kinematics.exceptions import NotClosable, SimulationDiverged
+from eurdf.kinematics.finite import overflow_refused
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.pinocchio.arguments import checked_array
@@ -72,6 +73,7 @@ def simulate(
         ValueError: A vector has a wrong shape or is not finite, the duration is negative, or the step is not positive.
         UndeterminedMotion: A joint without inertia can move.
         SimulationDiverged: The steps are too long for the motion.
+        NumericalOverflow: As in `forward_dynamics`.
     """
     if not (step > 0.0 and duration >= 0.0 and np.isfinite(duration / step)):
         raise ValueError("duration must be at least 0 s, and step above 0 s")
@@ -91,15 +93,18 @@ def simulate(
         a = forward_dynamics(robot, q, v, u, external=external, dissipation=dissipation, data=data).a
         return np.asarray(np.linalg.solve(tree.integrate_derivative(begin, x), v), dtype=np.float64), a
 
-    def closed(q: Vector, v: Vector, newton_steps: int) -> tuple[Vector, Vector]:
+    @overflow_refused("the configuration")
+    def closed(t: float, q: Vector, v: Vector, newton_steps: int) -> tuple[Vector, Vector]:
         for _ in range(newton_steps):
             r, K = residual_and_jacobian(robot, q, data)
             q = tree.normalized(tree.integrate(q, -spaces.at(K).inverse @ r))
+            if not np.isfinite(q).all():
+                raise SimulationDiverged(t, step)
         _, K = residual_and_jacobian(robot, q, data)
         return q, v - spaces.at(K).inverse @ (K @ v)
 
     initial = checked_array("v", np.zeros(tree.nv) if v is None else v, (tree.nv,))
-    qs[0], vs[0] = closed(assembly.q, initial, 0)
+    qs[0], vs[0] = closed(0.0, assembly.q, initial, 0)
     for n in range(count):
         t, q, v, still = float(times[n]), qs[n], vs[n], np.zeros(tree.nv)
         x1, v1 = rates(t, q, still, v)
@@ -110,5 +115,5 @@ def simulate(
         v = v + step / 6.0 * (v1 + 2.0 * v2 + 2.0 * v3 + v4)
         if not (np.isfinite(end).all() and np.isfinite(v).all()):
             raise SimulationDiverged(float(times[n + 1]), step)
-        qs[n + 1], vs[n + 1] = closed(np.asarray(end), v, 2)
+        qs[n + 1], vs[n + 1] = closed(float(times[n + 1]), np.asarray(end), v, 2)
     return Simulation(times, qs, vs)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eurdf.kinematics.array import Matrix
+from eurdf.kinematics.finite import finite
 from eurdf.kinematics.loop import independent_groups
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
@@ -60,6 +61,7 @@ class TangentSpaces:
             outside[velocities] = False
             scale = self.scale[velocities]
             A = self._row_scale[rows, None] * K[np.ix_(rows, velocities)] * scale
+            finite("the constraint Jacobian", A)
             left, values, right = np.linalg.svd(A)
             rank = numerical_rank(values, values.max(initial=0.0))
             Z, _ = np.linalg.qr(scale[:, None] * right[rank:].T)
