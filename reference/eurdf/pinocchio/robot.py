@@ -36,7 +36,8 @@ class Robot:
     It unpacks as ``model, constraint_models, actuation, visual_model, collision_model = robot``.
 
     What the kinematics finds out about a robot once is kept with it, so do not change its model in place. Build
-    another robot of a changed mechanism: ``build_robot(dataclasses.replace(robot.mechanism, constraints=...))``.
+    another robot of a changed mechanism: ``build_robot(replace(robot.mechanism, closures=...), geometry=False)``, with
+    `dataclasses.replace`.
 
     Take the mass matrix from `eurdf.mass_matrix`: up to Pinocchio 4.1, that of `pin.crba` has wrong entries where a
     mimic joint carries several branches.
