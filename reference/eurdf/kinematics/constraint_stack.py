@@ -10,8 +10,9 @@ import numpy as np
 from eurdf.kinematics.array import Indices, Matrix, Vector
 from eurdf.kinematics.constraints import KINDS
 from eurdf.kinematics.constraints.kind import Kind, State
+from eurdf.kinematics.constraints.relative_motion import RelativeMotions
 from eurdf.kinematics.derived import derived
-from eurdf.kinematics.tree_kinematics import PairMemory, RelativeMotions, TreeKinematics
+from eurdf.kinematics.tree_kinematics import PairMemory, TreeKinematics
 from eurdf.mechanism.constraint import Constraint
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Protocol
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.mechanism.frame import Anchor
@@ -30,26 +30,6 @@ class Coordinate(Protocol):
     @property
     def translates(self) -> bool:
         """Whether it is a length, m; else it is an angle, rad."""
-
-
-class RelativeMotions(NamedTuple):
-    """How frames B move against frames A while every joint keeps its velocity; k pairs, all in the axes of A.
-
-    Attributes:
-        rotation: ᴬR_B (k, 3, 3).
-        position: Origin p of B in A (k, 3), m.
-        velocity: ṗ (k, 3), m/s.
-        omega: Angular velocity ω of B against A (k, 3), rad/s.
-        acceleration: p̈ (k, 3), m/s².
-        alpha: ω̇ (k, 3), rad/s².
-    """
-
-    rotation: Matrix
-    position: Matrix
-    velocity: Matrix
-    omega: Matrix
-    acceleration: Matrix
-    alpha: Matrix
 
 
 class PairMemory(Protocol):
@@ -81,10 +61,14 @@ class FramePairs(Protocol):
                 the joints between the frames.
         """
 
-    def motions(self, q: Vector, v: Vector, data: Any) -> tuple[Matrix, Matrix, Matrix, Matrix, Matrix, Matrix]:
-        """How the pairs move at q (nq,) while every joint keeps its velocity v (nv,): see `RelativeMotions`.
+    def motions(self, q: Vector, v: Vector, data: Any) -> tuple[Sequence[Any], Sequence[Any], Sequence[Any]]:
+        """How the pairs move at q (nq,) while every joint keeps its velocity v (nv,).
 
         ``data`` is memory of the whole tree.
+
+        Returns:
+            ᴬM_B of each pair as `pin.SE3`; and as `pin.Motion` the twist ξ of B against A in the axes of B, m/s and
+            rad/s, and ξ̇.
         """
 
 

@@ -51,38 +51,39 @@ class FramePairs:
             return PathMemory(self)
         return DataMemory(self, data)
 
-    def motions(self, q: Vector, v: Vector, data: pin.Data) -> tuple[Matrix, Matrix, Matrix, Matrix, Matrix, Matrix]:
+    def motions(self, q: Vector, v: Vector, data: pin.Data) -> tuple[list[Any], list[Any], list[Any]]:
         """See `eurdf.kinematics.tree_kinematics.FramePairs`.
 
         With V and A the twists and spatial accelerations of the frames, each in its own axes, and M = ᴬM_B, the twist
         of B in A is ξ = V_B - Ad(M⁻¹) V_A, and ξ̇ = A_B - Ad(M⁻¹) A_A + ξ × Ad(M⁻¹) V_A.
         """
         pin.forwardKinematics(self.model, data, q, v, np.zeros(self.model.nv))
-        k = len(self.pairs)
-        R, p, own = np.empty((k, 3, 3)), np.empty((k, 3)), np.empty((k, 4, 3))
-        for index, (a, b) in enumerate(self.pairs):
+        placements, twists, accelerations = [], [], []
+        for a, b in self.pairs:
             oMa, twist_a, acceleration_a = _motion(data, a)
             oMb, twist_b, acceleration_b = _motion(data, b)
             aMb = oMa.actInv(oMb)
             carried = aMb.actInv(twist_a)
             twist = twist_b - carried
-            acceleration = acceleration_b - aMb.actInv(acceleration_a) + twist.cross(carried)
-            R[index], p[index] = aMb.rotation, aMb.translation
-            # The linear part of ξ̇ lacks what turns with B.
-            linear = acceleration.linear + pin.skew(twist.angular) @ twist.linear
-            own[index] = twist.linear, twist.angular, linear, acceleration.angular
-        velocity, omega, acceleration, alpha = np.swapaxes(own @ np.swapaxes(R, 1, 2), 0, 1)
-        return R, p, velocity, omega, acceleration, alpha
+            placements.append(aMb)
+            twists.append(twist)
+            accelerations.append(acceleration_b - aMb.actInv(acceleration_a) + twist.cross(carried))
+        return placements, twists, accelerations
 
     @cached_property
-    def constraints(self) -> Any:
-        """For each pair a constraint model of all six rows, also where only positions matter: they turn with A."""
-        constraints = pin.StdVec_RigidConstraintModel()
+    def constraints(self) -> tuple[Any, list[Any], Any]:
+        """For each pair a constraint model of all six rows, also where only positions matter: they turn with A.
+
+        As Pinocchio's list, as Python's, and with constraint data to copy, which is faster than making it.
+        """
+        constraints, datas = pin.StdVec_RigidConstraintModel(), pin.StdVec_RigidConstraintData()
         for a, b in self.pairs:
-            constraints.append(
-                pin.RigidConstraintModel(pin.ContactType.CONTACT_6D, self.model, *a, *b, pin.ReferenceFrame.LOCAL)
+            constraint = pin.RigidConstraintModel(
+                pin.ContactType.CONTACT_6D, self.model, *a, *b, pin.ReferenceFrame.LOCAL
             )
-        return constraints
+            constraints.append(constraint)
+            datas.append(constraint.createData())
+        return constraints, list(constraints), datas
 
     @cached_property
     def joints(self) -> list[tuple[int, int, Any, Any, slice]]:
@@ -143,11 +144,10 @@ class DataMemory:
     """A `pin.Data`, for small models without mimic joints: nearly all is done by Pinocchio."""
 
     def __init__(self, pairs: FramePairs, data: pin.Data) -> None:
-        self._model, self._data, self._constraints = pairs.model, data, pairs.constraints
-        self._datas = pin.StdVec_RigidConstraintData()
-        for constraint in self._constraints:
-            self._datas.append(constraint.createData())
-        self._each = list(zip(self._constraints, self._datas, strict=True))
+        self._model, self._data = pairs.model, data
+        self._constraints, models, datas = pairs.constraints
+        self._datas = pin.StdVec_RigidConstraintData(datas)
+        self._each = list(zip(models, self._datas, strict=True))
         everything = pairs.velocities is None or len(pairs.velocities) == self._model.nv
         self._velocities = None if everything else pairs.velocities
         self._J: Matrix | None = None
@@ -177,18 +177,19 @@ class PathMemory:
     def __init__(self, pairs: FramePairs) -> None:
         self._pairs = pairs
         self._datas = [moving.createData() for _, _, _, moving, _ in pairs.joints]
-        self._J = np.zeros((6, pairs.joints[-1][-1].stop if pairs.joints else 0))
+        self._oMi: dict[int, Any] = {}
         self._oMa: list[Any] = []
+        self._J: Matrix | None = None
 
     def placements(self, q: Vector) -> list[Any]:
         """ᴬM_B of each pair at q (nq,)."""
-        placements: dict[int, Any] = {}
         still = pin.SE3.Identity()
-        for (joint, parent, placement, moving, columns), data in zip(self._pairs.joints, self._datas, strict=True):
+        placements = self._oMi = {}
+        for (joint, parent, placement, moving, _), data in zip(self._pairs.joints, self._datas, strict=True):
             moving.calc(data, q)
-            oMi = placements[joint] = placements.get(parent, still) * placement * data.M
-            self._J[:, columns] = oMi.toActionMatrix() @ data.S.reshape(6, -1)
+            placements[joint] = placements.get(parent, still) * placement * data.M
         self._oMa = [placements.get(a.joint, still) * a.placement for a, _ in self._pairs.pairs]
+        self._J = None
         return [
             oMa.actInv(placements.get(b.joint, still) * b.placement)
             for oMa, (_, b) in zip(self._oMa, self._pairs.pairs, strict=True)
@@ -196,6 +197,8 @@ class PathMemory:
 
     def jacobian(self, rows: Matrix, which: Sequence[int]) -> Matrix:
         """See `eurdf.kinematics.tree_kinematics.PairMemory`."""
+        if self._J is None:
+            self._J = self._jacobian()
         n = self._pairs.model.nv if self._pairs.velocities is None else len(self._pairs.velocities)
         K = np.zeros((*rows.shape[:2], n))
         for own, index, part in zip(rows, which, K, strict=True):
@@ -206,6 +209,14 @@ class PathMemory:
             else:
                 part[:, in_K] = block
         return K.reshape(K.shape[0] * K.shape[1], n)
+
+    def _jacobian(self) -> Matrix:
+        """The world Jacobian (6, …) of the joints between the frames, each with columns of its own."""
+        joints = self._pairs.joints
+        J = np.zeros((6, joints[-1][-1].stop if joints else 0))
+        for (joint, _, _, _, columns), data in zip(joints, self._datas, strict=True):
+            J[:, columns] = self._oMi[joint].toActionMatrix() @ data.S.reshape(6, -1)
+        return J
 
 
 def _motion(data: pin.Data, site: Site) -> tuple[Any, Any, Any]:

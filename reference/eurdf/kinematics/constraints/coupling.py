@@ -8,7 +8,8 @@ import numpy as np
 
 from eurdf.kinematics.array import Indices, Matrix
 from eurdf.kinematics.constraints.kind import Kind, State
-from eurdf.kinematics.tree_kinematics import RelativeMotions, TreeKinematics
+from eurdf.kinematics.constraints.relative_motion import RelativeMotions
+from eurdf.kinematics.tree_kinematics import TreeKinematics
 from eurdf.mechanism.constraint import Coupling
 
 

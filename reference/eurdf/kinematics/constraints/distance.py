@@ -9,8 +9,9 @@ import numpy as np
 
 from eurdf.kinematics.array import Indices, Matrix, Vector
 from eurdf.kinematics.constraints.kind import Closures
+from eurdf.kinematics.constraints.relative_motion import RelativeMotions
 from eurdf.kinematics.constraints.vector import cross, dot, origins
-from eurdf.kinematics.tree_kinematics import RelativeMotions, TreeKinematics
+from eurdf.kinematics.tree_kinematics import TreeKinematics
 from eurdf.mechanism.constraint import DistanceClosure
 
 

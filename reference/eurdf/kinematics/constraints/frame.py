@@ -11,8 +11,7 @@ import pinocchio as pin
 
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.constraints.kind import Closures
-from eurdf.kinematics.constraints.vector import cross
-from eurdf.kinematics.tree_kinematics import RelativeMotions
+from eurdf.kinematics.constraints.relative_motion import RelativeMotions
 from eurdf.mechanism.constraint import FrameClosure
 
 # Terms of the series of the derivative of exp6: the last is below 1e-17 for rotations of up to half a turn.
@@ -33,19 +32,16 @@ class FrameClosures(Closures[FrameClosure]):
         return np.array([pin.Jlog6(aMb.inverse()) for aMb in placements])
 
     def rows_of_motion(self, motions: RelativeMotions) -> Matrix:
-        """J⁻¹ (ξ̇ - J̇ ṙ), with ξ = J(r) ṙ the twist of B in its own axes, and J the right Jacobian of exp6.
+        """J⁻¹ (ξ̇ - J̇ ṙ), with ξ = J(r) ṙ and J the right Jacobian of exp6.
 
         J̇ vanishes where the closure is closed.
         """
-        inward = np.swapaxes(motions.rotation, 1, 2)
-        linear = motions.acceleration - cross(motions.omega, motions.velocity)
-        drift = np.empty((len(inward), 6))
-        for index, bRa in enumerate(inward):
-            aMb = pin.SE3(motions.rotation[index], motions.position[index])
-            twist = np.concatenate((bRa @ motions.velocity[index], bRa @ motions.omega[index]))
-            acceleration = np.concatenate((bRa @ linear[index], bRa @ motions.alpha[index]))
+        drift = np.empty((len(motions.placements), 6))
+        each = zip(motions.placements, motions.twists, motions.accelerations, strict=True)
+        for index, (aMb, twist, acceleration) in enumerate(each):
             to_log = pin.Jlog6(aMb)
-            drift[index] = to_log @ (acceleration - _bend(pin.log6(aMb), pin.Motion(to_log @ twist)))
+            bend = _bend(pin.log6(aMb), pin.Motion(to_log @ twist.vector))
+            drift[index] = to_log @ (acceleration.vector - bend)
         return drift
 
     def opening(self, aMb: Any, index: int) -> tuple[float, float]:

@@ -10,8 +10,9 @@ import numpy as np
 
 from eurdf.kinematics.array import Indices, Matrix, Vector
 from eurdf.kinematics.constraints.kind import Closures
+from eurdf.kinematics.constraints.relative_motion import RelativeMotions
 from eurdf.kinematics.constraints.vector import cross, dot, origins, skew, velocity_of_origin
-from eurdf.kinematics.tree_kinematics import RelativeMotions, TreeKinematics
+from eurdf.kinematics.tree_kinematics import TreeKinematics
 from eurdf.mechanism.constraint import HingeClosure
 
 # Coefficients of the series of θ / sin θ in powers of cos θ - 1: each is -(n + 1) / (2n + 3) of the one before.

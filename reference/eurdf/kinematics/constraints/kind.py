@@ -10,7 +10,8 @@ from typing import Any, ClassVar, Generic, TypeVar
 import numpy as np
 
 from eurdf.kinematics.array import Indices, Matrix, Vector
-from eurdf.kinematics.tree_kinematics import PairMemory, RelativeMotions, TreeKinematics
+from eurdf.kinematics.constraints.relative_motion import RelativeMotions
+from eurdf.kinematics.tree_kinematics import PairMemory, TreeKinematics
 from eurdf.mechanism.constraint import Closure, Constraint
 
 AnyConstraint = TypeVar("AnyConstraint", bound=Constraint)
@@ -98,7 +99,7 @@ class Closures(Kind[AnyClosure]):
 
     def drift(self, motions: RelativeMotions) -> Matrix:
         """See `Kind`."""
-        return self.rows_of_motion(RelativeMotions(*(part[self.which] for part in motions)))
+        return self.rows_of_motion(motions.of(self.which))
 
     def scale(self, length: float) -> Matrix:
         """1/length for rows in m, 1 for rows in rad."""

@@ -8,8 +8,8 @@ from typing import Any
 
 from eurdf.kinematics.array import Matrix
 from eurdf.kinematics.constraints.kind import Closures
+from eurdf.kinematics.constraints.relative_motion import RelativeMotions
 from eurdf.kinematics.constraints.vector import origins, velocity_of_origin
-from eurdf.kinematics.tree_kinematics import RelativeMotions
 from eurdf.mechanism.constraint import PointClosure
 
 
