@@ -37,7 +37,7 @@ VALID = [case for case in CASES if isinstance(case.case, ValidCase)]
 
 
 def test_the_lint_finds_nothing_wrong_with_the_cases() -> None:
-    assert [str(fault) for fault in lint()] == []
+    assert [str(error) for error in lint()] == []
 
 
 def test_the_schema_of_a_case_is_current_and_takes_every_case() -> None:
@@ -283,7 +283,7 @@ def test_an_expectation_is_stale_where_one_number_of_it_is_another(tmp_path: Pat
     }.items():
         change()
         path.write_text(json.dumps(said), encoding="utf-8")
-        assert any(pointer in fault for fault in stale(read_case(case.path))), pointer
+        assert any(pointer in error for error in stale(read_case(case.path))), pointer
 
 
 def test_values_by_hand_may_be_some_of_all_and_are_held_against_the_oracle(tmp_path: Path) -> None:
@@ -295,7 +295,7 @@ def test_values_by_hand_may_be_some_of_all_and_are_held_against_the_oracle(tmp_p
     assert list(stale(read_case(case.path))) == []
     some["values"][0]["mass"] *= 2
     case.expectation.write_text(json.dumps(some), encoding="utf-8")
-    assert any("/values/0/mass" in fault for fault in stale(read_case(case.path)))
+    assert any("/values/0/mass" in error for error in stale(read_case(case.path)))
 
 
 def test_an_expectation_is_written_where_it_is_missing_or_stale_and_by_hand_it_is_left(

@@ -94,9 +94,9 @@ def test_a_broken_rule_is_found_and_no_other(
     rules: str, file: str, old: str, new: str, says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(lint, "LINES", 2)
-    faults = lint.lint(laid(tmp_path, file, old, new))
-    assert {fault.rule for fault in faults} == set(rules.split())
-    assert any(says in fault.message for fault in faults), [str(fault) for fault in faults]
+    errors = lint.lint(laid(tmp_path, file, old, new))
+    assert {error.rule for error in errors} == set(rules.split())
+    assert any(says in error.message for error in errors), [str(error) for error in errors]
 
 
 @pytest.mark.parametrize(
@@ -106,7 +106,7 @@ def test_a_file_that_is_no_case_is_found(path: str, tmp_path: Path) -> None:
     stray = laid(tmp_path) / path
     stray.parent.mkdir(exist_ok=True)
     stray.touch()
-    assert [(fault.path, fault.rule) for fault in lint.lint(tmp_path)] == [(stray, "name")]
+    assert [(error.path, error.rule) for error in lint.lint(tmp_path)] == [(stray, "name")]
 
 
 def test_every_rule_has_a_row_that_breaks_it() -> None:

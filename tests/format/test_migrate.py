@@ -17,7 +17,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from eurdf.commands.main import main
-from eurdf.diagnostics import Diagnostics, Fault
+from eurdf.diagnostics import Diagnostics, FileError
 from eurdf.format.read_extension import read_extension
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.urdf.read import read_urdf
@@ -255,7 +255,7 @@ def written(draw: st.DrawFn, document: dict[str, Any]) -> str:
 def reads_as(text: str, document: dict[str, Any]) -> bool:
     try:
         return bool(read_yaml(Source("", text, text.encode())).data == document)
-    except Fault:
+    except FileError:
         return False
 
 

@@ -374,7 +374,7 @@ def test_reading_reports_what_schema_rejects() -> None:
 def robot_errors(version: Literal["1", "2"], text: str) -> list[str]:
     """What an editor says of a document, which knows the names of one robot."""
     validator = Draft202012Validator(json_schema(version, NAMES))
-    return ["/".join(map(str, fault.absolute_path)) for fault in validator.iter_errors(yaml.safe_load(text))]
+    return ["/".join(map(str, error.absolute_path)) for error in validator.iter_errors(yaml.safe_load(text))]
 
 
 HEAD = 'extended_urdf: "2.0"\n'

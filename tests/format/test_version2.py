@@ -226,7 +226,7 @@ def test_unknown_version_is_the_only_diagnostic() -> None:
 CLOSURE = "closures: [{name: rod, type: 3d, frames: [a, b]}]"
 
 # one line of the file, code, pointer, column, part of the message or hint
-FAULTS = [
+ERRORS = [
     # keys
     ("closuers: []", "unknown-key", "/closuers", 1, "did you mean 'closures'?"),
     ("Root: fixed", "unknown-key", "/Root", 1, "did you mean 'root'?"),
@@ -327,7 +327,7 @@ FAULTS = [
 ]
 
 
-@pytest.mark.parametrize(("line", "code", "pointer", "column", "said"), FAULTS, ids=[fault[0] for fault in FAULTS])
+@pytest.mark.parametrize(("line", "code", "pointer", "column", "said"), ERRORS, ids=[error[0] for error in ERRORS])
 def test_one_error_gives_one_diagnostic(line: str, code: str, pointer: str, column: int | None, said: str) -> None:
     extension, diagnostics = read(f'extended_urdf: "2.0"\n{line}\n')
     assert extension is None

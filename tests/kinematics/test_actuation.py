@@ -100,7 +100,7 @@ def test_merged_spherical_joint_can_be_actuated() -> None:
 
 
 @pytest.mark.parametrize(
-    ("yaml", "fault"),
+    ("yaml", "error"),
     [
         ("actuators: [a, a]\n", "actuator-duplicate"),
         ("actuators: [a, {joint: a}]\n", "actuator-duplicate"),
@@ -110,8 +110,8 @@ def test_merged_spherical_joint_can_be_actuated() -> None:
         ("actuators: [A]\n", "unknown-actuator"),
     ],
 )
-def test_actuator_is_moving_joint_listed_once(yaml: str, fault: str) -> None:
-    assert codes(STAR, yaml) == [fault]
+def test_actuator_is_moving_joint_listed_once(yaml: str, error: str) -> None:
+    assert codes(STAR, yaml) == [error]
 
 
 def test_selection_is_computed_once() -> None:

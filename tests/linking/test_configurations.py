@@ -93,7 +93,7 @@ def test_nearly_unit_quaternion_is_normalized_others_refused(direction: tuple[fl
 
 
 @pytest.mark.parametrize(
-    ("joints", "says", "fault"),
+    ("joints", "says", "error"),
     [
         ("{}", "a: 2.000000002", "configuration-limits"),
         ("{}", "a: -2.000000002", "configuration-limits"),
@@ -129,8 +129,8 @@ def test_nearly_unit_quaternion_is_normalized_others_refused(direction: tuple[fl
         ("{}", "la: 0", "configuration-joint"),
     ],
 )
-def test_coordinate_respects_limits_of_the_description(joints: str, says: str, fault: str) -> None:
-    assert codes(STAR, f"joints: {joints}\nconfigurations: {{ready: {{{says}}}}}\n") == ([fault] if fault else [])
+def test_coordinate_respects_limits_of_the_description(joints: str, says: str, error: str) -> None:
+    assert codes(STAR, f"joints: {joints}\nconfigurations: {{ready: {{{says}}}}}\n") == ([error] if error else [])
 
 
 def test_caller_root_overrides_description() -> None:

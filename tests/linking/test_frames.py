@@ -160,7 +160,7 @@ def test_random_frames_have_expected_poses(data: st.DataObject, urdf: str, seed:
 
 
 @pytest.mark.parametrize(
-    ("entry", "fault"),
+    ("entry", "error"),
     [
         ("{name: base, link: arm}", "duplicate-frame"),
         ("{name: elbow, link: arm}", "duplicate-frame"),
@@ -170,8 +170,8 @@ def test_random_frames_have_expected_poses(data: st.DataObject, urdf: str, seed:
         ("{name: mark, joint: fore}", "unknown-frame"),
     ],
 )
-def test_frame_has_own_name_and_place(entry: str, fault: str) -> None:
-    assert codes(ARM, f"frames: [{entry}]\n") == [fault]
+def test_frame_has_own_name_and_place(entry: str, error: str) -> None:
+    assert codes(ARM, f"frames: [{entry}]\n") == [error]
 
 
 def test_frame_cannot_be_named_root_joint() -> None:

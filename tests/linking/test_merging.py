@@ -414,7 +414,7 @@ def test_joint_is_merged_once(last: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "root", "fault"),
+    ("name", "root", "error"),
     [
         ("j3", "fixed", []),
         ("ball", "fixed", []),
@@ -426,9 +426,9 @@ def test_joint_is_merged_once(last: str) -> None:
         ("root_joint", "floating", ["urdf-reserved-name"]),
     ],
 )
-def test_merged_joint_can_have_any_free_name(name: str, root: str, fault: list[str]) -> None:
+def test_merged_joint_can_have_any_free_name(name: str, root: str, error: list[str]) -> None:
     yaml = f"root: {root}\njoints: {{{name}: {{type: spherical, merges: [j1, j2, j3]}}}}\n"
-    assert codes(_chain(X, Y, Z, X), yaml) == fault
+    assert codes(_chain(X, Y, Z, X), yaml) == error
 
 
 def test_links_around_offset_ball_match_plain_urdf() -> None:

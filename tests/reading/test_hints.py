@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from eurdf import check
-from eurdf.diagnostics import Diagnostic, Diagnostics, Fault
+from eurdf.diagnostics import Diagnostic, Diagnostics, FileError
 from eurdf.format.read_extension import read_extension
 from eurdf.reading.indentation import first_line_hint, indentation_hint
 from eurdf.reading.source import Source
@@ -25,8 +25,8 @@ def found_in(text: str) -> list[Diagnostic]:
     diagnostics = Diagnostics()
     try:
         read_extension(read_yaml(Source("robot.yaml", text, text.encode())), diagnostics)
-    except Fault as fault:
-        diagnostics.add(fault.diagnostic)
+    except FileError as error:
+        diagnostics.add(error.diagnostic)
     return list(diagnostics)
 
 

@@ -12,7 +12,7 @@ import pytest
 
 import eurdf
 from eurdf.collection.near_paths import near_path
-from eurdf.diagnostics import Fault
+from eurdf.diagnostics import FileError
 from eurdf.diagnostics.sarif import sarif_log
 from eurdf.diagnostics.text import report_lines
 from eurdf.reading import given
@@ -102,7 +102,7 @@ def test_invalid_unicode_text_is_reported() -> None:
 
 
 def test_too_long_text_is_refused() -> None:
-    with pytest.raises(Fault, match="more than 10 bytes"):
+    with pytest.raises(FileError, match="more than 10 bytes"):
         source_of(URDF, limit=10)
 
 
@@ -220,7 +220,7 @@ def test_pipe_named_by_description_is_not_read(folder: Path) -> None:
 def test_pipe_is_read_up_to_limit(folder: Path) -> None:
     os.mkfifo("pipe")
     writer = subprocess.Popen(["sh", "-c", "yes > pipe"], stderr=subprocess.DEVNULL)
-    with pytest.raises(Fault, match="more than 100,000 bytes"):
+    with pytest.raises(FileError, match="more than 100,000 bytes"):
         source_of("pipe", limit=100_000)
     assert writer.wait(timeout=10) != 0
 

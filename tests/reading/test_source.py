@@ -10,13 +10,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from eurdf.diagnostics import Fault
+from eurdf.diagnostics import FileError
 from eurdf.reading.source import FILE_LIMIT, Source, read_source
 from support.watchdog import watchdog
 
 
-def fault_of(path: str | os.PathLike[str], **options: int) -> Fault:
-    with watchdog(), pytest.raises(Fault) as caught:
+def error_of(path: str | os.PathLike[str], **options: int) -> FileError:
+    with watchdog(), pytest.raises(FileError) as caught:
         read_source(path, **options)
     return caught.value
 
@@ -47,14 +47,14 @@ def test_file_is_named_as_given(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
 def test_file_size_limit_is_exact(tmp_path: Path) -> None:
     path = write(tmp_path, b"x" * 100_000)
     assert len(read_source(path, limit=100_000).data) == 100_000
-    assert fault_of(path, limit=99_999).diagnostic.code == "file-too-large"
+    assert error_of(path, limit=99_999).diagnostic.code == "file-too-large"
 
 
 def test_file_of_100_megabytes_is_not_read(tmp_path: Path) -> None:
     path = tmp_path / "robot.urdf"
     with path.open("wb") as file:
         file.truncate(100_000_000)
-    diagnostic = fault_of(path).diagnostic
+    diagnostic = error_of(path).diagnostic
     assert diagnostic.code == "file-too-large"
     assert f"{FILE_LIMIT:,} bytes" in diagnostic.message
 
@@ -62,44 +62,44 @@ def test_file_of_100_megabytes_is_not_read(tmp_path: Path) -> None:
 @pytest.mark.skipif(not os.path.exists("/proc/self/status"), reason="there is no /proc here")
 def test_unknown_size_is_read_up_to_limit() -> None:
     assert read_source("/proc/self/status").text.startswith("Name:")
-    assert fault_of("/proc/self/status", limit=10).diagnostic.code == "file-too-large"
+    assert error_of("/proc/self/status", limit=10).diagnostic.code == "file-too-large"
 
 
 def test_missing_file_is_reported(tmp_path: Path) -> None:
-    diagnostic = fault_of(tmp_path / "robot.yaml").diagnostic
+    diagnostic = error_of(tmp_path / "robot.yaml").diagnostic
     assert diagnostic.code == "file-unreadable"
     assert diagnostic.message == f"'{tmp_path / 'robot.yaml'}' cannot be read: no such file or directory"
 
 
 def test_folder_is_reported(tmp_path: Path) -> None:
-    diagnostic = fault_of(tmp_path).diagnostic
+    diagnostic = error_of(tmp_path).diagnostic
     assert (diagnostic.code, diagnostic.message) == ("file-unreadable", f"'{tmp_path}' is a folder, not a file")
 
 
 def test_unwritten_pipe_does_not_block(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "robot.yaml")
-    assert fault_of(tmp_path / "robot.yaml").diagnostic.code == "file-unreadable"
+    assert error_of(tmp_path / "robot.yaml").diagnostic.code == "file-unreadable"
 
 
 def test_endless_device_is_refused() -> None:
-    assert fault_of("/dev/zero").diagnostic.code == "file-unreadable"
+    assert error_of("/dev/zero").diagnostic.code == "file-unreadable"
 
 
 def test_path_with_nul_is_reported() -> None:
-    assert fault_of("robot\0.yaml").diagnostic.code == "file-unreadable"
+    assert error_of("robot\0.yaml").diagnostic.code == "file-unreadable"
 
 
 def test_refused_files_are_closed(tmp_path: Path) -> None:
     before = len(os.listdir("/dev/fd"))
     for path in (tmp_path, "/dev/zero", tmp_path / "missing"):
-        fault_of(path)
-    fault_of(write(tmp_path, b"xx"), limit=1)
+        error_of(path)
+    error_of(write(tmp_path, b"xx"), limit=1)
     assert len(os.listdir("/dev/fd")) == before
 
 
 @pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be", "utf-32", "utf-32-le", "utf-32-be"])
 def test_utf_16_and_utf_32_are_refused_with_hint(tmp_path: Path, encoding: str) -> None:
-    diagnostic = fault_of(write(tmp_path, "a: 1\n".encode(encoding))).diagnostic
+    diagnostic = error_of(write(tmp_path, "a: 1\n".encode(encoding))).diagnostic
     assert diagnostic.code == "file-not-utf8"
     assert "UTF-16" in diagnostic.message
     assert "UTF-8" in str(diagnostic.hint)
@@ -116,7 +116,7 @@ def test_utf_16_and_utf_32_are_refused_with_hint(tmp_path: Path, encoding: str) 
     ],
 )
 def test_non_utf_8_is_refused_at_first_byte(tmp_path: Path, data: bytes, position: tuple[int, int]) -> None:
-    diagnostic = fault_of(write(tmp_path, data)).diagnostic
+    diagnostic = error_of(write(tmp_path, data)).diagnostic
     assert (diagnostic.code, diagnostic.line, diagnostic.column) == ("file-not-utf8", *position)
 
 

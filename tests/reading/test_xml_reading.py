@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from lxml import etree
 
-from eurdf.diagnostics import Diagnostic, Fault, Place
+from eurdf.diagnostics import Diagnostic, FileError, Place
 from eurdf.reading import xml_reader
 from eurdf.reading.source import Source
 from eurdf.reading.xml_reader import TAG_LIMIT, XmlDocument, read_xml
@@ -49,9 +49,9 @@ def read(text: str) -> XmlDocument:
     return read_xml(source_of(text))
 
 
-def fault_of(text: str) -> Diagnostic:
+def error_of(text: str) -> Diagnostic:
     source = source_of(text)
-    with watchdog(), pytest.raises(Fault) as caught:
+    with watchdog(), pytest.raises(FileError) as caught:
         read_xml(source)
     return caught.value.diagnostic
 
@@ -199,10 +199,10 @@ def test_undeclared_prefix_becomes_part_of_name() -> None:
 
 
 def test_undeclared_prefix_hides_no_other_error() -> None:
-    assert fault_of('<robot><xacro:macro/><link name="a"></robot>').code == "xml-syntax"
+    assert error_of('<robot><xacro:macro/><link name="a"></robot>').code == "xml-syntax"
     deep = "<a>" * DEPTH_LIMIT + "</a>" * DEPTH_LIMIT
-    assert fault_of(f"<robot><xacro:macro/>{deep}</robot>").code == "file-too-large"
-    assert fault_of(f"<robot><xacro:macro/><a b='{'x' * 11_000_000}'/></robot>").code == "file-too-large"
+    assert error_of(f"<robot><xacro:macro/>{deep}</robot>").code == "file-too-large"
+    assert error_of(f"<robot><xacro:macro/><a b='{'x' * 11_000_000}'/></robot>").code == "file-too-large"
 
 
 def test_default_namespace_is_removed_prefixes_are_kept() -> None:
@@ -240,7 +240,7 @@ def test_utf_8_declaration_is_accepted(declaration: str) -> None:
 @pytest.mark.parametrize("encoding", ["latin-1", "ISO-8859-1", "utf-16", "us-ascii", "no-such"])
 def test_other_encoding_declaration_is_refused(encoding: str) -> None:
     text = f"<?xml version='1.0' encoding='{encoding}'?><robot name='é'/>"
-    diagnostic = fault_of(text)
+    diagnostic = error_of(text)
     assert diagnostic.code == "file-not-utf8"
     assert meant(text, diagnostic.place) == encoding
 
@@ -266,7 +266,7 @@ BOMB = (
     ],
 )
 def test_doctype_is_refused_before_parsing(text: str) -> None:
-    diagnostic = fault_of(text)
+    diagnostic = error_of(text)
     assert (diagnostic.code, meant(text, diagnostic.place)) == ("xml-doctype", "<!DOCTYPE")
 
 
@@ -274,7 +274,7 @@ def test_doctype_is_refused_before_parsing(text: str) -> None:
     "before", ["\x01", "<?xml?", "<!--", "<!-- -- -->", "text", "<robot/>", "<?xml version='1.0'?x>"]
 )
 def test_entity_bomb_behind_other_error_is_harmless(before: str) -> None:
-    assert fault_of(before + BOMB).code in ("xml-syntax", "xml-doctype")
+    assert error_of(before + BOMB).code in ("xml-syntax", "xml-doctype")
 
 
 def test_text_like_doctype_is_accepted() -> None:
@@ -286,7 +286,7 @@ def test_text_like_doctype_is_accepted() -> None:
 
 def test_nesting_limit_is_256_levels() -> None:
     read("<a>" * DEPTH_LIMIT + "</a>" * DEPTH_LIMIT)
-    diagnostic = fault_of("<a>" * (DEPTH_LIMIT + 1) + "</a>" * (DEPTH_LIMIT + 1))
+    diagnostic = error_of("<a>" * (DEPTH_LIMIT + 1) + "</a>" * (DEPTH_LIMIT + 1))
     assert (diagnostic.code, diagnostic.column) == ("file-too-large", 3 * DEPTH_LIMIT + 1)
 
 
@@ -308,7 +308,7 @@ def test_nesting_limit_is_independent_of_libxml2(monkeypatch: pytest.MonkeyPatch
     ids=["nesting", "attributes", "elements", "text", "value", "name"],
 )
 def test_size_limit_is_enforced(text: str) -> None:
-    assert fault_of(text).code == "file-too-large"
+    assert error_of(text).code == "file-too-large"
 
 
 def test_hundred_thousand_siblings_have_places() -> None:
@@ -337,7 +337,7 @@ def test_hundred_thousand_siblings_have_places() -> None:
 )
 def test_any_text_within_limits_is_fast(text: str) -> None:
     source = source_of(text)
-    with watchdog(), contextlib.suppress(Fault):
+    with watchdog(), contextlib.suppress(FileError):
         document = read_xml(source)
         document.place(document.root)
 
@@ -364,8 +364,8 @@ def test_damaged_file_gives_document_or_error() -> None:
             text = text[:start] + chance.choice(["", *junk]) + text[end:]
         try:
             document = read(text)
-        except Fault as fault:
-            diagnostic = fault.diagnostic
+        except FileError as error:
+            diagnostic = error.diagnostic
             assert diagnostic.message
             assert not diagnostic.message.endswith(".")
             assert diagnostic.line is not None
@@ -391,8 +391,8 @@ def test_damaged_file_gives_document_or_error() -> None:
 def test_any_text_gives_document_or_error(pieces: list[str]) -> None:
     try:
         document = read("".join(pieces))
-    except Fault as fault:
-        assert fault.diagnostic.code in ("xml-syntax", "xml-doctype")  # noqa: PT017 - either outcome is right
+    except FileError as error:
+        assert error.diagnostic.code in ("xml-syntax", "xml-doctype")  # noqa: PT017 - either outcome is right
     else:
         document.place(document.root)
 
@@ -436,7 +436,7 @@ def test_any_text_gives_document_or_error(pieces: list[str]) -> None:
 def test_syntax_error_is_reported_plainly_at_its_place(
     text: str, position: tuple[int, int | None], message: str, hint: str | None
 ) -> None:
-    diagnostic = fault_of(text)
+    diagnostic = error_of(text)
     assert diagnostic.code == "xml-syntax"
     assert (diagnostic.line, diagnostic.column) == position
     assert message in diagnostic.message

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from eurdf.diagnostics import Diagnostic, Fault, Place
+from eurdf.diagnostics import Diagnostic, FileError, Place
 from eurdf.reading.core_schema import resolve
 from eurdf.reading.source import FILE_LIMIT, Source
 from eurdf.reading.yaml_reader import DEPTH_LIMIT, DIRECTIVE_LIMIT, NODE_LIMIT, YamlDocument, read_yaml
@@ -54,8 +54,8 @@ def read(text: str) -> YamlDocument:
     return read_yaml(source_of(text))
 
 
-def fault_of(text: str) -> Diagnostic:
-    with watchdog(), pytest.raises(Fault) as caught:
+def error_of(text: str) -> Diagnostic:
+    with watchdog(), pytest.raises(FileError) as caught:
         read(text)
     return caught.value.diagnostic
 
@@ -136,7 +136,7 @@ def test_tag_directive_can_rename_core_prefix(text: str) -> None:
 )
 def test_unknown_or_mismatched_tag_is_refused(node: str) -> None:
     text = f"key: {node}\n"
-    diagnostic = fault_of(text)
+    diagnostic = error_of(text)
     assert (diagnostic.code, diagnostic.line, diagnostic.column) == ("yaml-unknown-tag", 1, 6)
 
 
@@ -145,7 +145,7 @@ def test_unknown_or_mismatched_tag_is_refused(node: str) -> None:
     [".inf", "-.INF", "+.Inf", ".nan", ".NaN", "1e999", "-1e400", "1" + "0" * 309, "-" + "9" * 5000, "0x1" + "0" * 300],
 )
 def test_number_beyond_double_is_refused(number: str) -> None:
-    diagnostic = fault_of(f"a:\n  - {number}\n")
+    diagnostic = error_of(f"a:\n  - {number}\n")
     assert (diagnostic.code, diagnostic.pointer) == ("yaml-not-finite", "/a/0")
     assert (diagnostic.line, diagnostic.column) == (2, 5)
     assert len(diagnostic.message) < 120
@@ -345,7 +345,7 @@ def test_omitted_value_is_after_its_colon() -> None:
     ],
 )
 def test_non_string_key_is_refused(key: str, what: str, hint: str | None) -> None:
-    diagnostic = fault_of(f"a:\n  b: 1\n  {key}{'  ' if key.startswith('?') else ''}: x\n")
+    diagnostic = error_of(f"a:\n  b: 1\n  {key}{'  ' if key.startswith('?') else ''}: x\n")
     assert (diagnostic.code, diagnostic.hint) == ("yaml-key-not-string", hint)
     assert what in diagnostic.message
     assert (diagnostic.line, diagnostic.pointer) == (3, "/a")
@@ -358,7 +358,7 @@ def test_alias_of_string_is_valid_key() -> None:
 
 
 def test_alias_of_list_is_refused_as_key() -> None:
-    assert fault_of("a: &list [1]\n*list : 1\n").code == "yaml-key-not-string"
+    assert error_of("a: &list [1]\n*list : 1\n").code == "yaml-key-not-string"
 
 
 @pytest.mark.parametrize(
@@ -366,7 +366,7 @@ def test_alias_of_list_is_refused_as_key() -> None:
     ["a: {b: 1, c: 2, b: 3}\n", "a:\n  b: 1\n  c: 2\n  b: 3\n", "a:\n  b: 1\n  'b': 3\n", 'a: {b: 1, "\\x62": 3}'],
 )
 def test_duplicate_key_is_refused_at_second_place(text: str) -> None:
-    diagnostic = fault_of(text)
+    diagnostic = error_of(text)
     assert (diagnostic.code, diagnostic.pointer) == ("yaml-duplicate-key", "/a/b")
     assert (diagnostic.line, diagnostic.column) != (None, None)
     assert meant(text, diagnostic.place).strip("'") in ("b", '"\\x62"')
@@ -394,18 +394,18 @@ def test_alias_refers_to_last_anchor() -> None:
     ],
 )
 def test_undefined_or_recursive_alias_is_refused(text: str, pointer: str) -> None:
-    diagnostic = fault_of(text)
+    diagnostic = error_of(text)
     assert (diagnostic.code, diagnostic.pointer) == ("yaml-alias", pointer)
     assert meant(text, diagnostic.place).startswith("*")
 
 
 def test_alias_bomb_is_refused_before_expansion() -> None:
     lines = ["a0: &a0 [x]"] + [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 9)}]" for n in range(1, 30)]
-    assert fault_of("\n".join(lines)).code == "yaml-alias"
+    assert error_of("\n".join(lines)).code == "yaml-alias"
 
 
 def test_alias_counts_as_one_node() -> None:
-    assert fault_of("a: &a 1\nb: [" + "*a," * NODE_LIMIT + "]").code == "file-too-large"
+    assert error_of("a: &a 1\nb: [" + "*a," * NODE_LIMIT + "]").code == "file-too-large"
 
 
 def test_aliases_below_expansion_bound_are_accepted() -> None:
@@ -417,7 +417,7 @@ def test_aliases_count_toward_nesting_limit() -> None:
     half = DEPTH_LIMIT // 2
     text = "a: &a " + "[" * half + "]" * half + "\nb: " + "[" * (half - 1) + "{}" + "]" * (half - 1)
     read(text.replace("{}", "*a"))
-    assert fault_of(text.replace("{}", "[*a]")).code == "yaml-too-deep"
+    assert error_of(text.replace("{}", "[*a]")).code == "yaml-too-deep"
 
 
 # Hostile files
@@ -426,13 +426,13 @@ def test_aliases_count_toward_nesting_limit() -> None:
 def test_nesting_limit_is_64_levels() -> None:
     inner = DEPTH_LIMIT - 1
     read("a: " + "[" * inner + "]" * inner)
-    diagnostic = fault_of("a: " + "[" * (inner + 1) + "]" * (inner + 1))
+    diagnostic = error_of("a: " + "[" * (inner + 1) + "]" * (inner + 1))
     assert (diagnostic.code, diagnostic.column) == ("yaml-too-deep", 4 + inner)
 
 
 @pytest.mark.parametrize("opening", ["[", "{a: ", "- ", "? ", "[\n", "[{a: "])
 def test_endless_nesting_is_refused(opening: str) -> None:
-    code = fault_of(opening * (4_000_000 // len(opening))).code
+    code = error_of(opening * (4_000_000 // len(opening))).code
     assert code == ("yaml-key-not-string" if opening == "? " else "yaml-too-deep")
 
 
@@ -447,7 +447,7 @@ def test_endless_nesting_is_refused(opening: str) -> None:
     ids=["items", "flow items", "directives", "bytes"],
 )
 def test_size_limit_is_enforced(text: str) -> None:
-    assert fault_of(text).code == "file-too-large"
+    assert error_of(text).code == "file-too-large"
 
 
 def test_few_tag_directives_are_accepted() -> None:
@@ -476,13 +476,13 @@ def test_few_tag_directives_are_accepted() -> None:
     ],
 )
 def test_any_text_within_limits_is_fast(text: str) -> None:
-    with watchdog(), contextlib.suppress(Fault):
+    with watchdog(), contextlib.suppress(FileError):
         read(text)
 
 
 @pytest.mark.parametrize("character", ["\0", "\x01", "\x1b", "\x7f", "\x80", "\ufffe"])
 def test_control_character_is_refused_at_its_place(character: str) -> None:
-    diagnostic = fault_of(f"é: 1\r\nb: 'x{character}'\r\n")
+    diagnostic = error_of(f"é: 1\r\nb: 'x{character}'\r\n")
     assert (diagnostic.code, diagnostic.line, diagnostic.column) == ("yaml-syntax", 2, 6)
     assert f"U+{ord(character):04X}" in diagnostic.message
 
@@ -508,8 +508,8 @@ def test_damaged_file_gives_document_or_error() -> None:
             text = text[:start] + chance.choice(["", *junk]) + text[end:]
         try:
             document = read(text)
-        except Fault as fault:
-            diagnostic = fault.diagnostic
+        except FileError as error:
+            diagnostic = error.diagnostic
             assert diagnostic.message
             assert not diagnostic.message.endswith(".")
             assert diagnostic.line is not None
@@ -529,8 +529,8 @@ def test_damaged_file_gives_document_or_error() -> None:
 def test_any_text_gives_document_or_error(text: str) -> None:
     try:
         data = read(text).data
-    except Fault as fault:
-        assert fault.diagnostic.code.startswith("yaml-")  # noqa: PT017 - either outcome is right
+    except FileError as error:
+        assert error.diagnostic.code.startswith("yaml-")  # noqa: PT017 - either outcome is right
     else:
         json.dumps(data, allow_nan=False)
 
@@ -553,7 +553,7 @@ def test_any_text_gives_document_or_error(text: str) -> None:
     ],
 )
 def test_non_mapping_is_reported_with_its_type(text: str, what: str) -> None:
-    diagnostic = fault_of(text)
+    diagnostic = error_of(text)
     assert diagnostic.code == "yaml-empty"
     assert what in diagnostic.message
     assert "mapping" in diagnostic.message
@@ -563,13 +563,13 @@ def test_non_mapping_is_reported_with_its_type(text: str, what: str) -> None:
     ("text", "line"), [("a: 1\n---\nb: 2\n", 2), ("---\na: 1\n---\n", 3), ("a: 1\n...\nb: 2\n", 3), ("[]\n--- {}\n", 2)]
 )
 def test_second_document_is_refused_at_its_start(text: str, line: int) -> None:
-    diagnostic = fault_of(text)
+    diagnostic = error_of(text)
     assert (diagnostic.code, diagnostic.line, diagnostic.column) == ("yaml-several-documents", line, 1)
 
 
 @pytest.mark.parametrize("version", ["1.1", "1.0", "1.3", "2.0"])
 def test_other_yaml_version_is_refused(version: str) -> None:
-    diagnostic = fault_of(f"# first\n%YAML {version}\n---\na: 1\n")
+    diagnostic = error_of(f"# first\n%YAML {version}\n---\na: 1\n")
     assert (diagnostic.code, diagnostic.line, diagnostic.column) == ("yaml-version", 2, 1)
 
 
@@ -606,7 +606,7 @@ def test_other_yaml_version_is_refused(version: str) -> None:
 def test_syntax_error_is_reported_plainly_at_its_place(
     text: str, position: tuple[int, int], message: str, hint: str | None
 ) -> None:
-    diagnostic = fault_of(text)
+    diagnostic = error_of(text)
     assert diagnostic.code == "yaml-syntax"
     assert (diagnostic.line, diagnostic.column) == position
     assert message in diagnostic.message
@@ -643,8 +643,8 @@ def test_yaml_edge_cases_are_refused_or_yaml_1_2(text: str, value: object) -> No
     # EU-YML-012. The values are those of YAML 1.2.2, by hand.
     try:
         found: object = read_yaml(Source("robot.yaml", text, text.encode())).data
-    except Fault as fault:
-        found = fault.diagnostic.code
+    except FileError as error:
+        found = error.diagnostic.code
     assert found in (value, "yaml-syntax")
 
 

@@ -64,7 +64,7 @@ def errors(folder):
     return {rule: found for rule, found in judge(Candidate.find(folder)).errors.items() if found}
 
 
-def only_fault(folder, rule):
+def only_error(folder, rule):
     """The one thing that is wrong, by the one rule that it breaks."""
     found = errors(folder)
     assert list(found) == [rule]
@@ -92,7 +92,7 @@ def test_unbuildable_robot_reports_only_its_reason(copy):
     folder = copy("four_bar")
     replace(folder / "robot.yaml", "[motor_crank]", "[motor_krank]")
     assert "did you mean 'motor_crank'" in eurdf.check(folder).diagnostics[0].hint
-    assert "motor_krank" in only_fault(folder, "sound")
+    assert "motor_krank" in only_error(folder, "sound")
 
 
 def test_warning_is_an_error(copy):
@@ -124,13 +124,13 @@ def test_unlimited_actuator_must_make_full_turn(copy):
 def test_loop_open_by_a_nanometre_is_open(copy):
     folder = copy("four_bar")
     edit(folder, "joint[@name='weld_rocker_pin_b']/origin", xyz="-0.070000001 0 0.24")
-    assert "open by 1.0e-09" in only_fault(folder, "assembled")
+    assert "open by 1.0e-09" in only_error(folder, "assembled")
 
 
 def test_assembled_configuration_is_required(copy):
     folder = copy("four_bar")
     replace(folder / "robot.yaml", "configurations:\n  assembled: {}\n", "")
-    assert only_fault(folder, "assembled") == "the configuration 'assembled' is missing"
+    assert only_error(folder, "assembled") == "the configuration 'assembled' is missing"
 
 
 def test_open_loops_are_reported_once(copy):
@@ -164,17 +164,17 @@ def test_readme_must_state_computed_dimensions(copy, old, new):
 
 def test_readme_and_description_are_required(copy):
     folder = copy("four_bar", "README.md")
-    assert only_fault(folder, "documented") == "README.md is missing"
+    assert only_error(folder, "documented") == "README.md is missing"
     folder = copy("digit_leg")
     replace(folder / "robot.yaml", "description: ", "title: ")
-    assert "no description" in only_fault(folder, "documented")
+    assert "no description" in only_error(folder, "documented")
 
 
 def test_picture_must_be_a_png(copy):
     folder = copy("four_bar", "picture.png")
-    assert only_fault(folder, "pictured").startswith("picture.png is missing")
+    assert only_error(folder, "pictured").startswith("picture.png is missing")
     (folder / "picture.png").write_bytes(b"")
-    assert only_fault(folder, "pictured") == "picture.png is not a PNG file"
+    assert only_error(folder, "pictured") == "picture.png is not a PNG file"
 
 
 def test_massless_inner_body_is_reported(copy):
@@ -185,7 +185,7 @@ def test_massless_inner_body_is_reported(copy):
     inertial.getparent().remove(inertial)
     tree.write(file)
     restate(folder)
-    assert only_fault(folder, "mass") == "the body of joint 'free_foot1' has no mass"
+    assert only_error(folder, "mass") == "the body of joint 'free_foot1' has no mass"
 
 
 def test_indefinite_mass_matrix_is_reported_with_place(copy):
@@ -208,13 +208,13 @@ def test_indefinite_mass_matrix_is_reported_with_place(copy):
 def test_different_version_1_is_reported(copy, old, new, error):
     folder = copy("four_bar")
     replace(folder / "robot.v1.yaml", old, new)
-    assert error in only_fault(folder, "version 1")
+    assert error in only_error(folder, "version 1")
 
 
 def test_invalid_version_1_is_reported(copy):
     folder = copy("four_bar")
     replace(folder / "robot.v1.yaml", "[motor_crank]", "[motor_krank]")
-    assert "motor_krank" in only_fault(folder, "version 1")
+    assert "motor_krank" in only_error(folder, "version 1")
 
 
 @pytest.mark.parametrize(("number", "is_built"), [("1.57079632679488", True), ("1.5707964", False)])
@@ -231,9 +231,9 @@ def test_outdated_file_is_reported(tmp_path):
     folder = tmp_path / "four_bar"
     shutil.copytree(ROOT / "robots" / "four_bar", folder)
     replace(folder / "robot.v1.yaml", "# Written by", "# Not written by")
-    assert only_fault(folder, "built") == "robot.v1.yaml differs from what build.py writes; run build.py"
+    assert only_error(folder, "built") == "robot.v1.yaml differs from what build.py writes; run build.py"
     (folder / "build.py").write_text("raise SystemExit('no drawing')\n")
-    assert only_fault(folder, "built") == "build.py fails: no drawing"
+    assert only_error(folder, "built") == "build.py fails: no drawing"
     (folder / "build.py").write_text("")
     assert len(errors(folder)["built"]) == 3
 
@@ -282,7 +282,7 @@ def test_mirrored_angles_can_have_opposite_sign(walker):
     (axis,) = etree.parse(walker / "robot.urdf").xpath("joint[@name='right_hip']/axis/@xyz")
     other_way = " ".join(str(-float(value)) for value in axis.split())
     edit(walker, "joint[@name='right_hip']/axis", xyz=other_way)
-    assert only_fault(walker, "mirrored") == "'left_hip' and 'right_hip' have different position limits"
+    assert only_error(walker, "mirrored") == "'left_hip' and 'right_hip' have different position limits"
     edit(walker, "joint[@name='right_hip']/limit", lower="-1.0472", upper="0.5236")
     assert not errors(walker)
 

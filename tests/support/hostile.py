@@ -187,7 +187,7 @@ HOSTILE = {
         "urdf-no-link", lambda: '<robot name="r">' + "".join(f"<a{i}/>" for i in range(60_000)) + "</robot>"
     ),
     "60,000 misspelt elements": _urdf("urdf-no-link", lambda: '<robot name="r">' + "<lnik/>" * 60_000 + "</robot>"),
-    "5,000 joints with a fault each": _urdf("urdf-bad-number", lambda: star(5_000, content='<axis xyz="1 x 0"/>')),
+    "5,000 joints with an error each": _urdf("urdf-bad-number", lambda: star(5_000, content='<axis xyz="1 x 0"/>')),
     "8,000 unknown links among as many known": _urdf(
         "urdf-unknown-link",
         lambda: robot(

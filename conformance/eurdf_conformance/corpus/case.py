@@ -118,7 +118,7 @@ class ValidCase(BaseCase):
 
 
 class InvalidCase(BaseCase):
-    """Two files with one fault."""
+    """Two files with one error."""
 
     valid: Literal[False]
     code: Code = Field(description="The one error.")
@@ -129,7 +129,7 @@ class InvalidCase(BaseCase):
     provenance: Provenance = Provenance(expectation="hand", note="")
     either: bool = Field(
         False,
-        description="Whether the fault, of inertia or closure, leaves a robot that a parser may accept or reject.",
+        description="Whether the error, of inertia or closure, leaves a robot that a parser may accept or reject.",
     )
 
 

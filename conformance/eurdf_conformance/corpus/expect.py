@@ -89,9 +89,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
             continue
         path, by_hand = case.expectation, case.case.provenance.expectation == "hand"
         if options.check or (by_hand and path.exists()):
-            faults = list(stale(case))
-            failed |= bool(faults)
-            sys.stdout.writelines(f"{path}: {fault}\n" for fault in faults)
+            errors = list(stale(case))
+            failed |= bool(errors)
+            sys.stdout.writelines(f"{path}: {error}\n" for error in errors)
             continue
         try:
             text = expected_text(expect(case))

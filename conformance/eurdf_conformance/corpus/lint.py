@@ -29,7 +29,7 @@ LINES = 7
 
 
 @dataclass(frozen=True, slots=True)
-class Fault:
+class LintError:
     """A rule that a case breaks."""
 
     path: Path
@@ -62,23 +62,23 @@ class Corpus:
 Rule = Callable[[CorpusCase, Corpus], Iterator[str]]
 
 
-def lint(root: Path = CASES, clauses: Mapping[str, Clause] | None = None) -> list[Fault]:
+def lint(root: Path = CASES, clauses: Mapping[str, Clause] | None = None) -> list[LintError]:
     """What is wrong with the cases below a folder."""
-    cases, faults = _sorted_out(root)
+    cases, errors = _sorted_out(root)
     corpus = Corpus(cases, read_clauses() if clauses is None else clauses)
-    return faults + [
-        Fault(case.path, name, message)
+    return errors + [
+        LintError(case.path, name, message)
         for case in cases
         for name, rule in RULES_OF_CASES.items()
         for message in rule(case, corpus)
     ]
 
 
-def _sorted_out(root: Path) -> tuple[list[CorpusCase], list[Fault]]:
+def _sorted_out(root: Path) -> tuple[list[CorpusCase], list[LintError]]:
     """The cases whose files can be made, and why the other files below the folder are none."""
     known = Cases(root)
     cases: list[CorpusCase] = []
-    faults: list[Fault] = []
+    errors: list[LintError] = []
     expected = {root / f"{name}.expected.json" for name in case_names(root)}
     for path in sorted(path for path in root.rglob("*") if path.is_file()):
         name = path.relative_to(root).with_suffix("").as_posix()
@@ -87,10 +87,10 @@ def _sorted_out(root: Path) -> tuple[list[CorpusCase], list[Fault]]:
                 _ = known[name].files
                 cases.append(known[name])
             except NotACase as error:
-                faults.append(Fault(error.path, "case", error.why))
+                errors.append(LintError(error.path, "case", error.why))
         elif path not in expected:
-            faults.append(Fault(path, "name", f"a case is <topic>/<name>.yaml; the topics are {', '.join(TOPICS)}"))
-    return cases, faults
+            errors.append(LintError(path, "name", f"a case is <topic>/<name>.yaml; the topics are {', '.join(TOPICS)}"))
+    return cases, errors
 
 
 def _id(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
@@ -168,10 +168,10 @@ def _place(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
     else:
         places = [warning.place for warning in case.case.warnings]
     for place in places:
-        yield from _place_faults(place, case)
+        yield from _place_errors(place, case)
 
 
-def _place_faults(place: CasePlace, case: CorpusCase) -> Iterator[str]:
+def _place_errors(place: CasePlace, case: CorpusCase) -> Iterator[str]:
     path = next((path for path in (case.description, case.urdf) if path.name == place.file), None)
     if path is None:
         yield f"place: '{place.file}' is none of its two files"
@@ -214,18 +214,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     parser = argparse.ArgumentParser(prog="python -m eurdf_conformance.corpus.lint", description=__doc__)
     parser.add_argument("root", nargs="?", type=Path, default=CASES, help="folder of the topics")
-    parser.add_argument("--complete", action="store_true", help="a clause without a case is a fault too")
+    parser.add_argument("--complete", action="store_true", help="a clause without a case is a error too")
     options = parser.parse_args(arguments)
     clauses = read_clauses()
-    faults = [str(fault) for fault in lint(options.root, clauses)]
+    errors = [str(error) for error in lint(options.root, clauses)]
     if options.root == CASES and SCHEMA_FILE.read_text(encoding="utf-8") != schema_text():
-        faults.append(f"{SCHEMA_FILE}: not current: python -m eurdf_conformance.corpus.case")
+        errors.append(f"{SCHEMA_FILE}: not current: python -m eurdf_conformance.corpus.case")
     cases = [case.case for case in _sorted_out(options.root)[0]]
     tested = {clause for rule in RULES for clause in rule.clauses}
     gaps = list(missing(cases, clauses, tested | set(OF_RUNNERS)))
-    sys.stdout.writelines(f"{line}\n" for line in [*faults, *(f"missing: {gap}" for gap in gaps)])
-    sys.stdout.write(f"{len(cases)} cases, {len(faults)} faults, {len(gaps)} clauses without their cases\n")
-    return int(bool(faults or (options.complete and gaps)))
+    sys.stdout.writelines(f"{line}\n" for line in [*errors, *(f"missing: {gap}" for gap in gaps)])
+    sys.stdout.write(f"{len(cases)} cases, {len(errors)} errors, {len(gaps)} clauses without their cases\n")
+    return int(bool(errors or (options.complete and gaps)))
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from eurdf.collection.near_paths import near_path
-from eurdf.diagnostics import Fault, Place
+from eurdf.diagnostics import FileError, Place
 from eurdf.exceptions import RobotNotFound
 from eurdf.reading.given import Given, is_stream, is_xml, shown, source_of
 from eurdf.reading.source import Source
@@ -53,7 +53,7 @@ def find_robot(path: Given, urdf: Given | None = None) -> RobotFiles:
 
     Raises:
         RobotNotFound: Where there is no such thing.
-        Fault: A stream, a text or a folder cannot be read.
+        FileError: A stream, a text or a folder cannot be read.
     """
     if urdf is not None and is_stream(path) and path == urdf:
         raise RobotNotFound(shown(path), f"{shown(path)} cannot be both the description and its URDF")
@@ -88,14 +88,14 @@ def _files(folder: Path) -> list[Path]:
     """What is in a folder, except folders: a link to nothing, or a pipe, is an error where it is read.
 
     Raises:
-        Fault: The folder cannot be read.
+        FileError: The folder cannot be read.
     """
     try:
         names = os.listdir(folder)
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
         place = Place(os.fspath(folder))
-        raise Fault("file-unreadable", f"the folder '{folder}' cannot be read: {reason}", place) from None
+        raise FileError("file-unreadable", f"the folder '{folder}' cannot be read: {reason}", place) from None
     return sorted(folder / name for name in names if not os.path.isdir(folder / name))
 
 

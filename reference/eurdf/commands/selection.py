@@ -10,7 +10,7 @@ from pathlib import Path
 
 from eurdf.collection import find_robot
 from eurdf.commands.cannot_run import CannotRun
-from eurdf.diagnostics import Fault
+from eurdf.diagnostics import FileError
 from eurdf.exceptions import RobotNotFound
 from eurdf.reading.given import is_stream, is_text
 from eurdf.reading.source import FILE_LIMIT
@@ -65,7 +65,7 @@ def _robots_at(path: str, allow_none: bool) -> list[str]:
         if allow_none:
             return [path] if _holds_urdf(path) else []
     if not (is_stream(path) or is_text(path)):  # their content is read once, when they are checked
-        with contextlib.suppress(Fault):  # it is reported when the robot is checked
+        with contextlib.suppress(FileError):  # it is reported when the robot is checked
             find_robot(path)
     return [path]
 
@@ -76,7 +76,7 @@ def _holds_urdf(folder: str) -> bool:
         return find_robot(folder).description is None
     except RobotNotFound:
         return False
-    except Fault:
+    except FileError:
         return True  # it is reported when the robot is checked
 
 

@@ -1,13 +1,13 @@
 """Diagnostics: codes, places, messages, and how they are shown."""
 
-from eurdf.diagnostics.diagnostic import Diagnostic, Diagnostics, Fault, Hint, Place, did_you_mean, quoted
+from eurdf.diagnostics.diagnostic import Diagnostic, Diagnostics, FileError, Hint, Place, did_you_mean, quoted
 from eurdf.diagnostics.registry import REGISTRY, Phase, Rule, Severity
 
 __all__ = [
     "REGISTRY",
     "Diagnostic",
     "Diagnostics",
-    "Fault",
+    "FileError",
     "Hint",
     "Phase",
     "Place",

@@ -134,7 +134,7 @@ class Diagnostic:
         return hash((self.code, self.message, self.hint))
 
 
-class Fault(Exception):  # noqa: N818 - it carries one diagnostic; the registry says whether it is an error
+class FileError(Exception):
     """Stops reading a file; carries the diagnostic that says why."""
 
     def __init__(self, code: str, message: str, place: Place, hint: str | None = None) -> None:

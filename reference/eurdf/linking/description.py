@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Literal
 
 from eurdf.collection import find_robot
-from eurdf.diagnostics import Diagnostics, Fault, Place, quoted
+from eurdf.diagnostics import Diagnostics, FileError, Place, quoted
 from eurdf.exceptions import CannotExpand
 from eurdf.format.extension import Extension
 from eurdf.format.read_extension import read_extension, version_of
@@ -122,8 +122,8 @@ def describe(
     try:
         files = find_robot(path, urdf)
         given = files.urdf and _expanded(files.urdf, name, diagnostics, package_dirs, xacro_args)
-    except Fault as fault:
-        diagnostics.add(fault.diagnostic)
+    except FileError as error:
+        diagnostics.add(error.diagnostic)
         return Unlinked(name, diagnostics)
     if given is None and xacro_args:
         raise CannotExpand(name, _NO_XACRO)
@@ -183,8 +183,8 @@ def read_urdf_alone(
         text = source_of(path)
         file = Path(shown(path)) if text is None else text
         urdf = _expanded(file, shown(path), diagnostics, package_dirs, xacro_args)
-    except Fault as fault:
-        diagnostics.add(fault.diagnostic)
+    except FileError as error:
+        diagnostics.add(error.diagnostic)
         return None
     return _read_urdf(urdf, diagnostics, geometry=True, mimic_errors="refused")
 
@@ -210,8 +210,8 @@ def _expanded(
 def _read_yaml(path: Path | Source, diagnostics: Diagnostics) -> YamlDocument | None:
     try:
         return read_yaml(_source(path))
-    except Fault as fault:
-        diagnostics.add(fault.diagnostic)
+    except FileError as error:
+        diagnostics.add(error.diagnostic)
         return None
 
 
@@ -224,8 +224,8 @@ def _read_urdf(
 ) -> Urdf | None:
     try:
         document = read_xml(_source(path))
-    except Fault as fault:
-        diagnostics.add(fault.diagnostic)
+    except FileError as error:
+        diagnostics.add(error.diagnostic)
         return None
     mimic_diagnostics = diagnostics if mimic_errors == "refused" else Diagnostics()
     urdf = read_urdf(document, diagnostics, geometry=geometry, mimic_diagnostics=mimic_diagnostics)

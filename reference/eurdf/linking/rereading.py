@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eurdf.diagnostics import Diagnostics, Fault
+from eurdf.diagnostics import Diagnostics, FileError
 from eurdf.format.read_extension import read_extension
 from eurdf.format.urdf.data import Urdf
 from eurdf.linking.link import link
@@ -25,8 +25,8 @@ def reread(text: str, urdf: Urdf, file: str) -> tuple[Mechanism | None, Diagnost
     diagnostics = Diagnostics()
     try:
         document = read_yaml(Source(file, text, text.encode()))
-    except Fault as fault:
-        diagnostics.add(fault.diagnostic)
+    except FileError as error:
+        diagnostics.add(error.diagnostic)
         return None, diagnostics
     extension = read_extension(document, diagnostics)
     if extension is None:

@@ -13,7 +13,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from eurdf.diagnostics import Fault, Place
+from eurdf.diagnostics import FileError, Place
 from eurdf.reading.source import BOM, FILE_LIMIT, Source, decoded, too_large
 
 #: What is given: a path, ``-`` for standard input, or the text itself.
@@ -63,7 +63,7 @@ def source_of(given: Given, limit: int = FILE_LIMIT) -> Source | None:
         limit: Largest size accepted, in bytes.
 
     Raises:
-        Fault: ``file-unreadable``, ``file-too-large`` or ``file-not-utf8``.
+        FileError: ``file-unreadable``, ``file-too-large`` or ``file-not-utf8``.
     """
     if is_text(given):
         data = given if isinstance(given, bytes) else str(given).encode("utf-8", "surrogatepass")
@@ -96,18 +96,18 @@ def _checked(data: bytes, file: str, limit: int) -> Source:
     if len(data) > limit:
         raise too_large(file, f"{limit:,} bytes")
     if not data.strip():
-        raise Fault("file-unreadable", f"{file} is empty; it must contain a URDF or a description", Place(file))
+        raise FileError("file-unreadable", f"{file} is empty; it must contain a URDF or a description", Place(file))
     return decoded(data, file, Path())
 
 
 def _read_stdin(limit: int) -> bytes:
     if sys.stdin is None:  # closed; the number of its file may be that of another one by now
-        raise Fault("file-unreadable", "standard input is closed", Place("<stdin>"))
+        raise FileError("file-unreadable", "standard input is closed", Place("<stdin>"))
     try:
         return sys.stdin.buffer.read(limit + 1)
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
-        raise Fault("file-unreadable", f"standard input cannot be read: {reason}", Place("<stdin>")) from None
+        raise FileError("file-unreadable", f"standard input cannot be read: {reason}", Place("<stdin>")) from None
 
 
 def _read_pipe(file: str, limit: int) -> bytes:
@@ -122,7 +122,7 @@ def _read_pipe(file: str, limit: int) -> bytes:
             os.close(descriptor)
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
-        raise Fault("file-unreadable", f"'{file}' cannot be read: {reason}", Place(file)) from None
+        raise FileError("file-unreadable", f"'{file}' cannot be read: {reason}", Place(file)) from None
 
 
 def _first_chunk(descriptor: int, file: str) -> bytes:
@@ -139,7 +139,7 @@ def _first_chunk(descriptor: int, file: str) -> bytes:
         if chunk or has_event:
             return chunk
         if time.monotonic() > end:
-            raise Fault("file-unreadable", f"nothing writes to the pipe '{file}'", Place(file))
+            raise FileError("file-unreadable", f"nothing writes to the pipe '{file}'", Place(file))
 
 
 def _chunks(descriptor: int, limit: int) -> Iterator[bytes]:

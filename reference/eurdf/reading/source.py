@@ -9,7 +9,7 @@ from bisect import bisect_right
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from eurdf.diagnostics import Fault, Place
+from eurdf.diagnostics import FileError, Place
 
 BOM = b"\xef\xbb\xbf"
 
@@ -89,7 +89,7 @@ def read_source(path: str | os.PathLike[str], limit: int = FILE_LIMIT) -> Source
         limit: Largest size accepted, in bytes.
 
     Raises:
-        Fault: ``file-unreadable``, ``file-too-large`` or ``file-not-utf8``.
+        FileError: ``file-unreadable``, ``file-too-large`` or ``file-not-utf8``.
     """
     file = os.fsdecode(path)
     return decoded(_read_bytes(file, limit), file)
@@ -104,12 +104,12 @@ def decoded(data: bytes, file: str, base: Path | None = None) -> Source:
         base: Folder that relative paths start from, for a text that is not in a file.
 
     Raises:
-        Fault: ``file-not-utf8``.
+        FileError: ``file-not-utf8``.
     """
     # The first bytes distinguish UTF-16 and UTF-32 from UTF-8, with or without a byte order mark (YAML 1.2.2, 5.2).
     if data[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\0" in data[:2]:
         message = "the file begins as UTF-16, UTF-32 or binary data; it must be UTF-8 text"
-        raise Fault("file-not-utf8", message, Place(file, 1, 1), "save it as UTF-8")
+        raise FileError("file-not-utf8", message, Place(file, 1, 1), "save it as UTF-8")
     data = data.removeprefix(BOM)
     try:
         text = data.decode()
@@ -117,7 +117,7 @@ def decoded(data: bytes, file: str, base: Path | None = None) -> Source:
         before = data[: error.start].decode()
         place = Source(file, before, b"", base).place(len(before))
         message = f"the byte 0x{data[error.start]:02x} is not valid UTF-8"
-        raise Fault("file-not-utf8", message, place, "save it as UTF-8") from None
+        raise FileError("file-not-utf8", message, place, "save it as UTF-8") from None
     return Source(file, text, data, base)
 
 
@@ -129,9 +129,9 @@ def _read_bytes(file: str, limit: int) -> bytes:
         try:
             status = os.fstat(descriptor)
             if stat.S_ISDIR(status.st_mode):
-                raise Fault("file-unreadable", f"'{file}' is a folder, not a file", place)
+                raise FileError("file-unreadable", f"'{file}' is a folder, not a file", place)
             if not stat.S_ISREG(status.st_mode):
-                raise Fault("file-unreadable", f"'{file}' is a pipe or a device, not a file", place)
+                raise FileError("file-unreadable", f"'{file}' is a pipe or a device, not a file", place)
             size = status.st_size
             chunks = []
             # The size is only what the file system says: of a file in /proc it says 0, and files grow.
@@ -144,17 +144,17 @@ def _read_bytes(file: str, limit: int) -> bytes:
             os.close(descriptor)
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
-        raise Fault("file-unreadable", f"'{file}' cannot be read: {reason}", place) from None
+        raise FileError("file-unreadable", f"'{file}' cannot be read: {reason}", place) from None
     except ValueError:  # a NUL in the path
-        raise Fault("file-unreadable", f"{file!r} is not a valid path", place) from None
+        raise FileError("file-unreadable", f"{file!r} is not a valid path", place) from None
     if size > limit:
         raise too_large(file, f"{limit:,} bytes")
     return b"".join(chunks)
 
 
-def too_large(file: str, most: str) -> Fault:
+def too_large(file: str, most: str) -> FileError:
     """The error of a file that has more than it may have."""
-    return Fault("file-too-large", f"the file has more than {most}, which is the maximum", Place(file))
+    return FileError("file-too-large", f"the file has more than {most}, which is the maximum", Place(file))
 
 
 def short(text: str) -> str:

@@ -52,7 +52,7 @@ def expand(
     Raises:
         CannotExpand: It has an error, or an argument is given that it does not have.
         MissingExtra: The extra ``xacro`` is not installed.
-        Fault: ``file-too-large``.
+        FileError: ``file-too-large``.
     """
     file = os.fspath(path)
     found = find_spec("xacro")

@@ -6,9 +6,9 @@ import re
 
 from lxml import etree
 
-from eurdf.diagnostics import Fault, Place
+from eurdf.diagnostics import FileError, Place
 from eurdf.reading.source import FILE_LIMIT, Source, short, too_large
-from eurdf.reading.xml_syntax import DEPTH_LIMIT, NAMESPACE_ERRORS, refused, syntax_fault
+from eurdf.reading.xml_syntax import DEPTH_LIMIT, NAMESPACE_ERRORS, refused, syntax_error
 
 #: Tags and attributes that a file may have: what takes memory is their number.
 TAG_LIMIT = 1_000_000
@@ -101,7 +101,7 @@ def read_xml(source: Source) -> XmlDocument:
     """Read an XML file, in UTF-8 and without DOCTYPE.
 
     Raises:
-        Fault: ``file-too-large``, ``file-not-utf8``, ``xml-doctype`` or ``xml-syntax``.
+        FileError: ``file-too-large``, ``file-not-utf8``, ``xml-doctype`` or ``xml-syntax``.
     """
     if len(source.data) > FILE_LIMIT:
         raise too_large(source.file, f"{FILE_LIMIT:,} bytes")
@@ -112,12 +112,12 @@ def read_xml(source: Source) -> XmlDocument:
     try:
         root = etree.fromstring(source.data, _parser())
     except etree.XMLSyntaxError as error:
-        fault = syntax_fault(source, error)
-        if fault is not None:
-            raise fault from None
+        wrong = syntax_error(source, error)
+        if wrong is not None:
+            raise wrong from None
         root = _read_with_namespace_errors(source)
-    if _TOO_DEEP(root) and (fault := syntax_fault(source)) is not None:
-        raise fault
+    if _TOO_DEEP(root) and (wrong := syntax_error(source)) is not None:
+        raise wrong
     if "xmlns" in source.text:
         for element in root.iter("{*}*"):
             local = element.tag.rpartition("}")[2]
@@ -160,7 +160,7 @@ def _refuse_other_encoding(source: Source) -> None:
         return
     message = f"the file declares the encoding '{short(declared[2])}'; it must be UTF-8"
     hint = "save it as UTF-8, and declare that or no encoding"
-    raise Fault("file-not-utf8", message, source.place(*declared.span(2)), hint)
+    raise FileError("file-not-utf8", message, source.place(*declared.span(2)), hint)
 
 
 def _refuse_doctype(source: Source) -> None:
@@ -168,4 +168,4 @@ def _refuse_doctype(source: Source) -> None:
     before = _BEFORE_DOCTYPE.match(source.text)
     if before is not None and source.text.startswith("<!DOCTYPE", before.end()):
         place = source.place(before.end(), before.end() + len("<!DOCTYPE"))
-        raise Fault("xml-doctype", "the file has a document type declaration", place, "remove it")
+        raise FileError("xml-doctype", "the file has a document type declaration", place, "remove it")

@@ -7,7 +7,7 @@ from typing import Any
 from xml.parsers import expat
 from xml.parsers.expat import errors
 
-from eurdf.diagnostics import Fault
+from eurdf.diagnostics import FileError
 from eurdf.reading.source import Source, short
 
 #: Elements that may be nested in one another; what libxml2 allows by itself.
@@ -27,7 +27,7 @@ class _TooDeep(Exception):  # noqa: N818 - never seen outside
     """Ends the look for the error."""
 
 
-def syntax_fault(source: Source, error: Any = None) -> Fault | None:
+def syntax_error(source: Source, error: Any = None) -> FileError | None:
     """The error that says what is wrong with the text, or None if it has only `NAMESPACE_ERRORS`.
 
     Args:
@@ -55,7 +55,7 @@ def syntax_fault(source: Source, error: Any = None) -> Fault | None:
         parser.Parse(source.data, True)
     except _TooDeep:
         message = f"elements are nested more than {DEPTH_LIMIT} deep"
-        return Fault("file-too-large", message, source.place(index(opened[-1][1])))
+        return FileError("file-too-large", message, source.place(index(opened[-1][1])))
     except expat.ExpatError as found:
         problem = expat.ErrorString(found.code)
         at = index(parser.ErrorByteIndex)
@@ -63,33 +63,33 @@ def syntax_fault(source: Source, error: Any = None) -> Fault | None:
             name, byte = opened[-1]
             return _not_closed(source, problem, at, name, index(byte))
         start, end_, message, hint = _explain(source.text, problem, at)
-        return Fault("xml-syntax", message, source.place(start, end_), hint)
+        return FileError("xml-syntax", message, source.place(start, end_), hint)
     if error is None or error.code in NAMESPACE_ERRORS:
         return None
     return refused(source, error.code, error.msg, error.position[0])
 
 
-def refused(source: Source, code: int, message: str, line: int) -> Fault:
+def refused(source: Source, code: int, message: str, line: int) -> FileError:
     """The error of a file that is well-formed, but that libxml2 does not take, for the error that it gives."""
     if code in _RESOURCE_ERRORS:
         message = "a name, a text or the value of an attribute is too long for the XML parser"
-        return Fault("file-too-large", message, source.place_of_line(line))
+        return FileError("file-too-large", message, source.place_of_line(line))
     # What only the namespaces of XML forbid, such as two ':' in a name.
     message = re.sub(r",? line \d+, column \d+.*", "", message.strip(), flags=re.DOTALL)
-    return Fault("xml-syntax", short(message[:1].lower() + message[1:]), source.place_of_line(line))
+    return FileError("xml-syntax", short(message[:1].lower() + message[1:]), source.place_of_line(line))
 
 
-def _not_closed(source: Source, problem: str, at: int, name: str, opened: int) -> Fault:
+def _not_closed(source: Source, problem: str, at: int, name: str, opened: int) -> FileError:
     """An element that the file, or another element, ends before it does."""
     if problem == errors.XML_ERROR_NO_ELEMENTS:
         place = source.place(opened, opened + 1 + len(name))
-        return Fault("xml-syntax", f"<{short(name)}> is never closed", place, f"close it with </{short(name)}>")
+        return FileError("xml-syntax", f"<{short(name)}> is never closed", place, f"close it with </{short(name)}>")
     closing = _NAME.match(source.text, at)
     assert closing is not None
     line, _ = source.position(opened)
     name = short(name)
     message = f"</{short(closing[0])}> does not match the open <{name}> of line {line}; </{name}> is expected"
-    return Fault("xml-syntax", message, source.place(at - 2, closing.end()))
+    return FileError("xml-syntax", message, source.place(at - 2, closing.end()))
 
 
 def _explain(text: str, problem: str, at: int) -> tuple[int, int, str, str | None]:

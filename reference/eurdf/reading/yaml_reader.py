@@ -21,11 +21,11 @@ from yaml.events import (
     StreamEndEvent,
 )
 
-from eurdf.diagnostics import Fault, Place
+from eurdf.diagnostics import FileError, Place
 from eurdf.reading.core_schema import TAG_PREFIX, resolve, resolve_tagged
 from eurdf.reading.source import FILE_LIMIT, Source, short, too_large
 from eurdf.reading.yaml_node import Alias, Collection, Node, Span, json_pointer
-from eurdf.reading.yaml_syntax import syntax_fault, unusual_name
+from eurdf.reading.yaml_syntax import syntax_error, unusual_name
 
 #: Mappings and lists that may be nested in one another, aliases expanded.
 DEPTH_LIMIT = 64
@@ -84,7 +84,7 @@ def read_yaml(source: Source) -> YamlDocument:
     """Read a file that holds one YAML 1.2 mapping.
 
     Raises:
-        Fault: ``file-too-large`` or one of the ``yaml-`` codes, at the first thing that is wrong.
+        FileError: ``file-too-large`` or one of the ``yaml-`` codes, at the first thing that is wrong.
     """
     if len(source.data) > FILE_LIMIT:
         raise too_large(source.file, f"{FILE_LIMIT:,} bytes")
@@ -98,7 +98,7 @@ def read_yaml(source: Source) -> YamlDocument:
     try:
         return YamlDocument(source, _Reader(source, CSafeLoader(data).get_event, original).read())
     except (YAMLError, UnicodeDecodeError) as error:
-        raise syntax_fault(source, error) from None
+        raise syntax_error(source, error) from None
 
 
 def without_other_breaks(source: Source) -> tuple[str, dict[int, str]]:
@@ -139,11 +139,11 @@ class _Reader:
         document = self._next_event()
         if type(document) is StreamEndEvent:
             what = "contains only comments" if self._source.text.strip("\ufeff \t\r\n") else "is empty"
-            raise Fault("yaml-empty", f"the file {what}; it must contain a mapping", Place(self._source.file))
+            raise FileError("yaml-empty", f"the file {what}; it must contain a mapping", Place(self._source.file))
         if document.version is not None and document.version != (1, 2):
             version = ".".join(map(str, document.version))
             message = f"the %YAML directive states version {version}; it must be 1.2"
-            raise self._fault("yaml-version", message, document, "remove the directive")
+            raise self._error("yaml-version", message, document, "remove the directive")
         while not self._file.data:
             event = self._next_event()
             kind = type(event)
@@ -166,7 +166,7 @@ class _Reader:
         span = top if isinstance(top, tuple) else top.span
         # Of a value that is left out, there is no place to point at.
         place = Place(self._source.file) if span[0] == span[1] else self._source.place(*span)
-        raise Fault("yaml-empty", f"{message}; it must be a mapping", place)
+        raise FileError("yaml-empty", f"{message}; it must be a mapping", place)
 
     def _next_node(self) -> None:
         """EU-FIL-002: one more node."""
@@ -189,7 +189,7 @@ class _Reader:
             try:
                 value = resolve_tagged(event.tag, text)
             except ValueError:
-                raise self._tag_fault(event, _quote(text)) from None
+                raise self._tag_error(event, _quote(text)) from None
         span = _span(event)
         if event.anchor is not None:
             self._check_name(event, "&")
@@ -200,7 +200,7 @@ class _Reader:
             return
         if type(value) is float and not isfinite(value):
             what = "is not a finite number" if "n" in text.lower() else "is too large for a number"
-            raise self._fault("yaml-not-finite", f"{_quote(text)} {what}", event)
+            raise self._error("yaml-not-finite", f"{_quote(text)} {what}", event)
         around.add(value, span)
 
     def _begin(self, event: Any, data: dict[str, Any] | list[Any], tag: str) -> None:
@@ -208,9 +208,9 @@ class _Reader:
             self._key(data, event)
         if len(self._open) > DEPTH_LIMIT:
             message = f"mappings and lists are nested more than {DEPTH_LIMIT} deep"
-            raise self._fault("yaml-too-deep", message, event)
+            raise self._error("yaml-too-deep", message, event)
         if event.tag not in (None, "!", TAG_PREFIX + tag):
-            raise self._tag_fault(event, _kind(data))
+            raise self._tag_error(event, _kind(data))
         start, end = _span(event)
         collection = Collection(data, (start, end if event.flow_style else None), self._size())
         self._next_node()
@@ -235,17 +235,17 @@ class _Reader:
         name = str(event.anchor)
         shown = short(name)
         if name not in self._anchors:
-            raise self._fault("yaml-alias", f"the alias '*{shown}' has no anchor '&{shown}' before it", event)
+            raise self._error("yaml-alias", f"the alias '*{shown}' has no anchor '&{shown}' before it", event)
         value, target = self._anchors[name]
         collection = target if isinstance(target, Collection) else None
         if collection is not None and collection.is_open:
-            raise self._fault("yaml-alias", f"the alias '*{shown}' refers to a node that contains it", event)
+            raise self._error("yaml-alias", f"the alias '*{shown}' refers to a node that contains it", event)
         self._next_node()
         self._aliases += 1
         self._copies += 1 if collection is None else collection.size
         if self._copies > NODE_LIMIT:
             message = f"the aliases of the file expand to more than {NODE_LIMIT:,} keys and values"
-            raise self._fault("yaml-alias", message, event)
+            raise self._error("yaml-alias", message, event)
         around = self._open[-1]
         if around.awaits_key:
             self._key(value, event)
@@ -254,7 +254,7 @@ class _Reader:
         else:
             if len(self._open) - 1 + collection.height > DEPTH_LIMIT:
                 message = f"with the alias '*{shown}', mappings and lists are nested more than {DEPTH_LIMIT} deep"
-                raise self._fault("yaml-too-deep", message, event)
+                raise self._error("yaml-too-deep", message, event)
             around.height = max(around.height, collection.height + 1)
             around.add(value, Alias(_span(event), collection))
 
@@ -272,17 +272,17 @@ class _Reader:
         if self._source.text[begin - 1 : begin] == "?":
             # EU-YML-012: within braces, to libyaml it marks a key whatever follows.
             message = "a '?' is not allowed directly before a key inside braces or brackets"
-            raise self._fault("yaml-syntax", message, event, "quote the key, and its '?' if it is a part of it")
+            raise self._error("yaml-syntax", message, event, "quote the key, and its '?' if it is a part of it")
         if type(value) is not str:
             text = event.value if isinstance(event, ScalarEvent) else ""
             what = ("a key is null" if text else "a key is empty") if value is None else f"a key is {_kind(value)}"
             hint = f'quote it: "{text}"' if text == short(text) != "" else None
-            raise self._fault("yaml-key-not-string", f"{what}; it must be a string", event, hint)
+            raise self._error("yaml-key-not-string", f"{what}; it must be a string", event, hint)
         if value in mapping.keys:
             line, _ = self._source.position(mapping.keys[value][0])
             mapping.key, mapping.awaits_key = value, False  # for the pointer
             message = f"the key {_quote(value)} occurs twice in one mapping"
-            raise self._fault("yaml-duplicate-key", message, event, f"it first occurs on line {line}")
+            raise self._error("yaml-duplicate-key", message, event, f"it first occurs on line {line}")
         mapping.key, mapping.awaits_key = value, False
         mapping.keys[value] = _span(event)
 
@@ -294,25 +294,27 @@ class _Reader:
         except MarkedYAMLError as error:
             # libyaml wants '---' before a second document; YAML 1.2 takes one that merely follows '...'.
             if end.explicit and error.problem == "did not find expected <document start>" and error.problem_mark:
-                raise Fault("yaml-several-documents", message, self._source.place(error.problem_mark.index)) from None
+                raise FileError(
+                    "yaml-several-documents", message, self._source.place(error.problem_mark.index)
+                ) from None
             raise
         if type(after) is not StreamEndEvent:
-            raise self._fault("yaml-several-documents", message, after)
+            raise self._error("yaml-several-documents", message, after)
 
-    def _tag_fault(self, event: Any, what: str) -> Fault:
+    def _tag_error(self, event: Any, what: str) -> FileError:
         shown = event.tag.replace(TAG_PREFIX, "!!", 1)
         if shown in _CORE_TAGS:
-            return self._fault("yaml-unknown-tag", f"{what} does not match the tag '{shown}'", event)
-        return self._fault("yaml-unknown-tag", f"the tag {_quote(shown)} is unknown", event, "remove it")
+            return self._error("yaml-unknown-tag", f"{what} does not match the tag '{shown}'", event)
+        return self._error("yaml-unknown-tag", f"the tag {_quote(shown)} is unknown", event, "remove it")
 
-    def _fault(self, code: str, message: str, event: Event, hint: str | None = None) -> Fault:
+    def _error(self, code: str, message: str, event: Event, hint: str | None = None) -> FileError:
         steps: list[str | int] = []
         for collection in self._open[1:]:
             if not collection.is_mapping:
                 steps.append(len(collection.data))
             elif not collection.awaits_key:
                 steps.append(collection.key)
-        return Fault(code, message, self._source.place(*_span(event), json_pointer(steps)), hint)
+        return FileError(code, message, self._source.place(*_span(event), json_pointer(steps)), hint)
 
 
 def _span(event: Any) -> tuple[int, int]:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from yaml.error import MarkedYAMLError, YAMLError
 
-from eurdf.diagnostics import Fault, Place
+from eurdf.diagnostics import FileError, Place
 from eurdf.reading.indentation import first_line_hint, indentation_hint
 from eurdf.reading.source import Source
 
@@ -72,12 +72,12 @@ _NO_ITEM = "block sequence entries are not allowed in this context"
 _NOT_CONTINUED = ("did not find expected key", "did not find expected '-' indicator")
 
 
-def unusual_name(place: Place) -> Fault:
+def unusual_name(place: Place) -> FileError:
     """The error of an anchor or an alias whose name libyaml would end too early."""
-    return Fault(_UNUSUAL_NAME.code, _UNUSUAL_NAME.message, place, _UNUSUAL_NAME.hint)
+    return FileError(_UNUSUAL_NAME.code, _UNUSUAL_NAME.message, place, _UNUSUAL_NAME.hint)
 
 
-def syntax_fault(source: Source, error: YAMLError | UnicodeDecodeError) -> Fault:
+def syntax_error(source: Source, error: YAMLError | UnicodeDecodeError) -> FileError:
     """The error that says what libyaml stumbled over.
 
     Args:
@@ -89,10 +89,10 @@ def syntax_fault(source: Source, error: YAMLError | UnicodeDecodeError) -> Fault
         # Also what libyaml's reader says, whose position is in bytes.
         found = _NOT_PRINTABLE.search(text)
         if found is None:
-            return Fault("yaml-syntax", "the file contains an escape that is not UTF-8", source.place(0))
+            return FileError("yaml-syntax", "the file contains an escape that is not UTF-8", source.place(0))
         message = f"the character U+{ord(found[0]):04X} is not allowed in YAML"
         hint = f'in double quotes, write "\\u{ord(found[0]):04x}"'
-        return Fault("yaml-syntax", message, source.place(found.start(), found.end()), hint)
+        return FileError("yaml-syntax", message, source.place(found.start(), found.end()), hint)
     problem = min(error.problem_mark.index, len(text)) if error.problem_mark else 0
     context = min(error.context_mark.index, problem) if error.context_mark else problem
     if error.problem == "found character that cannot start any token":
@@ -112,7 +112,7 @@ def syntax_fault(source: Source, error: YAMLError | UnicodeDecodeError) -> Fault
         if error.problem == _TOO_DEEP:
             message = "this key is not aligned with those before it"
     start = context if meaning.late else problem
-    return Fault(meaning.code, message, source.place(start, min(start + 1, len(text))), advice)
+    return FileError(meaning.code, message, source.place(start, min(start + 1, len(text))), advice)
 
 
 def _about_indentation(source: Source, said: str, problem: int) -> str | None:

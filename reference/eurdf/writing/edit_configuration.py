@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from itertools import takewhile
 from typing import Any
 
-from eurdf.diagnostics import Fault
+from eurdf.diagnostics import FileError
 from eurdf.format.version2 import Version2
 from eurdf.format.yaml_text import Value, flow, lines_of
 from eurdf.reading.source import BREAK, Source
@@ -171,7 +171,7 @@ def _reads_back(text: str, before: Mapping[str, Any], name: str, value: Mapping[
     """Whether a text has the data of before, and the coordinates in the configuration."""
     try:
         after = read_yaml(Source("", text, text.encode())).data
-    except Fault:
+    except FileError:
         return False
     found = after["configurations"].pop(name)
     others = {key: other for key, other in before.get("configurations", {}).items() if key != name}

@@ -7,7 +7,7 @@ from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from eurdf.diagnostics import Fault
+from eurdf.diagnostics import FileError
 from eurdf.format.extension import Extension, FrameReference, JointEntry
 from eurdf.format.field import is_own_key
 from eurdf.format.schema import FILES
@@ -289,7 +289,7 @@ def _says(text: str, key: str, value: object) -> bool:
     text += "\nnext: entry\n"
     try:
         data = read_yaml(Source("", text, text.encode())).data
-    except Fault:
+    except FileError:
         return False
     return repr(data) == repr({key: value, "next": "entry"})
 

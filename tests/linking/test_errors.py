@@ -215,15 +215,15 @@ def test_one_error_gives_one_diagnostic(
     # A name taken from a frame leaves what referred to it dangling: two errors from one edit.
     if says is not None:
         assert others == []
-    fault = found[0]
-    assert fault.line is not None
-    assert fault.column is not None
+    error = found[0]
+    assert error.line is not None
+    assert error.column is not None
     if at is not None:
-        lines = Path(fault.file).read_text(encoding="utf-8").split("\n")
-        rest = "\n".join([lines[fault.line - 1][fault.column - 1 :], *lines[fault.line :]])
+        lines = Path(error.file).read_text(encoding="utf-8").split("\n")
+        rest = "\n".join([lines[error.line - 1][error.column - 1 :], *lines[error.line :]])
         assert rest.startswith(at), rest[:60]
     if says:
-        assert says in f"{fault.message} ({fault.hint})"
+        assert says in f"{error.message} ({error.hint})"
 
 
 def test_every_linking_code_has_a_case() -> None:
@@ -294,9 +294,9 @@ def test_invalid_mesh_is_refused_with_geometry(tmp_path: Path) -> None:
     (folder / "bad.stl").write_bytes(b"no mesh")
     with pytest.raises(eurdf.InvalidRobot, match="geometry=False") as refusal:
         eurdf.load(folder / YAML)
-    (fault,) = refusal.value.diagnostics
-    assert fault.code == "urdf-mesh-unreadable"
-    assert "bad.stl" in (folder / URDF).read_text(encoding="utf-8").split("\n")[fault.line - 1][fault.column - 1 :]
+    (error,) = refusal.value.diagnostics
+    assert error.code == "urdf-mesh-unreadable"
+    assert "bad.stl" in (folder / URDF).read_text(encoding="utf-8").split("\n")[error.line - 1][error.column - 1 :]
     assert eurdf.load(folder / YAML, geometry=False).model.nv > 0
 
 
