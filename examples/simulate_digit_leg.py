@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-import pinocchio as pin
 
 import eurdf
 
@@ -54,16 +53,12 @@ def main() -> Held:
 
     motion = eurdf.simulate(robot, start, duration=DURATION, step=STEP, control=hold)
 
-    steps = list(zip(motion.t, motion.q, motion.v, strict=True))
-    power = np.array([hold(t, q, v) @ eurdf.split_velocity(robot, v)[0] for t, q, v in steps])
-    work = np.concatenate([[0.0], np.cumsum(STEP * (power[1:] + power[:-1]) / 2.0)])
-    energy = np.array([pin.computeMechanicalEnergy(robot.model, robot.data, q, v) for _, q, v in steps])
     return Held(
         motion,
         sag=np.abs(motion.q[:, robot.actuation.idx_q] - held_at).max(axis=0),
         opening=max(float(np.abs(eurdf.residual(robot, q)).max()) for q in motion.q),
-        energy=energy,
-        energy_error=float(np.abs(energy - energy[0] - work).max()),
+        energy=motion.kinetic + motion.potential,
+        energy_error=motion.energy_error,
     )
 
 

@@ -324,19 +324,8 @@ class _Motion:
 
     def applied(self, u: Vector | None, tau: Vector | None, external: External | None, dissipation: bool) -> Vector:
         """Generalized force (nv,) of motors, external forces, damping and friction."""
-        model, S = self.robot.model, self.robot.actuation.selection
-        force: Vector = np.zeros(model.nv)
-        if u is not None:
-            force += S @ checked_array("u", u, (S.shape[1],))
-        if tau is not None:
-            force += checked_array("tau", tau, (model.nv,))
-        if external:
-            at_joints = _at_joints(model, self.data, self.q, external)
-            still = np.zeros(model.nv)
-            force += self.bias - pin.rnea(model, self.data, self.q, self.v, still, at_joints)
-        if dissipation:
-            force -= model.damping * self.v + model.upperDryFrictionLimit * np.sign(self.v)
-        return force
+        force = applied_force(self.robot, self.q, self.v, u, external, dissipation, self.data)
+        return force if tau is None else force + checked_array("tau", tau, (len(force),))
 
     def refuse_open(self, a: Vector, tolerance: float) -> None:
         """Raise `InconsistentMotion` if v or a would open the closures."""
@@ -460,6 +449,22 @@ def _stabilised(robot: Robot, gains: Vector | None) -> tuple[Any, Vector, Vector
         kps += [constraint_model.m_baumgarte_parameters.Kp] * constraint.rows
         kds += [constraint_model.m_baumgarte_parameters.Kd] * constraint.rows
     return constraint_models, np.array(kps), np.array(kds)
+
+
+def applied_force(
+    robot: Robot, q: Vector, v: Vector, u: Vector | None, external: External | None, dissipation: bool, data: Any
+) -> Vector:
+    """Generalized force (nv,) of motors, external forces, damping and friction, as in `forward_dynamics`."""
+    model, S = robot.model, robot.actuation.selection
+    force: Vector = np.zeros(model.nv)
+    if u is not None:
+        force += S @ checked_array("u", u, (S.shape[1],))
+    if external:
+        at_joints, still = _at_joints(model, data, q, external), np.zeros(model.nv)
+        force += pin.rnea(model, data, q, still, still) - pin.rnea(model, data, q, still, still, at_joints)
+    if dissipation:
+        force -= model.damping * v + model.upperDryFrictionLimit * np.sign(v)
+    return force
 
 
 def _at_joints(model: Any, data: Any, q: Vector, external: External) -> Any:

@@ -129,6 +129,27 @@ class UndeterminedMotion(EurdfError, ValueError):  # noqa: N818 - part of the pu
         super().__init__(f"the forces do not determine the acceleration: joints {named} move without inertia; add mass")
 
 
+class StepTooLongWarning(UserWarning):
+    """The time step of a simulation is too long to keep the energy.
+
+    Attributes:
+        error: Largest error of the energy balance, J.
+        exchanged: Energy exchanged, J.
+        step: Time step, s.
+        suggested: A time step that keeps the error below 0.1 % if it falls with the fourth power of the step, s.
+    """
+
+    def __init__(self, error: float, exchanged: float, step: float, suggested: float) -> None:
+        self.error = error
+        self.exchanged = exchanged
+        self.step = step
+        self.suggested = suggested
+        super().__init__(
+            f"the energy error is {error:.2g} J, {100.0 * error / exchanged:.2g} % of the {exchanged:.2g} J exchanged: "
+            f"the time step of {step:g} s is too long; try {suggested:.1g} s"
+        )
+
+
 class SimulationDiverged(EurdfError, ArithmeticError):  # noqa: N818 - part of the public interface
     """The time step of a simulation is too long for the motion.
 
