@@ -28,7 +28,7 @@ def check(
 ) -> Report:
     """Check a robot: EU-DIA-001, EU-DIA-003: every error that no other error hides is reported.
 
-    Beside what breaks a clause it gives advice (EU-DIA-006): warnings without a clause, whose codes begin with ``x-``.
+    It also gives advice (EU-DIA-006): warnings without a clause, whose codes begin with ``x-``.
 
     Args:
         path: A folder, a YAML file, a bare URDF or xacro, the name of a robot of the collection, ``-`` for standard

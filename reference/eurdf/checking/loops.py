@@ -25,7 +25,7 @@ def closure_diagnostics(description: Linked, robot: Robot, assembly: Assembly | 
     Args:
         description: The robot as read, with a mechanism.
         robot: The robot built from it, where there already is one.
-        assembly: What `assemble` found of it, where it was asked already.
+        assembly: The result of `assemble`, if it was called already.
     """
     diagnostics = Diagnostics()
     mechanism = description.mechanism

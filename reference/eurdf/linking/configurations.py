@@ -33,7 +33,7 @@ def link_configurations(
         entries: As written.
         joints: Joints of the mechanism, and that of a floating root.
         merged: For each joint that was merged away, the joint it became part of.
-        skip: Joints that are not looked at, since their own entry is invalid.
+        skip: Joints that are not checked, since their own entry is invalid.
         reporter: Gets what is found.
     """
     configurations = {}
@@ -60,7 +60,7 @@ def _joint(
     entry: ConfigurationEntry,
     reporter: YamlReporter,
 ) -> Joint | None:
-    """EU-CFG-001: a configuration speaks of joints that have coordinates of their own."""
+    """EU-CFG-001: a configuration names joints that have coordinates of their own."""
     joint = joints.get(name)
     if joint is not None and joint.type is not JointType.FIXED and joint.mimic is None:
         return joint

@@ -32,7 +32,7 @@ from eurdf.reading.yaml_reader import YamlDocument, read_yaml
 
 _NO_XACRO = "only a .xacro file accepts arguments; give one as the robot or as its URDF"
 
-#: What to do about errors in which joint mimics which: report and refuse the URDF, only report, or not even that.
+#: What to do about errors of mimic joints: report them and refuse the URDF, report them only, or ignore them.
 _MimicErrors = Literal["refused", "kept", "ignored"]
 
 
@@ -107,8 +107,8 @@ def describe(
         urdf: A URDF in place of the one that the description names.
         root: In place of the root that the description states.
         geometry: Whether to read the geometry; else bodies have none, and it is not checked.
-        mimic: Whether mimic joints follow; if not, each is free, and an error in which joint it mimics is reported but
-            leaves a mechanism. With a description of version 1 they are free in any case, and not checked.
+        mimic: Whether mimic joints depend on their leaders; if not, each is free, and an error in its leader is
+            reported but leaves a mechanism. With a description of version 1 they are free in any case, and not checked.
         package_dirs: Folders to look for packages in, which a xacro finds files in.
         xacro_args: Values of the arguments of a xacro.
 
@@ -136,7 +136,7 @@ def describe(
         extension = None if document is None else read_extension(document, diagnostics)
         urdf_path = given or _named_urdf(files.description, extension, document)
         if not isinstance(urdf_path, Source) and given is None and not os.path.lexists(urdf_path):
-            # Where the description could not be read, which URDF it means is a guess that deserves no second error.
+            # If the description could not be read, its URDF is a guess, so a second error would be wrong.
             if extension is not None:
                 _urdf_not_found(urdf_path, extension, diagnostics)
             return Unlinked(name, diagnostics)
@@ -259,7 +259,7 @@ def _urdf_not_found(path: Path, extension: Extension, diagnostics: Diagnostics) 
 
 
 def _urdf_hint(path: Path, home: Path, extension: Extension) -> str:
-    """How to name the URDF that is meant: one of those nearby, by their paths from the description."""
+    """A hint with the paths of nearby URDFs from the description."""
     near = _files_near(path, home, ".urdf")
     xacro = None if near else next(iter(_files_near(path, home, ".xacro")), None)
     if xacro is not None:

@@ -27,14 +27,14 @@ class FrameNames:
     ) -> None:
         self._urdf = urdf
         self._joints = joints
-        # Joints that an invalid entry refers to: where there are none of that name, it has been said why.
+        # Joints that an invalid entry refers to: if one of them does not exist, the reason was reported.
         self._faulty = faulty
         # None for an invalid frame: its uses are not reported again.
         self._frames: dict[str, Anchor | None] = {}
         self._reporter = reporter
 
     def add(self, entries: Iterable[FrameEntry]) -> tuple[Frame, ...]:
-        """EU-FRM-003: take in the frames that the description adds; a name is given once."""
+        """EU-FRM-003: add the frames of the description; each name is given once."""
         frames = []
         for entry in entries:
             if entry.name in self._frames or self._known(entry.name):

@@ -115,7 +115,7 @@ def _described(urdf: Urdf, extension: Extension, reporter: YamlReporter, root: R
     order = depth_first(urdf.root, joints.by_name.values())
     rigid = rigid_roots(urdf.root, order)
     closures = link_closures(extension.closures, names, rigid, reporter)
-    # What is said of a joint whose own entry is invalid would only repeat that error.
+    # Errors about a joint whose own entry is invalid would only repeat that error.
     entries = [entry for entry in extension.actuators if entry.joint not in faulty]
     actuators = link_actuators(entries, urdf, joints.by_name, joints.merged, joints.split, reporter)
     named = joints.by_name

@@ -24,7 +24,7 @@ PARALLEL = 1e-6
 #: In the order of EU-JNT-028.
 _ORDERS = tuple(itertools.permutations(range(3)))
 
-#: Sums of cosines that differ by no more are as large (EU-JNT-028).
+#: Sums of cosines that differ by no more are equal (EU-JNT-028).
 _AS_LARGE = 1e-9
 
 _ROTARY = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS})
@@ -186,7 +186,7 @@ def _meeting_point(lines: list[tuple[Vector3, Vector3]]) -> Vector3:
         if _norm(_cross(u, v)) < PARALLEL:
             raise NotMergeable("joint-axes-parallel", "two of their axes are parallel")
     if lines[0][0] == lines[1][0] == lines[2][0]:
-        return lines[0][0]  # the usual way to write a ball: three joints at one origin
+        return lines[0][0]  # the usual form of a ball: three joints at one origin
     matrix = [[0.0] * 3 for _ in range(3)]
     vector = [0.0] * 3
     for origin, direction in lines:

@@ -151,7 +151,7 @@ class _Replacement:
         self.joints.by_name[joint.name] = self.override(joint) or joint
 
     def target(self, name: str, pointer: Pointer) -> Joint | None:
-        """EU-JNT-001: a joint that the description speaks of is one of the URDF's."""
+        """EU-JNT-001: a joint that the description names is in the URDF."""
         joint = self.joints.by_name.get(name) if name in self.urdf.joints else None
         if joint is None:
             key = bool(pointer) and pointer[-1] == name

@@ -1,4 +1,4 @@
-"""Relative poses of pairs of frames, and their Jacobians, in two ways.
+"""Relative poses of pairs of frames, and their Jacobians, by two methods.
 
 Through a `pin.Data` of the whole model, which takes some 8 nv³ numbers, and along the joints between the frames alone,
 in time and memory linear in their number.
@@ -100,7 +100,7 @@ class FramePairs:
     def columns(self) -> list[tuple[Indices, Vector, Indices, bool]]:
         """Of each pair its columns in J, their signs, their columns in K, and whether one of these occurs twice.
 
-        Columns of velocities that were not asked for are left out.
+        Columns of velocities that were not requested are left out.
         """
         wanted = range(self.model.nv) if self.velocities is None else self.velocities.tolist()
         column = {velocity: index for index, velocity in enumerate(wanted)}

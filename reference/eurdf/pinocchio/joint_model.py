@@ -102,7 +102,7 @@ def _helical(axis: Vector3, pitch: float) -> pin.JointModel:
 
 
 def _universal(first: Vector3, second: Vector3) -> pin.JointModel:
-    """Two revolutes in one point. Pinocchio's universal joint asks for axes that are perpendicular, exactly."""
+    """Two revolutes in one point. Pinocchio's universal joint requires exactly perpendicular axes."""
     (a, b, c), (x, y, z) = unit(first), unit(second)
     if a * x + b * y + c * z == 0.0:
         return pin.JointModelUniversal(np.array((a, b, c)), np.array((x, y, z)))

@@ -23,7 +23,7 @@ from eurdf.pinocchio.tree import PinocchioTree, build_tree
 
 
 class Geometry(NamedTuple):
-    """The shapes of a robot: what is seen, and what collides."""
+    """The visual and collision shapes of a robot."""
 
     visual: pin.GeometryModel
     collision: pin.GeometryModel
@@ -83,7 +83,7 @@ class Robot:
 
     @cached_property
     def data(self) -> pin.Data:
-        """Pinocchio's working memory for the model, made when first asked for.
+        """Pinocchio's working memory for the model, made on first use.
 
         It takes some 64 nv³ bytes, 64 MB for 100 velocities. What needs none: `load`, `check`, `assemble`, `analyze`.
         """
@@ -91,7 +91,7 @@ class Robot:
 
     @property
     def visual_model(self) -> pin.GeometryModel | None:
-        """What is seen; None without geometry.
+        """The visual shapes; None without geometry.
 
         Raises:
             InvalidRobot: A mesh is missing.
@@ -100,7 +100,7 @@ class Robot:
 
     @property
     def collision_model(self) -> pin.GeometryModel | None:
-        """What collides; None without geometry.
+        """The collision shapes; None without geometry.
 
         Raises:
             InvalidRobot: A mesh is missing.

@@ -1,4 +1,4 @@
-"""The spanning tree as a Pinocchio model: what kinematics asks of it (`eurdf.kinematics.tree_kinematics`)."""
+"""The spanning tree as a Pinocchio model: what kinematics needs of it (`eurdf.kinematics.tree_kinematics`)."""
 
 from __future__ import annotations
 

@@ -126,7 +126,7 @@ def _read_pipe(file: str, limit: int) -> bytes:
 
 
 def _first_chunk(descriptor: int, file: str) -> bytes:
-    """What is in a pipe at first; nothing where its writer is silent so far, or has gone."""
+    """The first bytes in a pipe; empty if its writer has written nothing so far, or has closed it."""
     poll = select.poll()
     poll.register(descriptor, select.POLLIN)
     end = time.monotonic() + PATIENCE

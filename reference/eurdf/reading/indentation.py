@@ -36,7 +36,7 @@ def indentation_hint(text: str, line: int) -> str | None:
         line: Number of the line, from 1.
 
     Returns:
-        The hint; None where the line does not begin with a key or ``-``, or its indentation is none to mend.
+        The hint; None if the line does not begin with a key or ``-``, or its indentation is not wrong.
     """
     lines = BREAK.split(text)
     wrong = lines[line - 1] if line <= len(lines) else ""

@@ -1,4 +1,4 @@
-"""Where the mesh that a URI names lies on this machine; nothing is ever downloaded."""
+"""The path of the mesh that a URI names on this machine; nothing is ever downloaded."""
 
 from __future__ import annotations
 
@@ -66,5 +66,5 @@ def package_homes(folder: Path, package_dirs: Sequence[str | os.PathLike[str]] =
 
 
 def _file(path: Path) -> str | None:
-    """The path where there is such a file; a text too long or too odd to be a path is none."""
+    """The path if there is such a file, else None, also for a text that cannot be a path."""
     return str(path) if os.path.isfile(path) else None

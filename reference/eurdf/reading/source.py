@@ -153,7 +153,7 @@ def _read_bytes(file: str, limit: int) -> bytes:
 
 
 def too_large(file: str, most: str) -> FileError:
-    """The error of a file that has more than it may have."""
+    """The error of a file that is beyond a limit."""
     return FileError("file-too-large", f"the file has more than {most}, which is the maximum", Place(file))
 
 

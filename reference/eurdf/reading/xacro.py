@@ -39,7 +39,8 @@ def expand(
 ) -> tuple[Source, str]:
     """Expand a xacro file.
 
-    Lines and columns in the source are those of the expanded text, as its name says: xacro keeps none of its own.
+    Lines and columns in the source are those of the expanded text, as its name says: xacro does not keep those of the
+    file.
 
     Args:
         path: The file.
@@ -56,7 +57,7 @@ def expand(
     """
     file = os.fspath(path)
     found = find_spec("xacro")
-    if found is None or found.origin is None:  # a folder named xacro is no module
+    if found is None or found.origin is None:  # a folder named xacro is not a module
         from eurdf.diagnostics.extras import install_command
 
         message = f"'{file}' is a xacro file, and the package that expands it is not installed; install it with: "

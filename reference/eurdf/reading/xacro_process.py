@@ -21,10 +21,10 @@ MEMORY_LIMIT = 4 << 30
 
 
 class Arguments(dict[str, str]):
-    """Values of arguments, which remembers those that were asked for.
+    """Values of arguments, which records those that were requested.
 
     Attributes:
-        declared: Names that the file has asked for, in order.
+        declared: Names that the file has requested, in order.
     """
 
     def __init__(self, values: dict[str, str]) -> None:

@@ -10,30 +10,30 @@ from xml.parsers.expat import errors
 from eurdf.diagnostics import FileError
 from eurdf.reading.source import Source, short
 
-#: Elements that may be nested in one another; what libxml2 allows by itself.
+#: Maximum depth of nested elements; the default of libxml2.
 DEPTH_LIMIT = 256
 
 #: libxml2's errors of a namespace that is no URI, or a relative one, and of a prefix that is not declared (xmlerror.h).
 #: URDF parsers ignore namespaces, and many URDFs have such errors.
 NAMESPACE_ERRORS = (99, 100, 201)
 
-#: libxml2's errors of what is well-formed but too much for it; which one, depends on its version.
+#: libxml2's errors for a well-formed file beyond its limits; which one depends on its version.
 _RESOURCE_ERRORS = (1, 110, 114)
 
 _NAME = re.compile(r"[^\s<>/=&;\"'()]*")
 
 
 class _TooDeep(Exception):  # noqa: N818 - never seen outside
-    """Ends the look for the error."""
+    """Ends the search for the error."""
 
 
 def syntax_error(source: Source, error: Any = None) -> FileError | None:
-    """The error that says what is wrong with the text, or None if it has only `NAMESPACE_ERRORS`.
+    """The error of the text, or None if it has only `NAMESPACE_ERRORS`.
 
     Args:
         source: The text.
         error: The `lxml.etree.XMLSyntaxError`. Its columns are in no fixed unit, so that expat is asked first. None
-            where libxml2 has taken the text.
+            if libxml2 has accepted the text.
     """
     parser = expat.ParserCreate("utf-8")
     opened: list[tuple[str, int]] = []  # name and byte of each start tag that is not closed yet
@@ -70,7 +70,7 @@ def syntax_error(source: Source, error: Any = None) -> FileError | None:
 
 
 def refused(source: Source, code: int, message: str, line: int) -> FileError:
-    """The error of a file that is well-formed, but that libxml2 does not take, for the error that it gives."""
+    """The error of a well-formed file that libxml2 refuses, from libxml2's error."""
     if code in _RESOURCE_ERRORS:
         message = "a name, a text or the value of an attribute is too long for the XML parser"
         return FileError("file-too-large", message, source.place_of_line(line))

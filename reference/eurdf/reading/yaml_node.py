@@ -44,7 +44,7 @@ class Collection:
         self.height = 1
 
     def add(self, value: Any, node: Node) -> None:
-        """Put in the next value; in a mapping, its key must have come."""
+        """Add the next value; in a mapping, its key comes first."""
         if self.is_mapping:
             self.data[self.key] = value
             self.nodes[self.key] = node
@@ -64,7 +64,7 @@ class Alias:
         self.target = target
 
 
-#: Of a scalar, or an alias of one, where it stands is all that is kept.
+#: For a scalar, or an alias of one, only its place is kept.
 Node = Span | Collection | Alias
 
 

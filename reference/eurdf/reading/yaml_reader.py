@@ -27,10 +27,10 @@ from eurdf.reading.source import FILE_LIMIT, Source, short, too_large
 from eurdf.reading.yaml_node import Alias, Collection, Node, Span, json_pointer
 from eurdf.reading.yaml_syntax import syntax_error, unusual_name
 
-#: Mappings and lists that may be nested in one another, aliases expanded.
+#: Maximum depth of nested mappings and lists, aliases expanded.
 DEPTH_LIMIT = 64
 
-#: Nodes (mappings, lists, keys and values) that a file may have, and that all of its aliases may stand for.
+#: Maximum number of nodes (mappings, lists, keys and values) in a file, and of nodes that all of its aliases repeat.
 NODE_LIMIT = 100_000
 
 #: %TAG directives that a file may have; the time libyaml takes grows with the square of their number.
@@ -46,8 +46,8 @@ class YamlDocument:
     Attributes:
         source: The text.
         root: The top level, with the place of everything in it.
-        data: ``dict`` with string keys, ``list``, ``str``, ``int``, ``float``, ``bool`` and ``None``. What has several
-            aliases is one object in several places.
+        data: ``dict`` with string keys, ``list``, ``str``, ``int``, ``float``, ``bool`` and ``None``. A value with
+            several aliases is one object in several places.
     """
 
     __slots__ = ("data", "root", "source")
@@ -63,8 +63,8 @@ class YamlDocument:
         A value that is an alias has the place of the alias; what is in it, that of where it is written.
 
         Args:
-            pointer: Keys and indices that lead to the value. Where they lead nowhere, the place is that of the
-                innermost value on the way that exists.
+            pointer: Keys and indices that lead to the value. If there is no such value, the place is that of the
+                innermost one on the path that exists.
             key: Whether the key is meant rather than the value. An item of a list has no key.
         """
         node: Node = self.root
@@ -84,7 +84,7 @@ def read_yaml(source: Source) -> YamlDocument:
     """Read a file that holds one YAML 1.2 mapping.
 
     Raises:
-        FileError: ``file-too-large`` or one of the ``yaml-`` codes, at the first thing that is wrong.
+        FileError: ``file-too-large`` or one of the ``yaml-`` codes, at the first error.
     """
     if len(source.data) > FILE_LIMIT:
         raise too_large(source.file, f"{FILE_LIMIT:,} bytes")
@@ -175,7 +175,7 @@ class _Reader:
             raise too_large(self._source.file, f"{NODE_LIMIT:,} keys and values")
 
     def _size(self) -> int:
-        """Number of nodes so far, with what aliases stand for in the place of these."""
+        """Number of nodes so far, aliases expanded."""
         return self._count - self._aliases + self._copies
 
     def _scalar(self, event: ScalarEvent) -> None:

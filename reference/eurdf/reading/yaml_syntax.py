@@ -16,7 +16,7 @@ _NOT_PRINTABLE = re.compile("[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U0001
 
 
 class _Meaning(NamedTuple):
-    """What a problem of libyaml means for who wrote the file; ``{line}`` is where the node around it begins."""
+    """What a problem of libyaml means for the author of the file; ``{line}`` is where the node around it begins."""
 
     message: str
     hint: str | None = None
@@ -78,7 +78,7 @@ def unusual_name(place: Place) -> FileError:
 
 
 def syntax_error(source: Source, error: YAMLError | UnicodeDecodeError) -> FileError:
-    """The error that says what libyaml stumbled over.
+    """The error at which libyaml stopped.
 
     Args:
         source: The text; libyaml may have read one with other characters, but the same number of them.
@@ -86,7 +86,7 @@ def syntax_error(source: Source, error: YAMLError | UnicodeDecodeError) -> FileE
     """
     text = source.text
     if not isinstance(error, MarkedYAMLError) or error.problem is None:
-        # Also what libyaml's reader says, whose position is in bytes.
+        # Also an error of libyaml's decoder, whose position is in bytes.
         found = _NOT_PRINTABLE.search(text)
         if found is None:
             return FileError("yaml-syntax", "the file contains an escape that is not UTF-8", source.place(0))
@@ -116,7 +116,7 @@ def syntax_error(source: Source, error: YAMLError | UnicodeDecodeError) -> FileE
 
 
 def _about_indentation(source: Source, said: str, problem: int) -> str | None:
-    """How to indent the line at which libyaml stumbled; None where that is not what is wrong."""
+    """How to indent the line at which libyaml stopped; None if its indentation is not the error."""
     before = _line_before(source, problem)
     if said == "did not find expected <document start>":
         return None if before.strip() else first_line_hint(source.text)

@@ -89,10 +89,10 @@ def with_assembled(description: Described, robot: Robot, q: Vector) -> tuple[str
         q: Configuration (nq,).
 
     Returns:
-        The text, and what a reader finds wrong with it, such as a coordinate beyond its limits.
+        The text, and its diagnostics, such as a coordinate beyond its limits.
 
     Raises:
-        NotEditable: The file is written in a way in which that cannot be changed alone.
+        NotEditable: The file has a form in which the configuration cannot be changed alone.
     """
     document = description.extension.document
     exact = robot.coordinates(q)

@@ -30,7 +30,7 @@ class Comment:
         index: Of its ``#``, in the text of the file.
         line: From 1.
         column: From 1.
-        beside: Whether it stands behind something on its line, which then is what it speaks of.
+        beside: Whether it is behind something on its line, and so about that.
     """
 
     text: str
@@ -68,10 +68,10 @@ def comments_of(source: Source) -> list[Comment]:
 def attach(
     comments: Iterable[Comment], pointers: Iterable[Pointer], document: YamlDocument
 ) -> Mapping[Pointer, Attached]:
-    """Tell which entry each comment goes with.
+    """Find the entry that each comment goes with.
 
-    A comment beside something goes with the entry that begins last before it; beside a key whose whole value stands on
-    the same line, with the key. A comment on a line of its own goes with the next entry. What stands before the first
+    A comment beside something goes with the entry that begins last before it; beside a key whose whole value is on
+    the same line, with the key. A comment on a line of its own goes with the next entry. What is before the first
     entry, or after all, is under the empty pointer: above or beside.
 
     Args:

@@ -19,7 +19,7 @@ _BEFORE = tuple(takewhile(lambda key: key != "configurations", Version2.model_fi
 
 
 class NotEditable(Exception):  # noqa: N818 - shown to the user as it is
-    """The file is written in a way in which the configuration cannot be changed without changing something else."""
+    """The file has a form in which the configuration cannot be changed without changing something else."""
 
 
 def with_configuration(document: YamlDocument, name: str, coordinates: Mapping[str, Sequence[float]]) -> str:
@@ -162,7 +162,7 @@ def _plain(values: Sequence[float]) -> Value:
 
 
 def _same(old: object, new: Value) -> bool:
-    """Whether coordinates are the same numbers, whatever way they are written."""
+    """Whether coordinates are the same numbers, however they are written."""
     as_list = [value if isinstance(value, list) else [value] for value in (old, new)]
     return as_list[0] == as_list[1]
 

@@ -57,7 +57,7 @@ def generate(
 ) -> Generation:
     """Describe a robot by the names in its URDF.
 
-    Three revolutes whose axes meet, none of them a motor, are merged as version 1 does by itself. The text is read once
+    Three revolutes whose axes meet are merged as in version 1, unless one of them is a motor. The text is read once
     more, so that whoever writes it knows that it is sound.
 
     Args:

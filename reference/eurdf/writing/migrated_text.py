@@ -1,4 +1,4 @@
-"""The text of a version 1 description in version 2: what version 1 does by itself is said, and comments are kept."""
+"""The text of a version 1 description in version 2: implicit rules become explicit, and comments are kept."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def schema_named(document: YamlDocument) -> str | None:
 
 
 def own_keys(data: Iterable[str]) -> dict[str, str]:
-    """For each key of a version 1 file that is the user's own, what it is called in version 2: ``x-`` and the key."""
+    """For each user-defined key of a version 1 file, its name in version 2: ``x-`` and the key."""
     own = [key for key in data if key not in Version1.model_fields]
     taken = {key for key in own if is_own_key(key)}
     names = {}
@@ -245,10 +245,10 @@ class _Migration:
                 pointers.append(other.pointer)
             yield Entry(lines_of_item(name), *_together(attached, pointers))
 
-    # -- the user's own -------------------------------------------------------------------------------------------
+    # -- user-defined keys ----------------------------------------------------------------------------------------
 
     def own_entries(self, comments: list[Comment]) -> tuple[dict[str, Entry], list[Comment]]:
-        """The user's own entries, as they are written where that is possible; and the comments that are not in them."""
+        """The user-defined entries, as they are written if that is possible; and the comments outside them."""
         document = self.document
         source = document.source
         starts = [0, *(found.end() for found in BREAK.finditer(source.text))]

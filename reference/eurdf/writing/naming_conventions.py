@@ -1,4 +1,4 @@
-"""What the names in a URDF say of its closures, motors and spherical joints, and that as the text of a description."""
+"""Closures, motors and spherical joints from the names in a URDF, and the text of a description with them."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ ClosureType = Literal["3d", "6d"]
 
 _ROTARY = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS})
 
-# Atomic groups, (?>…), keep a name of any length from being tried in more than a few ways.
+# Atomic groups, (?>…), bound the number of attempts to match a name of any length.
 
 _LOOP_WORD = r"(?>.*(?:closed_?loop|fermeture))"
 _SIDE = r"(?:[_.-]|(?<=\d))(?P<side>[ab])"
@@ -63,7 +63,7 @@ class Conventions:
 
     Attributes:
         closures: Match the whole name of a link or a joint, which then is one frame of a closure. The group ``side``
-            tells the two frames apart; frame A is that whose side sorts first. The group ``loop``, or the name without
+            tells frames A and B apart; that of A sorts first. The group ``loop``, or the name without
             its side, is what they have in common, and names the closure. The group ``type``, where it matches ``3d`` or
             ``6d`` in any case, is its type. Where the group ``axis`` matches, the frame is a second one, on the axis of
             the loop's hinge.
@@ -125,10 +125,10 @@ class Found:
     """What the names in a URDF say.
 
     Attributes:
-        closures: By the names of their loops, numbers in them counted as numbers.
+        closures: By the names of their loops, numbers in them sorted as numbers.
         motors: Actuated joints, in the order of the tree.
         sphericals: Spherical joints, in the order of the tree.
-        warnings: What could not be taken as it is named, one sentence each.
+        warnings: Names that could not be used, one sentence each.
     """
 
     closures: tuple[NamedClosure, ...]

@@ -1,1 +1,1 @@
-"""Advice: what is within the rules of the format and yet is mostly a mistake, by codes of this parser (EU-DIA-006)."""
+"""Advice: what the format allows but is usually a mistake, with codes of this parser (EU-DIA-006)."""

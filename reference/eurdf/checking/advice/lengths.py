@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 # A length beyond this, in m, is looked at. In a hundred published robots the longest is 2.9 m.
 _LONG = 10.0
 
-# Beyond this, in m, a length would be a kilometre and more in millimetres: it is wrong in another way.
+# Beyond this, in m, a length would be a kilometre and more in millimetres: it has another error.
 _MOST = 1e6
 
 # A single length is likely in millimetres where it is so many times the median of the distances between joints.
