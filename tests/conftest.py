@@ -42,7 +42,7 @@ settings.load_profile("same")
 def pytest_configure(config: pytest.Config) -> None:
     # Here, and not where pytest is configured: the conformance suite runs with whatever plug-ins its users have.
     config.addinivalue_line("filterwarnings", "error")
-    # The matrices are small, and there is a worker for each processor: threads would only be in each other's way.
+    # The matrices are small, and there is a worker for each processor: more threads would only slow each other.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     if os.environ.get("PYTHONDONTWRITEBYTECODE") and not hasattr(config, "workerinput"):
         # Tests start the package in some hundred processes, and each would compile it: keep what is compiled elsewhere.

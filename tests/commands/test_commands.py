@@ -199,7 +199,7 @@ def test_closed_stream_changes_nothing_else(name: str, folder: Path) -> None:
     assert done.stdout == ("" if name == "stdout" else ".: sound\n")
 
 
-# --- which robots a path stands for ----------------------------------------------------------------------------------
+# --- which robots a path refers to -----------------------------------------------------------------------------------
 
 
 def test_description_is_recognized_by_its_keys(folder: Path) -> None:

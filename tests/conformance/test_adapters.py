@@ -105,7 +105,7 @@ def test_the_reference_claims_all_levels_of_both_versions_and_says_who_it_is() -
         assert session.started.parser.name == "eurdf"
 
 
-def test_what_was_read_is_told_without_style(tmp_path: Path) -> None:
+def test_answer_is_free_of_style(tmp_path: Path) -> None:
     robot = canonical(Reference().load(*write_every_joint(tmp_path)))
     assert (robot.name, robot.version, robot.root) == ("every joint", "2", "floating")
     assert sorted(robot.links) == sorted(f"link_{index}" for index in range(15))
@@ -144,7 +144,7 @@ def test_limits_are_one_a_coordinate_or_velocity_and_null_where_there_is_none(tm
     assert (follower.joint, follower.multiplier, follower.offset) == ("turn", -0.5, 0.2)
 
 
-def test_a_universal_joint_of_version_1_is_two_joints_with_a_body_between_that_is_no_link(tmp_path: Path) -> None:
+def test_version_1_universal_joint_has_a_virtual_body(tmp_path: Path) -> None:
     robot = canonical(load(tmp_path, "joint_name: [a]\njoint_type: [UJOINT_XZ]\nname_mot: [a_X]\nmine: {deep: [1]}\n"))
     assert robot.version == "1"
     first, second = joint_named(robot, "a_X"), joint_named(robot, "a_Z")
@@ -172,7 +172,7 @@ def test_a_wrong_description_is_rejected_with_code_and_place(tmp_path: Path) -> 
     assert "elbow" in issue.message
 
 
-def test_what_is_wrong_with_the_urdf_is_told_of_the_urdf(tmp_path: Path) -> None:
+def test_urdf_error_is_reported_in_the_urdf(tmp_path: Path) -> None:
     answer = load(tmp_path, 'extended_urdf: "2.0"\n', urdf_of('<link name="a"/>', '<link name="b"/>'))
     assert isinstance(answer, Rejected)
     assert [(issue.code, issue.file) for issue in answer.issues] == [("urdf-two-roots", "robot.urdf")]
@@ -186,7 +186,7 @@ def test_what_is_wrong_with_the_urdf_is_told_of_the_urdf(tmp_path: Path) -> None
         (FAR + "configurations: {assembled: {}}\n", None, "assembled-open"),
     ],
 )
-def test_an_error_of_inertia_or_closure_is_told_beside_the_robot(
+def test_inertia_or_closure_error_accompanies_the_robot(
     tmp_path: Path, description: str, urdf: str | None, code: str
 ) -> None:
     answer = load(tmp_path, f'extended_urdf: "2.0"\n{description}', None if urdf is None else urdf_of(urdf))
@@ -195,13 +195,13 @@ def test_an_error_of_inertia_or_closure_is_told_beside_the_robot(
     assert [(issue.code, issue.severity) for issue in answer.issues] == [(code, "error")]
 
 
-def test_a_warning_is_told_beside_the_robot(tmp_path: Path) -> None:
+def test_warning_accompanies_the_robot(tmp_path: Path) -> None:
     answer = load(tmp_path, "name_motor: [a]\n")
     assert isinstance(answer, Accepted)
     assert [(issue.code, issue.severity) for issue in answer.issues] == [("near-miss-key", "warning")]
 
 
-def test_a_urdf_that_is_missing_is_told_of_the_description(tmp_path: Path) -> None:
+def test_missing_urdf_is_reported_in_the_description(tmp_path: Path) -> None:
     (tmp_path / "robot.yaml").write_text('extended_urdf: "2.0"\nurdf: other.urdf\n', encoding="utf-8")
     answer = Reference().load(tmp_path / "robot.yaml", tmp_path / "other.urdf")
     assert isinstance(answer, Rejected)
@@ -323,7 +323,7 @@ def test_a_joint_is_a_name_of_the_frame_of_the_link_it_carries_even_when_it_was_
         assert poses[joint] == poses[link]
 
 
-def test_only_what_is_asked_for_is_told() -> None:
+def test_answer_has_only_requested_quantities() -> None:
     values = value_at({}, ["mass"])
     assert values.mass is not None
     assert values.model_dump(exclude_none=True).keys() == {"mass"}

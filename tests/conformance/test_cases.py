@@ -107,7 +107,7 @@ INVALID_CASE = {key: value for key, value in VALID_CASE.items() if key != "files
 }
 
 
-def test_a_case_is_valid_or_says_its_fault() -> None:
+def test_case_is_valid_or_states_its_error() -> None:
     assert isinstance(CASE.validate_python(VALID_CASE), ValidCase)
     assert isinstance(CASE.validate_python(INVALID_CASE), InvalidCase)
 
@@ -182,7 +182,7 @@ def written(tmp_path: Path) -> WriteCase:
         (json.dumps(INVALID_CASE | {"place": {"file": "robot.yaml", "line": "x"}}), "place/line"),
     ],
 )
-def test_of_a_file_that_says_no_case_it_is_told_why(written: WriteCase, text: str, why: str) -> None:
+def test_reason_is_given_for_a_file_without_a_case(written: WriteCase, text: str, why: str) -> None:
     with pytest.raises(NotACase, match=why) as caught:
         read_case(written(text))
     assert caught.value.path.name == "one.yaml"
@@ -223,7 +223,7 @@ def test_the_collection_of_an_installed_package_is_found_and_the_package_not_imp
     assert collection_folder() == tmp_path / "eurdf" / "collection" / "robots"
 
 
-def test_a_case_is_asked_at_the_levels_that_it_can_be(written: WriteCase) -> None:
+def test_case_runs_at_its_possible_levels(written: WriteCase) -> None:
     levels = {
         "valid": read_case(written(json.dumps(VALID_CASE))).levels,
         "evaluated": read_case(written(json.dumps(VALID_CASE | {"configurations": [{}]}))).levels,
@@ -395,7 +395,7 @@ def test_the_archive_says_what_it_writes_and_replaces_nothing_unasked(
     assert len(list(out.iterdir())) == 2
 
 
-def test_an_archive_that_cannot_be_written_is_said_in_one_line_and_leaves_nothing(
+def test_unwritable_archive_gives_one_line_and_no_file(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)

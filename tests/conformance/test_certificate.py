@@ -111,7 +111,7 @@ def test_it_has_a_date_only_where_one_is_given(monkeypatch: pytest.MonkeyPatch) 
     assert issue(run()).date == "2025-10-09"
 
 
-def test_a_known_failure_stands_in_it_as_known() -> None:
+def test_known_failure_is_marked_as_known() -> None:
     known = KnownFailure(id=INVALID, level=Level.ACCEPT, verdict=Verdict.FAILED, reason="An open issue.")
     given = issue(run({(INVALID, Level.ACCEPT): Verdict.FAILED}, known_failures=KnownFailures((known,))))
     assert [failure.known for failure in given.failures] == [True]
@@ -262,7 +262,7 @@ def certified_as(certificate: Certificate, levels: dict[str, set[Level]]) -> Cer
     return certificate.model_copy(update={"levels": tuple(changed)})
 
 
-def test_the_badge_says_all_levels_and_tells_versions_apart(failed: Certificate) -> None:
+def test_badge_shows_all_levels_by_version(failed: Certificate) -> None:
     every = set(Level)
     assert badge_texts(certified_as(failed, {"1": every, "2": every})) == ("Extended URDF 1 and 2", "all levels")
     assert badge_texts(certified_as(failed, {"1": {Level.ACCEPT}, "2": every})) == (
@@ -307,13 +307,13 @@ def test_a_comparison_says_that_its_certificates_are_of_different_suites(failed:
 # --- again -----------------------------------------------------------------------------------------------------------
 
 
-def test_a_second_run_that_came_to_the_same_differs_in_nothing(failed: Certificate) -> None:
+def test_equal_second_run_has_no_differences(failed: Certificate) -> None:
     again = issue(run({(INVALID, Level.ACCEPT): Verdict.FAILED}, parser="cmd:elsewhere/my_parser"))
     assert replay_differences(failed, again) == []
     assert suite_differences(failed) == []
 
 
-def test_a_second_run_that_came_to_something_else_is_told_line_by_line(failed: Certificate) -> None:
+def test_differing_second_run_lists_differences(failed: Certificate) -> None:
     changed = started({"2": [Level.ACCEPT]}, name="my_other_parser")
     again = issue(run({(VALID, Level.ACCEPT): Verdict.CRASHED}, claims={"2": [Level.ACCEPT]}, started=changed))
     assert replay_differences(failed, again) == [
@@ -340,7 +340,7 @@ def forged(certificate: Certificate, **changes: object) -> Certificate:
     return Certificate.model_validate(certificate.model_dump() | changes)
 
 
-def test_a_certificate_that_says_more_than_its_cases_is_found_out(failed: Certificate) -> None:
+def test_inflated_certificate_is_detected(failed: Certificate) -> None:
     levels = [each.model_dump() | {"certified": True} for each in failed.levels]
     clauses = [*failed.clauses, {"id": "EU-XXX-999", "items": 7, "passed": 7}]
     better = [each.model_dump() | {"passed": each.items} for each in failed.clauses]
@@ -359,14 +359,14 @@ def test_a_certificate_that_says_more_than_its_cases_is_found_out(failed: Certif
     assert replay_differences(forged(failed, levels=not_claimed), failed) == [says]
 
 
-def test_a_page_or_a_badge_that_shows_another_certificate_is_found_out(failed: Certificate, tmp_path: Path) -> None:
+def test_page_or_badge_of_another_certificate_is_detected(failed: Certificate, tmp_path: Path) -> None:
     write_certificate(tmp_path, failed)
     assert file_differences(tmp_path, failed) == []
     (tmp_path / "badge.svg").write_text(badge(issue(run())), encoding="utf-8")
     assert file_differences(tmp_path, failed) == ["badge.svg: it does not show this certificate"]
 
 
-def test_a_badge_or_a_page_that_is_missing_beside_a_certificate_is_told(failed: Certificate, tmp_path: Path) -> None:
+def test_missing_badge_or_page_is_reported(failed: Certificate, tmp_path: Path) -> None:
     write_certificate(tmp_path, failed)
     (tmp_path / "badge.svg").unlink()
     (tmp_path / "report.html").rename(tmp_path / "my_report.html")
@@ -451,7 +451,7 @@ def forged_failure(certificate: Certificate, **changes: object) -> Certificate:
         ),
     ],
 )
-def test_a_command_that_does_not_run_the_case_again_is_found_out(command: str) -> None:
+def test_wrong_command_of_a_case_is_detected(command: str) -> None:
     name = f"{REAL.id}/accept"
     told = [f"{name}: the reproduce command is not one of the suite: {command}"]
     assert own_errors(forged_failure(SOUND[0], reproduce=command)) == told
@@ -489,7 +489,7 @@ def test_what_is_said_of_known_failures_and_does_not_follow_is_found_out(index: 
     assert own_errors(forged(SOUND[index], unexpected=[sentence])) == [told]
 
 
-def test_a_certificate_of_another_corpus_is_told_apart(failed: Certificate) -> None:
+def test_certificate_of_another_corpus_is_detected(failed: Certificate) -> None:
     older = failed.suite.model_copy(update={"corpus": f"sha256:{'0' * 64}"})
     (said,) = suite_differences(failed.model_copy(update={"suite": older}))
     assert said.startswith("suite, corpus: sha256:000")
@@ -500,7 +500,7 @@ def test_the_schema_of_a_replay_is_current() -> None:
     assert json.loads(file.read_text(encoding="utf-8")) == replay_schema()
 
 
-def test_a_certificate_claims_nothing_for_a_parser_that_claims_everything_and_answers_nothing() -> None:
+def test_parser_without_answers_is_not_certified() -> None:
     given = issue(run(claims=ALL, results=()))
     assert not any(each.certified for each in given.levels)
     assert {failure.verdict for failure in given.failures} == {Verdict.NOT_RUN}

@@ -81,7 +81,7 @@ def test_the_reference_is_certified_at_every_level_of_both_versions(shared_run: 
     assert asked == planned
 
 
-def test_a_parser_that_accepts_everything_fails_on_every_invalid_case_and_on_no_valid_one(shared_run: Run) -> None:
+def test_accept_all_fails_exactly_the_invalid_cases(shared_run: Run) -> None:
     certificate = read_certificate(Path(shared_run("--parser", ACCEPTS, *SOME).certificate))
     failed = {failure.id for failure in certificate.failures}
     right = {case.name for case in SOME_CASES if not isinstance(case.case, InvalidCase) or case.case.either}
@@ -92,7 +92,7 @@ def test_a_parser_that_accepts_everything_fails_on_every_invalid_case_and_on_no_
     assert not any(level.certified for level in certificate.levels)
 
 
-def test_a_parser_that_rejects_everything_fails_on_every_valid_case_and_on_no_invalid_one(shared_run: Run) -> None:
+def test_reject_all_fails_exactly_the_valid_cases(shared_run: Run) -> None:
     certificate = read_certificate(Path(shared_run("--parser", REJECTS, *SOME).certificate))
     failed = {failure.id for failure in certificate.failures}
     assert {case.name for case in SOME_CASES if not isinstance(case.case, InvalidCase)} <= failed
@@ -129,7 +129,7 @@ def test_the_json_is_the_certificate_and_fits_its_schema_however_the_run_is_spre
 # --- a first try -----------------------------------------------------------------------------------------------------
 
 
-def test_a_first_try_tells_a_wrong_adapter_from_a_wrong_parser(folder: Path) -> None:
+def test_first_try_distinguishes_wrong_adapter_from_wrong_parser(folder: Path) -> None:
     parser = certify("--parser", REJECTS, "--smoke")
     assert parser.returncode == 1
     assert parser.stdout.startswith("your adapter works so far")
@@ -162,7 +162,7 @@ def test_a_first_try_runs_on_a_terminal_too(folder: Path) -> None:
     assert (code, "certifying" in seen) == (0, True)
 
 
-def test_whoever_explores_is_told_where_the_cases_are(capsys: pytest.CaptureFixture[str]) -> None:
+def test_exploration_reports_the_folder_of_its_cases(capsys: pytest.CaptureFixture[str]) -> None:
     law = item("properties/agreement-2", Level.ACCEPT)
     failed = result(law, Verdict.FAILED, "it is not so")
     show(issue(run(planned=(*PLANNED, law), results=(failed,), explore=20, explore_seed=7)))
@@ -192,7 +192,7 @@ def test_known_failures_are_counted_and_do_not_certify(folder: Path, shared_run:
     assert f"known failures: {len(failed)}" in done.stdout
 
 
-def test_a_known_failure_that_passes_or_that_the_suite_lacks_is_told(folder: Path) -> None:
+def test_outdated_known_failure_is_reported(folder: Path) -> None:
     file = known_failures(folder, "version1/fewer-joint-types-than-names", "version1/aaaaaa")
     given = certificate_of("--parser", REJECTS, *SOME, "--known-failures", file)
     assert [said.partition(":")[0] for said in given["unexpected"]] == [
@@ -201,7 +201,7 @@ def test_a_known_failure_that_passes_or_that_the_suite_lacks_is_told(folder: Pat
     ]
 
 
-def test_a_file_of_known_failures_that_cannot_be_used_is_refused_before_anything_runs(folder: Path) -> None:
+def test_bad_file_of_known_failures_is_refused_first(folder: Path) -> None:
     (folder / "known.yaml").write_text("- id: version1/fewer-joint-types-than-names\n", encoding="utf-8")
     done = certify("--parser", "cmd:nowhere", "--known-failures", "known.yaml")
     assert (done.returncode, done.stdout) == (2, "")
@@ -218,7 +218,7 @@ def test_a_parser_that_does_not_start_exits_with_2_and_shows_what_it_wrote(folde
     assert "could not be started: crashed: ended with exit code 2" in done.stderr.splitlines()[1]
 
 
-def test_a_level_that_was_asked_for_and_is_not_claimed_is_not_certified(folder: Path) -> None:
+def test_requested_but_unclaimed_level_is_not_certified(folder: Path) -> None:
     done = certify("--parser", REJECTS, "--level", "dynamics", "--jobs", "0")
     assert done.returncode == 1
     assert done.stdout.endswith("always_rejected 1: Not certified at any level\n")
@@ -302,9 +302,7 @@ def test_an_earlier_certificate_is_replaced(folder: Path) -> None:
     assert parser.name == "always_accepted"
 
 
-def test_a_file_in_the_place_of_the_folder_is_told_before_the_run(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_file_instead_of_folder_is_reported_before_the_run(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     Path("mine").write_text("", encoding="utf-8")
     for place in ("mine", "mine/deeper"):
         assert main(["certify", "--parser", "cmd:no-such-parser", "--certificate", place]) == 2
@@ -337,7 +335,7 @@ def test_a_wrong_value_of_an_option_is_refused(
 # --- again, and side by side -----------------------------------------------------------------------------------------
 
 
-def test_a_replay_by_another_parser_is_told_line_by_line(folder: Path, shared_run: Run) -> None:
+def test_replay_by_another_parser_lists_differences(folder: Path, shared_run: Run) -> None:
     shutil.copytree(shared_run("--parser", REJECTS, *SOME).certificate, "mine")
     again = certify("--verify", "mine/certificate.json", "--parser", ACCEPTS, "--jobs", "0")
     assert again.returncode == 1
@@ -350,7 +348,7 @@ def test_a_replay_by_another_parser_is_told_line_by_line(folder: Path, shared_ru
     assert value == {"same": False, "differences": again.stdout.splitlines()[:-1]}
 
 
-def test_a_replay_tells_what_somebody_has_changed_in_the_file(folder: Path) -> None:
+def test_replay_reports_changes_of_the_file(folder: Path) -> None:
     assert certify("--parser", REJECTS, "--smoke", "--certificate", "mine").returncode == 1
     again = certify("--verify", "mine")
     assert (again.returncode, again.stdout) == (0, "mine: the same\n")
@@ -403,7 +401,7 @@ def test_a_comparison_replaces_nothing_unasked(folder: Path, capsys: pytest.Capt
     assert "always_rejected 1" in Path("page.html").read_text(encoding="utf-8")
 
 
-def test_parsers_of_one_name_are_told_apart_on_the_page(folder: Path) -> None:
+def test_page_distinguishes_parsers_of_one_name(folder: Path) -> None:
     certify("--parser", REJECTS, "--smoke", "--certificate", "a")
     (Path("a") / "certificate.json").rename("one.json")
     text = Path("one.json").read_text(encoding="utf-8")

@@ -84,13 +84,13 @@ def robot(joints: list[dict[str, Any]], **more: Any) -> CanonicalRobot:
 BODIES = [["a"], ["c", "b"]]
 
 
-def test_what_is_missing_is_told_of_the_list_whatever_is_wrong_before_it() -> None:
+def test_missing_entry_is_reported_after_other_errors() -> None:
     expected = robot([joint("j"), joint("k", parent="b", child="c")])
     found = canonical_differences(expected, robot([joint("j", damping=[7.0])]), [["a"], ["b"], ["c"]])
     assert [each.pointer for each in found] == ["/joints/0/damping/0", "/joints"]
 
 
-def test_any_link_of_a_body_stands_for_it() -> None:
+def test_any_link_of_a_body_identifies_it() -> None:
     assert canonical_differences(robot([joint("j")]), robot([joint("j", child="c")]), BODIES) == []
     (found,) = canonical_differences(robot([joint("j")]), robot([joint("j", child="a")]), BODIES)
     assert (found.pointer, found.expected, found.given) == ("/joints/0/child", "b", "a")
@@ -174,7 +174,7 @@ def test_coordinates_that_are_too_many_or_too_few_are_those_of_no_joint(kind: st
         assert not same_coordinates(kind, neutral(kind), wrong)
 
 
-def test_a_configuration_that_is_missing_is_told_though_it_be_all_neutral() -> None:
+def test_missing_neutral_configuration_is_reported() -> None:
     (found,) = canonical_differences(robot([], configurations={"q": {}}), robot([]), BODIES)
     assert (found.pointer, found.expected, found.given) == ("/configurations/q", {}, ABSENT)
 
@@ -189,7 +189,7 @@ def test_in_the_users_own_data_true_is_not_one_and_order_of_a_list_counts() -> N
     assert canonical_differences(own(1), own(10**400), BODIES)
 
 
-def test_a_joint_that_stands_twice_is_a_difference() -> None:
+def test_duplicate_joint_is_a_difference() -> None:
     (found,) = canonical_differences(robot([joint("j")]), robot([joint("j"), joint("j")]), BODIES)
     assert found.pointer == "/joints/1"
 
@@ -245,7 +245,7 @@ def jacobian(columns: Any, matrix: Any) -> Values:
     return values(jacobian={"columns": columns, "rows": {"pin": np.asarray(matrix).tolist()}})
 
 
-def test_columns_of_k_stand_in_any_order() -> None:
+def test_columns_of_k_can_have_any_order() -> None:
     order = [2, 3, 0, 1]
     shuffled = jacobian([COLUMNS[k] for k in order], K[:, order])
     assert values_differences(jacobian(COLUMNS, K), shuffled, 1.0) == []
@@ -389,11 +389,11 @@ def issue(code: str | None = "unknown-frame", **more: Any) -> Issue:
         ([], ["/issues"]),
     ],
 )
-def test_one_fault_is_one_error_with_its_code_at_its_place(issues: list[Issue], pointers: list[str]) -> None:
+def test_one_mistake_gives_one_error_with_code_and_place(issues: list[Issue], pointers: list[str]) -> None:
     assert [found.pointer for found in error_differences(ERROR, issues)] == pointers
 
 
-def test_a_fault_of_a_file_as_a_whole_has_no_line() -> None:
+def test_error_of_a_whole_file_has_no_line() -> None:
     whole = ExpectedWarning(code="file-not-utf8", place=CasePlace(file="robot.yaml"))
     assert error_differences(whole, [issue("file-not-utf8", line=None, column=None)]) == []
     assert error_differences(whole, [issue("file-not-utf8", line=1, column=1)])
@@ -406,7 +406,7 @@ def test_where_a_text_stops_being_yaml_is_for_each_parser_to_say() -> None:
     assert error_differences(fault, [issue("yaml-syntax", file="robot.urdf")])
 
 
-def test_the_warnings_of_a_valid_case_are_told_and_no_others() -> None:
+def test_only_warnings_of_a_valid_case_are_reported() -> None:
     two = [ERROR, ExpectedWarning(code="unknown-frame", place=CasePlace(file="robot.yaml", line=7, column=1))]
     told = [issue(line=7, column=1, severity="warning"), issue(severity="warning")]
     assert warning_differences(two, told) == []

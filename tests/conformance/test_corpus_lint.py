@@ -29,7 +29,7 @@ def laid(root: Path, file: str = VALID, old: str = "", new: str = "") -> Path:
     return root
 
 
-def test_sound_cases_have_no_fault(tmp_path: Path) -> None:
+def test_sound_cases_have_no_error(tmp_path: Path) -> None:
     assert lint.lint(laid(tmp_path)) == []
 
 

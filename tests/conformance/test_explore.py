@@ -82,7 +82,7 @@ def test_what_is_found_is_written_as_a_case_that_the_lint_takes(found: tuple[Pat
     assert case.topic == "joints"
 
 
-def test_whoever_finds_a_case_is_told_how_to_keep_it_and_to_run_it_alone(found: tuple[Path, Judgement]) -> None:
+def test_found_case_explains_how_to_keep_and_run_it(found: tuple[Path, Judgement]) -> None:
     folder, judgement = found
     case = the_case(folder)
     move, check = (line.strip() for line in judgement.log.splitlines() if line.startswith("  "))
@@ -174,7 +174,7 @@ def kinds(mechanism: Mechanism) -> Iterator[str]:
     yield from ("joint" for _ in mechanism.joints)
 
 
-def test_the_culprit_is_the_robot_that_is_read_wrong_not_the_one_asked_last(tmp_path: Path) -> None:
+def test_misread_robot_is_blamed_not_the_last_one(tmp_path: Path) -> None:
     harness = Harness(InProcess(ForgetsInlineAngles()), tmp_path)
     prop = property_of("frames")
     example = next(

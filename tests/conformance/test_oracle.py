@@ -59,7 +59,7 @@ TRANSFORMS = [
 
 
 @pytest.mark.parametrize(("entry", "kind", "axis", "q", "tip", "columns"), TRANSFORMS)
-def test_a_joint_moves_its_child_as_the_table_says_along_velocities_of_the_childs_frame(
+def test_joint_velocities_are_in_the_child_frame(
     entry: str, kind: str, axis: Any, q: list[float], tip: Any, columns: Any
 ) -> None:
     # The velocity of the tip, which the base sees, as the angular velocity of the child times its distance.
@@ -70,7 +70,7 @@ def test_a_joint_moves_its_child_as_the_table_says_along_velocities_of_the_child
     assert found.velocities == [("j", i) for i in range(len(columns))]
 
 
-def test_a_joint_stands_at_its_origin_and_a_pose_turns_by_roll_then_pitch_then_yaw() -> None:
+def test_joint_origin_turns_by_roll_pitch_yaw() -> None:
     found = robot(chain(joint("j", "prismatic", "base", "end", (1, 0, 0), (1, 2, 3), (pi / 2, 0, pi / 2))))
     # Rz(90°) Rx(90°): x is y, y is z, z is x.
     np.testing.assert_allclose(
@@ -78,7 +78,7 @@ def test_a_joint_stands_at_its_origin_and_a_pose_turns_by_roll_then_pitch_then_y
     )
 
 
-def test_a_locked_joint_stands_at_its_zero_and_its_child_is_a_part_of_the_parent() -> None:
+def test_locked_joint_welds_its_child_at_zero() -> None:
     found = robot(
         chain(joint("j", "prismatic", "base", "end", xyz=(1, 0, 0)), joint("k", "revolute", "end", "tip", Z)),
         two("joints: {j: fixed}"),
@@ -167,7 +167,7 @@ def test_what_weighs_nothing_has_no_centre_of_mass() -> None:
     }
 
 
-def test_a_name_that_is_two_frames_is_not_read_and_one_that_is_one_frame_twice_is() -> None:
+def test_ambiguous_frame_name_is_refused() -> None:
     elements = chain(joint("end", "revolute", "base", "end"), joint("base", "revolute", "end", "tip", xyz=(1, 0, 0)))
     found = robot(elements)
     np.testing.assert_allclose(origin(found, {}, "end"), [0, 0, 0])
@@ -184,7 +184,7 @@ def test_the_size_of_a_robot_is_the_largest_distance_of_its_frames() -> None:
     assert found.size({"j": [12.0]}) == pytest.approx(13.0)
 
 
-def test_a_closure_of_a_type_of_the_users_own_is_left_out() -> None:
+def test_user_defined_closure_is_left_out() -> None:
     found = robot(
         chain(joint("j", "prismatic", "base", "end")),
         two("closures: [{name: belt, type: x-belt, frames: [base, end]}, {name: pin, type: 3d, frames: [base, end]}]"),

@@ -122,7 +122,7 @@ def test_merged_joints_turn_about_the_point_where_their_axes_meet_and_their_name
 
 
 def test_the_centre_of_merged_joints_is_nearest_to_their_axes_in_the_sense_of_least_squares() -> None:
-    # Squares: y² + z², x² + (z − d)², x² + (y − 2d)². The link that is carried stands at (0, 2d, up).
+    # Squares: y² + z², x² + (z − d)², x² + (y − 2d)². The carried link is at (0, 2d, up).
     half_turn_about_x = position(crossing(d := 6e-5, up := 0.1), "end", {"rz": [1, 0, 0, 0]})
     np.testing.assert_allclose(half_turn_about_x, [0, 0, d - up], atol=1e-12)
 
@@ -233,7 +233,7 @@ def test_version_1_closes_in_6d_where_it_says_no_type_and_fixes_the_root() -> No
     assert (found.closures[0].type, found.version, found.root) == ("6d", "1", "fixed")
 
 
-def test_the_users_own_data_stand_under_their_pointers_in_both_versions() -> None:
+def test_user_data_is_stored_by_pointer() -> None:
     elements = chain(joint("j", "revolute", "base", "end"))
     own = "x-a/b~: {x-inner: 1}\njoints: {x-note: no, j: {armature: 1, x-c: [1]}}\nactuators: [{joint: j, x-d: null}]"
     assert robot(elements, two(own)).canonical().own == {
@@ -302,12 +302,12 @@ def test_what_the_oracle_is_not_sure_of_it_does_not_read(yaml: str) -> None:
         "</robot><robot>",
     ],
 )
-def test_a_urdf_that_the_oracle_is_not_sure_of_it_does_not_read(element: str) -> None:
+def test_oracle_refuses_a_doubtful_urdf(element: str) -> None:
     with pytest.raises(NotRead):
         robot([*chain(joint("j", "revolute", "base", "end")), element], two(""))
 
 
-def test_prefixes_need_no_definition_and_hide_what_they_stand_before() -> None:
+def test_prefix_needs_no_definition_and_hides_its_name() -> None:
     elements = chain(joint("j", "revolute", "base", "end"))
     found = robot([*elements, '<drake:link name="base"/>', "<gazebo><link name='base'/></gazebo>"])
     assert list(found.urdf.links) == ["base", "end"]

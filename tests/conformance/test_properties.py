@@ -1,4 +1,4 @@
-"""Properties on any parser: the oracle keeps each of them, and each is broken by a parser that is wrong in one way."""
+"""Properties on any parser: the oracle keeps each of them, and each is broken by a parser with one error."""
 
 from __future__ import annotations
 
@@ -170,7 +170,7 @@ def test_a_parser_that_does_not_read_version_2_can_keep_what_both_versions_say(t
         assert tried(property_of("versions"), level, "1", Old(), tmp_path / level).verdict == Verdict.PASSED
 
 
-def test_an_answer_of_another_kind_stands_among_the_differences(tmp_path: Path) -> None:
+def test_answer_of_another_kind_is_a_difference(tmp_path: Path) -> None:
     parser = MUTANTS["continuous_joints_need_limits"].parser()
     (wrong_answer,) = tried(property_of("accepted"), Level.ACCEPT, "2", parser, tmp_path).differences
     assert (wrong_answer.pointer, wrong_answer.expected, wrong_answer.given) == ("/outcome", "accepted", "rejected")

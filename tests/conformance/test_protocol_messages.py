@@ -92,7 +92,7 @@ def changed(value: Any, pointer: str, new: Any) -> Any:
     return copy
 
 
-#: Which of the sound answers, the pointer, what stands there instead.
+#: Which of the sound answers, the pointer, what is there instead.
 BROKEN: list[tuple[int, str, Any]] = [
     (0, "/protocol", "1.1"),
     (0, "/protocol", ...),
@@ -302,7 +302,7 @@ def test_stop_is_answered_by_stopped_only(outcome: str) -> None:
 
 
 @pytest.mark.parametrize("text", ["NaN", "Infinity", "-Infinity"])
-def test_a_constant_that_json_lacks_is_no_value_but_a_text_may_say_it(text: str) -> None:
+def test_non_json_constant_is_refused(text: str) -> None:
     answer = {"id": 1, "outcome": "accepted", "robot": ROBOT}
     said = json.dumps(answer).replace('"two"', text).encode()
     found = read_answer(said, REQUESTS["load"])
@@ -322,7 +322,7 @@ class Named:
         return accepted()
 
 
-#: Texts in an answer to `load`, with what stands there instead, and what is told of it.
+#: Texts in an answer to `load`, with what is there instead, and what is reported.
 TWICE = [
     ('"outcome": "accepted"', '"outcome": "rejected", "outcome": "accepted"', "(top level): duplicate key 'outcome'"),
     ('"outcome": "accepted"', '"outcome":"accepted","outcome"\t:\t"rejected"', "(top level): duplicate key 'outcome'"),
@@ -337,9 +337,7 @@ TWICE = [
 
 
 @pytest.mark.parametrize(("before", "after", "told"), TWICE, ids=[told for *_, told in TWICE])
-def test_a_key_that_stands_twice_is_malformed_for_who_reads_it_may_take_either(
-    before: str, after: str, told: str
-) -> None:
+def test_duplicate_key_is_malformed(before: str, after: str, told: str) -> None:
     sound = json.dumps({"id": 1, "outcome": "accepted", "robot": ROBOT, "issues": []})
     assert sound.count(before) == 1
     found = read_answer(sound.replace(before, after).encode(), REQUESTS["load"])
@@ -358,7 +356,7 @@ def test_an_answer_with_two_ids_is_to_no_request(ids: tuple[int, int]) -> None:
 
 
 @pytest.mark.parametrize("text", [r"\"id\": 1, \"id\": 2", r"\u0022k\u0022\u003a 1, \"k\": 1", "::"])
-def test_a_text_may_look_like_keys_that_stand_twice(text: str) -> None:
+def test_text_can_look_like_duplicate_keys(text: str) -> None:
     line = json.dumps({"id": 1, "outcome": "accepted", "robot": ROBOT}).replace("two", text)
     assert not isinstance(read_answer(line.encode(), REQUESTS["load"]), Malformed)
 
@@ -368,7 +366,7 @@ def test_a_text_may_look_like_keys_that_stand_twice(text: str) -> None:
     [('"two"', "/robot/own/~1x-a/deep/1"), ("-7", "/issues/0/line"), ("50", "/robot/actuators/0/gear_ratio/0")],
 )
 @pytest.mark.parametrize("number", ["1" * 5000, "1" * 310, "1E+309", "-12.5e400", "1" * 250 + "e99"])
-def test_a_number_beyond_the_range_of_a_double_is_told(short: str, pointer: str, number: str) -> None:
+def test_number_beyond_a_double_is_reported(short: str, pointer: str, number: str) -> None:
     issue = {"message": "m", "line": -7}
     text = json.dumps({"id": 1, "outcome": "accepted", "robot": ROBOT, "issues": [issue]})
     assert text.count(short) == 1
@@ -384,7 +382,7 @@ def test_a_number_within_the_range_of_a_double_is_one(number: str) -> None:
     assert not isinstance(read_answer(text.replace('"two"', number).encode(), REQUESTS["load"]), Malformed)
 
 
-def test_an_adapter_in_python_takes_no_request_in_which_a_key_stands_twice() -> None:
+def test_python_adapter_refuses_duplicate_keys() -> None:
     line = b'{"id": 3, "command": "load", "description": "/a", "description": "/b", "urdf": "/c"}'
     answers = io.BytesIO()
     serve(Named(), [line], answers)
@@ -393,7 +391,7 @@ def test_an_adapter_in_python_takes_no_request_in_which_a_key_stands_twice() -> 
     assert answer == {"id": 3, "outcome": "errored", "message": told}
 
 
-def test_several_faults_are_told_with_their_pointers() -> None:
+def test_several_errors_are_reported_with_pointers() -> None:
     answer = {
         "id": 1,
         "outcome": "accepted",

@@ -74,7 +74,7 @@ def assert_close(expected: Values, given: Values, size: float) -> None:
 
 
 def worst(one: Any, other: Any) -> float:
-    """The largest distance of two numbers that stand at the same place; what is no number has to be the same."""
+    """The largest distance of two numbers at the same place; what is no number has to be the same."""
     if isinstance(one, dict):
         assert one.keys() == other.keys()
         return max((worst(value, other[key]) for key, value in one.items()), default=0.0)

@@ -1,4 +1,4 @@
-"""The runner tells the truth about parsers that hang, crash, lie, are late, or talk too much; and goes on."""
+"""The runner reports parsers that hang, crash, lie, are late, or write too much, and continues."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from eurdf_conformance.runner.session import NotStarted, Session
 from eurdf_conformance.suite.protocol_check import Setup, check
 from support.parsers.sessions import PARSERS, accepts, fake, has_ended, load, runs
 
-#: For each way to go wrong: what comes of it, words that tell it, and whether the process can be asked on.
+#: For each misbehaviour: its outcome, words in the report, and whether the process still answers.
 WAYS = [
     ("hangs", TimedOut, "no answer in 0.5 s", False),
     ("exits", Crashed, "exit code 3", False),
@@ -74,7 +74,7 @@ WAYS = [
 
 
 @pytest.mark.parametrize(("way", "kind", "words", "goes_on"), WAYS, ids=[way for way, *_ in WAYS])
-def test_each_way_to_go_wrong_is_told_apart_and_survived(
+def test_runner_distinguishes_and_survives_misbehaviour(
     way: str, kind: type[Outcome], words: str, goes_on: bool
 ) -> None:
     with Session(fake(way), timeout=0.5, line_limit=2**20) as session:
@@ -98,7 +98,7 @@ def test_what_is_unusual_but_right_is_an_answer(way: str) -> None:
         assert session.restarts == 0
 
 
-def test_no_way_to_go_wrong_is_a_rejection() -> None:
+def test_misbehaviour_is_never_a_rejection() -> None:
     assert not any(issubclass(kind, Answered) for _, kind, _, _ in WAYS)
     with Session(fake("errors")) as session:
         outcome = load(session, "fault")
@@ -123,7 +123,7 @@ def test_what_ends_before_it_is_greeted_has_answered_nothing() -> None:
     assert str(refusal.value).splitlines()[0] == "crashed: ended with exit code 127 without answering"
 
 
-def test_a_crash_after_an_answer_is_told_at_the_next_request_and_said_to_be_from_before() -> None:
+def test_crash_between_requests_is_reported_at_the_next() -> None:
     with Session(fake("exits_after_answering")) as session:
         assert accepts(load(session, "fault"), "fault")
         time.sleep(0.2)
@@ -133,7 +133,7 @@ def test_a_crash_after_an_answer_is_told_at_the_next_request_and_said_to_be_from
         assert accepts(load(session, "next"), "next")
 
 
-def test_a_crash_right_after_an_answer_is_told_with_its_exit_code() -> None:
+def test_crash_after_an_answer_has_exit_code() -> None:
     with Session(fake("exits_after_answering")) as session:
         for _ in range(30):
             assert accepts(load(session, "fault"), "fault")
@@ -142,7 +142,7 @@ def test_a_crash_right_after_an_answer_is_told_with_its_exit_code() -> None:
             assert outcome.code == 4
 
 
-def test_a_line_after_an_answer_is_told_at_the_next_request() -> None:
+def test_line_after_an_answer_is_reported_at_the_next_request() -> None:
     with Session(fake("chatter_later")) as session:
         assert accepts(load(session, "fault"), "fault")
         time.sleep(0.3)
@@ -153,14 +153,14 @@ def test_a_line_after_an_answer_is_told_at_the_next_request() -> None:
         assert accepts(load(session, "next"), "next")
 
 
-def test_a_parser_that_no_longer_listens_still_answers_and_is_restarted_when_it_does_not() -> None:
+def test_deaf_parser_is_restarted_after_its_last_answer() -> None:
     with Session(fake("closes_stdin"), timeout=0.5) as session:
         assert accepts(load(session, "fault"), "fault")
         assert isinstance(load(session, "next"), TimedOut)
         assert accepts(load(session, "next"), "next")
 
 
-def test_a_request_larger_than_the_pipe_does_not_hang_up_on_a_parser_that_does_not_read() -> None:
+def test_request_larger_than_the_pipe_does_not_hang() -> None:
     configurations = [{f"joint_{index}": [0.123456789] for index in range(20_000)}]
     with Session(fake("hangs"), timeout=0.5) as session:
         assert isinstance(load(session, "fault"), TimedOut)
@@ -234,7 +234,7 @@ def test_an_endless_line_takes_no_more_memory_than_is_allowed() -> None:
         ("banner", Chatter, "Welcome to Fake 1.0!"),
     ],
 )
-def test_a_parser_that_does_not_start_is_told_why_and_given_up(way: str, kind: type[Outcome], words: str) -> None:
+def test_parser_that_cannot_start_is_given_up_with_reason(way: str, kind: type[Outcome], words: str) -> None:
     with Session(fake(way), start_timeout=0.5 if way == "hangs_at_start" else 30.0) as session:
         assert isinstance(session.start(), kind)
         with pytest.raises(NotStarted) as caught:
@@ -331,9 +331,7 @@ def test_what_a_parser_comes_to_that_crashes_is_the_same_however_it_is_spread(na
     assert crashed == {name for name in asked if name.startswith("fault")}
 
 
-def test_a_parser_that_does_not_start_again_is_no_crash_of_the_next_request_and_at_last_given_up(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_parser_that_cannot_restart_is_given_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("FAKE_STARTED", str(tmp_path / "started"))
     with Session(fake("starts_once"), timeout=0.5, failed_starts=3) as session:
         assert accepts(load(session, "first"), "first")
@@ -376,7 +374,7 @@ def test_a_robot_is_loaded_again_before_it_is_evaluated_by_another_process() -> 
 @pytest.mark.parametrize(
     ("way", "kind"), [("ignores_stop", TimedOut), ("does_not_end", TimedOut), ("crashes_at_the_end", Crashed)]
 )
-def test_a_parser_that_does_not_stop_in_order_is_ended_and_told(way: str, kind: type[Outcome]) -> None:
+def test_parser_that_does_not_stop_is_killed_and_reported(way: str, kind: type[Outcome]) -> None:
     with Session(fake(way), stop_timeout=0.3) as session:
         assert accepts(load(session, "fault"), "fault")
         process = session._process
@@ -403,7 +401,7 @@ def test_what_a_parser_started_ends_with_it() -> None:
     assert has_ended(child)
 
 
-def test_a_child_that_holds_the_pipes_of_a_dead_parser_does_not_keep_anybody_waiting() -> None:
+def test_child_of_dead_parser_blocks_nothing() -> None:
     with Session(fake("dies_before_its_child"), timeout=300.0) as session:
         outcome = load(session, "fault")
         assert isinstance(outcome, Crashed)  # and not that it timed out

@@ -93,7 +93,7 @@ def test_what_is_no_parser_ends_the_process_with_the_reason_in_a_line(path: str,
         ("imports_what_is_missing:X", "imports_what_is_missing.py", "No module named 'no_such_package'"),
     ],
 )
-def test_what_the_module_of_a_parser_raises_is_told_with_its_own_lines_alone(
+def test_exception_of_a_parser_module_shows_its_lines(
     path: str, first: str, last: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "imports_what_is_missing.py").write_text("import no_such_package\n")
@@ -174,7 +174,7 @@ RETURNS = "use accepted, rejected, unsupported or skipped of eurdf_conformance.p
         ("pose", "Pose: /rotation: List should have at least 3 items after validation, not 1, not [[1.0, 0.0, 0.0]]"),
     ],
 )
-def test_what_is_no_answer_is_the_fault_of_the_adapter_and_no_rejection(name: str, why: str) -> None:
+def test_non_answer_is_an_adapter_error(name: str, why: str) -> None:
     with Session("python_parsers:Answers") as session:
         outcome = load(session, name)
         assert isinstance(outcome, Malformed)
@@ -187,7 +187,7 @@ def test_what_is_no_answer_is_the_fault_of_the_adapter_and_no_rejection(name: st
         assert session.restarts == 0
 
 
-def test_values_that_are_none_are_the_fault_of_the_adapter() -> None:
+def test_invalid_values_are_an_adapter_error() -> None:
     with Session("python_parsers:Answers") as session:
         outcome = session.evaluate([{}], ["nothing"], ["mass"])
         assert isinstance(outcome, Malformed)

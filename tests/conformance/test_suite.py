@@ -66,7 +66,7 @@ VALID, INVALID, EITHER = (
 
 
 class Scripted:
-    """A parser that answers as it is told, and keeps what it was asked."""
+    """A parser with given answers, which keeps the requests."""
 
     def __init__(self, load: Outcome, evaluate: Outcome | None = None) -> None:
         self.answers = {"load": load, "evaluate": evaluate}
@@ -114,7 +114,7 @@ FAILURES: list[tuple[Outcome, Verdict]] = [
 
 
 @pytest.mark.parametrize(("outcome", "verdict"), FAILURES, ids=lambda value: type(value).__name__)
-def test_what_is_no_answer_is_told_apart_and_never_a_rejection(outcome: Outcome, verdict: Verdict) -> None:
+def test_non_answer_is_never_a_rejection(outcome: Outcome, verdict: Verdict) -> None:
     for case in (VALID, INVALID, EITHER):
         for level in case.levels:
             found = judge(case, level, Conversation(Scripted(outcome)))
@@ -203,14 +203,14 @@ def test_one_value_a_configuration_is_asked_for() -> None:
         ),
     ],
 )
-def test_another_answer_than_the_one_asked_for_is_told_with_both(
+def test_unexpected_answer_is_reported_with_the_expected_one(
     case: CorpusCase, level: Level, answer: AnyAnswer, told: tuple[str, str, str]
 ) -> None:
     (found,) = judge(case, level, Conversation(Scripted(Answered(answer, 0.0)))).differences
     assert (found.pointer, found.expected, found.given, found.why) == ("/outcome", *told)
 
 
-def test_of_who_accepts_and_does_not_evaluate_it_is_told_that_values_were_asked_for() -> None:
+def test_missing_values_are_reported_for_an_accepted_robot() -> None:
     parser = Scripted(accepts(VALID), Answered(Unsupported(id=1, feature="evaluate"), 0.0))
     (found,) = judge(VALID, Level.KINEMATICS, Conversation(parser)).differences
     assert (found.expected, found.given) == ("evaluated", "unsupported")
@@ -222,7 +222,7 @@ def fault(case: CorpusCase, **changes: object) -> Issue:
     return Issue.model_validate({"code": said["code"], "message": "?", **said["place"], **changes})
 
 
-def test_a_fault_that_may_be_accepted_is_told_of_all_the_same() -> None:
+def test_error_of_an_acceptable_robot_is_reported() -> None:
     def diagnose(case: CorpusCase, outcome: Outcome) -> Verdict:
         return judge(case, Level.DIAGNOSE, Conversation(Scripted(outcome))).verdict
 
@@ -235,7 +235,7 @@ def test_a_fault_that_may_be_accepted_is_told_of_all_the_same() -> None:
     assert diagnose(VALID, accepts(None, fault(INVALID, severity="warning"))) == Verdict.FAILED
 
 
-def test_a_case_is_loaded_once_for_all_its_levels_and_again_where_it_may_be_gone() -> None:
+def test_case_is_loaded_once_for_all_levels() -> None:
     parser = Scripted(accepts(VALID), Answered(Evaluated(id=1, values=VALID.expected.values), 0.0))
     conversation = Conversation(parser)
     for level in VALID.levels:
@@ -314,7 +314,7 @@ def test_a_parser_steers_no_terminal_and_its_own_script_is_left_to_it() -> None:
     )
 
 
-def test_who_a_parser_is_stands_on_one_line_at_the_end_of_a_run() -> None:
+def test_run_ends_with_one_line_on_the_parser() -> None:
     name = f"{STEERING}\nversion 2, accept: 9 of 9 passed: certified"
     wrong = result(next(case_items([INVALID])).item, Verdict.ERRORED, STEERING)
     for smoke in (False, True):
@@ -436,7 +436,7 @@ def test_a_parser_that_is_right_passes_every_case_and_is_written_a_certificate(t
     assert json.loads((tmp_path / "certificate.json").read_text(encoding="utf-8"))["parser"]["name"] == "by_heart"
 
 
-def test_a_parser_that_is_wrong_is_told_where_and_the_line_that_is_printed_shows_it_again() -> None:
+def test_printed_command_reproduces_a_failure() -> None:
     code, out = suite("-k", FEW, parser="Misread")
     assert code == 1
     assert "3 failed, 4 passed" in out
@@ -470,7 +470,7 @@ def test_a_crash_is_survived_and_no_rejection() -> None:
     )
 
 
-def test_a_level_that_is_not_claimed_is_skipped_and_what_is_claimed_and_unsupported_fails() -> None:
+def test_unclaimed_level_is_skipped_and_unsupported_claim_fails() -> None:
     code, out = suite("-k", FEW, parser="Modest")
     assert code == 0
     assert "2 passed, 5 skipped" in out
@@ -497,7 +497,7 @@ KNOWN = """
 """
 
 
-def test_known_failures_are_expected_and_whoever_mends_them_is_told(tmp_path: Path) -> None:
+def test_fixed_known_failure_is_reported(tmp_path: Path) -> None:
     path = tmp_path / "known.yaml"
     path.write_text(KNOWN, encoding="utf-8")
     code, out = suite("-k", FEW, f"--known-failures={path}", parser="Lenient")
@@ -536,7 +536,7 @@ def test_what_the_user_asks_for_and_cannot_be_is_said(tmp_path: Path) -> None:
         assert why in out
 
 
-def test_smoke_tells_a_wrong_adapter_from_a_wrong_parser() -> None:
+def test_smoke_distinguishes_wrong_adapter_from_wrong_parser() -> None:
     code, out = suite("--smoke", parser="Right")
     assert code == 0
     assert "your adapter works so far" in out
@@ -575,7 +575,7 @@ def test_smoke_asks_three_cases_each_at_the_first_level_that_the_parser_claims(p
     assert sorted(re.findall(r"test_case\[([\w/-]+)\] PASSED", out)) == asked
 
 
-def test_where_nothing_is_claimed_of_what_is_asked_for_all_is_not_well() -> None:
+def test_run_without_claimed_levels_fails() -> None:
     code, out = suite("--smoke", parser="Silent")
     assert code == 1
     assert "nothing was tested: your parser claims none of the requested levels" in out

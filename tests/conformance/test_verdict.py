@@ -61,7 +61,7 @@ def test_one_item_that_did_not_pass_for_whatever_reason_costs_the_level_and_no_o
     assert not is_certified(done)
 
 
-def test_a_level_that_is_not_claimed_is_not_certified_and_does_not_stand_in_the_way() -> None:
+def test_unclaimed_level_does_not_prevent_certification() -> None:
     done = run()
     assert not level_result(done, Level.DIAGNOSE).claimed
     assert not level_result(done, Level.DIAGNOSE).certified
@@ -104,7 +104,7 @@ def test_three_cases_tried_out_certify_nothing() -> None:
     assert not any(each.certified for each in level_results(run(smoke=True)))
 
 
-def test_a_parser_that_accepts_everything_and_one_that_rejects_everything_are_not_certified() -> None:
+def test_accept_all_and_reject_all_are_not_certified() -> None:
     accepts = run({(INVALID, Level.ACCEPT): Verdict.FAILED}, claims={"2": [Level.ACCEPT]})
     rejects = run({(VALID, Level.ACCEPT): Verdict.FAILED}, claims={"2": [Level.ACCEPT]})
     for done in (accepts, rejects):
@@ -156,7 +156,7 @@ def test_a_known_failure_of_no_item_of_the_suite_is_unexpected(tmp_path: Path) -
     assert said == "closures/bbbbb3/accept: the suite has no such item"
 
 
-def test_a_known_failure_of_an_item_that_was_not_asked_is_left_alone(tmp_path: Path) -> None:
+def test_known_failure_of_an_item_not_run_is_kept(tmp_path: Path) -> None:
     assert known(KNOWN, tmp_path).unexpected([], PLANNED) == []
 
 
@@ -186,7 +186,7 @@ def test_a_file_that_is_not_what_it_should_be_is_refused_and_says_why(text: str,
     assert str(tmp_path / "known.yaml") in str(refused.value)
 
 
-def test_an_id_copied_with_its_level_is_told_how_it_is_written(tmp_path: Path) -> None:
+def test_id_with_level_gets_a_hint(tmp_path: Path) -> None:
     failures = known(KNOWN.replace("closures/bbbbb2", "closures/bbbbb2/accept"), tmp_path)
     (said,) = failures.unexpected([], PLANNED)
     assert said.endswith("the suite has no such item; write the id without its level: 'closures/bbbbb2'")

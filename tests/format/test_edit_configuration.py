@@ -121,4 +121,4 @@ def test_numbers_and_names_survive_round_trip(coordinates: dict[str, list[float]
     expected = {name: values[0] if len(values) == 1 else values for name, values in coordinates.items()}
     assert read_yaml(Source("", after, after.encode())).data["configurations"]["assembled"] == expected
     if before.isascii() and not before.startswith("{"):
-        assert yaml.safe_load(after)["configurations"]["assembled"] == expected  # to readers of YAML 1.1 too
+        assert yaml.safe_load(after)["configurations"]["assembled"] == expected  # to parsers of YAML 1.1 too

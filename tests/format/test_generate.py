@@ -105,7 +105,7 @@ def test_names_of_published_robot_match_its_file(name: str) -> None:
     if FACTS[name]["closes"]:  # else the types that the published file has cannot be right
         assert {pair: kind for pair, kind in closures.items() if pair not in left_out} == said
     assert set(found.motors) == set(published["name_mot"])
-    # Some joints that are named spherical are universal in the published file: a name cannot tell.
+    # Some joints that are named spherical are universal in the published file: a name does not show it.
     assert set(found.sphericals) == set(published.get("joint_name", ()))
     assert found.warnings == ()
 
@@ -428,7 +428,7 @@ def test_meaningless_names_give_valid_description() -> None:
 
 NOT_XML = (*range(9), 11, 12, *range(14, 32), 0xFFFE, 0xFFFF)
 
-#: What XML lets stand in a name.
+#: Characters that XML allows in a name.
 xml_text = st.text(
     st.characters(exclude_categories=["Cs"], exclude_characters=[chr(code) for code in NOT_XML]), min_size=1
 )
@@ -476,7 +476,7 @@ def test_names_survive_round_trip_everywhere(name: str) -> None:
 def test_numbers_survive_round_trip(value: float | bool | None) -> None:
     text = f"k: {scalar(value)}\n"
     assert repr(read_back(text)["k"]) == repr(value)
-    assert repr(yaml.safe_load(text)["k"]) == repr(value)  # to readers of YAML 1.1 too
+    assert repr(yaml.safe_load(text)["k"]) == repr(value)  # to parsers of YAML 1.1 too
 
 
 def test_list_items_are_indented_equally() -> None:

@@ -14,7 +14,7 @@ from eurdf import check
 from eurdf.commands.main import main
 from eurdf.linking.description import describe
 
-#: Names that YAML would read as something else, or that stand between quotes, in other scripts, or on two lines.
+#: Names that YAML would read as something else, or that need quotes, in other scripts, or on two lines.
 NAMES = [
     "no", "on", "null", "~", "1e3", "012", "0x1F", "1_000", "12:30", "2001-12-14", ".inf", "true", "-", "a: b", "a #b",
     "[x]", "{x}", "&x", "*x", "!x", "%x", "@x", "`x", "'x'", '"x"', "x\\n", "a, b", " x ", "x\ty", "x\ny", "café",

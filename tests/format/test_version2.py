@@ -144,7 +144,7 @@ def test_integers_are_read_as_numbers() -> None:
 
 
 def mappings(value: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[str | int, ...]]:
-    """Where mappings stand in a value."""
+    """The places of mappings in a value."""
     if isinstance(value, dict):
         yield path
         for key, item in value.items():

@@ -1,4 +1,4 @@
-"""The actuated joints: where they stand in the model, and what their motors add."""
+"""The actuated joints: their indices in the model, and what their motors add."""
 
 from __future__ import annotations
 

@@ -270,7 +270,7 @@ def test_limits_are_respected_when_no_solution_exists() -> None:
     assembly = assemble(linkage, limits=True)
     assert not assembly.closes
     assert np.abs(assembly.q).max() <= 0.2
-    # The end comes nearest to the ground pin with all joints bent to their limit, the same way.
+    # The end comes nearest to the ground pin with all joints bent to their limit, in the same direction.
     angles = np.cumsum([0.2, 0.2, 0.2])
     end = np.array([1.0, 3.0, 2.0]) @ np.column_stack([np.cos(angles), np.sin(angles)])
     assert assembly.residual <= np.linalg.norm(end - [3.5, 0.0]) + 1e-6

@@ -286,7 +286,7 @@ def test_closures_do_no_work(name: str, seed: int) -> None:
     assert power == pytest.approx(u @ (S.T @ v), abs=1e-5 * (1.0 + abs(energy(robot, q, v)) + abs(v @ a)))
 
 
-# --- two ways to one answer ------------------------------------------------------------------------------------------
+# --- two methods, one answer -----------------------------------------------------------------------------------------
 
 # With these, K has rounding in no row that would count.
 by_pinocchio = pytest.mark.parametrize("name", [*ROBOTS, *(name for name in LINKAGES if "rounded" not in name)])
@@ -381,7 +381,7 @@ def test_mimic_joint_moves_as_constrained_free_joint() -> None:
     q = assemble(robot, np.array([0.4, 0.9])).q
     full = bound @ q + np.array([0.0, 0.3, 0.0])
     assert np.abs(residual(free, full)).max() < 1e-9
-    # Two coordinates and a planar pin: a structure, which stands. Without the pin it moves.
+    # Two coordinates and a planar pin: a structure, which cannot move. Without the pin it moves.
     found = forward_dynamics(robot, q, np.zeros(2), np.array([3.0]))
     np.testing.assert_allclose(found.a, 0.0, atol=1e-9)
     held = inverse_dynamics(robot, q, np.zeros(2), np.zeros(2))
@@ -446,7 +446,7 @@ def test_massless_free_motion_is_named() -> None:
         forward_dynamics(linkage, zero, zero)
     assert caught.value.joints == ("spinner",)
     assert "'spinner'" in str(caught.value)
-    # That it stands still takes no force.
+    # At rest, no force is needed.
     a = achievable_acceleration(linkage, zero, zero, zero)
     assert inverse_dynamics(linkage, zero, zero, a).u.shape == (1,)
     with pytest.raises(UnderactuatedMotion) as refused:
@@ -486,7 +486,7 @@ def test_redundant_motors_share_least_torque() -> None:
     weights = np.array([1.0, 100.0, 4.0])
     dear = inverse_dynamics(robot, q, v, a, weights=weights).u
     np.testing.assert_allclose(free @ S @ dear, required, rtol=1e-8)
-    # Least: what is weighted stands normal on what changes nothing.
+    # Least: the weighted solution is normal to what changes nothing.
     unseen = np.linalg.svd(free @ S)[2][1:]
     np.testing.assert_allclose(unseen @ (weights * dear), 0.0, atol=1e-8)
     for u in (found.u, dear):

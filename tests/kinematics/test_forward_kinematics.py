@@ -251,7 +251,7 @@ def test_motor_in_rigid_loop_cannot_move() -> None:
 
 
 def test_motor_at_dead_point_is_refused() -> None:
-    # Driven by the hinge between coupler and rocker, a crank along the ground does not know which way to turn.
+    # Driven by the hinge between coupler and rocker, a crank along the ground can turn in either direction.
     robot = actuated(crank_and_rocker(), ["j2"])
     straight = assemble(robot, np.array([0.0, 0.7, -1.0]), hold=["j0"]).q
     with pytest.raises(DependentActuators) as raised:
@@ -314,7 +314,7 @@ def test_stewart_platform_follows_its_legs(seed: int) -> None:
     lengths = random.uniform(-0.1, 0.1, 6)
     q = forward_kinematics(robot, lengths)
     np.testing.assert_array_equal(split_configuration(robot, q)[0], lengths)
-    # All the heads stand on one rigid platform, each as far from its foot as its slider says.
+    # All the heads are on one rigid platform, each as far from its foot as its slider says.
     model, data = robot.model, robot.model.createData()
     pin.forwardKinematics(model, data, q)
     for leg in range(6):

@@ -35,7 +35,7 @@ from support.linkage import (
 
 seeds = st.integers(0, 2**32 - 1)
 
-# Redundant rows, and more of them than laws (Bennett), ball joints, sliders, and one motion or many.
+# Redundant rows, and more of them than counting predicts (Bennett), ball joints, sliders, and one motion or many.
 BUILD: dict[str, Callable[[], Any]] = {
     "four-bar in 6d": lambda: n_bar(4),
     "six-bar in 3d": lambda: n_bar(6, "3d"),
@@ -208,7 +208,7 @@ def test_projected_configuration_is_closed_and_nearest(name: str, weighted: bool
         for _ in range(5):
             beside = assemble(robot, pin.integrate(model, projected, random.uniform(-size, size, model.nv)), restarts=0)
             assert not beside.closes or distance(beside.q) >= distance(projected) - 1e-9
-    # The shortest way is normal to the closed configurations.
+    # The shortest step is normal to the closed configurations.
     _, K = residual_and_jacobian(robot, projected)
     x = pin.difference(model, q, projected)
     slope = null_space(K).T @ pin.dDifference(model, q, projected, pin.ARG1).T @ (W @ x)

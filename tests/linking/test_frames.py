@@ -1,4 +1,4 @@
-"""Frames: what a name stands for, and where it is, whatever the description makes of the joints."""
+"""Frames: what a name refers to, and its pose, whatever the description makes of the joints."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Imports go one way, with no circle: the contracts are in pyproject.toml, under tool.importlinter."""
+"""Imports go in one direction, with no circle: the contracts are in pyproject.toml, under tool.importlinter."""
 
 from __future__ import annotations
 

@@ -67,7 +67,7 @@ class Wrist:
         )
 
     def quaternion(self, angles: Any) -> tuple[float, ...]:
-        """The quaternion of R(x, a) R(y, b) R(z, c), about the axes as they stand in the last joint's frame at zero."""
+        """The quaternion of R(x, a) R(y, b) R(z, c), about the axes as they are in the last joint's frame at zero."""
         R = np.eye(3)
         for axis, angle in zip(self.axes, angles, strict=True):
             R = R @ rotation(self.oMj[2].rotation.T @ axis, angle)

@@ -171,7 +171,7 @@ def test_changed_joint_keeps_its_properties(
         assert model.lowerEffortLimit[index] == pytest.approx(-effort, rel=1e-12)
         assert model.damping[index] == pytest.approx(damping, rel=1e-12)
         assert model.upperDryFrictionLimit[index] == pytest.approx(friction, rel=1e-12)
-    idx_q, _, idx_v, _ = at(model, "wrist")  # its neighbour is left alone
+    idx_q, _, idx_v, _ = at(model, "wrist")  # the next joint is not changed
     assert (model.lowerPositionLimit[idx_q], model.upperPositionLimit[idx_q]) == (-1, 2)
     assert (model.upperVelocityLimit[idx_v], model.upperEffortLimit[idx_v]) == (4, 3)
     assert (model.damping[idx_v], model.upperDryFrictionLimit[idx_v]) == (8, 9)

@@ -102,7 +102,7 @@ def test_damaged_robot_gives_diagnostics_or_robot(request: pytest.FixtureRequest
     count, seed = request.config.getoption("--mutations"), request.config.getoption("--mutation-seed")
     first, beyond = count * batch // BATCHES, count * (batch + 1) // BATCHES
     outcomes = tried(seed, first, beyond - first)
-    if len(outcomes) >= 200:  # both sides of the reader's judgement were tried
+    if len(outcomes) >= 200:  # both outcomes of the parser were tried
         assert min(outcomes.count("refused"), outcomes.count("robot")) > len(outcomes) // 20
 
 

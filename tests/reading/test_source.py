@@ -1,4 +1,4 @@
-"""Reading a file as text: what is refused, and where a character stands."""
+"""Reading a file as text: what is refused, and the place of a character."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Reading XML: where an element and an attribute stand, what is refused."""
+"""Reading XML: the places of elements and attributes, what is refused."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def meant(text: str, place: Place) -> str:
     return text.split("\n")[place.line - 1][place.column - 1 : place.end_column - 1]
 
 
-# Where things stand
+# Places
 
 
 @pytest.mark.parametrize(
@@ -94,7 +94,7 @@ def test_places_in_a_urdf(xpath: str, attribute: str | None, line: int, text: st
 
 @dataclass
 class Writer:
-    """Writes random elements and notes where each begins and where each attribute's value stands."""
+    """Writes random elements and notes where each begins and the place of each attribute's value."""
 
     chance: random.Random
     line_break: str

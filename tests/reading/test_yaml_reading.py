@@ -1,4 +1,4 @@
-"""Reading YAML: what a scalar stands for, where a value stands, what is refused."""
+"""Reading YAML: the value of a scalar, the place of a value, what is refused."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def meant(text: str, place: Place) -> str:
     return line[place.column - 1 : None if place.end_column is None else place.end_column - 1]
 
 
-# What a scalar stands for
+# The value of a scalar
 
 
 @pytest.mark.parametrize(
@@ -171,7 +171,7 @@ def test_document_markers_and_yaml_1_2_directive_are_accepted() -> None:
     assert read("%YAML 1.2\n---\na: 1\n...\n# the end\n").data == {"a": 1}
 
 
-# Where a value stands
+# The place of a value
 
 
 class Writer:

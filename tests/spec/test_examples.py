@@ -66,7 +66,7 @@ def squat() -> squat_torques.Squat:
 
 
 def bent_leg() -> tuple[Any, Any]:
-    """A leg and a closed configuration that is none of its named ones."""
+    """A leg and a closed configuration that is not one of its named ones."""
     robot = eurdf.load("digit_leg", geometry=False)
     return robot, eurdf.forward_kinematics(robot, np.array([0.1, -0.1, 0.2, -0.3, 0.1, 0.05]))
 

@@ -1,4 +1,4 @@
-"""The lint of the specification: each fixture breaks one rule in one way, and that is what is found."""
+"""The lint of the specification: each fixture breaks one rule, and the lint reports it."""
 
 from __future__ import annotations
 

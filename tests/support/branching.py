@@ -1,4 +1,4 @@
-"""Linkages of every joint type: branching trees that are closed in several ways, and one with mimic joints."""
+"""Linkages of every joint type: branching trees with several kinds of loops, and one with mimic joints."""
 
 from __future__ import annotations
 

@@ -176,7 +176,7 @@ def split(robot: dict[str, Any], joint: dict[str, Any]) -> None:
 
 
 def numbers_in(value: Any, where: tuple[str | int, ...] = ()) -> list[tuple[str | int, ...]]:
-    """Where the numbers of a JSON value stand."""
+    """The places of the numbers of a JSON value."""
     if isinstance(value, dict):
         return [found for key, each in value.items() for found in numbers_in(each, (*where, key))]
     if isinstance(value, list):

@@ -100,7 +100,7 @@ def free_names(mechanism: Mechanism) -> list[str]:
 
 
 def at(model: Any, joint: str) -> tuple[int, int, int, int]:
-    """Where a joint's coordinates and velocities stand: idx_q, nq, idx_v, nv."""
+    """Indices of a joint's coordinates and velocities: idx_q, nq, idx_v, nv."""
     index = model.getJointId(joint)
     assert index < model.njoints, f"no joint '{joint}'"
     return model.idx_qs[index], model.nqs[index], model.idx_vs[index], model.nvs[index]

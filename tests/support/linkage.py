@@ -122,7 +122,7 @@ def loop(
         zip(pairs, np.broadcast_to(away, len(pairs)), strict=True)
     ):
         along = np.array(axis, dtype=float) / np.linalg.norm(axis)
-        # The frame of each joint has its z axis along the joint, and is turned about it in its own way.
+        # The frame of each joint has its z axis along the joint, and is turned about it by an angle of its own.
         turn = pin.Quaternion.FromTwoVectors(np.array(Z), along).matrix() @ pin.exp3(np.array(Z) * (0.3 + index))
         oMj = pin.SE3(turn, size * np.array(point, dtype=float))
         moved = {

@@ -110,7 +110,7 @@ class Witness:
         return []
 
     def at(self, q: Coordinates) -> None:
-        """Stand at a configuration; a joint that is left out stands at its neutral."""
+        """Move to a configuration; a joint that is left out is at its neutral."""
         self.data.qpos[:] = self.model.qpos0
         for name, joint in self._joints.items():
             for i, value in enumerate(self._values(joint, q)):

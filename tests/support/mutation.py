@@ -143,7 +143,7 @@ class Raw:
 
 
 class Mapping(list[list[Any]]):
-    """The pairs of a mapping: keys may be moved, and stand twice."""
+    """The pairs of a mapping: keys may be moved, and occur twice."""
 
 
 def _pairs(value: Any) -> Any:

@@ -36,7 +36,7 @@ class Files:
     random: np.random.Generator
     urdf: list[str] = field(default_factory=list)
     joints: dict[str, Any] = field(default_factory=dict)
-    #: Links that stand for themselves on their bodies, so that a closure of two of them joins two bodies.
+    #: Links that are named as frames on their bodies, so that a closure of two of them joins two bodies.
     bodies: list[str] = field(default_factory=list)
     links: int = 0
 

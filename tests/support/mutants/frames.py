@@ -59,7 +59,7 @@ def links_behind_fixed_joints_are_at_their_body() -> Deviation:
 
 @means("EU-FRM-005")
 def joint_frames_on_the_parents_side() -> Deviation:
-    """The name of a joint stands for the frame in which it turns, on its parent's side."""
+    """The name of a joint refers to the frame in which it turns, on its parent's side."""
 
     def joint(right: Any, found: Any, of: Any, change: Any) -> None:
         right(found, of, change)

@@ -1,4 +1,4 @@
-"""Parsers that weigh bodies another way."""
+"""Parsers that compute inertias differently."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Parsers that move joints another way: coordinates, axes, velocities, mimics."""
+"""Parsers that move joints differently: coordinates, axes, velocities, mimics."""
 
 from __future__ import annotations
 

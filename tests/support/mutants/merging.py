@@ -1,4 +1,4 @@
-"""Parsers that merge other joints, or merge them another way."""
+"""Parsers that merge other joints, or merge them differently."""
 
 from __future__ import annotations
 

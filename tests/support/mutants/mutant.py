@@ -1,4 +1,4 @@
-"""A wrong parser, and the ways to make one: what it reads, what it means, what it answers."""
+"""A wrong parser, and how to make one: what it reads, what it means, what it answers."""
 
 from __future__ import annotations
 

@@ -175,7 +175,7 @@ def empty_lists_are_refused(data: Members, robot: Any) -> bool:
 
 @reads_description("EU-CLO-012")
 def own_closure_types_are_6d(data: Members) -> None:
-    """A closure of a type of the user's own is 6d."""
+    """A closure of a user-defined type is 6d."""
     for closure in data.get("closures", []) if VERSION in data else ():
         if isinstance(closure, dict) and str(closure.get("type")).startswith("x-"):
             closure["type"] = "6d"

@@ -125,7 +125,7 @@ def columns_from_0(found: list[Issue], *files: Path) -> list[Issue]:
 def _moved(
     found: list[Issue], files: tuple[Path, ...], place: Callable[[int, str, str], tuple[int, int]]
 ) -> list[Issue]:
-    """Places counted otherwise: (line, what is before on the line, what is after) -> line, characters before."""
+    """Other places: (line, what is before on the line, what is after) -> line, characters before."""
     texts = {path.name: path.read_bytes().decode(errors="replace") for path in files if path.is_file()}
 
     def moved(issue: Issue) -> Members:

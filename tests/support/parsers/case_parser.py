@@ -1,4 +1,4 @@
-"""Parsers that know all answers by heart, from the cases themselves; each but the first is wrong in one way."""
+"""Parsers that know all answers by heart, from the cases themselves; each but the first has one error."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ class Lenient(Right):
 
 
 class Misread(Right):
-    """Reads another upper limit, sees one link elsewhere, and tells of an error one column off."""
+    """Reads another upper limit, places one link elsewhere, and reports an error one column off."""
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported | Skipped:
         reply = super().load(description, urdf)

@@ -24,7 +24,7 @@ class Plain:
 
 
 class Talkative(Plain):
-    """Prints to standard output in every way there is, and reads standard input."""
+    """Prints to standard output by every method, and reads standard input."""
 
     def load(self, description, urdf):
         print("from Python")  # noqa: T201

@@ -90,7 +90,7 @@ class ForgetsInlineAngles(WrongParser):
 
 
 class OrderOfNames(WrongParser):
-    """Names the columns in the order of the alphabet, whatever they stand for."""
+    """Names the columns in alphabetical order, whatever they mean."""
 
     def say(self, values: Values, robot: OracleRobot, q: Configuration) -> Values:
         found = {}
@@ -101,7 +101,7 @@ class OrderOfNames(WrongParser):
 
 
 class OrderOfFile(WrongParser):
-    """Minds where links stand in the URDF."""
+    """Depends on the order of links in the URDF."""
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
         super().load(description, urdf)

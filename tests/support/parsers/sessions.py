@@ -16,7 +16,7 @@ PARSERS = Path(__file__).parent
 
 
 def fake(way: str) -> str:
-    """The parser that goes wrong in a way; see `process.py`."""
+    """The parser with one misbehaviour; see `process.py`."""
     return "cmd:" + shlex.join([sys.executable, "-I", "-S", str(PARSERS / "process.py"), way])
 
 

@@ -1,4 +1,4 @@
-"""Right answers, spoiled in every way that the schema of a message lets one be."""
+"""Right answers with every change that the schema of a message allows."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from eurdf_conformance.runner.in_process import InProcess
 from eurdf_conformance.runner.outcome import Answered, Outcome
 from support.parsers.oracle import OracleParser
 
-#: Where a value stands in an answer; None is any index of a list, or any name of a mapping from names.
+#: The place of a value in an answer; None is any index of a list, or any name of a mapping from names.
 Place = tuple[str | None, ...]
 Spoil = tuple[Place, str]
 Message = TypeVar("Message", bound=BaseModel)
