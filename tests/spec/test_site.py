@@ -1,4 +1,4 @@
-"""The site of the specification: built as its readers get it, every page has what it must and needs nothing else."""
+"""The site of the specification: built as published, every page is complete and needs nothing else."""
 
 from __future__ import annotations
 

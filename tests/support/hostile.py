@@ -270,7 +270,7 @@ HOSTILE = {
 
 
 def face(name: str) -> dict[str, object]:
-    """Check, report and load one; what was found, and the length of what is told of it."""
+    """Check, report and load one; the diagnostics, and the length of the report."""
     import eurdf
     from eurdf.diagnostics.report import reports_to_json
     from eurdf.diagnostics.text import report_lines
@@ -307,7 +307,7 @@ def main(names: Sequence[str]) -> None:
             signal.setitimer(signal.ITIMER_PROF, CPU_SECONDS)
             try:
                 answer = face(name)
-            except BaseException as error:  # it is told, whatever it is
+            except BaseException as error:  # any exception is reported
                 answer = {"raised": f"{type(error).__name__}: {str(error)[:300]}"}
             os.write(writing, json.dumps(answer).encode())
             os._exit(0)

@@ -424,7 +424,7 @@ Attempt = Callable[..., str]
 
 
 def work(seed: int, first: int, count: int, folders: Sequence[Path] = (), attempt: Attempt = try_case) -> None:
-    """Run cases one after the other in this process, whose own output is told as noise from here on."""
+    """Run cases one after the other in this process, whose own output is reported as noise from here on."""
     lines = os.fdopen(os.dup(1), "w", encoding="utf-8", buffering=1)
     log = os.fdopen(os.dup(2), "w", encoding="utf-8")
     faulthandler.enable(file=log)
@@ -447,7 +447,7 @@ def work(seed: int, first: int, count: int, folders: Sequence[Path] = (), attemp
             begin = time.process_time()
             try:
                 outcome, trouble = attempt(path, analyse=index % 4 == 0), ""
-            except Exception as error:  # whatever it is: that it came is what is told
+            except Exception as error:  # any exception is reported
                 outcome, trouble = "raised", _where(error)
             restart_clock(0)
             sys.stdout.flush()

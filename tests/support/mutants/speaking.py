@@ -38,7 +38,7 @@ class Speaker:
 
     @property
     def parser(self) -> str:
-        """As the suite is told it."""
+        """As the suite gets it."""
         name = self.wrong.__name__
         code = f"import sys; sys.path.insert(0, {TESTS!r}); from {__name__} import speak; speak({name!r})"
         return "cmd:" + shlex.join([sys.executable, "-c", code])

@@ -49,7 +49,7 @@ def pairs(named: dict[str, Any]) -> Iterator[tuple[int, tuple[str, Any]]]:
 
 
 def ways(value: Any) -> Mapping[str, Callable[[Any], Any]]:
-    """How a value can be spoiled in itself; and null may stand for any."""
+    """How a value can be spoiled in itself; null can replace any."""
     own: Mapping[str, Callable[[Any], Any]]
     own = LISTS if isinstance(value, list) else MAPPINGS if isinstance(value, dict) else SCALARS
     return {**own, "null": lambda value: None}
