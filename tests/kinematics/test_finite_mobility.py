@@ -171,6 +171,12 @@ def test_branch_of_largest_dimension_counts() -> None:
     assert branches[0] == 2
 
 
+def test_one_branch_is_counted_once() -> None:
+    analysis = analyze(collinear(0.0, 1.0, 3.0, 2.0, 0.0, 1.0, 3.0, 2.0))
+    assert mobilities(analysis) == (5, 6, 5)
+    assert decided(analysis) == ("continuation", (5,), None)
+
+
 def test_groups_and_joints_outside_are_summed() -> None:
     linkage = collinear(0.0, 1.0, 3.0)
     model = linkage.model

@@ -69,7 +69,8 @@ class LoopAnalysis:
         finite_mobility: See `Analysis`.
         evidence: What decides its finite mobility: the rank is the same all around (a proof), the second-order test (a
             proof), or continuation (numerical evidence); None if it is unknown.
-        branches: Dimension of each branch of closed configurations that was found to pass through the analysed one.
+        branches: Dimension of each branch of closed configurations that was found to pass through the analysed one; if
+            more than two velocities are free there, each dimension once.
         rigid_order: If its finite mobility is 0: the order p of rigidity. A motion of size h opens it by about hᵖ, so
             at p = 2 and above it is shaky. Else None.
     """

@@ -60,7 +60,8 @@ class FiniteMobility:
         infinitesimal: nv - rank K at q.
         finite: Dimension of the closed configurations around q, that of their largest branch; None if undecided.
         evidence: What decides it; None if undecided.
-        branches: Dimension of each branch found that passes through q; empty where q is isolated, or undecided.
+        branches: Dimension of each branch found that passes through q; if more than two velocities are free, each
+            dimension once. Empty where q is isolated, or undecided.
         rigid_order: Where q is isolated, the order p at which it is rigid: a motion of size h opens the loops by about
             hᵖ. Else None.
     """
@@ -226,7 +227,9 @@ class MobilityTest:
         if not branches:
             order = max(path.order for path in paths if path.order)
             return FiniteMobility(free, 0, "continuation", rigid_order=order)
-        return FiniteMobility(free, largest, "continuation", _distinct(branches))
+        # The roots of more than two variables are a sample: two of them may be on one branch.
+        dimensions = tuple(sorted({dimension for dimension, _ in branches}, reverse=True))
+        return FiniteMobility(free, largest, "continuation", _distinct(branches) if free == 2 else dimensions)
 
     def _is_constant(self, evaluation: Evaluation, q: Vector) -> bool:
         """Whether the rank of K at q (nq,) is that of all configurations around it."""
