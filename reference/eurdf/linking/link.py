@@ -12,6 +12,7 @@ from eurdf.format.urdf.data import Urdf
 from eurdf.linking.actuators import link_actuators, with_motor
 from eurdf.linking.closures import link_closures
 from eurdf.linking.configurations import link_configurations
+from eurdf.linking.finiteness import check_finite
 from eurdf.linking.frame_names import FrameNames
 from eurdf.linking.ranges import check_ranges
 from eurdf.linking.replacement import Joints, replace_joints
@@ -72,6 +73,8 @@ def link(
     if mechanism.root == "floating":
         _reserve_root_joint(urdf, diagnostics)
     _refuse_too_large(mechanism, urdf, extension, diagnostics)
+    if diagnostics.error_count == before:
+        check_finite(mechanism, urdf, extension, diagnostics)
     return None if diagnostics.error_count > before else mechanism
 
 

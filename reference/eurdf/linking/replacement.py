@@ -335,7 +335,10 @@ class _Replacement:
         return _limited(spread, (-math.inf, *joint.properties.lower), (math.inf, *joint.properties.upper))
 
     def helical(self, joint: Joint) -> Joint | None:
-        """EU-JNT-008, EU-JNT-029: a helix has a pitch; what the URDF says of a slide holds of the screw's angle."""
+        """EU-JNT-008, EU-JNT-029: a helix has a pitch; what the URDF says of a slide holds of the screw's angle.
+
+        EU-INR-007: the limits of the angle are finite.
+        """
         pitch = self.entry.pitch
         assert pitch is not None
         if pitch == 0.0:
@@ -344,6 +347,12 @@ class _Replacement:
         properties = joint.properties
         if joint.type is JointType.PRISMATIC:
             lead = pitch / (2.0 * math.pi)
+            limits = (*properties.lower, *properties.upper, *properties.velocity)
+            largest = max((abs(limit) for limit in limits if math.isfinite(limit)), default=0.0)
+            if lead == 0.0 or not math.isfinite(largest / lead):
+                message = f"a limit of helical joint '{joint.name}', rad, is not finite: its pitch is {pitch:g} m"
+                self.report("derived-not-finite", message, "pitch", hint="write the advance per revolution, in m")
+                return None
             lower, upper = sorted((properties.lower[0] / lead, properties.upper[0] / lead))
             properties = replace(
                 properties,

@@ -1,0 +1,85 @@
+"""Whether what follows from the numbers of the files is finite, as the numbers are."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from eurdf.diagnostics import Diagnostics, Place
+from eurdf.format.extension import Extension
+from eurdf.format.urdf.data import Urdf
+from eurdf.mechanism.body import Inertia
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.pose import IDENTITY, Pose
+
+
+def check_finite(mechanism: Mechanism, urdf: Urdf, extension: Extension | None, diagnostics: Diagnostics) -> None:
+    """EU-INR-007: armatures, poses at zero, and inertias about joints are finite.
+
+    One error for a robot: what depends on a quantity that is not finite is not finite either.
+
+    Args:
+        mechanism: A mechanism without errors.
+        urdf: To point into.
+        extension: To point into; None for a bare URDF.
+        diagnostics: Gets what is found.
+    """
+    found = next(_not_finite(mechanism, urdf, extension), None)
+    if found is not None:
+        what, place = found
+        hint = "write numbers of the size that the robot has, in m, kg and rad"
+        diagnostics.report(
+            "derived-not-finite", f"{what} is not finite, although the numbers in the files are", place, hint
+        )
+
+
+def _not_finite(mechanism: Mechanism, urdf: Urdf, extension: Extension | None) -> Iterator[tuple[str, Place]]:
+    if extension is not None:
+        joints = {joint.name: joint for joint in mechanism.joints}
+        for entry in extension.actuators:
+            if not all(map(math.isfinite, joints[entry.joint].properties.armature)):
+                what = f"the armature of joint '{entry.joint}', gear_ratio² · rotor_inertia,"
+                yield what, extension.document.place(entry.pointer)
+    root = mechanism.bodies[0]
+    pose_of = {root.name: IDENTITY}  # in the frame of the root, at zero
+    in_joint = {root.name: (root.name, IDENTITY)}  # the body that the last joint moves, and the pose in its frame
+    inertia_of = {body.name: body.inertia for body in mechanism.bodies}
+    total: dict[str, float] = {}
+    for name, joint in [(root.name, None), *((joint.child, joint) for joint in mechanism.joints)]:
+        if joint is not None:
+            step = joint.placement * joint.offset
+            pose_of[name] = pose_of[joint.parent] * step
+            moved, before = in_joint[joint.parent]
+            in_joint[name] = (moved, before * step) if joint.type is JointType.FIXED else (name, joint.offset)
+            if not _is_finite(pose_of[name]):
+                link = urdf.links.get(name, urdf.links[urdf.root])
+                yield f"the pose of link '{name}' at zero", urdf.document.place(link.element)
+        inertia = inertia_of[name]
+        if inertia is not None:
+            moved, pose = in_joint[name]
+            total[moved] = total.get(moved, 0.0) + _about_origin(pose, inertia)
+            if not math.isfinite(total[moved]):
+                link = urdf.links[name]
+                element = link.element if link.inertial is None else link.inertial
+                yield f"the inertia of link '{name}' about the origin of its joint", urdf.document.place(element)
+    if extension is not None:
+        pointers = {entry.name: entry.pointer for entry in extension.frames}
+        for frame in mechanism.frames:
+            if frame.name in pointers and not _is_finite(pose_of[frame.body] * frame.pose):
+                yield f"the pose of frame '{frame.name}' at zero", extension.document.place(pointers[frame.name])
+        pointers = {entry.name: entry.pointer for entry in extension.closures}
+        for closure in mechanism.closures:
+            if not all(_is_finite(pose_of[anchor.body] * anchor.pose) for anchor in closure.anchors):
+                what = f"the pose of a frame of closure '{closure.name}' at zero"
+                yield what, extension.document.place(pointers[closure.name])
+
+
+def _about_origin(pose: Pose, inertia: Inertia) -> float:
+    """Mass, plus the sum of the moments about the origin: finite where all inertia about the origin is."""
+    distance = math.hypot(*pose.act(inertia.pose.xyz))
+    return inertia.mass + sum(map(abs, inertia.moments)) + inertia.mass * distance * distance
+
+
+def _is_finite(pose: Pose) -> bool:
+    return math.isfinite(math.hypot(*pose.xyz)) and all(map(math.isfinite, pose.quaternion))
