@@ -9,5 +9,5 @@ def step(key: str | int) -> str:
 
 
 def key_of(part: str) -> str:
-    """The key that a part of a pointer, between two slashes, stands for."""
+    """The key that a part of a pointer, between two slashes, means."""
     return part.replace("~1", "/").replace("~0", "~")

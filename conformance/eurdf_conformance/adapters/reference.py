@@ -33,9 +33,9 @@ class Reference:
         self._robot: Robot | None = None
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
-        """EU-PRO-004: read a robot; it is rejected for what leaves only a guess of what it stands for (EU-CNF-001).
+        """EU-PRO-004: read a robot; it is rejected if it could only be built by guessing (EU-CNF-001).
 
-        Errors of inertia and of closures are told beside the robot (EU-CNF-003).
+        Errors of inertia and of closures are reported with the robot (EU-CNF-003).
         """
         try:
             read = self.describe(description, urdf)

@@ -1,7 +1,7 @@
 """Where things are, of a robot of `eurdf`: Pinocchio's numbers, in the terms of the protocol.
 
 Joint by joint the velocities of `eurdf`'s models are those of the specification, in their order and their frame: only
-where they stand has to be said. Coordinates differ (an angle may be a cosine and a sine) and are converted by `eurdf`.
+where they are has to be said. Coordinates differ (an angle may be a cosine and a sine) and are converted by `eurdf`.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Quantities:
 
         Args:
             robot: The robot.
-            configuration: By joint its coordinates as files have them; one left out stands at its neutral.
+            configuration: By joint its coordinates as files have them; one left out is at its neutral.
             frames: Names of the frames of which poses are asked for.
 
         Raises:

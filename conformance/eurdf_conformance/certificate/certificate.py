@@ -116,7 +116,7 @@ class Certificate(_Part):
         return json.dumps(self.model_dump(mode="json"), indent=2, ensure_ascii=False) + "\n"
 
 
-class NoCertificate(Exception):  # noqa: N818 - said to the user as it stands
+class NoCertificate(Exception):  # noqa: N818 - shown to the user as it is
     """There is no certificate there; its text says why."""
 
 

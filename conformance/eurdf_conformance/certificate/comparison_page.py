@@ -14,7 +14,7 @@ from eurdf_conformance.level import VERSIONS, Level
 
 
 def comparison_page(certificates: Sequence[Certificate]) -> str:
-    """The page as the text of its file; parsers stand in the order given."""
+    """The page as the text of its file; parsers are in the order given."""
     title = "Parsers of Extended URDF compared"
     parts = _parsers, _levels, _clauses
     content = [content for part in parts for content in part(certificates)]

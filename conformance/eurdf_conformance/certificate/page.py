@@ -18,7 +18,7 @@ Content = str | Element
 _ROLE = re.compile(r"\{[a-z:]+\}(?=`)")
 _LINK = re.compile(r"\[([^]]+)\]\([^)]*\)")
 
-# Nothing is loaded and nothing runs, whatever text of a parser stands in the page.
+# Nothing is loaded and nothing runs, whatever text of a parser the page contains.
 _POLICY = "default-src 'none'; style-src 'unsafe-inline'"
 
 
@@ -43,8 +43,8 @@ def element(tag: str, *content: Content, **attributes: str) -> Element:
 
     Args:
         tag: Its name.
-        content: Texts and elements; a character that no page can hold stands as its escape.
-        attributes: An underscore stands for a hyphen; at the end, as in ``class_``, for nothing.
+        content: Texts and elements; a character that no page can hold is escaped.
+        attributes: An underscore becomes a hyphen; at the end, as in ``class_``, it is dropped.
     """
     names = {name.rstrip("_").replace("_", "-"): visible(value) for name, value in attributes.items()}
     made: Element = html.Element(tag, names)
@@ -73,6 +73,6 @@ def facts(values: Iterable[tuple[str, str]]) -> Element:
 
 
 def marked_up(text: str) -> Iterator[Content]:
-    """A sentence of the specification: what stands between backticks is code, and links are their texts."""
+    """A sentence of the specification: text between backticks is code, and links are their texts."""
     for index, part in enumerate(_LINK.sub(r"\1", _ROLE.sub("", text)).split("`")):
         yield element("code", part) if index % 2 else part

@@ -14,7 +14,7 @@ from eurdf_conformance.write_together import write_together
 _SHOWING = ("report.html", "badge.svg")
 
 
-class NoRoom(Exception):  # noqa: N818 - said to the user as it stands
+class NoRoom(Exception):  # noqa: N818 - shown to the user as it is
     """No certificate can be written there; its text says why."""
 
 

@@ -97,8 +97,8 @@ def file_differences(path: Path, certificate: Certificate) -> list[str]:
 
 def _otherwise(file: Path) -> str:
     """How a file that is a certificate is written otherwise than the suite writes it."""
-    _, faults = read_json(file.read_bytes())
-    return faults[0] if faults else "not formatted as the suite writes it"
+    _, errors = read_json(file.read_bytes())
+    return errors[0] if errors else "not formatted as the suite writes it"
 
 
 def _commands(certificate: Certificate) -> Iterator[str]:

@@ -120,7 +120,7 @@ def _certify(args: argparse.Namespace) -> int:
     if args.known_failures is not None:
         read_known_failures(args.known_failures)
     if args.certificate is not None:
-        # Where nothing can be written, that is told before the run.
+        # Where nothing can be written, that is reported before the run.
         try:
             make_room(args.certificate, force=args.force)
         except NoRoom as reason:

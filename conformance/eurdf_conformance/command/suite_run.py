@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 
 _SUITE = "eurdf_conformance.suite"
 
-#: Told how many items are done, and of how many.
+#: Called with how many items are done, and of how many.
 Progress = Callable[[int, int], None]
 
 
-class CannotRunSuite(Exception):  # noqa: N818 - said to the user as it stands
+class CannotRunSuite(Exception):  # noqa: N818 - shown to the user as it is
     """The suite has come to no result; its text says why.
 
     Attributes:

@@ -74,7 +74,7 @@ def _part_differences(
 
 
 def _configuration_differences(expected: PlainRobot, given: PlainRobot, root: str) -> Iterator[Difference]:
-    """EU-CAN-004, and EU-CAN-005, step 5: a joint left out stands at its neutral."""
+    """EU-CAN-004, and EU-CAN-005, step 5: a joint left out is at its neutral."""
     names = dict.fromkeys((*expected.configurations, *given.configurations))
     for name in names:
         pointer = "/configurations" + step(name)

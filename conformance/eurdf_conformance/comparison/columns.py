@@ -1,4 +1,4 @@
-"""K and M, whose columns stand in any order."""
+"""K and M, whose columns may have any order."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def jacobian_differences(
         expected: What it should be.
         given: What it is.
         near: By how much entries may be off.
-        pointer: Where it stands in the answer.
+        pointer: Where it is in the answer.
         twins: The expected residual of the closures of which the other one of two was given.
     """
     yield from column_differences(expected.columns, given.columns, pointer + "/columns")
@@ -72,7 +72,7 @@ def column_differences(expected: Sequence[Column], given: Sequence[Column], poin
 
 
 def _order(expected: Sequence[Column], given: Sequence[Column]) -> list[int] | None:
-    """Where each expected column stands among those given; None where they are not the same."""
+    """Where each expected column is among those given; None where they are not the same."""
     return [given.index(column) for column in expected] if sorted(expected) == sorted(given) else None
 
 
@@ -86,7 +86,7 @@ def _entry_differences(
     columns: Sequence[int],
     names: Sequence[Column],
 ) -> Iterator[Difference]:
-    """One difference for a matrix, its worst entry; ``rows`` and ``columns`` say where those stand in the answer."""
+    """One difference for a matrix, its worst entry; ``rows`` and ``columns`` say where those are in the answer."""
     if agree(expected, given, near):
         return
     entry, off = worst(expected, given, near)

@@ -25,7 +25,7 @@ VELOCITIES = {**COORDINATES, "spherical": 3, "floating": 6}
 
 
 def neutral(joint_type: str) -> list[float]:
-    """Coordinates at which the child's frame stands on the joint's: zeros, and the unit quaternion x y z w."""
+    """Coordinates at which the child's frame is that of the joint: zeros, and the unit quaternion x y z w."""
     zeros = [0.0] * COORDINATES[joint_type]
     if has_quaternion(joint_type):
         zeros[-1] = 1.0

@@ -28,7 +28,7 @@ class Difference:
     """One way in which an answer differs from what is expected.
 
     Attributes:
-        pointer: JSON pointer (RFC 6901) into the answer, of the value given, or of where it should stand.
+        pointer: JSON pointer (RFC 6901) into the answer, of the value given, or of where it should be.
         expected: A JSON value, or `ABSENT`.
         given: A JSON value, or `ABSENT`.
         why: What is wrong, in words.

@@ -1,4 +1,4 @@
-"""The issues that a parser tells, against the one fault of a case, or its warnings: the level diagnose."""
+"""The issues that a parser reports, against the one error of a case, or its warnings: the level diagnose."""
 
 from __future__ import annotations
 
@@ -43,9 +43,9 @@ class Finding(Protocol):
         """Where it is."""
 
 
-def error_differences(fault: Finding, issues: Sequence[Issue]) -> list[Difference]:
+def error_differences(error: Finding, issues: Sequence[Issue]) -> list[Difference]:
     """EU-DIA-001, EU-DIA-002: where issues are not the one error of a case, at its place, and nothing else."""
-    return _differences([fault], issues, "error")
+    return _differences([error], issues, "error")
 
 
 def warning_differences(warnings: Iterable[Finding], issues: Sequence[Issue]) -> list[Difference]:
@@ -66,7 +66,7 @@ def _differences(expected: Sequence[Finding], issues: Sequence[Issue], severity:
         best = min(matching, key=lambda numbered: len(_misplaced(finding, severity, *numbered)))
         found += _misplaced(finding, severity, *best)
         rest.remove(best)
-    if not any(difference.pointer == "/issues" for difference in found):  # else it is told, by another code
+    if not any(difference.pointer == "/issues" for difference in found):  # else it is reported, with another code
         found += [Difference("/issues" + step(index), ABSENT, issue, "unexpected diagnostic") for index, issue in rest]
     return found
 

@@ -29,7 +29,7 @@ def value_differences(expected: Any, given: Any, pointer: str, why: str) -> Iter
     Args:
         expected: What it should be.
         given: What it is.
-        pointer: Where ``given`` stands in the answer.
+        pointer: Where ``given`` is in the answer.
         why: What it is, in words.
     """
     yield from _differences(plain(expected), plain(given), pointer, why)

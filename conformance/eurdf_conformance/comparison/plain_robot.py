@@ -28,7 +28,7 @@ class Placed(Generic[Part]):
 
     Attributes:
         part: Without style.
-        pointer: Where it stands in the answer; of two joints that became one, where the first stands.
+        pointer: Where it is in the answer; of two joints that became one, where the first is.
     """
 
     part: Part
@@ -46,7 +46,7 @@ class PlainRobot:
         closures: By name.
         actuators: By joint.
         configurations: By name; for each joint its coordinates.
-        repeated: What stands twice in a list that is a set.
+        repeated: What occurs twice in a list that is a set.
     """
 
     links: frozenset[str]

@@ -80,7 +80,7 @@ def _zipped(cases: Iterable[CorpusCase]) -> bytes:
 
 
 def _beside(cases: Iterable[CorpusCase]) -> dict[str, bytes]:
-    """What stands beside the cases, so that the zip is whole without this project."""
+    """What is beside the cases, so that the zip is whole without this project."""
     citing = defaultdict(list)
     for case in cases:
         for clause in case.case.clauses:

@@ -60,7 +60,7 @@ class CasePlace(Part):
     @model_validator(mode="after")
     def _both_or_neither(self) -> Self:
         if (self.column is None) != (self.line is None):
-            raise ValueError("line and column stand together, or neither of them for the file as a whole")
+            raise ValueError("line and column are given together, or neither, for the file as a whole")
         return self
 
 
@@ -104,7 +104,7 @@ class ValidCase(BaseCase):
     warnings: list[ExpectedWarning] = Field([], description="All warnings that the files deserve.")
     configurations: list[dict[str, Coordinates]] = Field(
         [],
-        description="Where the robot is evaluated: by joint its coordinates; a joint left out stands at its neutral.",
+        description="Where the robot is evaluated: by joint its coordinates; a joint left out is at its neutral.",
     )
     frames: list[str] = Field([], description="Frames of which poses are asked for.")
 

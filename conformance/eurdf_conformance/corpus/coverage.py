@@ -23,8 +23,8 @@ def said_in(clause: Clause) -> tuple[Version, ...]:
 def missing(cases: Iterable[Case], clauses: Mapping[str, Clause], elsewhere: Iterable[str] = ()) -> Iterator[str]:
     """What is missing, one line a clause and version, for each version is certified apart.
 
-    A MUST that a diagnostic stands for needs a case that breaks it and one that does not; a SHOULD, one that earns the
-    warning; any other MUST, a case. Where a code stands for a clause, a case that breaks it has that code.
+    A MUST with a diagnostic needs a case that violates it and one that does not; a SHOULD, one with the warning; any
+    other MUST, a case. If a clause has a code, the case that violates it has that code.
 
     Args:
         cases: The cases.

@@ -11,7 +11,7 @@ from pydantic import Field
 from eurdf_conformance.corpus.content import Part
 from eurdf_conformance.protocol.message import CanonicalRobot, Values
 
-#: Values of these many levels of nesting below the top stand on a line of their own.
+#: Values of these many levels of nesting below the top are on a line of their own.
 _OPEN_LEVELS = 4
 
 

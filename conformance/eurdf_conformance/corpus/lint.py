@@ -1,7 +1,7 @@
-"""The rules that cases keep. ``python -m eurdf_conformance.corpus.lint`` says which do not, and what is not tested.
+"""The rules of cases. ``python -m eurdf_conformance.corpus.lint`` lists the errors in cases and what is not tested.
 
-Nothing here asks a parser: that a parser gives exactly the code of each invalid case, and accepts its twin, is for the
-tests of that parser to show.
+No parser runs here: that a parser reports exactly the code of each invalid case, and accepts its twin, is shown by the
+tests of that parser.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ LINES = 7
 
 @dataclass(frozen=True, slots=True)
 class LintError:
-    """A rule that a case breaks."""
+    """A rule that a case violates."""
 
     path: Path
     rule: str
@@ -58,7 +58,7 @@ class Corpus:
         return Counter((case.case.version, case.case.title) for case in self.cases)
 
 
-#: Given a case, what is wrong with it.
+#: Yields what is wrong with a case.
 Rule = Callable[[CorpusCase, Corpus], Iterator[str]]
 
 
@@ -95,7 +95,7 @@ def _sorted_out(root: Path) -> tuple[list[CorpusCase], list[LintError]]:
 
 def _id(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
     if corpus.ids[case.id] > 1:
-        yield f"id '{case.id}' is another case's too"
+        yield f"another case has the id '{case.id}'"
 
 
 def _title(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
@@ -110,7 +110,7 @@ def _clauses(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
         elif case.case.version not in corpus.clauses[name].versions:
             yield f"{name} is no clause of version {case.case.version}"
     if len(set(case.case.clauses)) < len(case.case.clauses):
-        yield "a clause stands twice"
+        yield "a clause is listed twice"
 
 
 def _code(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
@@ -118,7 +118,7 @@ def _code(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
     if isinstance(case.case, InvalidCase):
         broken = [clause for clause in cited if case.case.code in clause.codes]
         if not any(clause.must for clause in broken):
-            yield f"'{case.case.code}' stands for no MUST that the case cites"
+            yield f"'{case.case.code}' is the code of no MUST that the case cites"
         elif case.case.either != all(clause.level == "diagnose" for clause in broken):
             yield "`either` is for the errors whose clauses are of level diagnose, and for no others"
         return
@@ -151,9 +151,9 @@ def _files(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
         yield from (f"there is no file {path.name}" for path in (case.description, case.urdf) if not path.is_file())
         if case.case.robot is not None:
             return
-    # A file that is missing is an error of its own, which a parser reports beside that of the case.
-    told = {case.case.code} if isinstance(case.case, InvalidCase) else {each.code for each in case.case.warnings}
-    if not told & {"urdf-mesh-missing", "urdf-texture-missing"}:
+    # A file that is missing is an error of its own, which a parser reports too.
+    reported = {case.case.code} if isinstance(case.case, InvalidCase) else {each.code for each in case.case.warnings}
+    if not reported & {"urdf-mesh-missing", "urdf-texture-missing"}:
         named = _named_files(case.urdf)
         yield from (f"there is no file {name}" for name in named if not _is_there(case.urdf.parent, name))
 
@@ -174,18 +174,18 @@ def _place(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
 def _place_errors(place: CasePlace, case: CorpusCase) -> Iterator[str]:
     path = next((path for path in (case.description, case.urdf) if path.name == place.file), None)
     if path is None:
-        yield f"place: '{place.file}' is none of its two files"
+        yield f"'{place.file}' is not a file of the case"
         return
     if place.line is None or place.column is None:
         return
     if not path.is_file():
-        yield f"place: there is no file '{place.file}' to have a line"
+        yield f"there is no file '{place.file}' for the line"
         return
     lines = lines_of(path)
     if place.line > len(lines):
-        yield f"place: '{place.file}' has {len(lines)} lines, none is {place.line}"
+        yield f"'{place.file}' has {len(lines)} lines, no line {place.line}"
     elif place.column > len(lines[place.line - 1]) + 1:
-        yield f"place: line {place.line} of '{place.file}' has no column {place.column}"
+        yield f"line {place.line} of '{place.file}' has no column {place.column}"
 
 
 def _expected(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
@@ -207,24 +207,24 @@ RULES_OF_CASES: Mapping[str, Rule] = {
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Say what is wrong with the cases, and which clauses lack one.
+    """List the errors in the cases, and the clauses without a case.
 
     Returns:
-        0 where nothing is wrong, 1 where something is.
+        0 if there is no error, else 1.
     """
     parser = argparse.ArgumentParser(prog="python -m eurdf_conformance.corpus.lint", description=__doc__)
     parser.add_argument("root", nargs="?", type=Path, default=CASES, help="folder of the topics")
-    parser.add_argument("--complete", action="store_true", help="a clause without a case is a error too")
+    parser.add_argument("--complete", action="store_true", help="a clause without a case is an error")
     options = parser.parse_args(arguments)
     clauses = read_clauses()
     errors = [str(error) for error in lint(options.root, clauses)]
     if options.root == CASES and SCHEMA_FILE.read_text(encoding="utf-8") != schema_text():
-        errors.append(f"{SCHEMA_FILE}: not current: python -m eurdf_conformance.corpus.case")
+        errors.append(f"{SCHEMA_FILE}: out of date: run python -m eurdf_conformance.corpus.case")
     cases = [case.case for case in _sorted_out(options.root)[0]]
     tested = {clause for rule in RULES for clause in rule.clauses}
     gaps = list(missing(cases, clauses, tested | set(OF_RUNNERS)))
     sys.stdout.writelines(f"{line}\n" for line in [*errors, *(f"missing: {gap}" for gap in gaps)])
-    sys.stdout.write(f"{len(cases)} cases, {len(errors)} errors, {len(gaps)} clauses without their cases\n")
+    sys.stdout.write(f"{len(cases)} cases, {len(errors)} errors, {len(gaps)} clauses without cases\n")
     return int(bool(errors or (options.complete and gaps)))
 
 

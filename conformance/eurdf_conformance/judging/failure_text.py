@@ -1,4 +1,4 @@
-"""What is printed of an item that did not pass: all that is needed to mend the parser."""
+"""The text printed for an item that did not pass: all that is needed to fix the parser."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def failure_text(item: Item, judgement: Judgement, reproduce: str, case: CorpusC
 def _lines(item: Item, judgement: Judgement, reproduce: str, case: CorpusCase | None) -> Iterator[str]:
     yield f"{item.id}/{item.level}: {judgement.verdict}: {judgement.reason}"
     yield f"  {reproduce}"
-    if judgement.verdict == Verdict.NOT_STARTED:  # of which all items tell alike
+    if judgement.verdict == Verdict.NOT_STARTED:  # the same for all items
         yield from (f"  {line}" for line in judgement.log.splitlines())
         return
     yield f"  {item.title}"

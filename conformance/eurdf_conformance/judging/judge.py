@@ -88,7 +88,7 @@ def judge_outcome(outcome: Outcome, expected: str = "") -> Judgement:
 
     Args:
         outcome: The outcome.
-        expected: The word that the answer should be, where it is told.
+        expected: The word that the answer should be, if given.
     """
     match outcome:
         case Answered(answer=answer):
@@ -103,7 +103,7 @@ def judge_outcome(outcome: Outcome, expected: str = "") -> Judgement:
         case TimedOut():
             verdict, why = Verdict.TIMED_OUT, "no answer within the time limit"
         case Malformed(line=line, why=what, placed=placed):
-            # Of a line that is an answer but for a fault, the beginning says nothing: what is wrong says where.
+            # The beginning of an answer with an error says nothing; the error says where it is.
             verdict, quoted = Verdict.MALFORMED, "" if placed else f": {line[:_WIDTH]!r}"
             why = f"invalid answer: {what}{quoted}"
         case Misplaced():
@@ -143,7 +143,7 @@ def _to_load(case: CorpusCase) -> str:
 
 
 def _judge_accept(case: CorpusCase, conversation: Conversation) -> Judgement:
-    """EU-CNF-001, EU-CNF-002: valid in, invalid out; a fault of inertia or closure may be either."""
+    """EU-CNF-001, EU-CNF-002: valid in, invalid out; an error of inertia or closure may be either."""
     outcome = conversation.load(case)
     match outcome, case.case:
         case Answered(answer=Accepted()), ValidCase():
@@ -197,8 +197,8 @@ def _judge_diagnose(case: CorpusCase, conversation: Conversation) -> Judgement:
             return _unless(found, "the reported warnings differ", "", issues)
         case Answered(answer=Accepted()), InvalidCase(either=False):
             return _judge_accept(case, conversation)
-        case Answered(answer=Accepted(issues=issues) | Rejected(issues=issues)), InvalidCase() as fault:
-            return _unless(error_differences(fault, issues), "the reported errors differ", "", issues)
+        case Answered(answer=Accepted(issues=issues) | Rejected(issues=issues)), InvalidCase() as invalid:
+            return _unless(error_differences(invalid, issues), "the reported errors differ", "", issues)
     return judge_outcome(outcome, _to_load(case))
 
 

@@ -49,13 +49,13 @@ class KnownFailure(BaseModel):
 _FILE: TypeAdapter[list[KnownFailure]] = TypeAdapter(list[KnownFailure])
 
 
-class WrongKnownFailures(Exception):  # noqa: N818 - said to the user as it stands
+class WrongKnownFailures(Exception):  # noqa: N818 - shown to the user as it is
     """The file cannot be used; its text says why."""
 
-    def __init__(self, path: Path, faults: Sequence[str]) -> None:
+    def __init__(self, path: Path, errors: Sequence[str]) -> None:
         self.path = path
-        self.faults = tuple(faults)
-        super().__init__(f"{path}: {'; '.join(faults)}")
+        self.errors = tuple(errors)
+        super().__init__(f"{path}: {'; '.join(errors)}")
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ def read_known_failures(path: Path) -> KnownFailures:
     """Read a file of known failures.
 
     Raises:
-        WrongKnownFailures: It cannot be read, is no YAML, or does not fit; an item stands in it twice.
+        WrongKnownFailures: It cannot be read, is no YAML, or does not fit; an item occurs in it twice.
     """
     try:
         value = load_strictly(path.read_text(encoding="utf-8"))

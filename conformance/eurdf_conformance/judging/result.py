@@ -11,7 +11,7 @@ from pydantic import TypeAdapter
 from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level, Version
 
-#: Name under which a result stands among the user properties of a pytest report.
+#: Name of a result among the user properties of a pytest report.
 RESULT = "eurdf_conformance.result"
 
 #: What no other item has: id and level.

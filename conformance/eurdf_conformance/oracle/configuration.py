@@ -1,4 +1,4 @@
-"""Configurations by joint name, and the coordinates and velocities of all joints that they stand for."""
+"""Configurations by joint name, and the coordinates and velocities of all joints that they mean."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def stated(tree: Tree, configuration: Configuration) -> dict[str, Array]:
 
 
 def coordinates(tree: Tree, configuration: Configuration) -> list[Array]:
-    """Of every joint; one left out stands at its neutral, EU-CFG-005, one that mimics where it follows, EU-URD-032."""
+    """Of every joint; one left out is at its neutral, EU-CFG-005, one that mimics where it follows, EU-URD-032."""
     q = stated(tree, neutral(tree) | dict(configuration))
     found = []
     for joint, (driver, multiplier, offset) in zip(tree.joints, drivers(tree), strict=True):

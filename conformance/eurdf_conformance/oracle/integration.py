@@ -13,7 +13,7 @@ SERIES = (-1 / 362880, 1 / 5040, -1 / 120, 1 / 6)
 
 
 def integrate(kind: str, q: Array, v: Array) -> Array:
-    """The coordinates of a joint that stood at q, after 1 s of the velocity v of the table of chapter Joints."""
+    """The coordinates of a joint that was at q, after 1 s of the velocity v of the table of chapter Joints."""
     match kind:
         case "planar":
             w = v[2] * Z
@@ -34,7 +34,7 @@ def exp_quaternion(w: Array) -> Array:
 
 
 def exp_translation(v: Array, w: Array) -> Array:
-    """V(ω) v: how far a frame comes in unit time, seen from where it stood."""
+    """V(ω) v: how far a frame comes in unit time, seen from where it was."""
     angle = float(np.linalg.norm(w))
     W = skew(w)
     cubic = (angle - np.sin(angle)) / angle**3 if angle > 0.1 else np.polyval(SERIES, angle**2)

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 class JointKind:
     """One type of joint. In a word of kinds each letter is one number: an angle `a`, or a length `l`."""
 
-    #: Coordinates at which the child's frame stands on the joint's.
+    #: Coordinates at which the child's frame is that of the joint.
     neutral: tuple[float, ...]
     #: Kinds of its velocities.
     velocities: str
     #: Kinds of the coordinates that position limits bound: all of them, or none, EU-JNT-009.
     bounded: str = ""
-    #: The coordinate from which the four of a quaternion stand, if there is one.
+    #: The coordinate at which the four of a quaternion begin, if there is one.
     quaternion: int | None = None
 
     @property

@@ -1,6 +1,6 @@
 """Where the bodies are and how they can move, seen from the root link.
 
-Residuals, K and M do not depend on where a floating root stands, so none of them loses digits if that is far away.
+Residuals, K and M do not depend on the pose of a floating root, so none of them loses digits if that is far away.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class Kinematics:
     root: Array
     #: rMb, pose of each body in the root link.
     bodies: Array
-    #: 6 × velocities of all joints, mimics too: twist of what each moves, seen from the root link as it stands.
+    #: 6 × velocities of all joints, mimics too: twist of what each moves, seen from the root link where it is.
     columns: Array
     #: Bodies × these velocities: which of them move which body.
     moves: NDArray[np.bool_]

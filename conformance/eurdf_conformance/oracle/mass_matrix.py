@@ -19,7 +19,7 @@ def mass_matrix(at: Kinematics, sharing: Array, armature: Array, masses: Masses)
     """M = Gᵀ (Σ m J_cᵀ J_c + J_ωᵀ I J_ω) G + diag(armature), so that ½ vᵀ M v is the kinetic energy.
 
     The sum is over links. J_c and J_ω take the velocities of all joints to ċ = v + ω × c of the link's centre of mass,
-    and to its ω; I is about c. What stands on one body needs no sum of its own: it has the same columns.
+    and to its ω; I is about c. What is on one body needs no sum of its own: it has the same columns.
     """
     M = np.zeros((at.columns.shape[1],) * 2)
     for inertia, link in masses:

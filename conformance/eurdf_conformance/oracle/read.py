@@ -37,7 +37,7 @@ def read(description: Path | None, urdf: Path, version: Version | None = None) -
         raise NotRead(f"the description is of version {found.version}")
     for names in (closure.name for closure in found.closures), (actuator.joint for actuator in found.actuators):
         if any(count > 1 for count in Counter(names).values()):
-            raise NotRead("a closure or an actuator that stands twice")
+            raise NotRead("a closure or an actuator that occurs twice")
     source = read_urdf(urdf)
     if found.version == "1":
         source = source.without_mimics()

@@ -36,7 +36,7 @@ class OracleRobot:
         return canonical.canonical(self.urdf, self.description, self.tree)
 
     def neutral(self) -> dict[str, list[float]]:
-        """The configuration at which every joint stands at its neutral."""
+        """The configuration at which every joint is at its neutral."""
         return {name: list(q) for name, q in configuration.neutral(self.tree).items()}
 
     def moved(self, q: Configuration, v: Array) -> dict[str, list[float]]:

@@ -154,7 +154,7 @@ def add_joint(tree: Tree, joint: UrdfJoint, change: Change) -> None:
 
 
 def add_ball(tree: Tree, urdf: Urdf, name: str, change: Change) -> None:
-    """Three joints of the URDF as one, EU-JNT-022. Its name stands for the frame of the link it carries, EU-FRM-005."""
+    """Three joints of the URDF as one, EU-JNT-022. Its name means the frame of the link it carries, EU-FRM-005."""
     joints = chain(urdf, change.merges)
     found = ball(joints)
     on = tree.links[joints[0].parent] @ found.placement

@@ -21,7 +21,7 @@ def version1(document: dict[str, Any]) -> Description:
     names = [text(name) for name in sequence(document.get("joint_name", []))]
     changes = [change(text(kind)) for kind in sequence(document.get("joint_type", []))]
     if len(types) != len(loops) or len(names) != len(changes) or len(set(names)) != len(names):
-        raise NotRead("lists of unequal length, or a joint that stands twice")
+        raise NotRead("lists of unequal length, or a joint that occurs twice")
     return Description(
         version="1",
         closures=tuple(

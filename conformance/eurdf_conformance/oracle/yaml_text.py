@@ -70,7 +70,7 @@ class _Document:
         self.copies = 0
 
     def node(self, event: Event | None = None, depth: int = 1) -> tuple[Any, int]:
-        """The next node, which would stand at a depth, and of how many it is made.
+        """The next node, which would be at a depth, and of how many it is made.
 
         `event` is its first, if it is taken already.
         """
@@ -81,7 +81,7 @@ class _Document:
         before, self.deepest = self.deepest, depth - 1
         anchor, begun = event.anchor if isinstance(event, NodeEvent) else None, 0
         if anchor is not None:
-            # Inside of what it marks it stands for nothing, EU-YML-006, nor for what it marked before.
+            # Inside what it marks it means nothing, EU-YML-006, nor for what it marked before.
             self.anchors.pop(anchor, None)
             self.marked[anchor] = begun = self.marked.get(anchor, 0) + 1
         if isinstance(event, SequenceStartEvent):
@@ -99,18 +99,18 @@ class _Document:
         return found
 
     def reach(self, depth: int) -> None:
-        """A mapping or list stands at a depth, EU-YML-007."""
+        """A mapping or list is at a depth, EU-YML-007."""
         self.deepest = max(self.deepest, depth)
         if depth > DEEPEST:
             raise NotRead(f"mappings and lists nested deeper than {DEEPEST}")
 
     def copy(self, anchor: str) -> tuple[Any, int]:
-        """What an alias stands for."""
+        """What an alias means."""
         if anchor not in self.anchors:
             raise NotRead(f"no anchor {anchor!r} before its alias")
         self.copies += self.anchors[anchor][1]
         if self.copies > MOST_COPIES:
-            raise NotRead(f"aliases stand for more than {MOST_COPIES} nodes")
+            raise NotRead(f"aliases copy more than {MOST_COPIES} nodes")
         return self.anchors[anchor]
 
     def sequence(self, start: SequenceStartEvent, depth: int) -> tuple[list[Any], int]:
@@ -135,7 +135,7 @@ class _Document:
             if not isinstance(key, str):
                 raise NotRead(f"the key {key!r} is no string")
             if key in members:
-                raise NotRead(f"the key {key!r} stands twice")
+                raise NotRead(f"the key {key!r} occurs twice")
             members[key], nodes = self.node(None, depth + 1)
             size += 1 + nodes
         return members, size

@@ -1,4 +1,4 @@
-"""The description of a mechanism, as the value that its YAML stands for, in either version."""
+"""The description of a mechanism, as the value that its YAML means, in either version."""
 
 from __future__ import annotations
 

@@ -89,14 +89,14 @@ def explore(prop: Property, level: Level, trial: Trial, harness: Harness, folder
     # Once more, since the harness was asked about others meanwhile.
     again = try_example(prop, level, trial.version, harness, example)
     case = write_case(prop, culprit(harness, level), folder)
-    told = replace(judgement, reason=f"on a mechanism found by exploring: {judgement.reason}")
+    explained = replace(judgement, reason=f"on a mechanism found by exploring: {judgement.reason}")
     log = [
         f"found by exploring from seed {trial.seed}: {judgement.verdict}: {judgement.reason}",
         f"reduced and written as a case: {case}",
         *how_to_keep(case),
     ]
     log += ["the parser answers differently when asked again"] * (again != judgement)
-    return with_log(told, *log)
+    return with_log(explained, *log)
 
 
 def search(

@@ -1,7 +1,7 @@
 """The examples of every certification: ``python -m eurdf_conformance.properties.freeze`` writes `frozen.json`.
 
 Certification never draws: what Hypothesis makes of a seed may change from one of its versions to the next, and with it
-what a certificate stands for. So this is run when the strategies change, and its outcome is kept.
+what a certificate certifies. So this is run when the strategies change, and its outcome is kept.
 """
 
 from __future__ import annotations

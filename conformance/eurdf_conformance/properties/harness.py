@@ -94,7 +94,7 @@ class Harness:
         ]
 
     def _write(self, files: Files) -> tuple[Path, Path]:
-        """Into a folder of their own: no parser can take one file for the one that stood there before."""
+        """Into a folder of their own: no parser can take one file for the one that was there before."""
         self._written += 1
         folder = self.folder / str(self._written)
         folder.mkdir()

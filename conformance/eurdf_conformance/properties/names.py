@@ -33,7 +33,7 @@ class Names:
     configurations: Mapping[str, str]
 
     def frame(self, name: str) -> str:
-        """That of a frame, whatever bears it."""
+        """That of a frame, whatever has it."""
         return next(names[name] for names in (self.links, self.joints, self.frames) if name in names)
 
     def link(self, name: str) -> str:

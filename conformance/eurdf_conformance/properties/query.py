@@ -13,7 +13,7 @@ from eurdf_conformance.properties.mechanism import Configuration, Mechanism
 
 @dataclass(frozen=True)
 class Query:
-    """Two files, and where the robot that they stand for is evaluated.
+    """Two files, and where the robot that they describe is evaluated.
 
     Attributes:
         mechanism: What the files say.

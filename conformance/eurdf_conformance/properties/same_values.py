@@ -20,7 +20,7 @@ def same_values(expected: Values, given: Values, size: float, pointer: str) -> l
         expected: What follows from another answer; what is None is not compared.
         given: Values.
         size: Of the robot, m.
-        pointer: Where they stand in the answer.
+        pointer: Where they are in the answer.
     """
     inert = {"mass_matrix": None, "mass": None}
     found = values_differences(expected.model_copy(update=inert), given, size, NEAR)

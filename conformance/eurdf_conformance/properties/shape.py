@@ -38,7 +38,7 @@ def shaped(
         robot: The robot.
         frames: The frames that were asked for.
         quantities: What was asked for.
-        pointer: Where the values stand in the answer.
+        pointer: Where the values are in the answer.
 
     Raises:
         WrongShape: They are not of the shape asked for.

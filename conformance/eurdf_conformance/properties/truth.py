@@ -19,7 +19,7 @@ from eurdf_conformance.properties.urdf import urdf_text
 
 
 def truth(mechanism: Mechanism, version: Version = "2") -> OracleRobot:
-    """The robot that the two files of a mechanism stand for.
+    """The robot that the two files of a mechanism describe.
 
     Raises:
         NotRead: The oracle is not sure what they say.

@@ -20,13 +20,13 @@ def try_frozen(prop: Property, level: Level, version: Version, harness: Harness)
     for number, example in enumerate(prop.frozen(version), 1):
         judgement = try_example(prop, level, version, harness, example)
         if judgement.verdict != Verdict.PASSED:
-            told = replace(judgement, reason=f"example {number}: {judgement.reason}")
-            return with_log(told, *dict.fromkeys(_files(harness, judgement)))
+            found = replace(judgement, reason=f"example {number}: {judgement.reason}")
+            return with_log(found, *dict.fromkeys(_files(harness, judgement)))
     return PASSED
 
 
 def _files(harness: Harness, judgement: Judgement) -> Iterator[str]:
-    """The files that a parser was asked about, and where the robot of each stood at the first difference."""
+    """The files that a parser was asked about, and the configuration of each robot at the first difference."""
     for query, paths in harness.queries:
         yield from map(str, paths)
         yield from where_it_stood(judgement, query.configurations)

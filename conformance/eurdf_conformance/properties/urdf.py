@@ -15,7 +15,7 @@ def urdf_text(mechanism: Mechanism, *, backwards: bool = False) -> str:
 
     Args:
         mechanism: The mechanism; of its links and joints the order is kept.
-        backwards: Whether joints come before links, and what stands in an element in reversed order.
+        backwards: Whether joints come before links, and the content of an element in reversed order.
     """
     robot = ElementTree.Element("robot", {"name": mechanism.name})
     parts = [[_link(link) for link in mechanism.links], [_joint(joint) for joint in mechanism.joints]]

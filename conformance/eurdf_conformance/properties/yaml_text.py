@@ -37,7 +37,7 @@ def yaml_text(document: dict[str, Any], chance: Chance | None = None) -> bytes:
 
     Args:
         document: Its value.
-        chance: Chooses the spelling; without it, the top of the document is in block style and what stands in a list or
+        chance: Chooses the spelling; without it, the top of the document is in block style and what is in a list or
             two levels deep in flow style.
     """
     text = _Writer(document, chance).block(document, 0).lstrip("\n")
@@ -74,7 +74,7 @@ class _Writer:
         if isinstance(value, dict):
             for key, item in value.items():
                 name = self._string(key, flow=False)
-                # A key that is asked for in so many words stands on a line of its own.
+                # A key that is asked for in so many words is on a line of its own.
                 query = f"{pad}? {name}\n{pad}:" if self._is_so(0.05) else f"{pad}{name}:"
                 lines.append(self._remark(pad) + query + self.block(item, inner))
         else:
@@ -103,7 +103,7 @@ class _Writer:
         return mark if mark.startswith("*") else mark + self._flow(value)
 
     def _mark(self, value: Any) -> str:
-        """An anchor to set before a value that comes again, or the alias that stands for it, each with a space."""
+        """An anchor to set before a value that comes again, or the alias of it, each with a space."""
         if self.chance is None:
             return ""
         key = _key(value)
@@ -154,7 +154,7 @@ class _Writer:
 
 
 def _meaning(spelling: str) -> float:
-    """The number that a spelling stands for under the core schema."""
+    """The number that a spelling means under the core schema."""
     word = spelling.removeprefix("!!float ")
     for prefix, base in (("0x", 16), ("0o", 8)):
         if word.startswith(prefix):

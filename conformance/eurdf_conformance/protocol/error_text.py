@@ -11,7 +11,7 @@ from pydantic import ValidationError
 
 from eurdf_conformance.json_pointer import step
 
-#: Faults told at once, and characters shown of a value.
+#: Errors reported at once, and characters shown of a value.
 _MOST, _WIDTH = 3, 60
 
 # Of these the value says nothing: it is that around what is missing, or too much as a whole.
@@ -27,12 +27,12 @@ def error_text(error: ValidationError, within: str = "", skip: int = 0) -> str:
         skip: So many parts of each location are no part of the pointer: they name the kind of message.
     """
     found = error.errors(include_url=False)
-    told = [
+    words = [
         f"{_pointer(each['loc'][skip:], within) or '(top level)'}: {_words(each['type'], each['msg'], each['input'])}"
         for each in found[:_MOST]
     ]
     more = f"; and {len(found) - _MOST} more" if len(found) > _MOST else ""
-    return "; ".join(told) + more
+    return "; ".join(words) + more
 
 
 def not_finite(value: Any, within: str = "") -> Iterator[str]:
@@ -53,10 +53,10 @@ def _words(kind: str, message: str, value: Any) -> str:
         return message
     if kind == "finite_number":
         return f"{message}, not {value}: JSON has no NaN or infinity"
-    told = f"{message}, not {_shown(value)}"
+    words = f"{message}, not {_shown(value)}"
     if kind == "float_type" and value is None:
-        return f"{told}, which some libraries write for NaN or infinity; JSON has neither"
-    return told
+        return f"{words}, which some libraries write for NaN or infinity; JSON has neither"
+    return words
 
 
 def _shown(value: Any) -> str:

@@ -19,7 +19,7 @@ _MAY_BE_HUGE = re.compile(rb"[eE][+]?[0-9]{3}|[0-9]{200}")
 
 
 class Doubled(dict[str, Any]):
-    """An object with a key that stands in it more than once, of which it has the last value.
+    """An object with a key that occurs in it more than once, of which it has the last value.
 
     Attributes:
         keys_twice: These keys.
@@ -34,7 +34,7 @@ class Doubled(dict[str, Any]):
 def read_json(text: bytes) -> tuple[Any, list[str]]:
     """The value of a JSON text in UTF-8, and what is wrong with it all the same, at which JSON pointer.
 
-    Told are a key that stands twice in an object, for one parser takes the first and another the last; NaN and
+    Reported are a key that occurs twice in an object, for one parser takes the first and another the last; NaN and
     Infinity, which JSON has none of; and a number beyond the range of a double, in whose place infinity is.
 
     Raises:
@@ -77,8 +77,8 @@ def read_json(text: bytes) -> tuple[Any, list[str]]:
 def may_have_errors(text: bytes, read: BaseModel) -> bool:
     """Whether `read_json` may find anything wrong with a text that was read as a message: a quick test.
 
-    A colon stands behind each key, and of a key that stands twice the message has one: it is written with fewer colons
-    than the text holds. No escape but one stands for a colon.
+    A colon follows each key, and of a key that occurs twice the message has one: it is written with fewer colons
+    than the text holds. No escape but one means a colon.
 
     Args:
         text: The text.
@@ -90,7 +90,7 @@ def may_have_errors(text: bytes, read: BaseModel) -> bool:
 
 
 def _twice(value: Any, within: str = "") -> Iterator[tuple[str, str]]:
-    """The keys that stand twice, each with the pointer to its object."""
+    """The keys that occur twice, each with the pointer to its object."""
     if isinstance(value, Doubled):
         for key in value.keys_twice:
             yield within or "(top level)", key

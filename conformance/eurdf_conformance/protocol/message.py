@@ -14,9 +14,9 @@ from eurdf_conformance.level import Level, Version
 
 PROTOCOL: Literal["1.0"] = "1.0"
 
-#: What `serve` says of an adapter that gives no answer: a line ``{"id": 1, "fault": "…"}``. It fits no schema, so it is
-#: malformed, as the adapter is; its words are those that the runner tells.
-ERROR = "fault"
+#: Key of the line of `serve` if there is no answer: ``{"id": 1, "no_answer": "…"}``. It fits no schema, so it is
+#: malformed; the runner reports its text.
+NO_ANSWER = "no_answer"
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Numbers = list[Number]

@@ -21,10 +21,10 @@ def parser_error(parser: Any) -> str:
             return f"its {name} is {described(said)}, expected a string"
     if not parser.name:
         return "its name is empty"
-    fault = _claims_fault(parser.claims) or _method_fault(parser, "load", ("description", "urdf"))
-    if not fault and hasattr(parser, "evaluate"):
-        fault = _method_fault(parser, "evaluate", ("configurations", "frames", "quantities"))
-    return fault
+    error = _claims_error(parser.claims) or _method_error(parser, "load", ("description", "urdf"))
+    if not error and hasattr(parser, "evaluate"):
+        error = _method_error(parser, "evaluate", ("configurations", "frames", "quantities"))
+    return error
 
 
 def described(value: Any) -> str:
@@ -38,7 +38,7 @@ def described(value: Any) -> str:
     return f"an object of the class {type(value).__name__}"
 
 
-def _claims_fault(claims: Any) -> str:
+def _claims_error(claims: Any) -> str:
     """What is wrong with the claims."""
     as_in = "as in {'2': ['accept']}"
     if not isinstance(claims, Mapping):
@@ -54,7 +54,7 @@ def _claims_fault(claims: Any) -> str:
     return ""
 
 
-def _method_fault(parser: Any, name: str, parameters: Sequence[str]) -> str:
+def _method_error(parser: Any, name: str, parameters: Sequence[str]) -> str:
     """What is wrong with a method."""
     method, asked = getattr(parser, name), f"{name}({', '.join(parameters)})"
     if not callable(method):

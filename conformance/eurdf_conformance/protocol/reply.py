@@ -17,7 +17,7 @@ _Reply = TypeVar("_Reply", bound=Answer)
 
 
 class WrongReply(Exception):  # noqa: N818 - it says what the reply is
-    """What an adapter gives is no answer: its own fault, of which its text tells.
+    """What an adapter gives is no answer: an error of its own, which its text states.
 
     It is no ValueError, which is what many parsers raise for wrong files, and adapters take for a rejection.
     """

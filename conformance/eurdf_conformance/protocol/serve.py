@@ -20,7 +20,7 @@ from eurdf_conformance.protocol import message
 from eurdf_conformance.protocol.error_text import error_text
 from eurdf_conformance.protocol.json_text import may_have_errors, read_json
 from eurdf_conformance.protocol.message import (
-    ERROR,
+    NO_ANSWER,
     PROTOCOL,
     REQUEST,
     Accepted,
@@ -146,14 +146,14 @@ def main(path: str) -> None:
     sys.stdout = sys.stderr
     try:
         parser = find_object(path)
-        fault = parser_error(parser)
+        problem = parser_error(parser)
     except NoParser as why:
         sys.exit(str(why))
     except Exception as error:
         _print_traceback(error)
         sys.exit(1)
-    if fault:
-        sys.exit(f"{path} is not a parser: {fault}")
+    if problem:
+        sys.exit(f"{path} is not a parser: {problem}")
     serve(parser, requests, answers)
 
 
@@ -213,13 +213,13 @@ def _with_id(reply: Any, request: Load | Evaluate, what_to_do: str) -> AnyAnswer
     if isinstance(reply, Answer):
         answer: AnyAnswer = reply.model_copy(update={"id": request.id})  # type: ignore[assignment]
         return answer
-    fault = f"{request.command} returned {described(reply)}; {what_to_do} of eurdf_conformance.protocol.reply"
-    return _NoAnswer(request.id, fault)
+    why = f"{request.command} returned {described(reply)}; {what_to_do} of eurdf_conformance.protocol.reply"
+    return _NoAnswer(request.id, why)
 
 
 def _written(answer: AnyAnswer | _NoAnswer) -> bytes:
     if isinstance(answer, _NoAnswer):
-        return json.dumps({"id": answer.id, ERROR: answer.why}).encode()
+        return json.dumps({"id": answer.id, NO_ANSWER: answer.why}).encode()
     try:
         return answer.model_dump_json().encode()
     except ValueError as error:  # half a surrogate pair, which UTF-8 cannot say

@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from eurdf_conformance.protocol.error_text import error_text
 from eurdf_conformance.protocol.json_text import Doubled, may_have_errors, read_json
-from eurdf_conformance.protocol.message import ANSWER, ERROR, AnyAnswer, AnyRequest, Evaluate, Evaluated, Stop
+from eurdf_conformance.protocol.message import ANSWER, NO_ANSWER, AnyAnswer, AnyRequest, Evaluate, Evaluated, Stop
 from eurdf_conformance.runner.outcome import Malformed, Misplaced
 
 #: Characters that are kept of a line that is no answer.
@@ -29,7 +29,7 @@ def read_answer(line: bytes, request: AnyRequest) -> AnyAnswer | Malformed | Mis
         answer = ANSWER.validate_json(line)
     except ValidationError as error:
         return _unfit(line, request, error)
-    if may_have_errors(line, answer):  # pydantic takes the last of two values, and NaN where any value may stand
+    if may_have_errors(line, answer):  # pydantic takes the last of two values, and NaN where any value is allowed
         value, found = read_json(line)
         if found:
             return _elsewhere(value, line, request) or Malformed(shown(line), found[0], placed=True)
@@ -68,8 +68,8 @@ def _unfit(line: bytes, request: AnyRequest, error: ValidationError) -> AnyAnswe
         return elsewhere
     if found:
         return Malformed(shown(line), found[0], placed=True)
-    if isinstance(fault := value.get(ERROR), str):
-        words = " ".join(fault.split()).encode("utf-8", "backslashreplace")
+    if isinstance(why_not := value.get(NO_ANSWER), str):
+        words = " ".join(why_not.split()).encode("utf-8", "backslashreplace")
         return Malformed("", shown(words), placed=True)  # the line says no more
     # 2.0 is a whole number in JSON Schema, and some libraries have no others.
     try:

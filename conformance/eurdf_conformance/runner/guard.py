@@ -1,6 +1,6 @@
 """What this process has started ends with it, also where it is killed and can no longer see to it itself.
 
-A second process, the guard, holds the other end of a pipe. It is told of each group of processes that begins or ends.
+A second process, the guard, holds the other end of a pipe. It learns of each group of processes that begins or ends.
 When this process is gone, however it went, the pipe closes; then the guard kills the groups that are left, and ends.
 This file is also the guard's program, so it imports nothing of the package. It works wherever there are pipes and
 groups of processes, as on Linux and macOS; what leaves its group is out of reach.

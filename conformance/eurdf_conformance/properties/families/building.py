@@ -1,4 +1,4 @@
-"""A mechanism built where it stands assembled: frames are given in the world, and joints and closures follow."""
+"""A mechanism built as it is assembled: frames are given in the world, and joints and closures follow."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from eurdf_conformance.properties.mechanism import (
 )
 from eurdf_conformance.properties.placement import Matrix, inverse, matrix_of, pose_of
 
-#: Where the whole of a family stands: along no axis of the world.
+#: The pose of a whole family: along no axis of the world.
 ASKEW = Pose(xyz=(0.1, -0.2, 0.3), rpy=(0.4, -0.5, 0.6))
 
 _WIDE = Limit(effort=10.0, velocity=10.0, lower=-6.0, upper=6.0)
@@ -123,5 +123,5 @@ def along(axis: Sequence[float] | Matrix) -> Matrix:
 
 
 def angle(i: int) -> float:
-    """Some angle of the i-th joint, rad: no joint stands at its neutral."""
+    """Some angle of the i-th joint, rad: no joint is at its neutral."""
     return 0.3 + 0.2 * (i % 5) if i % 2 else -0.2 - 0.15 * (i % 4)

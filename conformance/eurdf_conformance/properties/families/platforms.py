@@ -43,6 +43,6 @@ def _platform(n: int, lower: Literal["universal", "spherical"]) -> Building:
 
 
 def _foot(base: Matrix, tip: Matrix, lower: str, i: int) -> tuple[Matrix, tuple[float, ...]]:
-    """The frame of a leg's lower half, whose z leads to its tip, and the coordinates of the joint that it stands on."""
+    """The frame of a leg's lower half, whose z leads to its tip, and the coordinates of the joint that it is on."""
     q = (0.6, 0.0, 0.0, 0.8) if lower == "spherical" else (angle(i), angle(i + 1))
     return at(base, along(tip - base)), q

@@ -1,4 +1,4 @@
-"""The whole robot stands somewhere else: what is said in the world goes with it, and nothing else changes."""
+"""The whole robot is somewhere else: what is given in the world moves with it, and nothing else changes."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from eurdf_conformance.properties.truth import truth
 
 
 def leaving_out(example: Example, version: Version) -> Pair:
-    """A robot at configurations that name every joint, and where those that stand at their neutral are left out."""
+    """A robot at configurations that name every joint, and where those at their neutral are left out."""
     mechanism = example.mechanism
     neutral = {name: tuple(q) for name, q in truth(mechanism, "2").neutral().items()}
     whole = {name: {**neutral, **q} for name, q in mechanism.configurations.items()}

@@ -1,4 +1,4 @@
-"""A joint that mimics moves as one that does not, held to its law; in version 1 it does not mimic."""
+"""A mimic joint moves as an independent joint at the same coordinate; in version 1 `mimic` has no effect."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _WIDE = Limit(effort=1.0, velocity=1.0, lower=-100.0, upper=100.0)
 
 
 def following(example: Example, version: Version) -> Pair:
-    """A mechanism none of whose joints mimics, at coordinates that keep the laws, and the one in which they do.
+    """A mechanism without mimic joints, at coordinates that satisfy the mimic equations, and the one with them.
 
     With q = m q_leader + o, the column of the leader is its own and m times that of who follows it.
     """

@@ -21,7 +21,7 @@ def lumping(example: Example, version: Version) -> Pair:
 def lumped(mechanism: Mechanism) -> Mechanism:
     """Every inertia behind a fixed joint, on the link before it; from the leaves on."""
     inertias = {link.name: link.inertia for link in mechanism.links}
-    for joint in reversed(mechanism.joints):  # a joint stands behind the one that it hangs from
+    for joint in reversed(mechanism.joints):  # a joint is after the one that it hangs from
         if mechanism.type_of(joint) == "fixed" and (carried := inertias[joint.child]) is not None:
             inertias[joint.parent] = together(inertias[joint.parent], carried, matrix_of(joint.origin))
             inertias[joint.child] = None
@@ -29,7 +29,7 @@ def lumped(mechanism: Mechanism) -> Mechanism:
 
 
 def together(one: Inertia | None, other: Inertia, M: Matrix) -> Inertia:
-    """Of two bodies, the second of which stands at a pose in the frame of the first.
+    """Of two bodies, the second of which is at a pose in the frame of the first.
 
     m = m₁ + m₂, c = (m₁ c₁ + m₂ c₂) / m, and with d from the common centre, I = Σ R I Rᵀ + m (d·d − d dᵀ).
     """

@@ -18,7 +18,7 @@ def swapping(example: Example, version: Version) -> Pair:
     """A mechanism whose closures join frames that have names, and the same one with A and B swapped.
 
     With ᴬM_B = (R, p): 6d, log6 of the inverse is −log6, so r′ = −r and K′ = −K. 3d: r′ = −Rᵀ p, and K′ = −Rᵀ K where
-    p is zero; where it is not, K′ has a part more that K does not tell, and is not compared.
+    p is zero; where it is not, K′ has another part that K does not give, and is not compared.
     """
     mechanism = with_named_frames(example.mechanism)
     other = mechanism.replace(

@@ -19,7 +19,7 @@ def length_unit(example: Example, version: Version) -> Pair:
     """A robot, and one all of whose lengths are as many times longer."""
     mechanism, s = example.mechanism, example.chance.one_of([0.25, 0.7, 3.0])
     robot = truth(mechanism, version)
-    # A column of what slides stands for as much more, in the unit of those that turn.
+    # A column of what slides means as much more, in the unit of those that turn.
     D = np.array([1.0 if is_length(robot, column) else s for column in robot.velocities])
 
     def carry(values: Values, index: int) -> Values:

@@ -151,7 +151,7 @@ def actuators(joint: str, version: Version) -> SearchStrategy[Actuator]:
 
 @st.composite
 def configurations(draw: DrawFn, types: dict[str, str], *, every: bool) -> Configuration:
-    """Coordinates of all joints, or of some: the others stand at their neutral."""
+    """Coordinates of all joints, or of some: the others are at their neutral."""
     return {name: draw(coordinates(kind)) for name, kind in types.items() if every or draw(st.booleans())}
 
 
