@@ -235,7 +235,7 @@ def test_impossible_loops_are_given_up_in_time(tmp_path: Path, monkeypatch: pyte
 @pytest.mark.parametrize(
     ("old", "new"),
     [
-        ('xyz="0 0.15 0"/><mass', 'xyz="0 1e200 0"/><mass'),
+        ('xyz="0 0.15 0"/><mass', 'xyz="0 1e150 0"/><mass'),
         ('ixx="0.006"', 'ixx="1e308"'),
         ('ixx="0.006" ixy="0" ixz="0" iyy="0.001"', 'ixx="1e308" ixy="1e308" ixz="-1e308" iyy="1e308"'),
         ('rgba="0.5 0.5 0.5 1"', 'rgba="1e308 0.5 1e-320 1"'),
@@ -246,6 +246,13 @@ def test_impossible_loops_are_given_up_in_time(tmp_path: Path, monkeypatch: pyte
 )
 def test_numbers_of_any_size_print_nothing(tmp_path: Path, old: str, new: str) -> None:
     assert load_changed(tmp_path, old, new).model.njoints > 1
+
+
+def test_centre_of_mass_beyond_range_is_the_only_error(tmp_path: Path) -> None:
+    """EU-INR-007: its distance squared is not finite."""
+    with pytest.raises(eurdf.InvalidRobot) as raised:
+        load_changed(tmp_path, 'xyz="0 0.15 0"/><mass', 'xyz="0 1e200 0"/><mass')
+    assert [found.code for found in raised.value.diagnostics if found.severity == "error"] == ["derived-not-finite"]
 
 
 def test_mimic_cycle_is_reported_alone_and_shortened(tmp_path: Path) -> None:

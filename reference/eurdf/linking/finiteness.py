@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from operator import add
 
 from eurdf.diagnostics import Diagnostics, Place
 from eurdf.format.extension import Extension
 from eurdf.format.urdf.data import Urdf
+from eurdf.linking.inertia import turned
 from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Mechanism
@@ -45,7 +47,7 @@ def _not_finite(mechanism: Mechanism, urdf: Urdf, extension: Extension | None) -
     pose_of = {root.name: IDENTITY}  # in the frame of the root, at zero
     in_joint = {root.name: (root.name, IDENTITY)}  # the body that the last joint moves, and the pose in its frame
     inertia_of = {body.name: body.inertia for body in mechanism.bodies}
-    total: dict[str, float] = {}
+    total: dict[str, tuple[float, ...]] = {}
     for name, joint in [(root.name, None), *((joint.child, joint) for joint in mechanism.joints)]:
         if joint is not None:
             step = joint.placement * joint.offset
@@ -58,8 +60,8 @@ def _not_finite(mechanism: Mechanism, urdf: Urdf, extension: Extension | None) -
         inertia = inertia_of[name]
         if inertia is not None:
             moved, pose = in_joint[name]
-            total[moved] = total.get(moved, 0.0) + _about_origin(pose, inertia)
-            if not math.isfinite(total[moved]):
+            total[moved] = tuple(map(add, total.get(moved, (0.0,) * 7), _about_origin(pose, inertia)))
+            if not all(map(math.isfinite, total[moved])):
                 link = urdf.links[name]
                 element = link.element if link.inertial is None else link.inertial
                 yield f"the inertia of link '{name}' about the origin of its joint", urdf.document.place(element)
@@ -75,10 +77,20 @@ def _not_finite(mechanism: Mechanism, urdf: Urdf, extension: Extension | None) -
                 yield what, extension.document.place(pointers[closure.name])
 
 
-def _about_origin(pose: Pose, inertia: Inertia) -> float:
-    """Mass, plus the sum of the moments about the origin: finite where all inertia about the origin is."""
-    distance = math.hypot(*pose.act(inertia.pose.xyz))
-    return inertia.mass + sum(map(abs, inertia.moments)) + inertia.mass * distance * distance
+def _about_origin(pose: Pose, inertia: Inertia) -> tuple[float, ...]:
+    """The mass, and the six components of the rotational inertia about the origin, along the axes there."""
+    at, mass = pose * inertia.pose, inertia.mass
+    xx, xy, xz, yy, yz, zz = turned(inertia.moments, at)
+    x, y, z = at.xyz
+    return (
+        mass,
+        xx + mass * (y * y + z * z),
+        xy - mass * x * y,
+        xz - mass * x * z,
+        yy + mass * (x * x + z * z),
+        yz - mass * y * z,
+        zz + mass * (x * x + y * y),
+    )
 
 
 def _is_finite(pose: Pose) -> bool:

@@ -194,7 +194,7 @@ def _positive(members: Iterable[Member], bound: float) -> bool:
     xx = xy = xz = yy = yz = zz = 0.0
     for pose, inertia in members:
         at = pose * inertia.pose
-        ixx, ixy, ixz, iyy, iyz, izz = _turned(inertia.moments, at)
+        ixx, ixy, ixz, iyy, iyz, izz = turned(inertia.moments, at)
         (x, y, z), mass = at.xyz, inertia.mass
         xx += ixx + mass * (y * y + z * z)
         yy += iyy + mass * (x * x + z * z)
@@ -208,7 +208,7 @@ def _positive(members: Iterable[Member], bound: float) -> bool:
     return xx > 0.0 and second > 0.0 and third > 0.0
 
 
-def _turned(moments: Moments, pose: Pose) -> Moments:
+def turned(moments: Moments, pose: Pose) -> Moments:
     """R I Rᵀ."""
     if pose.quaternion == IDENTITY.quaternion:
         return moments
