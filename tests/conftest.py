@@ -33,9 +33,9 @@ FIRST = (
     "test_schema.py",
 )
 
-# Random examples are the same in each run. `--hypothesis-profile=random` draws others.
-settings.register_profile("same", derandomize=True)
-settings.register_profile("random", derandomize=False)
+# Random examples are the same in each run. `--hypothesis-profile=random` draws others. Time decides no test.
+settings.register_profile("same", derandomize=True, deadline=None)
+settings.register_profile("random", derandomize=False, deadline=None)
 settings.load_profile("same")
 
 

@@ -273,7 +273,7 @@ def test_of_a_failure_everything_is_printed_that_it_takes_to_mend_the_parser() -
     assert lines == [
         "frames/closure-at-unknown-frame/diagnose: failed: the reported errors differ",
         "  pytest conformance/ '--parser=cmd:./my parser' -k frames/closure-at-unknown-frame/diagnose",
-        "  A closure at a name that no link, joint or frame has.",
+        f"  {INVALID.case.title}",
         f"  EU-FRM-001: {read_clauses()['EU-FRM-001'].text}",
         f"  EU-DIA-001: {read_clauses()['EU-DIA-001'].text}",
         "  /issues/0/column: unknown-frame, column: expected 27, got 6",
