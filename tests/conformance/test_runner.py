@@ -27,6 +27,7 @@ from eurdf_conformance.runner.outcome import (
     Outcome,
     TimedOut,
 )
+from eurdf_conformance.runner.pipes import Pipes
 from eurdf_conformance.runner.session import NotStarted, Session
 from eurdf_conformance.suite.protocol_check import Setup, check
 from support.parsers.sessions import PARSERS, accepts, fake, has_ended, load, runs
@@ -121,6 +122,17 @@ def test_what_ends_before_it_is_greeted_has_answered_nothing() -> None:
     with Session("cmd:sh -c 'exit 127'") as session, pytest.raises(NotStarted) as refusal:
         _ = session.started
     assert str(refusal.value).splitlines()[0] == "crashed: ended with exit code 127 without answering"
+
+
+def test_what_is_logged_before_the_first_request_is_kept() -> None:
+    pipes = Pipes([sys.executable, "-I", "-S", "-c", "import sys; sys.exit('no such file')"])
+    try:
+        while not pipes.log:
+            pipes.line(time.monotonic() + 0.1)
+        pipes.send(b"{}")
+        assert pipes.log == "no such file\n"
+    finally:
+        pipes.close()
 
 
 def test_crash_between_requests_is_reported_at_the_next() -> None:

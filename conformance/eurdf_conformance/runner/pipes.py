@@ -63,6 +63,7 @@ class Pipes:
         self._received = bytearray()
         self._searched = 0  # so many of the bytes received hold no line feed
         self._log = bytearray()
+        self._begun = False  # whether anything was sent
         self._unsent = bytearray()
         self._output_closed: float | None = None  # when
         self._log_open, self._ended, self._closed = True, False, False
@@ -92,7 +93,7 @@ class Pipes:
 
     @property
     def log(self) -> str:
-        """The end of what it wrote to standard error since the last `send`."""
+        """The end of what it wrote to standard error since the last `send`; after the first, since it started."""
         return self._log.decode("utf-8", "replace")
 
     @property
@@ -102,7 +103,9 @@ class Pipes:
 
     def send(self, line: bytes) -> None:
         """Write a line to its standard input; what does not fit into the pipe goes out while `line` waits."""
-        self._log.clear()
+        if self._begun:
+            self._log.clear()
+        self._begun = True
         self._unsent += line + b"\n"
         self._write()
         if self._unsent and self._stdin not in self._selector.get_map():
