@@ -11,7 +11,7 @@ _JOINERS = "\u200c\u200d"
 def visible(text: str, kept: str = "\n\t") -> str:
     r"""The text with every character that is not seen, or that steers a terminal, as its escape (``\x1b``).
 
-    So a parser can neither clear the screen nor turn round what stands beside its words. Letters, spaces and pictures
+    So a parser can neither clear the screen nor reverse the text beside its words. Letters, spaces and pictures
     of all scripts stay as they are.
 
     Args:

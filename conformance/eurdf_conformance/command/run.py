@@ -140,7 +140,7 @@ def _certify(args: argparse.Namespace) -> int:
 def _verify(args: argparse.Namespace) -> int:
     certificate = read_certificate(args.verify)
     parser = args.parser or certificate.parser_option
-    # Whoever wrote the certificate wrote the command: let it be seen.
+    # The command comes from the author of the certificate: show it before it runs.
     write_lines([[("running ", ""), (visible(parser), "bold")]], sys.stderr)
     again = _run_suite(_suite_run(args, parser, certificate))
     found = [*suite_differences(certificate), *replay_differences(certificate, again)]

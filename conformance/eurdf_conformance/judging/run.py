@@ -18,7 +18,7 @@ class Run:
 
     #: The parser as the user named it.
     parser: str
-    #: What the parser said of itself; None where it could not be started.
+    #: Name, version and claims that the parser reported; None if it could not be started.
     started: Started | None
     #: Every item of the suite, at any level and for any version, whether it was asked or not. What is here, is
     #: claimed and asked for, and has no result, counts as not run: nobody is certified on half of the suite.

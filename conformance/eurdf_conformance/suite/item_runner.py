@@ -1,4 +1,4 @@
-"""One parser, asked on item after item; what becomes of each is told to pytest, and kept for the certificate."""
+"""Asks one parser about each item, reports the results to pytest and keeps them for the certificate."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from eurdf_conformance.runner.session import NotStarted, Session
 from eurdf_conformance.suite.options import Options
 from eurdf_conformance.visible import visible
 
-#: Name under which what the parser said of itself stands among the user properties of a pytest report.
+#: Name of the user property of a pytest report that holds what the parser reported about itself.
 STARTED = "eurdf_conformance.started"
 
 #: So many differences of one item are kept for the certificate.
@@ -101,7 +101,7 @@ class ItemRunner:
             pytest.fail(text + (f"\n  listed as '{known}' in the known failures" if known else ""), pytrace=False)
 
     def _started(self) -> Started | None:
-        """What the parser says of itself; None where it does not start, which every item then tells."""
+        """What the parser reports about itself; None if it does not start, which every item then reports."""
         try:
             started = self._session.started
         except NotStarted:

@@ -108,7 +108,7 @@ def pytest_collection_finish() -> None:
 @pytest.fixture(scope="session")
 def _session_item_runner(pytestconfig: pytest.Config, tmp_path_factory: pytest.TempPathFactory) -> Iterator[ItemRunner]:
     options = options_of(pytestconfig)
-    # Where pytest leaves the files of its last runs, so that whoever reads of a failure finds those of the case.
+    # pytest keeps the files of its last runs there, so that the files of a failed case can be opened.
     keep_files_in(tmp_path_factory.mktemp("cases", numbered=False))
     with pytestconfig.stash.get(GREETED, None) or new_session(options) as session:
         yield ItemRunner(options, session)
