@@ -99,13 +99,13 @@ def joint_named(robot: CanonicalRobot, name: str) -> CanonicalJoint:
 # -- the canonical description ---------------------------------------------------------------------------------------
 
 
-def test_the_reference_claims_all_levels_of_both_versions_and_says_who_it_is() -> None:
+def test_the_reference_gives_its_name_and_claims_every_level() -> None:
     with Session(REFERENCE) as session:
         assert session.started.claims == {"1": list(Level), "2": list(Level)}
         assert session.started.parser.name == "eurdf"
 
 
-def test_answer_is_free_of_style(tmp_path: Path) -> None:
+def test_answers_are_independent_of_style(tmp_path: Path) -> None:
     robot = canonical(Reference().load(*write_every_joint(tmp_path)))
     assert (robot.name, robot.version, robot.root) == ("every joint", "2", "floating")
     assert sorted(robot.links) == sorted(f"link_{index}" for index in range(15))
@@ -128,7 +128,7 @@ def test_answer_is_free_of_style(tmp_path: Path) -> None:
     assert robot.own == {"/x-note": {"series": 7}}
 
 
-def test_limits_are_one_a_coordinate_or_velocity_and_null_where_there_is_none(tmp_path: Path) -> None:
+def test_each_coordinate_has_a_limit_or_null(tmp_path: Path) -> None:
     robot = canonical(Reference().load(*write_every_joint(tmp_path)))
     turn, spin, ball, cylinder = (joint_named(robot, name) for name in ("turn", "spin", "ball", "cylinder"))
     assert (turn.lower, turn.upper, turn.velocity, turn.effort) == ([-3.0], [3.0], [5.0], [10.0])
@@ -155,7 +155,7 @@ def test_version_1_universal_joint_has_a_virtual_body(tmp_path: Path) -> None:
     assert robot.own == {"/mine": {"deep": [1]}}
 
 
-def test_a_locked_joint_is_none_that_moves(tmp_path: Path) -> None:
+def test_a_locked_joint_is_not_listed(tmp_path: Path) -> None:
     robot = canonical(load(tmp_path, 'extended_urdf: "2.0"\njoints: {b: fixed}\n'))
     assert [joint.name for joint in robot.joints] == ["a"]
 
@@ -163,7 +163,7 @@ def test_a_locked_joint_is_none_that_moves(tmp_path: Path) -> None:
 # -- right and wrong -------------------------------------------------------------------------------------------------
 
 
-def test_a_wrong_description_is_rejected_with_code_and_place(tmp_path: Path) -> None:
+def test_an_invalid_description_is_rejected_with_code_and_place(tmp_path: Path) -> None:
     answer = load(tmp_path, 'extended_urdf: "2.0"\nactuators:\n  - elbow\n')
     assert isinstance(answer, Rejected)
     (issue,) = answer.issues
@@ -208,13 +208,13 @@ def test_missing_urdf_is_reported_in_the_description(tmp_path: Path) -> None:
     assert [(issue.code, issue.line) for issue in answer.issues] == [("urdf-not-found", 2)]
 
 
-def test_a_description_that_is_missing_is_rejected(tmp_path: Path) -> None:
+def test_a_missing_description_is_rejected(tmp_path: Path) -> None:
     answer = Reference().load(tmp_path / "robot.yaml", tmp_path / "robot.urdf")
     assert isinstance(answer, Rejected)
     assert [issue.code for issue in answer.issues] == ["file-unreadable"]
 
 
-def test_the_urdf_may_have_another_name_than_the_description_says(tmp_path: Path) -> None:
+def test_the_urdf_may_have_another_name_than_the_description_gives(tmp_path: Path) -> None:
     load(tmp_path, "name_mot: [a]\n")
     (tmp_path / "robot.urdf").rename(tmp_path / "arm.urdf")
     assert isinstance(Reference().load(tmp_path / "robot.yaml", tmp_path / "arm.urdf"), Accepted)
@@ -258,7 +258,7 @@ def test_columns_name_every_velocity_once() -> None:
         assert set(columns) == expected
 
 
-def test_the_jacobian_is_the_derivative_of_the_residuals_by_the_velocities_of_the_specification() -> None:
+def test_the_jacobian_is_the_derivative_of_the_residuals() -> None:
     def residuals(configuration: Any) -> Any:
         given = value_at(configuration, ["residuals"]).residuals
         assert given is not None
@@ -273,7 +273,7 @@ def test_the_jacobian_is_the_derivative_of_the_residuals_by_the_velocities_of_th
         np.testing.assert_allclose(column, expected, atol=1e-8, err_msg=f"{joint} {index}")
 
 
-def test_the_mass_matrix_gives_the_kinetic_energy_of_all_bodies_and_the_armatures() -> None:
+def test_the_mass_matrix_gives_the_kinetic_energy_with_armatures() -> None:
     links = list(MASSES)
 
     def poses(configuration: Any) -> Any:
@@ -303,7 +303,7 @@ def test_the_mass_matrix_gives_the_kinetic_energy_of_all_bodies_and_the_armature
             assert M[i, j] == pytest.approx(linear + angular + armature, abs=1e-6), (one, other)
 
 
-def test_mass_and_center_of_mass_are_those_of_all_bodies_the_root_too() -> None:
+def test_mass_and_center_of_mass_include_the_root() -> None:
     links = list(MASSES)
     values = value_at(CONFIGURATION, ["mass", "center_of_mass", "poses"], links)
     assert values.poses is not None
@@ -315,7 +315,7 @@ def test_mass_and_center_of_mass_are_those_of_all_bodies_the_root_too() -> None:
     np.testing.assert_allclose(values.center_of_mass, moment / values.mass, atol=1e-12)
 
 
-def test_a_joint_is_a_name_of_the_frame_of_the_link_it_carries_even_when_it_was_merged() -> None:
+def test_a_merged_joint_still_names_the_frame_of_its_link() -> None:
     pairs = {"turn": "link_1", "merged": "link_13", "m3": "link_13", "m1": "link_11", "follower": "link_14"}
     poses = value_at(CONFIGURATION, ["poses"], [*pairs, *pairs.values(), "tip"]).poses
     assert poses is not None
@@ -329,7 +329,7 @@ def test_answer_has_only_requested_quantities() -> None:
     assert values.model_dump(exclude_none=True).keys() == {"mass"}
 
 
-def test_a_joint_that_mimics_has_no_column_and_moves_with_its_leader(tmp_path: Path) -> None:
+def test_a_mimic_joint_has_no_column(tmp_path: Path) -> None:
     """Also where it comes before its leader, in the order of the tree."""
     mimic = LIMITED + '<mimic joint="z_leader" multiplier="2" offset="0.1"/>'
     weight = inertial(1.5, '<origin xyz="0.1 0.2 0"/>')
@@ -361,7 +361,7 @@ def test_a_joint_that_mimics_has_no_column_and_moves_with_its_leader(tmp_path: P
     assert here.mass_matrix.matrix == [[pytest.approx((1.0 + 2.0**2) * about_the_joint)]]
 
 
-def test_the_two_joints_of_a_universal_one_of_version_1_are_columns_of_their_own(tmp_path: Path) -> None:
+def test_a_universal_joint_of_version_1_has_two_columns(tmp_path: Path) -> None:
     parser = Reference()
     load(tmp_path, "joint_name: [a]\njoint_type: [UJOINT_XZ]\nclosed_loop: [[base, hand]]\n", parser=parser)
     (values,) = parser.evaluate([{"a_X": [0.1], "a_Z": [0.2]}], ["a"], ["poses", "jacobian"])
@@ -385,7 +385,7 @@ def test_the_two_joints_of_a_universal_one_of_version_1_are_columns_of_their_own
         ({}, ["elbow"], "'elbow' is not a link, joint or frame"),
     ],
 )
-def test_a_question_that_makes_no_sense_is_errored(configuration: Any, frames: Sequence[str], words: str) -> None:
+def test_a_senseless_request_is_errored(configuration: Any, frames: Sequence[str], words: str) -> None:
     with TemporaryDirectory() as folder, Session(REFERENCE) as session:
         assert isinstance(answer_of(session.load(*write_every_joint(Path(folder)))), Accepted)
         answer = answer_of(session.evaluate([configuration], frames, ["poses"]))
@@ -394,21 +394,21 @@ def test_a_question_that_makes_no_sense_is_errored(configuration: Any, frames: S
         assert isinstance(answer_of(session.evaluate([CONFIGURATION], ["tip"], ["poses"])), Evaluated)
 
 
-def test_there_is_nothing_to_evaluate_before_a_robot_is_accepted() -> None:
+def test_evaluating_before_a_robot_is_accepted_is_errored() -> None:
     with Session(REFERENCE) as session:
         answer = answer_of(session.evaluate([{}], [], ["mass"]))
         assert isinstance(answer, Errored)
         assert "no robot was accepted" in answer.message
 
 
-def test_what_weighs_nothing_has_no_center_of_mass(tmp_path: Path) -> None:
+def test_a_massless_robot_has_no_center_of_mass(tmp_path: Path) -> None:
     parser = Reference()
     load(tmp_path, 'extended_urdf: "2.0"\n', urdf_of('<link name="a"/>'), parser)
     (values,) = parser.evaluate([{}], [], ["mass", "center_of_mass"])
     assert (values.mass, values.center_of_mass) == (0.0, None)
 
 
-def test_the_robots_of_the_collection_are_closed_where_they_are_assembled() -> None:
+def test_robots_of_the_collection_are_closed_at_assembled() -> None:
     with Session(REFERENCE, timeout=60.0) as session:
         for name in ("four_bar", "digit_leg", "delta"):
             for version in ("robot.yaml", "robot.v1.yaml"):
@@ -457,9 +457,7 @@ def parser_of(example: str, request: pytest.FixtureRequest) -> str:
 
 
 @examples()
-def test_an_example_reads_plain_robots_of_version_1_as_the_reference_does(
-    example: str, request: pytest.FixtureRequest
-) -> None:
+def test_an_example_and_the_reference_agree_on_plain_robots(example: str, request: pytest.FixtureRequest) -> None:
     names = sorted(path.parent.name for path in ROBOTS.glob("*/robot.v1.yaml") if "joint_name" not in path.read_text())
     assert len(names) >= 5
     with Session(parser_of(example, request)) as session:
@@ -486,7 +484,7 @@ def test_an_example_reads_plain_robots_of_version_1_as_the_reference_does(
         ('extended_urdf: "2.0"\n', '<robot name="r"><link name="a"/></robot>', Unsupported),
     ],
 )
-def test_an_example_rejects_what_is_wrong_and_says_what_it_lacks(
+def test_an_example_distinguishes_invalid_from_unsupported(
     tmp_path: Path, example: str, description: str, urdf: str, kind: type[AnyAnswer], request: pytest.FixtureRequest
 ) -> None:
     (tmp_path / "robot.yaml").write_text(description, encoding="utf-8", errors="surrogateescape")

@@ -40,20 +40,20 @@ def test_the_lint_finds_nothing_wrong_with_the_cases() -> None:
     assert [str(error) for error in lint()] == []
 
 
-def test_the_schema_of_a_case_is_current_and_takes_every_case() -> None:
+def test_the_case_schema_is_current_and_accepts_every_case() -> None:
     assert SCHEMA_FILE.read_text(encoding="utf-8") == schema_text()
     validator = jsonschema.Draft202012Validator(case_schema())
     for case in CASES:
         assert list(validator.iter_errors(load_strictly(case.path.read_text(encoding="utf-8")))) == [], case.name
 
 
-def test_an_expectation_that_is_written_is_read_back_the_same() -> None:
+def test_a_written_expectation_reads_back_the_same() -> None:
     for case in VALID:
         again = Expected.model_validate_json(expected_text(case.expected))
         assert again == case.expected
 
 
-def test_every_clause_that_a_case_can_test_has_its_cases() -> None:
+def test_every_testable_clause_has_cases() -> None:
     elsewhere = {clause for rule in RULES for clause in rule.clauses} | set(OF_RUNNERS)
     assert list(missing([case.case for case in CASES], read_clauses(), elsewhere)) == []
 
@@ -65,7 +65,7 @@ def imports_the_reference(text: str) -> bool:
     return "eurdf" in {name.split(".")[0] for name in names}
 
 
-def test_only_the_adapters_of_the_reference_and_the_command_import_it() -> None:
+def test_only_adapters_and_command_import_the_reference() -> None:
     package = Path(read.__file__).parents[1]
     texts = {path.relative_to(package).as_posix(): path.read_text(encoding="utf-8") for path in package.rglob("*.py")}
     importing = sorted(path for path, text in texts.items() if imports_the_reference(text))
@@ -151,7 +151,7 @@ def test_case_is_valid_or_states_its_error() -> None:
     ],
     ids=str,
 )
-def test_what_is_no_case_is_refused(said: object) -> None:
+def test_a_file_that_is_not_a_case_is_refused(said: object) -> None:
     with pytest.raises(ValidationError):
         CASE.validate_python(said)
 
@@ -182,7 +182,7 @@ def written(tmp_path: Path) -> WriteCase:
         (json.dumps(INVALID_CASE | {"place": {"file": "robot.yaml", "line": "x"}}), "place/line"),
     ],
 )
-def test_reason_is_given_for_a_file_without_a_case(written: WriteCase, text: str, why: str) -> None:
+def test_a_file_without_a_case_gives_the_reason(written: WriteCase, text: str, why: str) -> None:
     with pytest.raises(NotACase, match=why) as caught:
         read_case(written(text))
     assert caught.value.path.name == "one.yaml"
@@ -194,7 +194,7 @@ def test_a_case_names_its_files(written: WriteCase) -> None:
     assert (case.description, case.urdf) == (case.folder / "other.yml", case.folder / "sub" / "other.urdf")
 
 
-def test_a_number_with_an_exponent_is_a_number(written: WriteCase) -> None:
+def test_a_number_with_an_exponent_is_read_as_one(written: WriteCase) -> None:
     text = "id: ab12cd\ntitle: One.\nversion: '2'\nclauses: [EU-FRM-001]\nvalid: true\n"
     text += "configurations: [{j: [1e-3, -2E5, +3, .5, 4.]}]\n"
     case = read_case(written(text)).case
@@ -202,7 +202,7 @@ def test_a_number_with_an_exponent_is_a_number(written: WriteCase) -> None:
     assert case.configurations == [{"j": [1e-3, -2e5, 3, 0.5, 4.0]}]
 
 
-def test_a_robot_of_the_collection_is_read_where_it_is(written: WriteCase) -> None:
+def test_a_robot_of_the_collection_is_not_copied(written: WriteCase) -> None:
     home = collection_folder()
     assert home is not None
     of_robot = VALID_CASE | {"robot": "four_bar", "description": "robot.v1.yaml", "files": {}}
@@ -211,9 +211,7 @@ def test_a_robot_of_the_collection_is_read_where_it_is(written: WriteCase) -> No
         _ = read_case(written(json.dumps(of_robot | {"robot": "no_such_robot"}))).files
 
 
-def test_the_collection_of_an_installed_package_is_found_and_the_package_not_imported(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_collection_is_found_without_importing_the_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "eurdf" / "collection" / "robots").mkdir(parents=True)
     (tmp_path / "eurdf" / "__init__.py").write_text("raise SystemError('imported')")
     elsewhere = tmp_path / "site" / "eurdf_conformance" / "corpus"
@@ -223,7 +221,7 @@ def test_the_collection_of_an_installed_package_is_found_and_the_package_not_imp
     assert collection_folder() == tmp_path / "eurdf" / "collection" / "robots"
 
 
-def test_case_runs_at_its_possible_levels(written: WriteCase) -> None:
+def test_a_case_runs_at_its_possible_levels(written: WriteCase) -> None:
     levels = {
         "valid": read_case(written(json.dumps(VALID_CASE))).levels,
         "evaluated": read_case(written(json.dumps(VALID_CASE | {"configurations": [{}]}))).levels,
@@ -236,9 +234,7 @@ def test_case_runs_at_its_possible_levels(written: WriteCase) -> None:
     }
 
 
-def test_a_case_is_shown_by_its_edit_and_its_files_are_written(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_show_prints_the_edit_and_writes_the_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert show.main(["urdf/damping-fortran-exponent", "--out", str(tmp_path)]) == 0
     out = capsys.readouterr().out
     assert '-    <dynamics damping="0.15" friction="0.16"/>\n+    <dynamics damping="1.5d-1" friction="0.16"/>\n' in out
@@ -269,7 +265,7 @@ def said_by_hand(case: CorpusCase) -> CorpusCase:
     return read_case(case.path)
 
 
-def test_an_expectation_is_stale_where_one_number_of_it_is_another(tmp_path: Path) -> None:
+def test_a_changed_number_makes_an_expectation_stale(tmp_path: Path) -> None:
     case = evaluated_case(tmp_path)
     path = case.expectation
     assert list(stale(case)) == []
@@ -286,7 +282,7 @@ def test_an_expectation_is_stale_where_one_number_of_it_is_another(tmp_path: Pat
         assert any(pointer in error for error in stale(read_case(case.path))), pointer
 
 
-def test_values_by_hand_may_be_some_of_all_and_are_held_against_the_oracle(tmp_path: Path) -> None:
+def test_partial_values_by_hand_are_checked_against_the_oracle(tmp_path: Path) -> None:
     case = evaluated_case(tmp_path)
     case = said_by_hand(case)
     some = case.expected.model_dump(mode="json")
@@ -298,7 +294,7 @@ def test_values_by_hand_may_be_some_of_all_and_are_held_against_the_oracle(tmp_p
     assert any("/values/0/mass" in error for error in stale(read_case(case.path)))
 
 
-def test_an_expectation_is_written_where_it_is_missing_or_stale_and_by_hand_it_is_left(
+def test_expect_rewrites_stale_expectations_but_none_by_hand(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     case = evaluated_case(tmp_path)
@@ -331,7 +327,7 @@ def test_an_expectation_is_written_where_it_is_missing_or_stale_and_by_hand_it_i
 # The archive
 
 
-def test_the_archive_holds_every_file_and_has_the_same_bytes_whenever_it_is_written(tmp_path: Path) -> None:
+def test_the_archive_is_complete_and_reproducible(tmp_path: Path) -> None:
     archive.write_archive(tmp_path / "a", CASES)
     archive.write_archive(tmp_path / "b", reversed(CASES))
     zips = [(tmp_path / folder / f"{archive.NAME}.zip").read_bytes() for folder in "ab"]
@@ -356,7 +352,7 @@ def test_the_archive_holds_every_file_and_has_the_same_bytes_whenever_it_is_writ
         assert whole.read("LICENSE") == (ROOT / "LICENSE").read_bytes()
 
 
-def test_in_the_zip_a_case_leads_to_its_schema_and_the_readme_to_what_it_names(tmp_path: Path) -> None:
+def test_links_in_the_zip_lead_to_its_own_files(tmp_path: Path) -> None:
     archive.write_archive(tmp_path, VALID[:3])
     with zipfile.ZipFile(tmp_path / f"{archive.NAME}.zip") as whole:
         for case in VALID[:3]:
@@ -376,7 +372,7 @@ def archived(*arguments: str | Path) -> int:
     return archive.main(list(map(str, arguments)))
 
 
-def test_the_archive_says_what_it_writes_and_replaces_nothing_unasked(
+def test_the_archive_lists_its_files_and_overwrites_nothing_unasked(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(archive, "read_cases", lambda: CASES[:3])
@@ -413,7 +409,7 @@ def test_unwritable_archive_gives_one_line_and_no_file(
     assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "out"]
 
 
-def test_the_manifest_says_every_case_with_the_texts_of_its_files(tmp_path: Path) -> None:
+def test_the_manifest_contains_every_case_and_its_files(tmp_path: Path) -> None:
     archive.write_archive(tmp_path, CASES)
     manifest = json.loads((tmp_path / f"{archive.NAME}.json").read_text(encoding="utf-8"))
     assert [entry["name"] for entry in manifest["cases"]] == [case.name for case in CASES]
@@ -427,7 +423,7 @@ def test_the_manifest_says_every_case_with_the_texts_of_its_files(tmp_path: Path
     assert set(manifest["clauses"]) == {clause for case in CASES for clause in case.case.clauses}
 
 
-def test_a_file_that_is_no_text_or_not_there_is_in_the_manifest_too(written: WriteCase) -> None:
+def test_the_manifest_contains_binary_and_missing_files(written: WriteCase) -> None:
     edit = {"file": "robot.urdf", "rename": "other.urdf"}
     path = written(json.dumps(INVALID_CASE | {"edit": edit}))
     (entry,) = archive.manifest([read_case(path)])["cases"]

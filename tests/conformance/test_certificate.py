@@ -64,7 +64,7 @@ def failed() -> Certificate:
 # --- the certificate -------------------------------------------------------------------------------------------------
 
 
-def test_a_certificate_fits_its_published_schema_and_the_schema_is_current(failed: Certificate) -> None:
+def test_the_certificate_schema_is_current_and_accepts_a_certificate(failed: Certificate) -> None:
     file = Path(certificate_module.__file__).with_name("certificate.schema.json")
     schema = json.loads(file.read_text(encoding="utf-8"))
     assert schema == certificate_schema()
@@ -73,7 +73,7 @@ def test_a_certificate_fits_its_published_schema_and_the_schema_is_current(faile
     jsonschema.Draft202012Validator(schema).validate(json.loads(issue(run(started=None)).to_text()))
 
 
-def test_it_says_what_failed_and_why(failed: Certificate) -> None:
+def test_a_certificate_shows_what_failed_and_why(failed: Certificate) -> None:
     (failure,) = failed.failures
     assert (failure.id, failure.level, failure.verdict) == (INVALID, Level.ACCEPT, Verdict.FAILED)
     assert failure.difference == "/outcome: expected"
@@ -87,13 +87,13 @@ def test_it_says_what_failed_and_why(failed: Certificate) -> None:
     assert (accept.counts, accept.certified) == ({Verdict.PASSED: 1, Verdict.FAILED: 1}, False)
 
 
-def test_two_runs_give_the_same_bytes_in_whatever_order_and_time_the_items_ran() -> None:
+def test_a_certificate_is_independent_of_order_and_time() -> None:
     first = run({(INVALID, Level.ACCEPT): Verdict.FAILED})
     second = replace(first, results=tuple(replace(each, seconds=7.0) for each in reversed(first.results)))
     assert issue(second).to_text() == issue(first).to_text()
 
 
-def test_the_number_of_a_request_is_no_part_of_a_certificate() -> None:
+def test_a_certificate_contains_no_request_ids() -> None:
     texts = set()
     for number in (4, 51):
         line = f'a line that is no answer: {{"id": {number}, "outcome": "acepted"}}'
@@ -104,7 +104,7 @@ def test_the_number_of_a_request_is_no_part_of_a_certificate() -> None:
     assert "acepted" in texts.pop()
 
 
-def test_it_has_a_date_only_where_one_is_given(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_certificate_has_a_date_only_if_given(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
     assert issue(run()).date is None
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1760000000")
@@ -122,20 +122,20 @@ def test_known_failure_is_marked_as_known() -> None:
 # --- its hashes ------------------------------------------------------------------------------------------------------
 
 
-def test_the_hash_of_files_does_not_depend_on_their_order_but_on_each_name_and_byte() -> None:
+def test_the_hash_of_files_depends_on_names_and_bytes_alone() -> None:
     given = files_hash({"a": b"1", "b": b"2"})
     assert files_hash({"b": b"2", "a": b"1"}) == given
     others = [{"a": b"2", "b": b"1"}, {"a": b"1", "c": b"2"}, {"a": b"1"}, {"a": b"12", "b": b""}]
     assert given not in map(files_hash, others)
 
 
-def test_the_hash_of_the_corpus_does_not_depend_on_the_order_of_cases_but_on_each() -> None:
+def test_the_hash_of_the_corpus_ignores_the_order_of_cases() -> None:
     cases = read_cases()
     assert corpus_hash(reversed(cases)) == corpus_hash(cases) == corpus_hash()
     assert corpus_hash(cases[1:]) != corpus_hash(cases)
 
 
-def test_the_hash_of_the_corpus_is_that_of_the_files_that_the_cases_make(tmp_path: Path) -> None:
+def test_the_hash_of_the_corpus_covers_the_files_it_uses(tmp_path: Path) -> None:
     for topic in ("frames", "closures"):
         shutil.copytree(CASES / topic, tmp_path / topic)
 
@@ -150,16 +150,14 @@ def test_the_hash_of_the_corpus_is_that_of_the_files_that_the_cases_make(tmp_pat
     assert hashed() != before
 
 
-def test_the_hash_of_the_properties_changes_with_the_mechanisms_that_they_are_tried_on(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_hash_of_the_properties_covers_their_examples(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     before = fingerprint.properties_hash()
     (tmp_path / "frozen.json").write_bytes(fingerprint.FROZEN.read_bytes() + b"\n")
     monkeypatch.setattr(fingerprint, "FROZEN", tmp_path / "frozen.json")
     assert fingerprint.properties_hash() != before
 
 
-def test_the_hash_of_the_clauses_changes_with_what_one_demands() -> None:
+def test_the_hash_of_the_clauses_covers_their_texts() -> None:
     first, *others = read_clauses().values()
     assert clauses_hash([*others, first]) == clauses_hash()
     assert clauses_hash([replace(first, text="Something else."), *others]) != clauses_hash()
@@ -185,13 +183,13 @@ def test_files_are_written_all_or_none(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{", '{"certificate": "2.0"}', '{"certificate": NaN}'])
-def test_what_is_no_certificate_is_refused(text: str, tmp_path: Path) -> None:
+def test_a_file_that_is_not_a_certificate_is_refused(text: str, tmp_path: Path) -> None:
     (tmp_path / "certificate.json").write_text(text, encoding="utf-8")
     with pytest.raises(NoCertificate, match="is not a certificate"):
         read_certificate(tmp_path)
 
 
-def test_a_certificate_with_a_word_too_many_is_refused(failed: Certificate, tmp_path: Path) -> None:
+def test_a_certificate_with_an_unknown_key_is_refused(failed: Certificate, tmp_path: Path) -> None:
     value = json.loads(failed.to_text()) | {"stars": 5}
     (tmp_path / "certificate.json").write_text(json.dumps(value), encoding="utf-8")
     with pytest.raises(NoCertificate, match="/stars"):
@@ -201,7 +199,7 @@ def test_a_certificate_with_a_word_too_many_is_refused(failed: Certificate, tmp_
 # --- what people see -------------------------------------------------------------------------------------------------
 
 
-def test_the_report_says_what_is_certified_what_failed_by_which_clause_and_why(failed: Certificate) -> None:
+def test_the_report_shows_levels_failures_and_clauses(failed: Certificate) -> None:
     page = text_of(report(failed))
     assert "my_parser 0.3" in page
     assert "Certified for version 2: structure. Not for version 2: accept" in page
@@ -211,7 +209,7 @@ def test_the_report_says_what_is_certified_what_failed_by_which_clause_and_why(f
     assert read_clauses()["EU-CLO-001"].text in page
 
 
-def test_every_link_of_the_report_leads_somewhere_in_it(failed: Certificate) -> None:
+def test_every_link_of_the_report_has_a_target(failed: Certificate) -> None:
     document = html.document_fromstring(report(failed))
     targets = [link.get("href").removeprefix("#") for link in document.iter("a")]
     assert targets
@@ -219,13 +217,13 @@ def test_every_link_of_the_report_leads_somewhere_in_it(failed: Certificate) -> 
     assert len(document.xpath("//@id")) == len(set(document.xpath("//@id")))
 
 
-def test_the_report_and_the_comparison_load_nothing_from_elsewhere(failed: Certificate) -> None:
+def test_the_report_and_the_comparison_load_no_other_files(failed: Certificate) -> None:
     for page in (report(failed), comparison_page([failed, failed])):
         assert not re.findall(r"(?:src|href)=\"(?!#)|url\(|@import|https?:", page)
         assert "<script" not in page
 
 
-def test_what_a_parser_says_of_itself_cannot_become_part_of_a_page_or_a_badge(failed: Certificate) -> None:
+def test_texts_of_a_parser_are_escaped_in_pages_and_badges(failed: Certificate) -> None:
     said = started({"2": [Level.ACCEPT]}, name=HOSTILE)
     given = issue(run({(INVALID, Level.ACCEPT): Verdict.FAILED}, started=said, parser=f"cmd:{HOSTILE}"))
     for page in (report(given), comparison_page([given, failed])):
@@ -235,7 +233,7 @@ def test_what_a_parser_says_of_itself_cannot_become_part_of_a_page_or_a_badge(fa
     etree.fromstring(badge(given))
 
 
-def test_the_report_of_a_parser_that_did_not_start_says_why_and_no_more() -> None:
+def test_the_report_shows_once_why_a_parser_did_not_start() -> None:
     lost = tuple(result(each, Verdict.NOT_STARTED, "there is no such program") for each in PLANNED)
     page = text_of(report(issue(run(started=None, results=lost))))
     assert "could not be started" in page
@@ -250,7 +248,7 @@ def test_the_report_of_a_parser_that_did_not_start_says_why_and_no_more() -> Non
         ({"2": [Level.ACCEPT]}, {(VALID, Level.ACCEPT): 1}, ("Extended URDF", "not certified")),
     ],
 )
-def test_the_badge_names_the_levels_that_are_certified_and_no_other(
+def test_the_badge_names_only_certified_levels(
     claims: dict[str, list[Level]], verdicts: dict[tuple[str, Level], int], texts: tuple[str, str]
 ) -> None:
     given = issue(run(dict.fromkeys(verdicts, Verdict.FAILED), claims=claims))
@@ -271,7 +269,7 @@ def test_badge_shows_all_levels_by_version(failed: Certificate) -> None:
     )
 
 
-def test_the_badge_is_a_picture_with_a_name_in_which_no_text_leaves_its_box(failed: Certificate) -> None:
+def test_the_badge_has_a_title_and_its_texts_fit(failed: Certificate) -> None:
     svg = etree.fromstring(badge(failed))
     space = {"s": "http://www.w3.org/2000/svg"}
     assert svg.get("role") == "img"
@@ -288,7 +286,7 @@ def test_the_badge_is_a_picture_with_a_name_in_which_no_text_leaves_its_box(fail
 # --- several ---------------------------------------------------------------------------------------------------------
 
 
-def test_a_comparison_shows_levels_and_only_the_clauses_on_which_parsers_differ(failed: Certificate) -> None:
+def test_a_comparison_shows_only_clauses_with_different_results(failed: Certificate) -> None:
     other = issue(run(started=started({"2": [Level.ACCEPT, Level.STRUCTURE]}, name="your_parser")))
     page = text_of(comparison_page([failed, other]))
     assert "my_parser 0.3" in page
@@ -299,7 +297,7 @@ def test_a_comparison_shows_levels_and_only_the_clauses_on_which_parsers_differ(
     assert "different versions of the suite" not in page
 
 
-def test_a_comparison_says_that_its_certificates_are_of_different_suites(failed: Certificate) -> None:
+def test_a_comparison_reports_different_versions_of_the_suite(failed: Certificate) -> None:
     older = failed.suite.model_copy(update={"corpus": f"sha256:{'0' * 64}"})
     assert "different versions of the suite" in comparison_page([failed, failed.model_copy(update={"suite": older})])
 
@@ -326,7 +324,7 @@ def test_differing_second_run_lists_differences(failed: Certificate) -> None:
 
 
 @pytest.mark.parametrize(("given", "same"), [("0.3000000002", True), ("0.30001", False)])
-def test_a_second_run_on_another_processor_has_other_last_digits(failed: Certificate, given: str, same: bool) -> None:
+def test_a_second_run_is_compared_up_to_rounding(failed: Certificate, given: str, same: bool) -> None:
     def failing(number: str) -> Certificate:
         difference = f"/values/0/mass: the mass: expected 0.25, got {number}"
         return forged(failed, failures=[each.model_dump() | {"difference": difference} for each in failed.failures])
@@ -375,7 +373,7 @@ def test_missing_badge_or_page_is_reported(failed: Certificate, tmp_path: Path) 
     assert file_differences(tmp_path / "certificate.json", failed) == []  # of which nobody says what is beside it
 
 
-def test_a_certificate_is_the_very_text_that_the_suite_writes(failed: Certificate, tmp_path: Path) -> None:
+def test_a_reformatted_certificate_is_detected(failed: Certificate, tmp_path: Path) -> None:
     write_certificate(tmp_path, failed)
     file = tmp_path / "certificate.json"
     text = file.read_text(encoding="utf-8")
@@ -424,7 +422,7 @@ SOUND = [
 
 
 @pytest.mark.parametrize("certificate", SOUND)
-def test_what_the_suite_writes_agrees_with_itself(certificate: Certificate) -> None:
+def test_a_certificate_of_the_suite_is_consistent(certificate: Certificate) -> None:
     assert own_errors(certificate) == []
 
 
@@ -457,7 +455,7 @@ def test_wrong_command_of_a_case_is_detected(command: str) -> None:
     assert own_errors(forged_failure(SOUND[0], reproduce=command)) == told
 
 
-def test_known_failures_that_are_not_those_of_the_failures_are_found_out() -> None:
+def test_a_wrong_count_of_known_failures_is_reported() -> None:
     version = f"version {REAL.version}, accept"
     assert own_errors(forged_failure(SOUND[0], known=True)) == [
         f"{version}: known_failures is 0, but 1 failures are known"
@@ -484,7 +482,7 @@ def test_known_failures_that_are_not_those_of_the_failures_are_found_out() -> No
         (0, "closures/nobody/accept: the suite has no such item, and is wrong"),
     ],
 )
-def test_what_is_said_of_known_failures_and_does_not_follow_is_found_out(index: int, sentence: str) -> None:
+def test_a_message_about_known_failures_must_follow_from_the_failures(index: int, sentence: str) -> None:
     told = f"unexpected: does not follow from the failures: {sentence}"
     assert own_errors(forged(SOUND[index], unexpected=[sentence])) == [told]
 

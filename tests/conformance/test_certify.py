@@ -100,7 +100,7 @@ def test_reject_all_fails_exactly_the_valid_cases(shared_run: Run) -> None:
     assert not any(level.certified for level in certificate.levels)
 
 
-def test_what_failed_is_shown_with_the_reason_and_the_command_that_runs_it_again(shared_run: Run) -> None:
+def test_a_failure_is_shown_with_reason_and_command(shared_run: Run) -> None:
     done = shared_run("--parser", ACCEPTS, *SOME)
     assert done.returncode == 1
     assert sorted(path.name for path in Path(done.certificate).iterdir()) == [
@@ -116,9 +116,7 @@ def test_what_failed_is_shown_with_the_reason_and_the_command_that_runs_it_again
     assert done.stdout.endswith("always_accepted 1: Not certified at any level\n")
 
 
-def test_the_json_is_the_certificate_and_fits_its_schema_however_the_run_is_spread(
-    folder: Path, shared_run: Run
-) -> None:
+def test_the_certificate_is_the_same_with_any_number_of_processes(folder: Path, shared_run: Run) -> None:
     alone = Path(shared_run("--parser", REJECTS, *SOME).certificate, "certificate.json")
     spread = certificate_of("--parser", REJECTS, *SOME[:-1], "2", "--certificate", "mine")
     jsonschema.Draft202012Validator(certificate_schema()).validate(spread)
@@ -141,7 +139,7 @@ def test_first_try_distinguishes_wrong_adapter_from_wrong_parser(folder: Path) -
     assert adapter.stdout.startswith("your adapter fails")
 
 
-def test_a_first_try_says_of_each_failure_what_it_is_before_it_says_why() -> None:
+def test_a_smoke_run_names_the_verdict_before_the_reason() -> None:
     lacking = result(item(VALID, Level.ACCEPT), Verdict.UNSUPPORTED, "version 2")
     silent = result(item(INVALID, Level.ACCEPT), Verdict.SKIPPED)
     lines = list(smoke_lines([lacking, silent], asked=True))
@@ -149,7 +147,7 @@ def test_a_first_try_says_of_each_failure_what_it_is_before_it_says_why() -> Non
     assert f"  {INVALID}/accept: skipped" in lines
 
 
-def test_a_first_try_that_passes_certifies_nothing(folder: Path) -> None:
+def test_a_smoke_run_that_passes_certifies_nothing(folder: Path) -> None:
     done = certify("--parser", REFERENCE, "--smoke", "--json")
     assert done.returncode == 0, done.stderr
     given = json.loads(done.stdout)
@@ -157,7 +155,7 @@ def test_a_first_try_that_passes_certifies_nothing(folder: Path) -> None:
     assert not any(level["certified"] for level in given["levels"])
 
 
-def test_a_first_try_runs_on_a_terminal_too(folder: Path) -> None:
+def test_a_smoke_run_works_in_a_terminal(folder: Path) -> None:
     code, seen = on_a_terminal(["-m", "eurdf", "certify", "--parser", REFERENCE, "--smoke"])
     assert (code, "certifying" in seen) == (0, True)
 
@@ -211,7 +209,7 @@ def test_bad_file_of_known_failures_is_refused_first(folder: Path) -> None:
 # --- what does not run -----------------------------------------------------------------------------------------------
 
 
-def test_a_parser_that_does_not_start_exits_with_2_and_shows_what_it_wrote(folder: Path) -> None:
+def test_a_parser_that_does_not_start_gives_exit_code_2(folder: Path) -> None:
     done = certify("--parser", f"cmd:{shlex.quote(sys.executable)} nowhere.py")
     assert (done.returncode, done.stdout) == (2, "")
     assert "nowhere.py" in done.stderr.splitlines()[0]
@@ -224,7 +222,7 @@ def test_requested_but_unclaimed_level_is_not_certified(folder: Path) -> None:
     assert done.stdout.endswith("always_rejected 1: Not certified at any level\n")
 
 
-def test_without_the_suites_packages_it_says_what_to_install(
+def test_missing_packages_of_the_suite_are_named(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr("eurdf_conformance.command.certify.missing", lambda: ["hypothesis"])
@@ -234,7 +232,7 @@ def test_without_the_suites_packages_it_says_what_to_install(
     assert said.count("\n") == 1
 
 
-def test_without_the_suite_it_says_what_to_install(
+def test_a_missing_suite_is_reported_with_how_to_install_it(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr("eurdf.commands.certify.entry_points", lambda **_: ())
@@ -244,7 +242,7 @@ def test_without_the_suite_it_says_what_to_install(
     assert "pip install" in said  # by a path, where the `pip` that a shell finds is another environment's
 
 
-def test_the_users_own_settings_of_pytest_have_no_part_in_it(folder: Path) -> None:
+def test_pytest_settings_of_the_user_have_no_effect(folder: Path) -> None:
     (folder / "pytest.ini").write_text("[pytest]\naddopts = --no-such-option\n", encoding="utf-8")
     (folder / "conftest.py").write_text("raise RuntimeError('not mine')\n", encoding="utf-8")
     done = certify("--parser", REFERENCE, "--smoke", PYTEST_ADDOPTS="--no-such-option", PYTEST_PLUGINS="no_such_plugin")
@@ -269,7 +267,7 @@ def test_the_users_own_settings_of_pytest_have_no_part_in_it(folder: Path) -> No
         ["--compare", "nowhere", "-o", "page.html"],
     ],
 )
-def test_what_cannot_be_done_exits_with_2_in_one_line(
+def test_impossible_options_give_one_line_and_exit_code_2(
     argv: list[str], folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["certify", *argv]) == 2
@@ -281,7 +279,7 @@ def test_what_cannot_be_done_exits_with_2_in_one_line(
 
 
 @pytest.mark.parametrize("name", ["report.html", "badge.svg"])
-def test_no_certificate_is_written_over_what_is_none(
+def test_other_files_are_not_overwritten_by_a_certificate(
     name: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     Path("mine").mkdir()
@@ -377,7 +375,7 @@ def test_replay_reports_changes_of_the_file(folder: Path) -> None:
     ]
 
 
-def test_what_a_parser_writes_that_does_not_start_steers_no_terminal(folder: Path) -> None:
+def test_control_characters_of_a_parser_that_fails_are_escaped(folder: Path) -> None:
     program = r"import sys; sys.stderr.write('\x1b[2J\u202e no licence\n'); sys.exit(3)"
     done = certify("--parser", "cmd:" + shlex.join([sys.executable, "-c", program]))
     assert done.returncode == 2
@@ -393,7 +391,7 @@ def test_a_comparison_is_one_page_of_all_its_certificates(folder: Path, shared_r
     assert "Clauses with different results" in page
 
 
-def test_a_comparison_replaces_nothing_unasked(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_comparison_overwrites_nothing_unasked(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     certify("--parser", REJECTS, "--smoke", "--certificate", "a")
     Path("page.html").write_text("of somebody else", encoding="utf-8")
     assert main(["certify", "--compare", "a", "-o", "page.html"]) == 2
@@ -403,7 +401,7 @@ def test_a_comparison_replaces_nothing_unasked(folder: Path, capsys: pytest.Capt
     assert "always_rejected 1" in Path("page.html").read_text(encoding="utf-8")
 
 
-def test_page_distinguishes_parsers_of_one_name(folder: Path) -> None:
+def test_a_page_distinguishes_parsers_with_the_same_name(folder: Path) -> None:
     certify("--parser", REJECTS, "--smoke", "--certificate", "a")
     (Path("a") / "certificate.json").rename("one.json")
     text = Path("one.json").read_text(encoding="utf-8")

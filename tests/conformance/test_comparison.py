@@ -38,7 +38,7 @@ slow = settings(suppress_health_check=[HealthCheck.too_slow], deadline=None, max
         ("1 2", "1 2 3", False),
     ],
 )
-def test_two_texts_are_the_same_but_for_rounding_and_white_space(one: str, other: str, same: bool) -> None:
+def test_texts_are_compared_up_to_rounding_and_white_space(one: str, other: str, same: bool) -> None:
     assert same_text(one, other, relative=1e-9, absolute=1e-12) is same
     assert same_text(other, one, relative=1e-9, absolute=1e-12) is same
 
@@ -56,7 +56,7 @@ def test_a_description_is_equal_to_itself_in_another_style(data: st.DataObject, 
 
 @slow
 @given(st.data(), robots())
-def test_one_number_changed_is_a_difference_that_points_at_it(data: st.DataObject, read: Read) -> None:
+def test_a_changed_number_is_a_difference_with_its_pointer(data: st.DataObject, read: Read) -> None:
     robot = read.robot.model_dump(mode="json")
     places = numbers_in(robot)
     assume(places)
@@ -96,7 +96,7 @@ def test_any_link_of_a_body_identifies_it() -> None:
     assert (found.pointer, found.expected, found.given) == ("/joints/0/child", "b", "a")
 
 
-def test_two_revolutes_about_a_body_of_no_link_are_one_universal_joint() -> None:
+def test_two_revolutes_around_a_massless_body_equal_a_universal_joint() -> None:
     lists = {key: [0.0, 0.0] for key in ("velocity", "effort", "damping", "friction", "armature")}
     universal = joint("j", "universal", lower=[-1.0, -1.0], upper=[1.0, 1.0], **lists)
     pair = [joint("j_X", child="between"), joint("j_Y", parent="between", child="c")]
@@ -111,7 +111,7 @@ def test_two_revolutes_about_a_body_of_no_link_are_one_universal_joint() -> None
     assert canonical_differences(robot([universal]), robot([*pair, third]), BODIES)
 
 
-def test_what_was_said_of_two_halves_of_a_universal_joint_is_said_of_it() -> None:
+def test_properties_of_both_halves_belong_to_the_universal_joint() -> None:
     pair = [joint("j_X", child="between"), joint("j_Y", parent="between", child="c")]
     both = [{"joint": "j_X", "gear_ratio": [2.0]}, {"joint": "j_Y", "rotor_inertia": [3.0]}]
     one = robot(pair, actuators=both, configurations={"q": {"j_Y": [0.5]}})
@@ -127,14 +127,14 @@ def test_what_was_said_of_two_halves_of_a_universal_joint_is_said_of_it() -> Non
     ]
 
 
-def test_joints_of_a_parser_that_make_no_sense_are_differences_and_no_crash() -> None:
+def test_senseless_joints_are_differences() -> None:
     ring = robot([joint("j_1", child="x", parent="x"), joint("j_2", parent="x", child="x")])
     chain = robot([joint("j", child="x"), joint("k", parent="x", child="y"), joint("l", parent="y", child="x")])
     for nonsense in (ring, chain, robot([joint("j", lower=[]), joint("j")])):
         assert canonical_differences(robot([joint("j")]), nonsense, BODIES)
 
 
-def test_a_revolute_joint_without_limits_is_continuous_and_one_with_a_limit_is_not() -> None:
+def test_a_revolute_joint_without_limits_equals_a_continuous_one() -> None:
     continuous = robot([joint("j", "continuous")])
     assert canonical_differences(continuous, robot([joint("j", lower=[None], upper=[None])]), BODIES) == []
     assert canonical_differences(continuous, robot([joint("j", lower=[None])]), BODIES)
@@ -167,7 +167,7 @@ def test_coordinates_of_a_configuration(kind: str, one: Any, other: Any, same: b
 
 
 @pytest.mark.parametrize("kind", COORDINATES)
-def test_coordinates_that_are_too_many_or_too_few_are_those_of_no_joint(kind: str) -> None:
+def test_a_wrong_number_of_coordinates_is_a_difference(kind: str) -> None:
     assert same_coordinates(kind, neutral(kind), neutral(kind))
     for wrong in ([], neutral(kind)[1:], [*neutral(kind), 0.0]):
         assert not same_coordinates(kind, wrong, wrong)
@@ -179,7 +179,7 @@ def test_missing_neutral_configuration_is_reported() -> None:
     assert (found.pointer, found.expected, found.given) == ("/configurations/q", {}, ABSENT)
 
 
-def test_in_the_users_own_data_true_is_not_one_and_order_of_a_list_counts() -> None:
+def test_user_data_is_compared_by_type_and_order() -> None:
     def own(value: Any) -> CanonicalRobot:
         return robot([], own={"/x-a": value})
 
@@ -201,7 +201,7 @@ def values(**quantities: Any) -> Values:
     return Values.model_validate(quantities, strict=False)
 
 
-def test_poses_within_a_hundred_millionth_of_the_robots_size_are_the_same() -> None:
+def test_the_tolerance_of_poses_scales_with_the_robots_size() -> None:
     eye = np.eye(3).tolist()
 
     def at(x: float) -> Values:
@@ -213,7 +213,7 @@ def test_poses_within_a_hundred_millionth_of_the_robots_size_are_the_same() -> N
     assert values_differences(at(0.0), at(1.1e-8), size=2.0) == []
 
 
-def test_a_rotation_is_not_off_by_more_because_the_robot_is_large() -> None:
+def test_the_tolerance_of_rotations_is_independent_of_size() -> None:
     def at(angle: float, x: float) -> Values:
         turned = [[math.cos(angle), -math.sin(angle), 0.0], [math.sin(angle), math.cos(angle), 0.0], [0.0, 0.0, 1.0]]
         pose = {"tip": {"rotation": turned, "translation": [x, 0.0, 0.0]}}
@@ -227,7 +227,7 @@ def test_a_rotation_is_not_off_by_more_because_the_robot_is_large() -> None:
     assert all("off by 1.1e-08, allowed 1.0e-08" in each.why for each in found)
 
 
-def test_a_quantity_or_a_frame_that_is_missing_is_a_difference() -> None:
+def test_a_missing_or_surplus_quantity_is_a_difference() -> None:
     expected = values(mass=1.0, residuals={"pin": [0.0, 0.0, 0.0]})
     assert [found.pointer for found in values_differences(expected, values(mass=1.0), 1.0)] == ["/residuals"]
     both = values(mass=1.0, residuals={"other": [0.0, 0.0, 0.0]})
@@ -266,12 +266,12 @@ def test_columns_of_k_can_have_any_order() -> None:
         (COLUMNS, K[:, :3], "/jacobian/rows/pin"),
     ],
 )
-def test_columns_and_rows_of_k_that_are_too_many_or_too_few(columns: Any, matrix: Any, pointer: str) -> None:
+def test_missing_and_surplus_columns_and_rows_are_differences(columns: Any, matrix: Any, pointer: str) -> None:
     found = values_differences(jacobian(COLUMNS, K), jacobian(columns, matrix), 1.0)
     assert pointer in [difference.pointer for difference in found]
 
 
-def test_what_weighs_nothing_has_no_centre_of_mass() -> None:
+def test_a_massless_robot_has_no_centre_of_mass() -> None:
     nothing = Values(mass=0.0)
     assert values_differences(nothing, Values(mass=0.0), 1.0) == []
     (found,) = values_differences(nothing, Values(mass=0.0, center_of_mass=[0.0, 0.0, 0.0]), 1.0)
@@ -314,7 +314,7 @@ def twin_of_half_turn() -> Any:
     return log6(exp6(HALF_TURN[:3], HALF_TURN[3:] * (1 + 1e-9)))
 
 
-def test_at_a_half_turn_either_value_of_the_residual_is_right_and_nothing_between() -> None:
+def test_at_a_half_turn_both_residuals_are_right() -> None:
     def at(residual: Any) -> Values:
         return values(residuals={"pin": list(residual)})
 
@@ -338,7 +338,7 @@ def derivative(residual: Any, velocity: Any) -> Any:
     return (forward - back) / (2 * h)
 
 
-def test_at_a_half_turn_k_goes_with_the_value_of_the_residual_that_is_given() -> None:
+def test_at_a_half_turn_each_residual_has_its_own_k() -> None:
     beyond = log6(exp6(HALF_TURN[:3], HALF_TURN[3:] * (1 + 1e-5)))
     before = np.concatenate([HALF_TURN[:3], HALF_TURN[3:] * (1 - 1e-5)])
     K, K_twin = (np.array([derivative(at, each) for each in np.eye(6)]).T for at in (before, beyond))
@@ -347,7 +347,7 @@ def test_at_a_half_turn_k_goes_with_the_value_of_the_residual_that_is_given() ->
     assert np.allclose(twin_rows(HALF_TURN, K), K_twin, atol=1e-3)
 
 
-def test_a_half_turn_is_compared_with_the_k_that_goes_with_it() -> None:
+def test_k_at_a_half_turn_must_match_the_given_residual() -> None:
     columns = [("j", k) for k in range(6)]
 
     def at(residual: Any, rows: Any) -> Values:
@@ -399,7 +399,7 @@ def test_error_of_a_whole_file_has_no_line() -> None:
     assert error_differences(whole, [issue("file-not-utf8", line=1, column=1)])
 
 
-def test_where_a_text_stops_being_yaml_is_for_each_parser_to_say() -> None:
+def test_a_yaml_syntax_error_may_be_at_any_place() -> None:
     fault = ExpectedWarning(code="yaml-syntax", place=PLACE)
     assert error_differences(fault, [issue("yaml-syntax", line=9, column=1)]) == []
     assert error_differences(fault, [issue("yaml-syntax", file=None, line=None, column=None)]) == []

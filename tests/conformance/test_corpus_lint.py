@@ -29,7 +29,7 @@ def laid(root: Path, file: str = VALID, old: str = "", new: str = "") -> Path:
     return root
 
 
-def test_sound_cases_have_no_error(tmp_path: Path) -> None:
+def test_valid_cases_have_no_lint_errors(tmp_path: Path) -> None:
     assert lint.lint(laid(tmp_path)) == []
 
 
@@ -96,7 +96,7 @@ BROKEN = [
 
 
 @pytest.mark.parametrize(("rules", "file", "old", "new", "says"), BROKEN, ids=[f"{row[0]}-{row[4]}" for row in BROKEN])
-def test_a_broken_rule_is_found_and_no_other(
+def test_a_violated_lint_rule_is_reported_alone(
     rules: str, file: str, old: str, new: str, says: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(lint, "LINES", 2)
@@ -108,20 +108,18 @@ def test_a_broken_rule_is_found_and_no_other(
 @pytest.mark.parametrize(
     "path", ["actuation/notes.txt", "cranes/crane.yaml", "actuation/motors/deep.yaml", "actuation/Motor_2.yaml"]
 )
-def test_a_file_that_is_no_case_is_found(path: str, tmp_path: Path) -> None:
+def test_a_file_that_is_not_a_case_is_reported(path: str, tmp_path: Path) -> None:
     stray = laid(tmp_path) / path
     stray.parent.mkdir(exist_ok=True)
     stray.touch()
     assert [(error.path, error.rule) for error in lint.lint(tmp_path)] == [(stray, "name")]
 
 
-def test_every_rule_has_a_row_that_breaks_it() -> None:
+def test_every_lint_rule_has_a_row_that_violates_it() -> None:
     assert {rule for rules, *_ in BROKEN for rule in rules.split()} == {"case", *lint.RULES_OF_CASES}
 
 
-def test_the_command_says_what_is_wrong_and_what_is_not_tested(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_lint_command_lists_errors_and_missing_cases(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     root = str(laid(tmp_path))
     assert lint.main([root]) == 0
     out = capsys.readouterr().out
@@ -137,7 +135,7 @@ def test_the_command_says_what_is_wrong_and_what_is_not_tested(
 # The lines of a file
 
 
-def test_lines_end_at_any_line_end_and_a_byte_order_mark_is_none_of_them(tmp_path: Path) -> None:
+def test_lines_end_at_any_line_break_without_byte_order_mark(tmp_path: Path) -> None:
     path = tmp_path / "robot.yaml"
     path.write_bytes("\ufeffa\rb\r\nc\u2028d\ne".encode())
     assert lines_of(path) == ["a", "b", "c\u2028d", "e"]
@@ -186,7 +184,7 @@ def clause(
         (clause("SHOULD NOT", codes=("one",)), [case("EU-FRM-001", warning="one")], []),
     ],
 )
-def test_what_is_missing_for_a_clause(clauses: dict[str, Clause], cases: list[Case], lacks: list[str]) -> None:
+def test_cases_missing_for_a_clause_are_listed(clauses: dict[str, Clause], cases: list[Case], lacks: list[str]) -> None:
     found = list(missing(cases, clauses))
     assert found == ([f"EU-FRM-001 (version 2): {', '.join(lacks)}"] if lacks else [])
     assert list(missing(cases, clauses, elsewhere=["EU-FRM-001"])) == []
@@ -199,12 +197,12 @@ def test_what_is_missing_for_a_clause(clauses: dict[str, Clause], cases: list[Ca
         ([case("EU-FRM-001"), case("EU-FRM-001", code="one", version="1")], ["a valid case", "an invalid case (one)"]),
     ],
 )
-def test_a_case_of_one_version_tests_a_clause_in_that_one_alone(cases: list[Case], lacks: list[str]) -> None:
+def test_a_case_tests_a_clause_in_its_version_only(cases: list[Case], lacks: list[str]) -> None:
     found = list(missing(cases, clause(codes=("one",), versions=VERSIONS)))
     assert found == [f"EU-FRM-001 (version {version}): {lack}" for version, lack in zip(VERSIONS, lacks, strict=True)]
 
 
-def test_a_version_that_cannot_say_a_clause_needs_no_case_and_has_none() -> None:
+def test_a_clause_that_a_version_cannot_express_has_no_case() -> None:
     clauses = read_clauses()
     for name, why in UNSAID.items():
         assert set(said_in(clauses[name])) == set(clauses[name].versions) - set(why) != set(clauses[name].versions)

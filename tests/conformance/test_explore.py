@@ -66,13 +66,13 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Judgement]:
     return folder, explored("agreement", UniversalBackwards(), folder)
 
 
-def test_what_is_found_is_small(found: tuple[Path, Judgement]) -> None:
+def test_the_written_case_is_small(found: tuple[Path, Judgement]) -> None:
     robot = the_case(found[0]).expected.robot
     assert [joint.type for joint in robot.joints] == ["universal"]
     assert (robot.closures, robot.actuators, robot.frames) == ([], [], [])
 
 
-def test_what_is_found_is_written_as_a_case_that_the_lint_takes(found: tuple[Path, Judgement]) -> None:
+def test_a_failure_is_written_as_a_case_without_lint_errors(found: tuple[Path, Judgement]) -> None:
     folder, judgement = found
     assert judgement.verdict == Verdict.FAILED
     assert lint(folder / "explored") == []
@@ -94,7 +94,7 @@ def test_found_case_explains_how_to_keep_and_run_it(found: tuple[Path, Judgement
     assert f"-k {case.name}" in judgement.log.splitlines()[-1]
 
 
-def test_the_case_is_one_that_the_wrong_parser_fails_and_the_reference_passes(found: tuple[Path, Judgement]) -> None:
+def test_the_written_case_separates_wrong_parser_and_reference(found: tuple[Path, Judgement]) -> None:
     case = the_case(found[0])
     assert judge(case, Level.KINEMATICS, Conversation(InProcess(UniversalBackwards()))).verdict == Verdict.FAILED
     for level in case.levels:
@@ -102,7 +102,7 @@ def test_the_case_is_one_that_the_wrong_parser_fails_and_the_reference_passes(fo
 
 
 @pytest.mark.slow
-def test_of_two_robots_that_do_not_agree_the_one_that_is_read_wrong_is_written(tmp_path: Path) -> None:
+def test_of_two_differing_robots_the_misread_one_is_written(tmp_path: Path) -> None:
     # The property compares frames that are said in place, which this parser gets wrong, with others.
     explored("frames", ForgetsInlineAngles(), tmp_path)
     case = the_case(tmp_path)
@@ -111,7 +111,7 @@ def test_of_two_robots_that_do_not_agree_the_one_that_is_read_wrong_is_written(t
     assert case.topic == "closures"
 
 
-def test_where_there_is_nothing_to_find_nothing_is_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_case_is_written_without_a_failure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     judgement = explored("moving-base", OracleParser(), tmp_path, 60)
     assert judgement.verdict == Verdict.PASSED
@@ -135,7 +135,7 @@ def test_a_family_is_explored_by_its_size(tmp_path: Path) -> None:
     assert len(found[0].mechanism.joints) == 10
 
 
-def test_a_crash_is_made_small_as_a_crash(tmp_path: Path) -> None:
+def test_a_crash_is_shrunk_to_a_smaller_crash(tmp_path: Path) -> None:
     class CrashesOnBalls(InProcess):
         def load(self, description: Path, urdf: Path) -> Outcome:
             if "spherical" in description.read_text("utf-8"):
@@ -152,7 +152,7 @@ def test_a_crash_is_made_small_as_a_crash(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("version", VERSIONS)
-def test_a_mechanism_with_a_part_less_is_one_and_its_loops_are_closed(version: Version) -> None:
+def test_a_reduced_mechanism_still_closes_its_loops(version: Version) -> None:
     lost = Counter[str]()
     examples = [example.mechanism for example in frozen_examples(version)[:24]]
     # What holds no loop together may go too.
@@ -174,7 +174,7 @@ def kinds(mechanism: Mechanism) -> Iterator[str]:
     yield from ("joint" for _ in mechanism.joints)
 
 
-def test_misread_robot_is_blamed_not_the_last_one(tmp_path: Path) -> None:
+def test_the_misread_robot_is_blamed_not_the_last(tmp_path: Path) -> None:
     harness = Harness(InProcess(ForgetsInlineAngles()), tmp_path)
     prop = property_of("frames")
     example = next(
@@ -186,7 +186,7 @@ def test_misread_robot_is_blamed_not_the_last_one(tmp_path: Path) -> None:
     assert culprit(harness, Level.KINEMATICS) == harness.queries[0][0]
 
 
-def test_exploring_goes_on_after_a_frozen_example_has_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_exploring_continues_after_a_frozen_example_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "files").mkdir()
     trial = Trial(InProcess(UniversalBackwards()), "2", COUNT, tmp_path / "files", SEED)
@@ -195,9 +195,7 @@ def test_exploring_goes_on_after_a_frozen_example_has_failed(tmp_path: Path, mon
     assert "written as a case: explored/joints/" in judgement.log
 
 
-def test_where_only_a_frozen_example_fails_it_is_said_that_exploring_has_found_no_more(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_log_says_when_only_a_frozen_example_fails(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "files").mkdir()
     # A single mechanism, the plainest, which has no universal joint.

@@ -33,7 +33,7 @@ def test_a_correct_parser_is_not_caught(parser: type, version: Version) -> None:
 
 
 @pytest.mark.parametrize("name", SPEAKERS)
-def test_a_rule_of_the_protocol_catches_the_speaker(name: str) -> None:
+def test_a_protocol_rule_catches_the_wrong_program(name: str) -> None:
     speaker = SPEAKERS[name]
     three = SMOKE[VERSIONS[-1]]
     valid, invalid = (smoke_case(all_cases(), case_id) for case_id in (three.valid, three.invalid))
@@ -56,5 +56,5 @@ def test_each_clause_without_a_mutant_is_a_must() -> None:
     assert [name for name in UNBROKEN if name not in read_clauses() or not read_clauses()[name].must] == []
 
 
-def test_a_mutant_says_in_a_sentence_what_is_wrong() -> None:
+def test_each_mutant_has_a_one_sentence_docstring() -> None:
     assert [m.name for m in MUTANTS.values() if not m.breaks.endswith(".")] == []

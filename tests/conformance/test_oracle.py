@@ -88,7 +88,7 @@ def test_locked_joint_welds_its_child_at_zero() -> None:
     assert found.bodies == [["base", "end"], ["tip"]]
 
 
-def test_a_chain_of_mimics_follows_its_first() -> None:
+def test_a_chain_of_mimic_joints_moves_with_its_first_leader() -> None:
     found = robot(
         chain(
             joint("c", "prismatic", "base", "link_c"),
@@ -106,7 +106,7 @@ def test_a_chain_of_mimics_follows_its_first() -> None:
         found.evaluate({"a": [1.0]}, [], ["residuals"])
 
 
-def test_the_residual_of_a_quarter_turn_is_the_screw_that_makes_it() -> None:
+def test_the_residual_of_a_quarter_turn_is_its_screw() -> None:
     found = robot(
         chain(joint("j", "revolute", "base", "end")),
         two("closures: [{name: loop, type: 6d, frames: [base, {link: end, xyz: [0, -1, 0]}]}]"),
@@ -117,7 +117,7 @@ def test_the_residual_of_a_quarter_turn_is_the_screw_that_makes_it() -> None:
     np.testing.assert_allclose(found.jacobian({"j": [pi / 2]}).T, [[0.5, pi / 4 - 0.5, 0, 0, 0, 1]], atol=1e-12)
 
 
-def test_the_residual_is_seen_from_a_also_where_a_moves() -> None:
+def test_the_residual_is_expressed_in_a_moving_frame_a() -> None:
     found = robot(
         chain(joint("j", "revolute", "base", "arm")),
         two("closures: [{name: loop, type: 3d, frames: [arm, {link: base, xyz: [2, 0, 0]}]}]"),
@@ -126,7 +126,7 @@ def test_the_residual_is_seen_from_a_also_where_a_moves() -> None:
     np.testing.assert_allclose(found.jacobian({"j": [0.3]}).T, [[-2 * sin(0.3), -2 * cos(0.3), 0]], atol=1e-12)
 
 
-def test_the_mass_matrix_of_an_arm_of_two_links_is_the_textbooks() -> None:
+def test_the_mass_matrix_of_a_two_link_arm_is_right() -> None:
     m1, m2, l1, c1, c2, I1, I2 = 2.0, 1.5, 0.7, 0.3, 0.4, 0.05, 0.02
     found = robot(
         [
@@ -150,7 +150,7 @@ def test_the_mass_matrix_of_an_arm_of_two_links_is_the_textbooks() -> None:
     np.testing.assert_allclose(values.center_of_mass, center / (m1 + m2 + 5.0), atol=1e-12)  # type: ignore[arg-type]
 
 
-def test_a_root_that_floats_has_the_inertia_of_the_whole_in_its_own_frame() -> None:
+def test_a_floating_root_has_the_total_inertia_in_its_frame() -> None:
     found = robot([link("body", 3.0, (0, 0, 0.5), (1, 2, 3))], two("root: floating"))
     q = {"root_joint": [1000.0, 0, 0, 0, 0, sqrt(0.5), sqrt(0.5)]}
     M = np.diag([3.0, 3, 3, 1 + 0.75, 2 + 0.75, 3])
@@ -161,7 +161,7 @@ def test_a_root_that_floats_has_the_inertia_of_the_whole_in_its_own_frame() -> N
     assert found.velocities == [("root_joint", i) for i in range(6)]
 
 
-def test_what_weighs_nothing_has_no_centre_of_mass() -> None:
+def test_a_massless_robot_has_no_centre_of_mass() -> None:
     assert robot([link("body")]).evaluate({}, [], ["mass", "center_of_mass"]).model_dump(exclude_none=True) == {
         "mass": 0
     }
@@ -175,7 +175,7 @@ def test_ambiguous_frame_name_is_refused() -> None:
         origin(found, {}, "base")
 
 
-def test_the_size_of_a_robot_is_the_largest_distance_of_its_frames() -> None:
+def test_the_robot_size_is_the_largest_distance_between_frames() -> None:
     found = robot(
         chain(joint("j", "prismatic", "base", "end", xyz=(3, 0, 0))),
         two("root: floating\nframes: [{name: tip, link: base, xyz: [0, 4, 0]}]"),
@@ -210,7 +210,7 @@ def test_a_mechanism_has_the_dimensions_of_the_textbook(name: str, known: tuple[
     assert tuple(vars(found.dimensions(closed)).values()) == known
 
 
-def test_no_joint_that_moves_is_no_velocity() -> None:
+def test_a_robot_without_moving_joints_has_no_velocities() -> None:
     found = robot(chain(joint("j", "fixed", "base", "end", xyz=(1, 0, 0))))
     assert found.velocities == []
     assert found.mass_matrix({}).shape == (0, 0)

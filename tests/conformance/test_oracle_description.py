@@ -40,7 +40,7 @@ def position(found: OracleRobot, frame: str, q: dict[str, list[float]] | None = 
         ("prismatic", "{limits: {upper: 1.5}}", [-1], [1.5]),
     ],
 )
-def test_position_limits_bound_the_coordinates_of_their_kind_but_for_those_stated(
+def test_stated_position_limits_replace_those_of_the_urdf(
     kind: str, entry: str, lower: list[float], upper: list[float]
 ) -> None:
     found = canonical_joint(kind, entry)
@@ -58,26 +58,24 @@ def test_position_limits_bound_the_coordinates_of_their_kind_but_for_those_state
         ("{armature: 0.5, friction: 0, limits: {effort: 1}}", [[3], [1], [5], [0], [0.5]]),
     ],
 )
-def test_other_properties_stay_the_urdfs_for_each_velocity_but_for_those_stated(
-    entry: str, expected: list[list[float]]
-) -> None:
+def test_stated_joint_properties_replace_those_of_the_urdf(entry: str, expected: list[list[float]]) -> None:
     found = canonical_joint("revolute", entry)
     assert [found.velocity, found.effort, found.damping, found.friction, found.armature] == expected
 
 
-def test_what_is_said_of_a_length_holds_for_the_angle_of_a_screw() -> None:
+def test_properties_of_a_helical_joint_are_converted_to_its_angle() -> None:
     found = canonical_joint("prismatic", f"{{type: helical, pitch: {-4 * pi}, limits: {{effort: 7}}}}")  # |h| / 2π = 2
     numbers = [found.lower, found.upper, found.velocity, found.effort, found.damping, found.friction]
     assert numbers == [pytest.approx([value]) for value in (-1, 0.5, 1.5, 7, 20, 12)]
 
 
-def test_limits_and_damping_of_a_planar_joint_are_the_descriptions_only() -> None:
+def test_a_planar_joint_takes_no_properties_from_the_urdf() -> None:
     found = canonical_joint("planar", "{damping: [1, 2, 3]}")
     assert (found.velocity, found.effort, found.friction, found.lower) == ([None] * 3, [None] * 3, [0] * 3, [])
     assert found.damping == [1, 2, 3]
 
 
-def test_a_root_that_floats_is_a_joint_of_configurations_and_nothing_else() -> None:
+def test_only_configurations_can_name_the_root_joint() -> None:
     elements = chain(joint("j", "revolute", "base", "end"))
     floating = two("root: floating\nconfigurations: {q: {root_joint: [1, 2, 3, 0, 0, 0, 2]}}\n")
     found = robot(elements, floating)
@@ -89,7 +87,7 @@ def test_a_root_that_floats_is_a_joint_of_configurations_and_nothing_else() -> N
 
 
 @pytest.mark.parametrize(("entry", "armature"), [("cylindrical", [200.0, 200.0]), ("{armature: 0}", [0.0])])
-def test_the_armature_is_the_rotors_through_the_gear_unless_it_is_stated(entry: str, armature: list[float]) -> None:
+def test_a_stated_armature_replaces_the_reflected_rotor_inertia(entry: str, armature: list[float]) -> None:
     actuators = "actuators: [{joint: j, gear_ratio: -10, rotor_inertia: 2}]"
     assert canonical_joint("revolute", entry, actuators).armature == armature
 
@@ -101,7 +99,7 @@ BALL = (
 )
 
 
-def test_merged_joints_turn_about_the_point_where_their_axes_meet_and_their_names_stay() -> None:
+def test_merged_joints_rotate_about_their_center_and_keep_names() -> None:
     found = robot(chain(*BALL), two("joints: {ball: {type: spherical, merges: [rx, ry, rz]}}"))
     assert found.velocities == [("ball", 0), ("ball", 1), ("ball", 2)]
     quarter_turn_about_y_of_the_frame = {"ball": [0, 1, 0, 1]}  # which is −x of the base
@@ -121,7 +119,7 @@ def test_merged_joints_turn_about_the_point_where_their_axes_meet_and_their_name
     assert found.bodies == [["base", "x", "y"], ["end"]]
 
 
-def test_the_centre_of_merged_joints_is_nearest_to_their_axes_in_the_sense_of_least_squares() -> None:
+def test_the_center_of_merged_axes_is_the_least_squares_point() -> None:
     # Squares: y² + z², x² + (z − d)², x² + (y − 2d)². The carried link is at (0, 2d, up).
     half_turn_about_x = position(crossing(d := 6e-5, up := 0.1), "end", {"rz": [1, 0, 0, 0]})
     np.testing.assert_allclose(half_turn_about_x, [0, 0, d - up], atol=1e-12)
@@ -152,7 +150,7 @@ ONE_BALL = chain(
 )
 
 
-def test_version_1_finds_a_ball_and_names_it_by_its_last() -> None:
+def test_version_1_names_a_merged_joint_by_the_last() -> None:
     found = robot(ONE_BALL, "name_mot: [rz]")
     assert found.velocities == [("rz", 0), ("rz", 1), ("rz", 2), ("other", 0)]
     assert found.canonical().actuators[0].gear_ratio == [1, 1, 1]
@@ -204,14 +202,14 @@ def test_the_mimic_of_a_fixed_joint_has_no_effect() -> None:
     assert [joint.mimic for joint in found.joints] == [None] * 4
 
 
-def test_of_four_revolutes_in_a_row_the_first_three_from_the_root_are_a_ball() -> None:
+def test_the_first_three_of_four_revolutes_are_merged() -> None:
     axes = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 0, 0)]
     row = [joint(f"j{i}", "revolute", f"l{i}", f"l{i + 1}", axis) for i, axis in enumerate(axes)]
     found = robot(chain(*row[::-1]), "{}")
     assert [joint.name for joint in found.canonical().joints] == ["j2", "j3"]
 
 
-def test_version_1_makes_two_joints_of_a_universal_one_about_the_first_axis_and_then_the_second() -> None:
+def test_version_1_splits_a_universal_joint_in_axis_order() -> None:
     found = robot(
         chain(joint("j", "revolute", "base", "end", xyz=(0, 0, 1), more=LIMIT)),
         "joint_name: [j]\njoint_type: [UJOINT_ZX]\nname_mot: [j_X]\nclosed_loop: [[base, j]]\ntype: [3D]",
@@ -228,7 +226,7 @@ def test_version_1_makes_two_joints_of_a_universal_one_about_the_first_axis_and_
         robot(chain(joint("j", "revolute", "base", "end")), "joint_name: [j]\njoint_type: [UJOINT_ZX]\nname_mot: [j]")
 
 
-def test_version_1_closes_in_6d_where_it_says_no_type_and_fixes_the_root() -> None:
+def test_version_1_defaults_to_6d_and_a_fixed_root() -> None:
     found = robot(ONE_BALL, "closed_loop: [[end, far]]").canonical()
     assert (found.closures[0].type, found.version, found.root) == ("6d", "1", "fixed")
 
@@ -282,7 +280,7 @@ def test_configurations_are_lists_with_quaternions_of_unit_length() -> None:
         "[]",
     ],
 )
-def test_what_the_oracle_is_not_sure_of_it_does_not_read(yaml: str) -> None:
+def test_the_oracle_does_not_read_doubtful_files(yaml: str) -> None:
     with pytest.raises(NotRead):
         robot(chain(joint("j", "revolute", "base", "end")), yaml)
 

@@ -53,7 +53,7 @@ def test_k_is_the_derivative_of_the_residual_along_every_velocity(drawn: Any) ->
 
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(mechanisms("1") | mechanisms("2"))
-def test_m_is_symmetric_and_gives_the_sum_of_the_bodies_energies(drawn: Any) -> None:
+def test_m_is_symmetric_and_gives_the_kinetic_energy(drawn: Any) -> None:
     found, q, v = placed(drawn)
     M = found.mass_matrix(q) - np.diag(found.armature)
     np.testing.assert_allclose(M, M.T, atol=1e-12 * np.max(np.abs(M), initial=0.0))
@@ -77,7 +77,7 @@ def test_m_is_symmetric_and_gives_the_sum_of_the_bodies_energies(drawn: Any) -> 
 
 @settings(max_examples=40, deadline=None, derandomize=True)
 @given(mechanisms("2"))
-def test_merging_and_locking_keep_mass_and_at_neutral_its_centre_and_all_poses(drawn: Any) -> None:
+def test_merging_and_locking_preserve_mass_and_neutral_poses(drawn: Any) -> None:
     urdf, description, seed = drawn
     found, _, _ = placed(drawn)
     plain, _, _ = placed((urdf, description | {"joints": {}, "actuators": []}, seed))
@@ -91,7 +91,7 @@ def test_merging_and_locking_keep_mass_and_at_neutral_its_centre_and_all_poses(d
         np.testing.assert_allclose(a.rotation, b.rotation, atol=1e-12)
 
 
-def test_links_that_a_fixed_joint_holds_count_as_one_body() -> None:
+def test_links_joined_by_a_fixed_joint_are_one_body() -> None:
     apart = [
         link("base"),
         link("bar", 1.0, (0.5, 0, 0), (0.01, 0.1, 0.1)),
@@ -111,7 +111,7 @@ def test_links_that_a_fixed_joint_holds_count_as_one_body() -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_the_motion_of_each_joint_is_the_derivative_of_its_transform(kind: str) -> None:
+def test_the_motion_subspace_is_the_derivative_of_the_transform(kind: str) -> None:
     random = np.random.default_rng(1)
     axes, pitch = np.array([unit(random.normal(size=3)) for _ in range(2)]), 0.7
     q, v = np.array(KINDS[kind].neutral), random.normal(size=KINDS[kind].nv)
@@ -123,7 +123,7 @@ def test_the_motion_of_each_joint_is_the_derivative_of_its_transform(kind: str) 
 
 
 @pytest.mark.parametrize("kind", ["planar", "spherical", "floating"])
-def test_a_constant_velocity_leads_in_two_steps_to_where_it_leads_in_one(kind: str) -> None:
+def test_two_half_steps_equal_one_step(kind: str) -> None:
     random = np.random.default_rng(2)
     nothing = np.array(KINDS[kind].neutral)
     for scale in (1e-9, 1e-3, 0.09, 0.3, 3.0, 7.0):
@@ -135,7 +135,7 @@ def test_a_constant_velocity_leads_in_two_steps_to_where_it_leads_in_one(kind: s
 
 @settings(derandomize=True)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 1e-200, 1e-9, 1e-4, 0.5, 2.0, 3.0, np.pi - 1e-9]))
-def test_log6_is_the_screw_that_leads_to_the_pose(seed: int, angle: float) -> None:
+def test_the_exponential_of_log6_is_the_pose(seed: int, angle: float) -> None:
     random = np.random.default_rng(seed)
     x = np.array([*random.normal(size=3), *(angle * unit(random.normal(size=3)))])
     reached = integrate("floating", np.array(KINDS["floating"].neutral), x)
@@ -144,14 +144,14 @@ def test_log6_is_the_screw_that_leads_to_the_pose(seed: int, angle: float) -> No
 
 
 @pytest.mark.parametrize("axis", [*np.eye(3), *-np.eye(3), [1, 1, 0], [-1, 2, 3]])
-def test_log3_of_a_half_turn_is_one_of_its_two(axis: Any) -> None:
+def test_log3_of_a_half_turn_is_either_vector(axis: Any) -> None:
     w = log3(rotation(unit(np.array(axis, dtype=float)), np.pi))
     np.testing.assert_allclose(np.abs(w), np.pi * np.abs(unit(np.array(axis, dtype=float))), atol=1e-12)
 
 
 @settings(derandomize=True)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 1e-6, 0.1, 1.0, 2.5, 3.1]))
-def test_the_derivative_of_log6_is_that(seed: int, angle: float) -> None:
+def test_the_derivative_of_log6_matches_differences(seed: int, angle: float) -> None:
     random = np.random.default_rng(seed)
     x = np.array([*random.normal(size=3), *(angle * unit(random.normal(size=3)))])
     twist = random.normal(size=6)
@@ -164,7 +164,7 @@ def test_the_derivative_of_log6_is_that(seed: int, angle: float) -> None:
     np.testing.assert_allclose(log6_derivative(x) @ twist, differentiated(moved), atol=1e-8 if angle < 3 else 1e-4)
 
 
-def test_a_robot_far_away_has_the_same_residuals_k_and_m() -> None:
+def test_a_distant_root_leaves_residuals_k_and_m_unchanged() -> None:
     elements = [*chain(joint("a", "revolute", "base", "end", (1, 2, 3), (1, 0, 0)))[:1], link("end", 1.0, (1, 1, 1))]
     elements.append(joint("a", "revolute", "base", "end", (1, 2, 3), (1, 0, 0)))
     found = robot(elements, two("root: floating\nclosures: [{name: c, type: 6d, frames: [end, base]}]"))
@@ -174,7 +174,7 @@ def test_a_robot_far_away_has_the_same_residuals_k_and_m() -> None:
     np.testing.assert_allclose(found.mass_matrix(near), found.mass_matrix(far), atol=1e-12)
 
 
-def test_the_order_of_elements_does_not_count() -> None:
+def test_the_order_of_elements_has_no_effect() -> None:
     parts = [
         joint("b", "revolute", "one", "two", (0, 1, 0), (0, 0, 1)),
         joint("a", "prismatic", "zero", "one", more='<mimic joint="b"/><limit velocity="1" effort="1"/>'),

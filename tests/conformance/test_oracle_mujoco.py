@@ -28,7 +28,7 @@ URDFS = sorted([*ROBOTS.glob("*/robot.urdf"), *WILD.glob("*/*.urdf")])
 
 
 @pytest.mark.parametrize("version", VERSIONS)
-def test_mujoco_says_what_the_oracle_says_of_the_mechanisms_of_every_certification(version: Version) -> None:
+def test_mujoco_and_oracle_agree_on_the_frozen_examples(version: Version) -> None:
     # Those for version 1 can be said in both versions: here it is by version 2.
     found = [example.mechanism for example in frozen_examples(version) if can_be_witnessed(example.mechanism)]
     for mechanism in found:
@@ -47,7 +47,7 @@ def can_be_witnessed(mechanism: Mechanism) -> bool:
 @pytest.mark.slow
 @settings(max_examples=100, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 @given(mechanisms().filter(can_be_witnessed))
-def test_mujoco_says_what_the_oracle_says_of_random_mechanisms(mechanism: Mechanism) -> None:
+def test_mujoco_and_oracle_agree_on_random_mechanisms(mechanism: Mechanism) -> None:
     robot, witness = truth(mechanism), Witness(mechanism)
     for name, q in mechanism.configurations.items():
         compare(robot, witness, q, is_closed=name == "assembled")
@@ -74,7 +74,7 @@ def compare(robot: OracleRobot, witness: Witness, q: Configuration, *, is_closed
 
 
 @pytest.mark.parametrize("path", URDFS, ids=[path.parent.name for path in URDFS])
-def test_mujoco_reads_the_urdf_of_a_robot_as_the_oracle_does(path: Path) -> None:
+def test_mujoco_and_oracle_agree_on_the_urdf_of_a_robot(path: Path) -> None:
     robot, model = read(None, path), read_urdf(path)
     data = mujoco.MjData(model)
     q = robot.moved({}, np.random.default_rng(0).normal(size=len(robot.velocities)))

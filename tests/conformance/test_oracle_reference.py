@@ -77,13 +77,13 @@ def assert_close(one: Any, other: Any, near: float) -> None:
 
 
 @pytest.mark.parametrize("path", COLLECTION, ids=lambda path: f"{path.parent.name}-{path.stem}")
-def test_they_agree_on_a_robot_of_the_collection_and_as_published(path: Path) -> None:
+def test_oracle_and_reference_agree_on_a_robot_of_the_collection(path: Path) -> None:
     assert_agreement(read(path, path.parent / "robot.urdf"), eurdf.load(path, geometry=False))
 
 
 # One in four; the suite judges the reference on all of them, as near as the clauses ask.
 @pytest.mark.parametrize("case", VALID[::4], ids=lambda case: case.name)
-def test_they_agree_on_a_valid_case_ten_times_nearer_than_the_clauses_ask_of_a_parser(case: CorpusCase) -> None:
+def test_oracle_and_reference_agree_within_a_tenth_of_the_tolerance(case: CorpusCase) -> None:
     """At the configurations of the case, at those of its files, and at its neutral."""
     assert isinstance(case.case, ValidCase)
     oracle, reference = read(case.description, case.urdf), Reference()
@@ -98,7 +98,7 @@ def test_they_agree_on_a_valid_case_ten_times_nearer_than_the_clauses_ask_of_a_p
 
 
 @pytest.mark.parametrize("path", CLOSING, ids=lambda path: f"{path.parent.name}-{path.stem}")
-def test_they_agree_on_the_dimensions_at_a_closed_configuration(path: Path) -> None:
+def test_oracle_and_reference_agree_on_dimensions(path: Path) -> None:
     oracle = read(path, path.parent / "robot.urdf")
     q = oracle.closed(oracle.description.configurations.get("assembled", {}))
     assert np.max(np.abs(oracle.residual(q)), initial=0.0) < 1e-12
@@ -116,7 +116,7 @@ def test_the_oracle_finds_the_published_dimensions(name: str) -> None:
 
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(mechanisms("2"))
-def test_they_agree_on_random_mechanisms_of_version_2(
+def test_oracle_and_reference_agree_on_random_mechanisms_of_version_2(
     tmp_path_factory: pytest.TempPathFactory, drawn: tuple[str, dict[str, Any], int]
 ) -> None:
     assert_agreement(*both(tmp_path_factory.mktemp("robot"), *drawn[:2]), seed=drawn[2])
@@ -124,7 +124,7 @@ def test_they_agree_on_random_mechanisms_of_version_2(
 
 @settings(max_examples=40, deadline=None, derandomize=True)
 @given(mechanisms("1"))
-def test_they_agree_on_random_mechanisms_of_version_1(
+def test_oracle_and_reference_agree_on_random_mechanisms_of_version_1(
     tmp_path_factory: pytest.TempPathFactory, drawn: tuple[str, dict[str, Any], int]
 ) -> None:
     assert_agreement(*both(tmp_path_factory.mktemp("robot"), *drawn[:2]), seed=drawn[2])

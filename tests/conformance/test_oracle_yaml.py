@@ -31,7 +31,7 @@ PLAIN = {
 
 
 @pytest.mark.parametrize(("text", "value"), PLAIN.items())
-def test_a_plain_scalar_is_what_the_core_schema_says(text: str, value: Any) -> None:
+def test_a_plain_scalar_has_the_type_of_the_core_schema(text: str, value: Any) -> None:
     for source in (f"key: {text}", f"{{key: {text} }}"):
         found = value_of(source)["key"] if "," not in text else value
         assert (found, type(found)) == (value, type(value))
@@ -63,13 +63,13 @@ def test_a_plain_scalar_is_what_the_core_schema_says(text: str, value: Any) -> N
         ("a\x85b\u2028c\u2029\ue000", "a\x85b\u2028c\u2029\ue000"),
     ],
 )
-def test_quotes_tags_blocks_and_aliases_mean_what_yaml_says(text: str, value: Any) -> None:
+def test_quotes_tags_blocks_and_aliases_have_their_yaml_meaning(text: str, value: Any) -> None:
     found = value_of(f"key: {text}")["key"]
     assert (found, type(found)) == (value, type(value))
 
 
 @pytest.mark.parametrize("source", ["%YAML 1.2\n---\nkey: 1", "---\nkey: 1\n...\n", "key: 1\r\n", "{key: 1} # end"])
-def test_one_document_may_be_marked_as_such(source: str) -> None:
+def test_a_document_may_have_start_and_end_markers(source: str) -> None:
     assert value_of(source) == {"key": 1}
 
 
@@ -106,12 +106,12 @@ def test_one_document_may_be_marked_as_such(source: str) -> None:
         + "".join(f"\n - &{b} [{', '.join(['*' + a] * 10)}]" for a, b in zip("abcde", "bcdef", strict=True)),
     ],
 )
-def test_what_is_no_sound_value_is_not_read(text: str) -> None:
+def test_an_invalid_value_is_not_read(text: str) -> None:
     with pytest.raises(NotRead):
         value_of(f"key: {text}")
 
 
 @pytest.mark.parametrize("source", ["", "# nothing", "%YAML 1.1\n---\na: 1", "%YAML 1.3\n---\na: 1"])
-def test_a_document_that_is_none_or_of_another_version_is_not_read(source: str) -> None:
+def test_no_document_or_another_yaml_version_is_not_read(source: str) -> None:
     with pytest.raises(NotRead):
         value_of(source)

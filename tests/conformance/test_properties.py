@@ -111,7 +111,7 @@ def tried(prop: Property, level: Level, version: Version, parser: PythonParser, 
 
 
 @pytest.mark.parametrize("item", list(property_items()), ids=lambda item: f"{item.item.id}-{item.item.level}")
-def test_every_property_holds_of_the_oracle(
+def test_the_oracle_satisfies_every_property(
     item: PropertyItem, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("eurdf_conformance.properties.property.MOST", 8)
@@ -140,7 +140,7 @@ def test_every_property_and_level_has_a_wrong_parser() -> None:
     }
 
 
-def test_a_relation_asks_about_two_robots(tmp_path: Path) -> None:
+def test_a_relation_loads_two_robots(tmp_path: Path) -> None:
     harness = Harness(InProcess(OracleParser()), tmp_path)
     prop = property_of("renaming")
     (example,) = prop.frozen("2")[:1]
@@ -148,7 +148,7 @@ def test_a_relation_asks_about_two_robots(tmp_path: Path) -> None:
     assert len({asked.files for asked, _ in harness.queries}) == 2
 
 
-def test_every_property_cites_clauses_of_its_version_and_no_two_items_are_the_same() -> None:
+def test_every_property_cites_clauses_and_has_unique_items() -> None:
     clauses = read_clauses()
     items = [found.item for found in property_items()]
     assert max(Counter(item.key for item in items).values()) == 1
@@ -158,7 +158,7 @@ def test_every_property_cites_clauses_of_its_version_and_no_two_items_are_the_sa
     assert len({prop.title for prop in PROPERTIES}) == len(PROPERTIES)
 
 
-def test_a_parser_that_does_not_read_version_2_can_keep_what_both_versions_say(tmp_path: Path) -> None:
+def test_a_parser_of_version_1_alone_passes_the_versions_property(tmp_path: Path) -> None:
     class Old(OracleParser):
         def load(self, description: Path, urdf: Path) -> Unsupported:  # type: ignore[override]
             if "extended_urdf" in description.read_text():
@@ -199,7 +199,7 @@ def has_both_kinds_of_closure(mechanism: Mechanism) -> bool:
     return {closure.type for closure in mechanism.closures} == {"3d", "6d"}
 
 
-def test_where_a_3d_closure_is_open_the_k_of_a_6d_one_is_looked_at_all_the_same(tmp_path: Path) -> None:
+def test_an_open_3d_closure_hides_no_wrong_6d_jacobian(tmp_path: Path) -> None:
     prop = replace(property_of("swapping"), applies=has_both_kinds_of_closure)
     assert len(prop.frozen("2")) >= 3
     assert tried(prop, KINEMATICS, "2", OracleParser(), tmp_path).verdict == Verdict.PASSED
@@ -243,7 +243,7 @@ def test_any_answer_that_fits_the_schema_passes_or_fails(prop: Property, level: 
 
 
 @pytest.mark.parametrize("prop", FAMILIES, ids=lambda prop: prop.name)
-def test_a_family_has_the_counts_that_are_known_at_any_size(prop: Property) -> None:
+def test_a_family_has_its_known_counts_at_any_size(prop: Property) -> None:
     assert prop.family is not None
     for size in range(prop.smallest, LARGEST + 1):
         example = prop.family(size)
@@ -254,7 +254,7 @@ def test_a_family_has_the_counts_that_are_known_at_any_size(prop: Property) -> N
         assert np.abs(robot.residual(q)).max(initial=0.0) < 1e-12 * max(size, 1.0), size
 
 
-def test_the_counts_are_the_words_of_dimension_that_the_oracle_finds() -> None:
+def test_the_counts_equal_the_dimensions_of_the_oracle() -> None:
     for prop in FAMILIES:
         for example in prop.frozen("2"):
             robot, q = truth(example.mechanism), example.mechanism.configurations["assembled"]
@@ -265,13 +265,13 @@ def test_the_counts_are_the_words_of_dimension_that_the_oracle_finds() -> None:
 # -- the frozen examples ----------------------------------------------------------------------------------------------
 
 
-def test_the_frozen_examples_are_as_their_file_says_and_are_written_alike() -> None:
+def test_writing_the_frozen_examples_reproduces_their_file() -> None:
     text = FROZEN.read_text(encoding="utf-8")
     assert text == frozen_text({version: frozen_examples(version) for version in VERSIONS})
 
 
 @pytest.mark.parametrize("version", VERSIONS)
-def test_the_frozen_examples_leave_no_doubt_and_their_loops_are_closed(version: Version) -> None:
+def test_the_frozen_examples_are_well_conditioned_and_closed(version: Version) -> None:
     for example in frozen_examples(version):
         mechanism = example.mechanism
         robot = truth(mechanism, version)

@@ -211,7 +211,7 @@ def spoiled_answers(draw: st.DrawFn) -> tuple[str, dict[str, Any]]:
 @example(("load", {"id": 1, "outcome": "rejected", "issues": [{"message": "m", "line": 1e22}]}))
 @example(("load", {"id": 1e22, "outcome": "rejected", "issues": []}))
 @example(("evaluate", {"id": 1.0, "outcome": "evaluated", "values": [{"mass": 10**30}]}))
-def test_the_runner_judges_a_spoiled_answer_as_the_schemas_do(spoiled: tuple[str, dict[str, Any]]) -> None:
+def test_runner_and_schemas_agree_on_spoiled_answers(spoiled: tuple[str, dict[str, Any]]) -> None:
     command, answer = spoiled
     identity = answer.get("id")
     if isinstance(identity, int | float) and not isinstance(identity, bool) and identity == int(identity):
@@ -236,7 +236,7 @@ def test_the_command_writes_the_files(tmp_path: Path) -> None:
     assert {path.name for path in (tmp_path / "schema").iterdir()} == {path.name for path in FOLDER.iterdir()}
 
 
-def test_there_is_one_schema_a_message_each_sound_and_with_an_id_of_its_own() -> None:
+def test_each_message_has_a_valid_schema_with_its_own_id() -> None:
     assert set(SCHEMAS) == {
         "start", "load", "evaluate", "stop",
         "started", "accepted", "rejected", "evaluated", "stopped", "unsupported", "skipped", "errored",
@@ -247,7 +247,7 @@ def test_there_is_one_schema_a_message_each_sound_and_with_an_id_of_its_own() ->
 
 
 @pytest.mark.parametrize("command", REQUESTS)
-def test_a_request_fits_its_schema_and_no_other_and_lacks_nothing(command: str) -> None:
+def test_a_request_fits_only_its_schema_and_needs_each_member(command: str) -> None:
     request = json.loads(REQUESTS[command].model_dump_json())
     assert [word for word in SCHEMAS if fits(word, request)] == [command]
     assert REQUEST.validate_json(json.dumps(request)) == REQUESTS[command]
@@ -256,9 +256,7 @@ def test_a_request_fits_its_schema_and_no_other_and_lacks_nothing(command: str) 
 
 
 @pytest.mark.parametrize(("command", "answer"), SOUND)
-def test_a_sound_answer_fits_its_schema_and_no_other_and_the_runner_takes_it(
-    command: str, answer: dict[str, Any]
-) -> None:
+def test_a_valid_answer_fits_only_its_schema_and_is_accepted(command: str, answer: dict[str, Any]) -> None:
     answer = {"id": 1, **answer}
     assert [word for word in SCHEMAS if fits(word, answer)] == [answer["outcome"]]
     found = read_answer(json.dumps(answer).encode(), REQUESTS[command])
@@ -266,9 +264,7 @@ def test_a_sound_answer_fits_its_schema_and_no_other_and_the_runner_takes_it(
 
 
 @pytest.mark.parametrize(("index", "pointer", "new"), BROKEN)
-def test_what_breaks_the_schema_is_malformed_and_what_is_malformed_breaks_the_schema(
-    index: int, pointer: str, new: Any
-) -> None:
+def test_an_answer_is_malformed_if_it_violates_the_schema(index: int, pointer: str, new: Any) -> None:
     command, sound = SOUND[index]
     answer = changed({"id": 1, **sound}, pointer, new)
     assert not fits(answer["outcome"], answer)
@@ -286,7 +282,7 @@ def test_an_id_is_a_whole_number(identity: Any) -> None:
     assert not found.placed
 
 
-def test_an_answer_to_another_request_is_misplaced_whatever_else_is_wrong_with_it() -> None:
+def test_an_answer_with_another_id_is_misplaced() -> None:
     for answer in ({"id": 2, "outcome": "stopped"}, {"id": 2}, {"id": 2, "outcome": "accepted", "robot": 3}):
         found = read_answer(json.dumps(answer).encode(), REQUESTS["stop"])
         assert isinstance(found, Misplaced)
@@ -294,7 +290,7 @@ def test_an_answer_to_another_request_is_misplaced_whatever_else_is_wrong_with_i
 
 
 @pytest.mark.parametrize("outcome", ["unsupported", "skipped", "errored"])
-def test_stop_is_answered_by_stopped_only(outcome: str) -> None:
+def test_only_stopped_answers_stop(outcome: str) -> None:
     answer = {"id": 1, **next(sound for _, sound in SOUND if sound["outcome"] == outcome)}
     found = read_answer(json.dumps(answer).encode(), REQUESTS["stop"])
     assert isinstance(found, Malformed)
@@ -347,7 +343,7 @@ def test_duplicate_key_is_malformed(before: str, after: str, told: str) -> None:
 
 
 @pytest.mark.parametrize("ids", [(1, 2), (2, 1), (1, 1)])
-def test_an_answer_with_two_ids_is_to_no_request(ids: tuple[int, int]) -> None:
+def test_an_answer_with_two_ids_answers_no_request(ids: tuple[int, int]) -> None:
     line = '{{"id": {}, "id": {}, "outcome": "rejected", "issues": []}}'.format(*ids)
     found = read_answer(line.encode(), REQUESTS["load"])
     assert isinstance(found, Malformed)
@@ -377,7 +373,7 @@ def test_number_beyond_a_double_is_reported(short: str, pointer: str, number: st
 
 
 @pytest.mark.parametrize("number", ["1e308", "1" * 309, "1e-400", "0.1e+0308"])
-def test_a_number_within_the_range_of_a_double_is_one(number: str) -> None:
+def test_numbers_in_the_range_of_a_double_are_read(number: str) -> None:
     text = json.dumps({"id": 1, "outcome": "accepted", "robot": ROBOT})
     assert not isinstance(read_answer(text.replace('"two"', number).encode(), REQUESTS["load"]), Malformed)
 

@@ -35,7 +35,9 @@ NEAR = 1e-9
         pytest.param("2", 1, 400, marks=pytest.mark.slow),
     ],
 )
-def test_they_agree_to_a_billionth_of_its_size(version: Version, closures: int, count: int, tmp_path: Path) -> None:
+def test_mechanisms_agree_within_a_billionth_of_their_size(
+    version: Version, closures: int, count: int, tmp_path: Path
+) -> None:
     harness = Harness(InProcess(PARSER), tmp_path)
     tried = []
 

@@ -92,7 +92,7 @@ def test_runner_distinguishes_and_survives_misbehaviour(
 @pytest.mark.parametrize(
     "way", ["sound", "in_pieces", "floods_stderr", "carriage_returns", "whole_numbers_with_a_point"]
 )
-def test_what_is_unusual_but_right_is_an_answer(way: str) -> None:
+def test_unusual_but_correct_messages_are_answers(way: str) -> None:
     with Session(fake(way)) as session:
         for name in ("first", "fault_Ω_関節", "next"):
             assert accepts(load(session, name), name)
@@ -110,7 +110,7 @@ def test_misbehaviour_is_never_a_rejection() -> None:
         assert session.restarts == 0
 
 
-def test_a_late_answer_is_not_taken_for_that_to_the_next_request() -> None:
+def test_a_late_answer_does_not_answer_the_next_request() -> None:
     with Session(fake("late"), timeout=0.3) as session:
         assert isinstance(load(session, "fault"), TimedOut)
         time.sleep(0.6)  # by now it would have answered
@@ -118,13 +118,13 @@ def test_a_late_answer_is_not_taken_for_that_to_the_next_request() -> None:
         assert accepts(load(session, "fault", timeout=5.0), "fault")
 
 
-def test_what_ends_before_it_is_greeted_has_answered_nothing() -> None:
+def test_a_process_that_ends_before_start_has_answered_nothing() -> None:
     with Session("cmd:sh -c 'exit 127'") as session, pytest.raises(NotStarted) as refusal:
         _ = session.started
     assert str(refusal.value).splitlines()[0] == "crashed: ended with exit code 127 without answering"
 
 
-def test_what_is_logged_before_the_first_request_is_kept() -> None:
+def test_the_log_before_the_first_request_is_kept() -> None:
     pipes = Pipes([sys.executable, "-I", "-S", "-c", "import sys; sys.exit('no such file')"])
     try:
         while not pipes.log:
@@ -188,7 +188,7 @@ def test_values_at_another_number_of_configurations_are_malformed() -> None:
         assert "values at 1 configurations, expected 2" in str(outcome)
 
 
-def test_the_log_of_what_went_wrong_is_kept_and_bounded() -> None:
+def test_the_log_of_a_failure_is_kept_and_bounded() -> None:
     with Session(fake("exits")) as session:
         outcome = load(session, "fault")
         assert isinstance(outcome, Crashed)
@@ -200,13 +200,13 @@ def test_the_log_of_what_went_wrong_is_kept_and_bounded() -> None:
         assert len(outcome.log) == 2**14
 
 
-def test_of_a_long_log_enough_is_shown_to_see_what_node_js_misses() -> None:
+def test_a_shortened_log_keeps_the_error_line_of_node_js() -> None:
     trace = [f"    at somewhere (node:internal/modules/esm/{number})" for number in range(10)]
     log = ["Error [ERR_MODULE_NOT_FOUND]: Cannot find package 'yaml'", *trace, "  code: 'ERR'", "}", "", "Node.js v24"]
     assert log[0] in str(Crashed(1, None, "\n".join(log)))
 
 
-def test_a_headline_says_what_happened_once_and_the_rest_is_below() -> None:
+def test_the_reason_is_one_line_and_the_log_has_details() -> None:
     with Session(fake("closes_stdout"), timeout=5.0) as session:
         judgement = judge_outcome(load(session, "fault"))
         assert judgement.reason == "the process closed its standard output without answering"
@@ -218,7 +218,7 @@ def test_a_headline_says_what_happened_once_and_the_rest_is_below() -> None:
         assert "Input should be" not in judgement.log
 
 
-def test_an_endless_line_takes_no_more_memory_than_is_allowed() -> None:
+def test_an_endless_line_takes_bounded_memory() -> None:
     with Session(fake("endless_line"), line_limit=2**20) as session:
         assert accepts(load(session, "first"), "first")
         tracemalloc.start()
@@ -259,7 +259,7 @@ def test_parser_that_cannot_start_is_given_up_with_reason(way: str, kind: type[O
     assert session.ended is None
 
 
-def test_who_answers_to_start_that_it_failed_does_not_keep_the_rule_of_starting() -> None:
+def test_an_error_answer_to_start_makes_every_rule_errored() -> None:
     with Session(fake("refuses_to_start")) as session:
         asked = Setup(session, lambda: Session(fake("refuses_to_start")), *read_cases()[:2])
         for rule in (START, STOP):
@@ -278,7 +278,7 @@ def test_who_answers_to_start_that_it_failed_does_not_keep_the_rule_of_starting(
         ("my-package:parser", "neither"),
     ],
 )
-def test_what_cannot_be_started_is_said_so(parser: str, words: str) -> None:
+def test_a_parser_that_cannot_be_started_gives_the_reason(parser: str, words: str) -> None:
     with Session(parser) as session:
         outcome = session.start()
         assert isinstance(outcome, CannotStart)
@@ -301,7 +301,7 @@ def test_what_cannot_be_started_is_said_so(parser: str, words: str) -> None:
         ("cmd:./folder", "", 0o644, "'./folder' is a folder"),
     ],
 )
-def test_of_a_file_that_does_not_run_it_is_said_what_may_help(
+def test_a_file_that_cannot_be_run_gives_a_hint(
     parser: str, text: str, mode: int, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -312,14 +312,14 @@ def test_of_a_file_that_does_not_run_it_is_said_what_may_help(
         assert words in str(session.start())
 
 
-def test_a_sound_parser_says_who_it_is() -> None:
+def test_a_parser_gives_its_name_and_version() -> None:
     with Session(fake("sound")) as session:
         assert isinstance(session.started, Started)
         assert session.started.parser.name == "fake"
         assert session.started.claims == {"2": ["accept"]}
 
 
-def test_a_parser_that_starts_is_restarted_for_every_request_that_breaks_it() -> None:
+def test_a_parser_is_restarted_after_every_crash() -> None:
     with Session(fake("exits")) as session:
         assert [load(session, "fault").word for _ in range(30)] == ["crashed"] * 30
         assert accepts(load(session, "next"), "next")
@@ -327,7 +327,7 @@ def test_a_parser_that_starts_is_restarted_for_every_request_that_breaks_it() ->
 
 
 @pytest.mark.parametrize("names", [["fault"], ["fault_1", "sound_1", "fault_2"]], ids=["all", "some"])
-def test_what_a_parser_comes_to_that_crashes_is_the_same_however_it_is_spread(names: list[str]) -> None:
+def test_crashes_give_the_same_results_in_any_number_of_sessions(names: list[str]) -> None:
     asked = [f"{name}_{number}" for number in range(8) for name in names]
 
     def judged(sessions: int) -> dict[str, Judgement]:
@@ -369,7 +369,7 @@ def test_failed_starts_count_only_in_a_row(tmp_path: Path, monkeypatch: pytest.M
             (tmp_path / "started").unlink()
 
 
-def test_a_robot_is_loaded_again_before_it_is_evaluated_by_another_process() -> None:
+def test_a_restarted_parser_loads_the_robot_before_evaluating() -> None:
     with Session(fake("exits")) as session:
         assert accepts(load(session, "first"), "first")
         assert session._process is not None
@@ -395,14 +395,14 @@ def test_parser_that_does_not_stop_is_killed_and_reported(way: str, kind: type[O
     assert not process.alive
 
 
-def test_a_parser_that_waits_for_more_after_stop_sees_the_end_of_its_input() -> None:
+def test_a_parser_reads_end_of_input_after_stop() -> None:
     with Session(fake("ends_with_its_input"), stop_timeout=30.0) as session:
         assert accepts(load(session, "robot"), "robot")
     assert isinstance(session.ended, Answered)
     assert isinstance(session.ended.answer, Stopped)
 
 
-def test_what_a_parser_started_ends_with_it() -> None:
+def test_child_processes_end_with_their_parser() -> None:
     with Session(fake("has_a_child")) as session:
         outcome = load(session, "fault")
         assert isinstance(outcome, Answered)
@@ -413,14 +413,14 @@ def test_what_a_parser_started_ends_with_it() -> None:
     assert has_ended(child)
 
 
-def test_child_of_dead_parser_blocks_nothing() -> None:
+def test_a_child_of_a_dead_parser_blocks_nothing() -> None:
     with Session(fake("dies_before_its_child"), timeout=300.0) as session:
         outcome = load(session, "fault")
         assert isinstance(outcome, Crashed)  # and not that it timed out
         assert has_ended(int(outcome.log))
 
 
-def test_an_error_on_this_side_ends_the_parser_at_once() -> None:
+def test_an_exception_in_the_runner_ends_the_parser() -> None:
     session = Session(fake("ignores_stop"), stop_timeout=60.0)
 
     def interrupted() -> None:
@@ -444,7 +444,7 @@ with Session(fake("spins"), timeout=60.0) as session:
 
 
 @pytest.mark.parametrize("end", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
-def test_a_parser_ends_with_a_runner_that_is_killed(end: signal.Signals, tmp_path: Path) -> None:
+def test_a_killed_runner_ends_its_parser(end: signal.Signals, tmp_path: Path) -> None:
     pids = tmp_path / "pids"
     environment = os.environ | {"FAKE_PIDS": str(pids), "PYTHONPATH": str(PARSERS.parents[1])}
     with subprocess.Popen(

@@ -46,7 +46,7 @@ def load_request(name: str, number: int = 1) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("path", ["python_parsers:Plain", "python_parsers:PLAIN", "python_parsers:holder.inner"])
-def test_an_object_or_a_class_is_served_by_its_import_path(path: str) -> None:
+def test_an_import_path_may_name_an_object_or_class(path: str) -> None:
     with Session(path) as session:
         assert session.started.parser.name == "plain"
         answer = answer_of(load(session, "robot"))
@@ -77,7 +77,7 @@ def test_an_object_or_a_class_is_served_by_its_import_path(path: str) -> None:
         ("python_parsers:no_list", "its claims for version 2 must be a list of levels"),
     ],
 )
-def test_what_is_no_parser_ends_the_process_with_the_reason_in_a_line(path: str, words: str) -> None:
+def test_serving_a_wrong_object_gives_a_one_line_error(path: str, words: str) -> None:
     with Session(path) as session:
         outcome = session.start()
         assert isinstance(outcome, Crashed)
@@ -109,7 +109,7 @@ def test_exception_of_a_parser_module_shows_its_lines(
     assert "importlib" not in outcome.log
 
 
-def test_what_a_parser_prints_is_log_and_what_it_reads_is_nothing() -> None:
+def test_a_parser_prints_to_the_log_and_reads_nothing() -> None:
     with Session("python_parsers:Talkative") as session:
         for _ in range(2):
             answer = answer_of(load(session, "robot"))
@@ -120,7 +120,7 @@ def test_what_a_parser_prints_is_log_and_what_it_reads_is_nothing() -> None:
     assert {"from Python", "from below", "from a child"} <= set(log.split("\n"))
 
 
-def test_an_exception_is_the_parsers_word_that_it_failed() -> None:
+def test_an_exception_in_the_parser_is_errored() -> None:
     with Session("python_parsers:Failing") as session:
         for name, error in (("key", "KeyError"), ("recursion", "RecursionError"), ("memory", "MemoryError")):
             answer = answer_of(load(session, name))
@@ -144,14 +144,14 @@ def test_every_kind_of_answer_gets_the_id_of_its_request() -> None:
         assert isinstance(answer_of(session.evaluate([{}], [], ["mass"])), Unsupported)
 
 
-def test_issues_are_sentences_or_say_more() -> None:
+def test_issues_may_be_sentences_or_objects() -> None:
     (answer,) = served("Answers", load_request("rejected", 4))
     assert answer["id"] == 4
     assert [issue["message"] for issue in answer["issues"]] == ["no such frame", "another"]
     assert [issue["line"] for issue in answer["issues"]] == [3, None]
 
 
-def test_what_cannot_be_written_is_errored_and_no_rejection() -> None:
+def test_an_unwritable_answer_is_errored_not_rejected() -> None:
     answers = served("Answers", load_request("half_a_character", 1), load_request("robot", 2))
     assert [answer["outcome"] for answer in answers] == ["errored", "accepted"]
 
@@ -210,7 +210,7 @@ def test_a_parser_that_does_not_evaluate_says_so() -> None:
         (b"[" * 100_000, 0),
     ],
 )
-def test_a_line_that_is_no_request_is_answered_too(line: bytes, number: int) -> None:
+def test_an_invalid_request_is_answered(line: bytes, number: int) -> None:
     first, second = served("Plain", line, {"id": 6, "command": "stop"})
     assert (first["id"], first["outcome"]) == (number, "errored")
     assert second == {"id": 6, "outcome": "stopped"}
@@ -220,11 +220,11 @@ def test_nothing_is_answered_after_stop() -> None:
     assert [answer["id"] for answer in served("Plain", {"id": 1, "command": "stop"}, load_request("robot", 2))] == [1]
 
 
-def test_the_end_of_the_requests_is_the_end() -> None:
+def test_the_server_stops_at_end_of_input() -> None:
     assert served("Plain") == []
 
 
-def test_paths_reach_the_parser_as_they_are() -> None:
+def test_paths_reach_the_parser_unchanged() -> None:
     with Session("python_parsers:Plain") as session:
         answer = answer_of(session.load(Path("Ω/robot 関節.yaml"), Path("../robot.urdf")))
         assert isinstance(answer, Accepted)

@@ -136,11 +136,13 @@ def test_non_answer_is_never_a_rejection(outcome: Outcome, verdict: Verdict) -> 
         (EITHER, rejects(), Verdict.PASSED),
     ],
 )
-def test_valid_in_invalid_out(case: CorpusCase, outcome: Outcome, verdict: Verdict) -> None:
+def test_valid_cases_are_accepted_and_invalid_ones_rejected(
+    case: CorpusCase, outcome: Outcome, verdict: Verdict
+) -> None:
     assert judge(case, Level.ACCEPT, Conversation(Scripted(outcome))).verdict == verdict
 
 
-def test_who_claims_structure_says_what_was_read() -> None:
+def test_a_parser_that_claims_structure_must_send_the_robot() -> None:
     def structure(outcome: Outcome) -> Verdict:
         return judge(VALID, Level.STRUCTURE, Conversation(Scripted(outcome))).verdict
 
@@ -153,7 +155,7 @@ def test_who_claims_structure_says_what_was_read() -> None:
     )
 
 
-def test_one_value_a_configuration_is_asked_for() -> None:
+def test_each_configuration_needs_one_set_of_values() -> None:
     values = VALID.expected.values
     for level in (Level.KINEMATICS, Level.DYNAMICS):
         for given, verdict in ((values, Verdict.PASSED), (values[:1], Verdict.FAILED), (values[::-1], Verdict.FAILED)):
@@ -256,7 +258,7 @@ def test_no_two_items_have_the_same_id_and_level() -> None:
     assert len({item.key for item in items}) == len(items)
 
 
-def test_the_first_cases_to_try_are_of_their_version_and_can_be_evaluated() -> None:
+def test_the_smoke_cases_have_their_version_and_an_evaluation() -> None:
     for version, three in SMOKE.items():
         valid, invalid, evaluated = (CASES[case_id] for case_id in (three.valid, three.invalid, three.evaluated))
         assert {case.case.version for case in (valid, invalid, evaluated)} == {version}
@@ -265,7 +267,7 @@ def test_the_first_cases_to_try_are_of_their_version_and_can_be_evaluated() -> N
         assert Level.KINEMATICS in evaluated.levels
 
 
-def test_of_a_failure_everything_is_printed_that_it_takes_to_mend_the_parser() -> None:
+def test_a_failure_text_shows_clause_place_and_command() -> None:
     item = next(each.item for each in case_items([INVALID]) if each.item.level == Level.DIAGNOSE)
     judgement = judge(INVALID, Level.DIAGNOSE, Conversation(Scripted(rejects(fault(INVALID, column=6)))))
     line = Options(parser="cmd:./my parser").reproduce(item)
@@ -293,7 +295,7 @@ def test_of_a_failure_everything_is_printed_that_it_takes_to_mend_the_parser() -
 STEERING, PLAIN = "\x1b[2J\x9b31m \u202e \u2066 \r", "관절 Ω é e\u0301 \u00a0 می\u200cخوریم 👩\u200d🔧"
 
 
-def test_a_parser_steers_no_terminal_and_its_own_script_is_left_to_it() -> None:
+def test_control_characters_are_escaped_and_scripts_of_languages_kept() -> None:
     item = next(each.item for each in case_items([INVALID]) if each.item.level == Level.DIAGNOSE)
     said = f"{STEERING}{PLAIN}"
     answers = (
@@ -324,7 +326,7 @@ def test_run_ends_with_one_line_on_the_parser() -> None:
         assert lines[0].startswith("\\x1b[2J\\x9b31m \\u202e \\u2066 \\r\\nversion 2, accept")
 
 
-def test_of_values_it_is_said_where_the_robot_stood_and_what_they_are() -> None:
+def test_a_failure_of_values_shows_the_configuration() -> None:
     item = next(each.item for each in case_items([VALID]) if each.item.level == Level.KINEMATICS)
     first, *_ = VALID.expected.values
     wrong = [first, *(each.model_copy(update={"residuals": {}}) for each in VALID.expected.values[1:])]
@@ -339,7 +341,7 @@ def test_of_values_it_is_said_where_the_robot_stood_and_what_they_are() -> None:
     assert clauses == list(dict.fromkeys(["EU-CLO-008", "EU-CLO-009", *item.clauses]))
 
 
-def test_an_item_tests_what_can_be_seen_at_its_level_and_no_more() -> None:
+def test_an_item_tests_only_clauses_visible_at_its_level() -> None:
     clauses, seen = read_clauses(), {level: set[str]() for level in Level}
     for item in planned_items(CASES.values()):
         assert item.clauses, item.id
@@ -356,7 +358,7 @@ def test_an_item_tests_what_can_be_seen_at_its_level_and_no_more() -> None:
     assert accept[INVALID.id].clauses[-1] == "EU-CNF-001"
 
 
-def test_every_clause_that_a_case_or_a_property_cites_is_tested_by_an_item() -> None:
+def test_every_cited_clause_is_tested_by_an_item() -> None:
     cited = {clause for case in CASES.values() for clause in case.case.clauses}
     cited |= {clause for found in PROPERTIES for clause in found.clauses}
     assert cited <= {clause for item in planned_items(CASES.values()) for clause in item.clauses}
@@ -371,7 +373,7 @@ class NoParser(Session):
         return Started(id=1, protocol="1.0", parser=ParserInfo(name="r", version="1", language="Python"), claims=claims)
 
 
-def test_an_answer_that_breaks_the_suite_is_no_pass_and_is_kept() -> None:
+def test_an_error_in_the_suite_is_reported_as_a_failure() -> None:
     item_runner, item = ItemRunner(Options(), NoParser("cmd:nothing")), next(case_items([VALID])).item
     item_runner.node = SimpleNamespace(user_properties=[])  # type: ignore[assignment]
 
@@ -386,7 +388,7 @@ def test_an_answer_that_breaks_the_suite_is_no_pass_and_is_kept() -> None:
     assert kept["verdict"] == "failed"
 
 
-def test_of_the_protocol_the_files_are_named() -> None:
+def test_a_failed_protocol_rule_names_its_files() -> None:
     with Session("cmd:" + shlex.join([sys.executable, "-c", "print(1)"])) as session:
         found = check(GOES_ON, Setup(session, lambda: session, VALID, INVALID))
     assert found.verdict != Verdict.PASSED
@@ -394,7 +396,7 @@ def test_of_the_protocol_the_files_are_named() -> None:
 
 
 @pytest.mark.parametrize("code", [pytest.ExitCode.INTERRUPTED, pytest.ExitCode.INTERNAL_ERROR])
-def test_a_run_that_is_broken_off_leaves_the_certificate_that_is_there(code: pytest.ExitCode, tmp_path: Path) -> None:
+def test_an_interrupted_run_writes_no_certificate(code: pytest.ExitCode, tmp_path: Path) -> None:
     config = SimpleNamespace(stash={OPTIONS: Options(certificate=tmp_path)})
     collector = Collector(config)  # type: ignore[arg-type]
     collector._started = NoParser("cmd:nothing").started
@@ -424,7 +426,7 @@ def suite(
 FEW = "closures/parallelogram-3d-closure or frames/closure-at-unknown-frame"
 
 
-def test_a_parser_that_is_right_passes_every_case_and_is_written_a_certificate(tmp_path: Path) -> None:
+def test_a_correct_parser_passes_and_gets_a_certificate(tmp_path: Path) -> None:
     # Of the older version, which has fewer cases.
     topics = ["protocol", "closures", "names"]
     asked = ["--format-version=1", "-k", " or ".join(f"[{topic}/" for topic in topics), f"--certificate={tmp_path}"]
@@ -453,7 +455,7 @@ def test_printed_command_reproduces_a_failure() -> None:
     assert "passed" not in out.splitlines()[-1]
 
 
-def test_a_parser_that_accepts_what_is_wrong_fails_at_accept_and_at_diagnose() -> None:
+def test_a_lenient_parser_fails_accept_and_diagnose() -> None:
     code, out = suite("-k", FEW, parser="Lenient")
     assert code == 1
     assert "2 failed, 5 passed" in out
@@ -461,7 +463,7 @@ def test_a_parser_that_accepts_what_is_wrong_fails_at_accept_and_at_diagnose() -
     assert "this looks odd" in out
 
 
-def test_a_crash_is_survived_and_no_rejection() -> None:
+def test_a_crash_is_not_a_rejection() -> None:
     code, out = suite("-k", FEW, parser="Crashing")
     assert code == 1
     assert "5 failed, 2 passed" in out
@@ -518,7 +520,7 @@ def test_fixed_known_failure_is_reported(tmp_path: Path) -> None:
     assert "frames/nobody/accept: the suite has no such item" in out
 
 
-def test_what_the_user_asks_for_and_cannot_be_is_said(tmp_path: Path) -> None:
+def test_impossible_requests_of_the_user_are_reported(tmp_path: Path) -> None:
     for arguments, why in (
         ([f"--known-failures={tmp_path / 'nowhere.yaml'}"], "No such file"),
         (["--parser-timeout=0"], "a time limit must be positive"),
@@ -568,7 +570,7 @@ def test_smoke_distinguishes_wrong_adapter_from_wrong_parser() -> None:
         ("Telling", ["closures/parallelogram-3d-closure/structure", "frames/closure-at-unknown-frame/diagnose"]),
     ],
 )
-def test_smoke_asks_three_cases_each_at_the_first_level_that_the_parser_claims(parser: str, asked: list[str]) -> None:
+def test_smoke_runs_three_cases_at_the_first_claimed_level(parser: str, asked: list[str]) -> None:
     code, out = suite("--smoke", "-vv", "--format-version=2", parser=parser)
     assert code == 0
     assert "nothing was asked" not in out
@@ -584,13 +586,13 @@ def test_run_without_claimed_levels_fails() -> None:
     assert "not claimed: dynamics of version 1, dynamics of version 2" in out
 
 
-def test_without_a_parser_it_is_the_reference_that_is_tested() -> None:
+def test_the_reference_is_tested_by_default() -> None:
     code, out = suite("--smoke")
     assert code == 0
     assert "eurdf " in out
 
 
-def test_the_suite_runs_as_an_installed_package_too() -> None:
+def test_the_suite_runs_as_an_installed_package() -> None:
     command = ["--pyargs", "eurdf_conformance.suite", "-p", "eurdf_conformance.suite.plugin"]
     code, out = suite("--noconftest", "-k", FEW, parser="Right", command=command)
     assert code == 0
@@ -601,7 +603,7 @@ def test_the_suite_runs_as_an_installed_package_too() -> None:
     assert code == 0
 
 
-def test_from_another_folder_the_line_that_is_printed_names_the_package(tmp_path: Path) -> None:
+def test_in_another_folder_the_printed_command_names_the_package(tmp_path: Path) -> None:
     code, out = suite(
         "-k",
         "frames/closure-at-unknown-frame/accept",

@@ -48,13 +48,13 @@ def known(text: str, folder: Path) -> KnownFailures:
 # --- levels ----------------------------------------------------------------------------------------------------------
 
 
-def test_a_level_of_which_every_item_passed_is_certified() -> None:
+def test_a_level_is_certified_if_every_item_passed() -> None:
     assert level_result(run()).certified
     assert is_certified(run())
 
 
 @pytest.mark.parametrize("verdict", [verdict for verdict in Verdict if verdict != Verdict.PASSED])
-def test_one_item_that_did_not_pass_for_whatever_reason_costs_the_level_and_no_other(verdict: Verdict) -> None:
+def test_an_item_that_did_not_pass_fails_only_its_level(verdict: Verdict) -> None:
     done = run({(INVALID, Level.ACCEPT): verdict})
     assert not level_result(done).certified
     assert level_result(done, Level.STRUCTURE).certified
@@ -75,7 +75,7 @@ def test_a_level_without_an_item_is_not_certified() -> None:
     assert not is_certified(done)
 
 
-def test_an_item_that_was_never_asked_counts_as_not_run() -> None:
+def test_an_item_without_a_result_counts_as_not_run() -> None:
     done = run(results=tuple(each for each in run().results if each.item.id != INVALID))
     assert level_result(done).counts == {Verdict.PASSED: 1, Verdict.NOT_RUN: 1}
     assert not level_result(done).certified
@@ -86,20 +86,20 @@ def test_a_parser_that_claims_nothing_is_not_certified() -> None:
     assert not is_certified(run(started=None, results=()))
 
 
-def test_the_same_level_of_the_other_version_is_certified_apart() -> None:
+def test_versions_are_certified_separately() -> None:
     old = item("version1/ccccc3", Level.ACCEPT, "1")
     claims = {"1": [Level.ACCEPT], "2": [Level.ACCEPT]}
     done = run(claims=claims, planned=(*PLANNED, old), results=(*run().results, result(old, Verdict.CRASHED)))
     assert [each.certified for each in level_results(done) if each.claimed] == [False, True]
 
 
-def test_levels_asked_for_can_be_certified_alone_if_they_are_claimed() -> None:
+def test_requested_levels_are_certified_on_their_own() -> None:
     done = run({(VALID, Level.STRUCTURE): Verdict.FAILED})
     assert is_certified(Run(**(vars(done) | {"levels": (Level.ACCEPT,)})))
     assert not is_certified(Run(**(vars(done) | {"levels": (Level.ACCEPT, Level.DYNAMICS)})))
 
 
-def test_three_cases_tried_out_certify_nothing() -> None:
+def test_a_smoke_run_certifies_nothing() -> None:
     assert not is_certified(run(smoke=True))
     assert not any(each.certified for each in level_results(run(smoke=True)))
 
@@ -115,12 +115,12 @@ def test_accept_all_and_reject_all_are_not_certified() -> None:
 # --- results ---------------------------------------------------------------------------------------------------------
 
 
-def test_a_result_comes_through_json_as_it_was() -> None:
+def test_a_result_survives_conversion_to_json() -> None:
     given = result(PLANNED[0], Verdict.TIMED_OUT, "no answer in 10 s")
     assert Result.from_json(json.loads(json.dumps(given.to_json()))) == given
 
 
-def test_half_a_character_of_a_broken_parser_can_be_written_to_a_file() -> None:
+def test_a_lone_surrogate_from_a_parser_is_escaped() -> None:
     given = result(PLANNED[0], Verdict.MALFORMED, "it wrote \ud83e")
     assert given.differences == ("it wrote \\ud83e",)
     assert json.dumps(given.to_json(), ensure_ascii=False).encode()
@@ -129,7 +129,7 @@ def test_half_a_character_of_a_broken_parser_can_be_written_to_a_file() -> None:
 # --- known failures --------------------------------------------------------------------------------------------------
 
 
-def test_a_known_failure_is_counted_and_the_level_is_not_certified(tmp_path: Path) -> None:
+def test_a_level_with_a_known_failure_is_not_certified(tmp_path: Path) -> None:
     file = known(KNOWN, tmp_path)
     done = run({(INVALID, Level.ACCEPT): Verdict.FAILED}, known_failures=file)
     assert level_result(done).known_failures == 1
@@ -143,7 +143,7 @@ def test_a_known_failure_that_passes_is_unexpected(tmp_path: Path) -> None:
     assert "remove it" in said
 
 
-def test_a_known_failure_that_fails_otherwise_is_unexpected(tmp_path: Path) -> None:
+def test_a_known_failure_with_another_verdict_is_unexpected(tmp_path: Path) -> None:
     file = known(KNOWN, tmp_path)
     done = run({(INVALID, Level.ACCEPT): Verdict.CRASHED}, known_failures=file)
     (said,) = file.unexpected(done.results, PLANNED)
@@ -151,7 +151,7 @@ def test_a_known_failure_that_fails_otherwise_is_unexpected(tmp_path: Path) -> N
     assert not any(map(file.expects, done.results))
 
 
-def test_a_known_failure_of_no_item_of_the_suite_is_unexpected(tmp_path: Path) -> None:
+def test_a_known_failure_of_an_unknown_item_is_unexpected(tmp_path: Path) -> None:
     (said,) = known(KNOWN.replace("bbbbb2", "bbbbb3"), tmp_path).unexpected(run().results, PLANNED)
     assert said == "closures/bbbbb3/accept: the suite has no such item"
 
@@ -160,7 +160,7 @@ def test_known_failure_of_an_item_not_run_is_kept(tmp_path: Path) -> None:
     assert known(KNOWN, tmp_path).unexpected([], PLANNED) == []
 
 
-def test_an_empty_file_knows_of_no_failure(tmp_path: Path) -> None:
+def test_an_empty_file_lists_no_known_failures(tmp_path: Path) -> None:
     assert known("# none yet\n", tmp_path) == KnownFailures()
 
 
@@ -179,7 +179,7 @@ def test_an_empty_file_knows_of_no_failure(tmp_path: Path) -> None:
         ("- [\n", "expected"),
     ],
 )
-def test_a_file_that_is_not_what_it_should_be_is_refused_and_says_why(text: str, said: str, tmp_path: Path) -> None:
+def test_a_wrong_file_of_known_failures_is_refused_with_reason(text: str, said: str, tmp_path: Path) -> None:
     with pytest.raises(WrongKnownFailures) as refused:
         known(text, tmp_path)
     assert said in str(refused.value)
@@ -192,12 +192,12 @@ def test_id_with_level_gets_a_hint(tmp_path: Path) -> None:
     assert said.endswith("the suite has no such item; write the id without its level: 'closures/bbbbb2'")
 
 
-def test_a_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
+def test_a_missing_file_is_refused(tmp_path: Path) -> None:
     with pytest.raises(WrongKnownFailures, match="No such file"):
         read_known_failures(tmp_path / "nowhere.yaml")
 
 
-def test_the_schema_of_known_failures_is_current_and_takes_what_is_taken() -> None:
+def test_the_schema_of_known_failures_is_current() -> None:
     file = Path(known_failures.__file__).with_name("known_failures.schema.json")
     schema: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
     assert schema == known_failures_schema()
@@ -212,7 +212,7 @@ def test_the_schema_of_known_failures_is_current_and_takes_what_is_taken() -> No
 # --- levels ----------------------------------------------------------------------------------------------------------
 
 
-def test_the_table_of_levels_defines_every_level_by_clauses_that_exist() -> None:
+def test_every_level_is_defined_by_existing_clauses() -> None:
     assert list(LEVELS) == list(Level)
     named = {spec.clause for spec in LEVELS.values()}
     named |= {clause for spec in LEVELS.values() for clauses in spec.defining.values() for clause in clauses}

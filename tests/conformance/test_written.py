@@ -47,7 +47,7 @@ def plain(value: Any) -> Any:
 
 @settings(max_examples=150, deadline=None)
 @given(DOCUMENTS, st.integers(0, 10**6))
-def test_a_document_in_any_style_means_what_it_was_written_from(value: dict[str, Any], seed: int) -> None:
+def test_yaml_written_in_any_style_keeps_its_value(value: dict[str, Any], seed: int) -> None:
     text = yaml_text(value, Chance(seed)).decode("utf-8-sig")
     found = value_of(text)
     assert json.dumps(plain(found)) == json.dumps(plain(value))
@@ -55,7 +55,7 @@ def test_a_document_in_any_style_means_what_it_was_written_from(value: dict[str,
 
 @settings(max_examples=50, deadline=None)
 @given(DOCUMENTS)
-def test_a_document_as_people_write_it_means_what_it_was_written_from(value: dict[str, Any]) -> None:
+def test_yaml_written_in_plain_style_keeps_its_value(value: dict[str, Any]) -> None:
     assert json.dumps(plain(value_of(yaml_text(value).decode()))) == json.dumps(plain(value))
 
 
@@ -69,7 +69,7 @@ def test_styles_differ() -> None:
         assert token in whole, token
 
 
-def test_files_as_people_write_them_are_read_by_other_libraries_as_well() -> None:
+def test_other_libraries_read_the_written_files() -> None:
     for version in VERSIONS:
         for example in frozen_examples(version):
             files = files_of(example.mechanism, version)
@@ -80,7 +80,7 @@ def test_files_as_people_write_them_are_read_by_other_libraries_as_well() -> Non
             assert len(robot) == len(example.mechanism.links) + len(example.mechanism.joints)
 
 
-def test_a_urdf_written_backwards_holds_the_same_elements() -> None:
+def test_a_urdf_written_backwards_has_the_same_elements() -> None:
     for example in frozen_examples("2")[:8]:
         one, other = (etree.fromstring(urdf_text(example.mechanism, backwards=each).encode()) for each in (False, True))
         assert canonical(one) == canonical(other)
@@ -92,9 +92,7 @@ def canonical(element: Any) -> Any:
 
 
 @given(st.tuples(*[st.floats(-7, 7)] * 2), st.sampled_from([0.3, np.pi / 2, -np.pi / 2, np.pi / 2 - 1e-9, 2.0]))
-def test_a_pose_read_from_its_matrix_is_the_same_also_where_the_pitch_is_a_quarter_turn(
-    others: tuple[float, float], pitch: float
-) -> None:
+def test_a_pose_survives_conversion_at_a_quarter_turn_of_pitch(others: tuple[float, float], pitch: float) -> None:
     M = np.eye(4)
     M[:3, :3] = from_rpy(np.array([others[0], pitch, others[1]]))
     M[:3, 3] = 1.0, 2.0, 3.0
@@ -105,14 +103,14 @@ def test_a_pose_read_from_its_matrix_is_the_same_also_where_the_pitch_is_a_quart
 
 
 @given(quaternions())
-def test_a_rotation_and_its_quaternion_are_one(q: tuple[float, float, float, float]) -> None:
+def test_a_rotation_matches_its_quaternion(q: tuple[float, float, float, float]) -> None:
     again = np.array(quaternion_of(rotation_of(q)))
     assert min(np.abs(again - q).max(), np.abs(again + q).max()) < 1e-12
 
 
 @settings(max_examples=20, deadline=None)
 @given(mechanisms("2"), st.integers(0, 100))
-def test_new_names_are_all_new_and_no_two_alike(mechanism: Mechanism, seed: int) -> None:
+def test_new_names_are_unused_and_distinct(mechanism: Mechanism, seed: int) -> None:
     other = renamed(mechanism, new_names(mechanism, Chance(seed), "2"))
     before, after = (named(each) for each in (mechanism, other))
     assert len(set(after)) == len(after) == len(before)
