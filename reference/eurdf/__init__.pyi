@@ -58,6 +58,8 @@ from eurdf.kinematics.split import merge_configuration as merge_configuration
 from eurdf.kinematics.split import merge_velocity as merge_velocity
 from eurdf.kinematics.split import split_configuration as split_configuration
 from eurdf.kinematics.split import split_velocity as split_velocity
+from eurdf.kinematics.springs import spring_energy as spring_energy
+from eurdf.kinematics.springs import spring_force as spring_force
 from eurdf.kinematics.sweep import MotionPath as MotionPath
 from eurdf.kinematics.sweep import Sweep as Sweep
 from eurdf.kinematics.sweep import sweep as sweep

@@ -2,9 +2,10 @@
 
 The equation of motion and the second derivative of the closures are
 
-    M(q) a + h(q, v) = S u + τ + Kᵀ λ,        K(q) a + K̇(q, v) v = 0,
+    M(q) a + h(q, v) = S u + τ + τ_s(q) + Kᵀ λ,        K(q) a + K̇(q, v) v = 0,
 
-with K the derivative of the residual of `eurdf.kinematics.residual`. The forces λ of a closure are conjugate to its
+with τ_s the force of the springs (`eurdf.kinematics.springs`), which always acts and is part of τ in what follows, and
+K the derivative of the residual of `eurdf.kinematics.residual`. The forces λ of a closure are conjugate to its
 rows: λᵀ K v is their power. At a closed configuration (EU-CLO-008, EU-CLO-009) they are the force (N), and for a 6d
 closure also the moment (N·m), that act at frame A on the body of B, in the axes of A. The opposite acts on the body of
 A, which is Pinocchio's ``contact_force``.
@@ -104,7 +105,7 @@ def forward_dynamics(
         q: Configuration (nq,), closed.
         v: Velocity (nv,), with K v = 0. A velocity that opens the closures is not corrected, except by ``gains``.
         u: Motor torques (nu,), in the order of the actuation, N·m and N; zero by default.
-        tau: Additional generalized forces (nv,), for instance of springs, N·m and N.
+        tau: Additional generalized forces (nv,), N·m and N; the springs of joints act in any case.
         external: For frames of the model, by name, the force and moment (6,) that act at the frame's origin, in world
             axes, N and N·m.
         dissipation: Whether damping and dry friction of the joints act: -d v - f sign(v). Friction does not act at
@@ -323,8 +324,9 @@ class _Motion:
         return self.robot.tree.mass_times(self.q, motions, self.data)
 
     def applied(self, u: Vector | None, tau: Vector | None, external: External | None, dissipation: bool) -> Vector:
-        """Generalized force (nv,) of motors, external forces, damping and friction."""
+        """Generalized force (nv,) of springs, motors, external forces, damping and friction."""
         force = applied_force(self.robot, self.q, self.v, u, external, dissipation, self.data)
+        force += self.robot.tree.springs.force(self.q, len(force))
         return force if tau is None else force + checked_array("tau", tau, (len(force),))
 
     def refuse_open(self, a: Vector, tolerance: float) -> None:

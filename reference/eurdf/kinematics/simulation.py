@@ -43,7 +43,7 @@ class Simulation(NamedTuple):
         q: Configurations (n + 1, nq).
         v: Velocities (n + 1, nv), rad/s and m/s.
         kinetic: Kinetic energy (n + 1,), J, that of the armature included.
-        potential: Potential energy (n + 1,), J, of gravity.
+        potential: Potential energy (n + 1,), J, of gravity and springs.
         work: Work of motors, external forces, damping and friction since the start (n + 1,), J.
     """
 
@@ -139,7 +139,8 @@ def simulate(
     def energies(q: Vector, v: Vector) -> tuple[float, float]:
         with np.errstate(over="ignore", invalid="ignore"):  # energies beyond all numbers are not warned of
             momentum = tree.mass_times(q, v[:, None], data)[:, 0]
-            return 0.5 * float(v @ momentum), float(pin.computePotentialEnergy(robot.model, data, q))
+            gravity = float(pin.computePotentialEnergy(robot.model, data, q))
+            return 0.5 * float(v @ momentum), gravity + tree.springs.energy(q)
 
     initial = checked_array("v", np.zeros(tree.nv) if v is None else v, (tree.nv,))
     qs[0], vs[0] = closed(0.0, assembly.q, initial, 0)

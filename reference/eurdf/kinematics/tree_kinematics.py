@@ -50,6 +50,19 @@ class PairMemory(Protocol):
         """
 
 
+class Springs(Protocol):
+    """Springs, each on one coordinate."""
+
+    def __len__(self) -> int:
+        """Number of springs."""
+
+    def force(self, q: Vector, nv: int) -> Vector:
+        """Generalized force (nv,) of the springs at q (nq,), N·m or N."""
+
+    def energy(self, q: Vector) -> float:
+        """Energy that the springs store at q (nq,), J."""
+
+
 class FramePairs(Protocol):
     """Pairs of frames A, B. Threads may share it, each with memory of its own."""
 
@@ -102,6 +115,10 @@ class TreeKinematics(Protocol):
     @property
     def reach(self) -> Sequence[float]:
         """Of each joint the distance of its origin from that of its parent at zero, m."""
+
+    @property
+    def springs(self) -> Springs:
+        """The springs of its joints."""
 
     def joint_of(self, anchor: Anchor) -> int:
         """The joint that carries an anchor; 0 if nothing moves it."""

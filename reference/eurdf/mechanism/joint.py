@@ -12,9 +12,9 @@ from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 
 @dataclass(frozen=True, slots=True)
 class JointProperties:
-    """Limits, losses and motor of a joint: one number per velocity; for position limits, one per coordinate.
+    """Limits, losses, motor and springs of a joint: one number per velocity; for position limits, one per coordinate.
 
-    An empty tuple means no limit, no loss and no motor.
+    An empty tuple means no limit, no loss, no motor and no spring.
 
     Attributes:
         lower: Lower position limits, one per coordinate as in `Coordinates`; -inf where there is none.
@@ -26,6 +26,9 @@ class JointProperties:
         armature: Reflected inertia, kg·m² or kg.
         gear_ratio: Motor revolutions per joint revolution.
         rotor_inertia: Inertia of the motor's rotor about its own axis, kg·m².
+        stiffness: Stiffness k of a spring on each coordinate, N·m/rad or N/m: its force is -k (q - rest), its energy
+            ½ k (q - rest)². Only for joints with as many coordinates as velocities, except planar ones.
+        rest: Coordinate at which each of these springs has no force, rad or m.
     """
 
     lower: tuple[float, ...] = ()
@@ -37,10 +40,12 @@ class JointProperties:
     armature: tuple[float, ...] = ()
     gear_ratio: tuple[float, ...] = ()
     rotor_inertia: tuple[float, ...] = ()
+    stiffness: tuple[float, ...] = ()
+    rest: tuple[float, ...] = ()
 
     @classmethod
     def unlimited(cls, kind: JointType) -> JointProperties:
-        """The properties of a joint without limits, losses and motor, every number written out."""
+        """The properties of a joint without limits, losses, motor and springs, every number written out."""
         coordinates = COORDINATES[kind]
         n, nv = len(coordinates.names), coordinates.nv
         infinite, zero = (math.inf,) * nv, (0.0,) * nv
@@ -63,7 +68,7 @@ class Joint:
             prismatic, helical, cylindrical; two, first and second, for universal; none otherwise. Planar moves in
             the joint's xy plane.
         pitch: Advance of a helical joint along its axis, m per revolution, right-handed; 0 otherwise.
-        properties: Limits, losses and motor.
+        properties: Limits, losses, motor and springs.
         mimic: The leader that this joint mimics, or None.
     """
 

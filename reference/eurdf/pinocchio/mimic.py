@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic, drivers
@@ -20,8 +20,8 @@ class Following:
             mimic joints cannot be chained.
         late: The leaders that come after one of their mimic joints, in order. Pinocchio needs the leader first.
         unwrapped: Names of the continuous joints with an unwrapped angle as coordinate. Pinocchio's (cos, sin) pair
-            loses the number of turns, which matters for a multiplier such as 0.5 and for a coupling. And only a
-            continuous joint can mimic a joint with such a pair.
+            loses the number of turns, which matters for a multiplier such as 0.5, for a coupling and for a spring. And
+            only a continuous joint can mimic a joint with such a pair.
     """
 
     mimics: Mapping[str, Mimic] = field(default_factory=dict)
@@ -34,7 +34,7 @@ def following(mechanism: Mechanism) -> Following:
     mimics = {
         joint.name: joint.mimic for joint in mechanism.joints if joint.mimic is not None and joint.type in MIMIC_TYPES
     }
-    if not mimics and not mechanism.couplings:
+    if not mimics and not mechanism.couplings and not any(joint.properties.stiffness for joint in mechanism.joints):
         return Following()
     resolved = drivers(mimics)
     place = {joint.name: index for index, joint in enumerate(mechanism.joints)}
@@ -52,4 +52,31 @@ def _unwrapped(mechanism: Mechanism, resolved: Mapping[str, Mimic]) -> frozenset
         mimic.joint for name, mimic in resolved.items() if not ({name, mimic.joint} <= continuous and name in whole)
     }
     plain.update(name for coupling in mechanism.couplings for name in coupling.joints)
+    sprung = {joint.name for joint in mechanism.joints if any(joint.properties.stiffness)}
+    plain.update(resolved[name].joint if name in resolved else name for name in sprung)
     return frozenset(continuous & (plain | {name for name, mimic in resolved.items() if mimic.joint in plain}))
+
+
+def with_followers(mechanism: Mechanism, led: Following) -> dict[str, JointProperties]:
+    """EU-JNT-032: the properties of each leader, with the armature, damping and friction of its mimic joints.
+
+    A mimic joint moves with the velocity m v of its leader. So its armature and damping count m² times at the leader,
+    and its friction |m| times. In a bare URDF nothing is added, as in Pinocchio's own parser.
+    """
+    joints = {joint.name: joint for joint in mechanism.joints}
+    folded: dict[str, JointProperties] = {}
+    for name, mimic in led.mimics.items() if mechanism.version else ():
+        m, own = mimic.multiplier, joints[name].properties
+        leader = folded.get(mimic.joint, joints[mimic.joint].properties)
+        folded[mimic.joint] = replace(
+            leader,
+            armature=_plus(leader.armature, m * m, own.armature),
+            damping=_plus(leader.damping, m * m, own.damping),
+            friction=_plus(leader.friction, abs(m), own.friction),
+        )
+    return folded
+
+
+def _plus(values: tuple[float, ...], factor: float, more: tuple[float, ...]) -> tuple[float, ...]:
+    """The one number of a leader, plus that of a mimic joint times a factor; empty tuples are zeros."""
+    return values if not any(more) else (sum(values) + factor * sum(more),)

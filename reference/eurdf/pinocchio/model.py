@@ -8,6 +8,7 @@ For a mechanism linked with ``mimic=False`` it equals ``pin.buildModelFromUrdf(p
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import pinocchio as pin
 
@@ -19,7 +20,7 @@ from eurdf.mechanism.pose import IDENTITY
 from eurdf.pinocchio.inertia import inertia_of, is_zero
 from eurdf.pinocchio.joint_model import joint_model
 from eurdf.pinocchio.limits import set_limits
-from eurdf.pinocchio.mimic import following
+from eurdf.pinocchio.mimic import following, with_followers
 from eurdf.pinocchio.placement import placement_of
 
 _Indices = tuple[int, int, int, int]  # of a joint: its own, and where its q, its v and its v with mimic joints start
@@ -110,7 +111,13 @@ def build_model(mechanism: Mechanism) -> pin.Model:
         kind = _OP_FRAME if frame.kind == "frame" else _FIXED_JOINT
         placement = placement * placement_of(frame.pose)
         add_frame(pin.Frame(frame.name, joint_id, parent_frame, placement, kind), False)
-    set_limits(model, free, root_nq, root_nv)
+    folded = with_followers(mechanism, led)
+    set_limits(
+        model,
+        [(replace(joint, properties=folded.get(joint.name, joint.properties)), nq) for joint, nq in free],
+        root_nq,
+        root_nv,
+    )
     return model
 
 

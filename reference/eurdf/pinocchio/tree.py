@@ -17,6 +17,7 @@ from eurdf.pinocchio.coordinates import slots
 from eurdf.pinocchio.frame_pairs import FramePairs, Indices, Matrix, Site, Vector
 from eurdf.pinocchio.frames import body_frame_ids
 from eurdf.pinocchio.placement import placement_of
+from eurdf.pinocchio.springs import NO_SPRINGS, Springs, build_springs
 
 
 class Coordinate(NamedTuple):
@@ -33,10 +34,15 @@ class PinocchioTree:
 
     Attributes:
         model: The model.
+        springs: The springs of its joints, which the model does not contain.
     """
 
     def __init__(
-        self, model: pin.Model, sites: Mapping[str, Site], first: Mapping[str, tuple[int, int, int, int]]
+        self,
+        model: pin.Model,
+        sites: Mapping[str, Site],
+        first: Mapping[str, tuple[int, int, int, int]],
+        springs: Springs = NO_SPRINGS,
     ) -> None:
         """Take a model.
 
@@ -45,8 +51,10 @@ class PinocchioTree:
             sites: For each body, by name, where its frame is.
             first: For each joint that has coordinates of its own, the index of the first in q, their number, the index
                 of the first of its velocities in v, and their number.
+            springs: The springs of its joints.
         """
         self.model = model
+        self.springs = springs
         self._sites = sites
         self._first = first
 
@@ -203,8 +211,9 @@ def build_tree(mechanism: Mechanism, model: pin.Model) -> PinocchioTree:
         name: Site(frames[index].parentJoint, pin.SE3(frames[index].placement))
         for name, index in body_frame_ids(mechanism).items()
     }
-    first = {name: (slot.idx_q, slot.nq, slot.idx_v, slot.nv) for name, slot in slots(mechanism, model).items()}
-    return PinocchioTree(model, sites, first)
+    at = slots(mechanism, model)
+    first = {name: (slot.idx_q, slot.nq, slot.idx_v, slot.nv) for name, slot in at.items()}
+    return PinocchioTree(model, sites, first, build_springs(mechanism, at))
 
 
 def _ranges(first: Sequence[int], count: Sequence[int]) -> list[range]:
