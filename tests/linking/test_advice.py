@@ -7,6 +7,7 @@ import shutil
 import struct
 import tempfile
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,8 +16,14 @@ import yaml
 from lxml import etree
 
 import eurdf
+from eurdf.checking.advice.actuation import advise_on_actuation
 from eurdf.collection import collection_names
-from eurdf.diagnostics import Diagnostic
+from eurdf.diagnostics import Diagnostic, Diagnostics
+from eurdf.kinematics.constraint_stack import all_constraints
+from eurdf.linking.description import Linked, describe
+from eurdf.mechanism.constraint import Closure, FrameClosure, HingeClosure
+from eurdf.mechanism.pose import Vector3
+from eurdf.pinocchio.robot import build_robot
 
 ROBOTS = Path(__file__).parents[2] / "robots"
 
@@ -128,6 +135,28 @@ def test_locking_6d_closure_is_named_and_3d_suggested(advice, name, closure, act
 def test_two_jointly_locking_closures_are_named_together(advice) -> None:
     (found,) = advice("unitree_g1_ankle", typed("6d", "rod_a", "rod_b"))
     assert "type 3d for closures 'rod_a', 'rod_b'" in (found.hint or "")
+
+
+def test_locking_hinge_gets_the_hint_of_a_6d_closure() -> None:
+    """What the advice asks of a closure is the same for every kind."""
+    description, robot = describe(ROBOTS / "four_bar"), eurdf.load(ROBOTS / "four_bar", geometry=False)
+    assert isinstance(description, Linked)
+    (pin_,) = robot.mechanism.closures
+    across = HingeClosure(pin_.name, pin_.a, pin_.b, ((0.0, 0.0, 1.0), _axis_of_b_along_z_of_a(robot, pin_)))
+    locked = build_robot(replace(robot.mechanism, closures=(across,)), geometry=False)
+    diagnostics = Diagnostics()
+    advise_on_actuation(description, locked, eurdf.assemble(robot).q, diagnostics)
+    (found,) = diagnostics
+    assert (found.code, found.pointer) == ("x-dependent-actuators", "/closures/0")
+    assert f"type 3d for closure '{pin_.name}'" in (found.hint or "")
+
+
+def _axis_of_b_along_z_of_a(robot: eurdf.Robot, closure: Closure) -> Vector3:
+    """The direction in B of the z axis of A, where the loops are closed."""
+    end = replace(robot.mechanism, closures=(FrameClosure(closure.name, closure.a, closure.b),))
+    trial = build_robot(end, geometry=False)
+    ((placement,),) = [all_constraints(trial).at(eurdf.assemble(robot).q, all_constraints(trial).memory()).placements]
+    return tuple(placement.rotation.T[:, 2].tolist())
 
 
 def test_dependent_actuators_are_named_if_no_closure_locks(advice) -> None:

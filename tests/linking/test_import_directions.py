@@ -44,6 +44,7 @@ def test_imports_follow_the_layers() -> None:
             "import eurdf.linking.link",
             "eurdf.pinocchio is not allowed to import eurdf.linking",
         ),
+        ("eurdf/kinematics/assembly.py", "import pinocchio", "eurdf.kinematics is not allowed to import pinocchio"),
         ("eurdf/commands/certify.py", "import eurdf_conformance", "eurdf is not allowed to import eurdf_conformance"),
         ("eurdf/linking/frame_names.py", "import eurdf.linking.closures", "No cycles are allowed in eurdf.linking"),
         (

@@ -16,7 +16,6 @@ from eurdf.kinematics.finite_mobility import Evidence, FiniteMobility, MobilityT
 from eurdf.kinematics.loop import LoopGroup
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.sparse_basis import sparse_basis
-from eurdf.kinematics.velocity_names import velocity_names
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -184,13 +183,13 @@ def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
     Raises:
         ValueError: ``q`` is not a configuration.
     """
-    model = robot.model
-    actuated: Mask = np.zeros(model.nv, dtype=bool)
+    tree = robot.tree
+    actuated: Mask = np.zeros(tree.nv, dtype=bool)
     actuated[robot.actuation.idx_v] = True
     assembler = Assembler(robot)
     assembly = assembler.assemble(start(robot, q, "q"))
-    nv, nc = model.nv, sum(len(evaluation.group.rows) for evaluation in assembler.evaluations)
-    names = velocity_names(model)
+    nv, nc = tree.nv, sum(len(evaluation.group.rows) for evaluation in assembler.evaluations)
+    names = tree.velocity_names
     loops: tuple[LoopAnalysis, ...] = ()
     motions: list[Motion] = []
     left_out = _left_out(assembler, assembly)
@@ -218,7 +217,7 @@ def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
     count = int(actuated.sum())
     rank = sum(loop.rank for loop in loops)
     return Analysis(
-        nq=model.nq,
+        nq=tree.nq,
         nv=nv,
         nc=nc,
         rank=rank if ranked else None,

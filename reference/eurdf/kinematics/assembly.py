@@ -8,11 +8,10 @@ from random configurations around the first one.
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -24,6 +23,7 @@ from eurdf.kinematics.position_limit import JointAtLimit, Limits, PositionLimits
 from eurdf.kinematics.residual import CLOSED, Opening
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
 from eurdf.kinematics.several import several
+from eurdf.kinematics.tree_kinematics import TreeKinematics
 from eurdf.pinocchio.arguments import checked_array, checked_count, checked_tolerance
 
 if TYPE_CHECKING:
@@ -135,9 +135,9 @@ def assemble(
     idle: dict[tuple[str, ...], Assembler] = robot.derived.setdefault(Assembler, {})
     assembler = idle.pop(held, None) or Assembler(robot, held)
     assembler.tolerance = checked_tolerance(tolerance)
-    assembler.limits = chosen_limits(robot.model, limits)
+    assembler.limits = chosen_limits(robot.tree, limits)
     assembly = assembler.assemble(q, checked_count("restarts", restarts, 0))
-    if robot.model.nv <= _MOST_VELOCITIES_WITH_DATA:  # else the cache takes too much memory
+    if robot.tree.nv <= _MOST_VELOCITIES_WITH_DATA:  # else the cache takes too much memory
         if len(idle) >= _MOST_KEPT:
             idle.clear()
         idle[held] = assembler
@@ -152,12 +152,11 @@ def start(robot: Robot, q0: Vector | None = None, name: str = "q0") -> Vector:
     Raises:
         ValueError: Its shape is not (nq,), it is not finite, or it cannot be normalized.
     """
-    model = robot.model
     if q0 is None:
         q0 = robot.configurations.get("assembled")
     if q0 is None:
         return robot.tree.neutral()
-    q = robot.tree.normalized(checked_array(name, q0, (model.nq,)))
+    q = robot.tree.normalized(checked_array(name, q0, (robot.tree.nq,)))
     if not np.isfinite(q).all() or not robot.tree.is_normalized(q):
         raise ValueError(f"{name} has a quaternion, or a (cos, sin) pair, whose length is zero or overflows")
     return q
@@ -178,12 +177,12 @@ class Assembler:
     ) -> None:
         """The arguments are those of `assemble`."""
         # No reference to the robot: the cache would keep it alive.
-        model, self._tree = robot.model, robot.tree
+        tree = self._tree = robot.tree
         self._names = [constraint.name for constraint in robot.constraints]
         loops = find_loops(robot)
         self._nc = loops[-1].rows.stop if loops else 0
-        groups = list(independent_groups(robot, _held_velocities(model, hold)))
-        small = model.nv <= _MOST_VELOCITIES_WITH_DATA
+        groups = list(independent_groups(robot, _held_velocities(tree, hold)))
+        small = tree.nv <= _MOST_VELOCITIES_WITH_DATA
         merged = [_merged(groups, self._nc)] if small and len(groups) > 1 else []
         length = characteristic_length(robot)
         made = evaluations(
@@ -191,7 +190,7 @@ class Assembler:
             groups + merged,
             row_scale(robot, length),
             velocity_scale(robot, length),
-            robot.tree.memory() if small else None,
+            tree.memory() if small else None,
         )
         self.evaluations = made[: len(groups)]
         self._whole = made[len(groups) :] if merged else self.evaluations
@@ -199,7 +198,7 @@ class Assembler:
         self._work = 0.0  # of the current assembly, in multiplications
         self._gave_up = False  # whether the last assembly gave up
         self.tolerance = checked_tolerance(tolerance)
-        self.limits = chosen_limits(model, limits)
+        self.limits = chosen_limits(tree, limits)
 
     def assemble(self, q: Vector, restarts: int = 20) -> Assembly:
         """Close the loops from q (nq,), then at most ``restarts`` times from configurations around it."""
@@ -346,12 +345,5 @@ def _merged(groups: Sequence[LoopGroup], nc: int) -> LoopGroup:
     )
 
 
-def _held_velocities(model: Any, names: str | Iterable[str]) -> list[int]:
-    held: list[int] = []
-    for name in several(names):
-        if not model.existJointName(name):
-            near = difflib.get_close_matches(name, list(model.names), n=1)
-            raise ValueError(f"the model has no joint '{name}'" + (f"; did you mean '{near[0]}'?" if near else ""))
-        joint = model.joints[model.getJointId(name)]
-        held.extend(range(joint.idx_v, joint.idx_v + joint.nvExtended))
-    return held
+def _held_velocities(tree: TreeKinematics, names: str | Iterable[str]) -> list[int]:
+    return [velocity for name in several(names) for velocity in tree.velocities_of(name)]

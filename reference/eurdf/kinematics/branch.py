@@ -12,9 +12,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pinocchio as pin
 
-from eurdf.kinematics.array import Mask, Matrix, Vector
+from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.evaluation import evaluations
 from eurdf.kinematics.loop import independent_groups
 from eurdf.kinematics.position_limit import BEYOND, PositionLimits
@@ -75,19 +74,19 @@ class Branch:
             limits: The position limits of the passive joints, if any.
             data: A `pin.Data` to compute in.
         """
-        model, self._tree = robot.model, robot.tree
+        tree = self._tree = robot.tree
         held = set(robot.actuation.idx_v.tolist()) - {actuator}
         groups = [group for group in independent_groups(robot, held) if actuator in group.velocities]
         length = characteristic_length(robot)
         rows, unit = row_scale(robot, length), velocity_scale(robot, length)
-        data = robot.tree.memory() if data is None else data
+        data = tree.memory() if data is None else data
         self._loops = evaluations(robot, groups, rows, unit, data)[0] if groups else None
         self._rows = self._loops.row_scale if self._loops else np.empty(0)
         self._velocities = groups[0].velocities if groups else np.array([actuator])
         self._unit = unit[self._velocities]
         self._passive = self._velocities != actuator
         self._limits = limits
-        self._turns = _whole_turns(model)[self._velocities]
+        self._turns = tree.whole_turns[self._velocities]
 
     def at(self, q: Vector, correction: float = 0.0) -> Point:
         """The point at the closed configuration q (nq,)."""
@@ -163,18 +162,3 @@ class Branch:
         v[self._velocities] = self._unit * step
         # Pinocchio normalizes quaternions to first order only.
         return self._tree.normalized(self._tree.integrate(q, v))
-
-
-def _whole_turns(model: Any) -> Mask:
-    """Which velocities (nv,) drive an angle whose whole turns change nothing, since it is not unwrapped."""
-    turns: Mask = np.zeros(model.nv, dtype=bool)
-    neutral = pin.neutral(model)
-    for joint in model.joints[1:]:
-        if joint.nv and joint.nq == joint.nv:
-            data = joint.createData()
-            joint.calc(data, neutral)
-            S = data.S.reshape(6, -1)
-            turns[joint.idx_v : joint.idx_v + joint.nv] = ~S[:3].any(axis=0)
-    for joint in model.mimicking_joints:  # a multiplier of 0.5 makes whole turns matter
-        turns[model.joints[joint].idx_v] = False
-    return turns

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import ArrayLike
+from pinocchio import LOCAL
 
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.finite import finite, overflow_refused
-from eurdf.kinematics.frame_index import frame_index
+from eurdf.kinematics.frame_jacobian import frame_jacobian
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
@@ -43,7 +43,7 @@ def differential_inverse_kinematics(
     q: Vector,
     frame: str,
     twist: ArrayLike,
-    reference: Any = pin.LOCAL,
+    reference: Any = LOCAL,
     *,
     singular: float = 1e-3,
 ) -> FrameVelocity:
@@ -78,11 +78,10 @@ def differential_inverse_kinematics(
     wanted = checked_array("twist", twist, (6,))
     if not 0.0 < singular < 1.0:
         raise ValueError(f"singular is {singular!r}; give a number between 0 and 1")
-    model, index = robot.model, frame_index(robot.model, frame)
     q = start(robot, q, "q")
     spaces = TangentSpaces(robot)
     C = _actuated_motions(robot, q, spaces)
-    J = pin.computeFrameJacobian(model, model.createData(), q, index, reference).reshape(6, -1)
+    J = frame_jacobian(robot.tree, q, frame, reference)
     scale = np.array((1.0 / spaces.length,) * 3 + (1.0,) * 3)
     left, values, right = np.linalg.svd(scale[:, None] * (J @ C), full_matrices=False)
     rank = int(np.count_nonzero(values > singular * values.max(initial=0.0)))

@@ -26,14 +26,14 @@ from eurdf.kinematics.assembly import start
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.exceptions import InconsistentMotion, UnderactuatedMotion, UndeterminedMotion
 from eurdf.kinematics.finite import finite, overflow_refused
-from eurdf.kinematics.frame_index import frame_index
 from eurdf.kinematics.loop import Loop, find_loops
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import acceleration_drift, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
-from eurdf.kinematics.velocity_names import velocity_names
+from eurdf.kinematics.tree_kinematics import TreeKinematics
 from eurdf.pinocchio.arguments import checked_array, checked_data, checked_tolerance
 from eurdf.pinocchio.constraint import NoConstraintModel
+from eurdf.pinocchio.frame_index import frame_index
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -253,7 +253,7 @@ def achievable_acceleration(
         force = motion.bias - motion.applied(None, tau, external, dissipation)
         deviation, missing = _uncontrolled(motion, motion.mass(a), force)
         if missing.any():
-            raise UnderactuatedMotion(_by_joint(robot.model, missing), np.inf)
+            raise UnderactuatedMotion(_by_joint(robot.tree, missing), np.inf)
         achievable = a - deviation
     finite("the acceleration", achievable)
     return achievable
@@ -387,7 +387,7 @@ def _eliminate(motion: _Motion, force: Vector, target: Vector) -> ForwardDynamic
     massless = inertia <= _MASSLESS * inertia.max(initial=0.0)
     if massless.any():
         motions = N @ axes[:, massless]
-        raise UndeterminedMotion(tuple(_by_joint(motion.robot.model, np.abs(motions).max(axis=1))))
+        raise UndeterminedMotion(tuple(_by_joint(motion.robot.tree, np.abs(motions).max(axis=1))))
     z = axes @ ((axes.T @ (N.T @ required)) / inertia)
     lambdas = P.T @ (MN @ z - required)
     return ForwardDynamics(a + N @ z, _per_closure(motion.loops, lambdas))
@@ -420,14 +420,14 @@ def _uncontrolled(motion: _Motion, inertial: Vector, force: Vector) -> tuple[Vec
 
 
 def _refuse_uncontrolled(motion: _Motion, a: Vector, deviation: Vector, missing: Vector, tolerance: float) -> None:
-    model = motion.robot.model
+    tree = motion.robot.tree
     if missing.any():
-        raise UnderactuatedMotion(_by_joint(model, missing), np.inf)
+        raise UnderactuatedMotion(_by_joint(tree, missing), np.inf)
     if motion.differ(deviation, a, tolerance):
         # The least additional force that produces the motion.
         along = motion.free @ motion.by_motors[1]
         force = along @ (along.T @ (motion.unit * motion.mass(deviation))) / motion.unit
-        raise UnderactuatedMotion(_by_joint(model, force), float(np.abs(deviation / motion.unit).max()))
+        raise UnderactuatedMotion(_by_joint(tree, force), float(np.abs(deviation / motion.unit).max()))
 
 
 def _stabilised(robot: Robot, gains: Vector | None) -> tuple[Any, Vector, Vector]:
@@ -500,12 +500,12 @@ def _per_closure(loops: tuple[Loop, ...], lambdas: Vector) -> tuple[Vector, ...]
     return tuple(lambdas[loop.rows] for loop in loops)
 
 
-def _by_joint(model: Any, values: Vector) -> dict[str, tuple[float, ...]]:
+def _by_joint(tree: TreeKinematics, values: Vector) -> dict[str, tuple[float, ...]]:
     """The values (nv,) by joint name, for the joints that have a value above rounding."""
     least = 1e-6 * np.abs(values).max(initial=0.0)
-    found, names = {}, velocity_names(model)
-    for first, width in zip(model.idx_vs, model.nvs, strict=True):
-        own = values[first : first + width]
-        if width and (np.abs(own) > least).any():
-            found[names[first]] = tuple(own.tolist())
+    found, names = {}, tree.velocity_names
+    for v in tree.own_velocities:
+        own = values[v.start : v.stop]
+        if (np.abs(own) > least).any():
+            found[names[v.start]] = tuple(own.tolist())
     return found

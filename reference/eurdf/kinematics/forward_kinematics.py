@@ -16,8 +16,6 @@ from eurdf.kinematics.residual import closure_openings, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array
-from eurdf.pinocchio.configuration import configuration_vector
-from eurdf.pinocchio.coordinates import slots
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -68,7 +66,6 @@ def forward_kinematics(
             between them. In the last case, call the function for intermediate configurations one after the other.
         ValueError: ``actuated`` or ``q0`` does not fit this robot.
     """
-    model = robot.model
     first = assemble(robot, q0, tolerance=tolerance)
     if not first.closes:
         raise NotClosable("no closed configuration was found near the start", first.open, first.q)
@@ -78,7 +75,7 @@ def forward_kinematics(
     goal = start(robot, goal, "actuated")
     path = robot.tree.difference(first.q, goal)  # zero except for the given joints
     assembler, spaces = Assembler(robot, given.joints, tolerance=tolerance), TangentSpaces(robot)
-    data = model.createData()
+    data = robot.tree.memory()
 
     q, done, step = first.q, 0.0, 1.0
     while done < 1.0:
@@ -131,12 +128,12 @@ def _given(robot: Robot, values: Vector | Mapping[str, float | Sequence[float]])
 
 
 def _given_by_name(robot: Robot, by_name: Mapping[str, float | Sequence[float]]) -> _Given:
-    mechanism, model = robot.mechanism, robot.model
+    mechanism = robot.mechanism
     # For each joint: index of its first coordinate, their number, index of its first velocity, their number, and the
     # number of its coordinates in files.
     at = {
         name: (slot.idx_q, slot.nq, slot.idx_v, slot.nv, len(slot.joint.coordinates.names))
-        for name, slot in slots(mechanism, model).items()
+        for name, slot in robot.slots.items()
     }
     if mechanism.root == "floating":
         at[ROOT_JOINT] = (0, 7, 0, 6, 7)
@@ -155,7 +152,7 @@ def _given_by_name(robot: Robot, by_name: Mapping[str, float | Sequence[float]])
         as_in_files[name] = np.atleast_1d(checked_array(f"actuated['{name}']", values, *shapes)).tolist()
         coordinates += range(first_q, first_q + nq)
         velocities += range(first_v, first_v + nv)
-    q = configuration_vector(mechanism, model, as_in_files)
+    q = robot.configuration(as_in_files)
     indices = np.array(coordinates, dtype=np.intp)
     return _Given(tuple(by_name), indices, np.array(velocities, dtype=np.intp), q[indices])
 

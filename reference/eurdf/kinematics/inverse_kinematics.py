@@ -8,18 +8,19 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-import pinocchio as pin
+from pinocchio import SE3
 
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import Assembler, start
 from eurdf.kinematics.bounded_step import bounded_step
-from eurdf.kinematics.frame_index import frame_index
+from eurdf.kinematics.constraints.vector import origins, velocity_of_origin
 from eurdf.kinematics.metric import orthonormal
 from eurdf.kinematics.position_limit import BEYOND, JointAtLimit, Limits, chosen_limits
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import Opening, closure_openings, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.pinocchio.arguments import checked_array, checked_count, checked_tolerance
+from eurdf.pinocchio.logarithm import log3, log3_derivative
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -158,19 +159,18 @@ class _Search:
 
     def __init__(self, robot: Robot, targets: Mapping[str, Any], limits: Limits, tolerance: float) -> None:
         self.robot = robot
-        self.model = robot.model
-        self.data = robot.model.createData()
-        self.targets = [
-            (name, frame_index(robot.model, name), _target(name, target)) for name, target in targets.items()
-        ]
+        self.nv = robot.tree.nv
+        self.data = robot.tree.memory()
+        self.frames = robot.tree.frames(list(targets)).memory(self.data)
+        self.targets = [(name, _target(name, target)) for name, target in targets.items()]
         self.assembler = Assembler(robot, limits=limits)
         self.spaces = TangentSpaces(robot)
         self.tolerance = tolerance
         self.iterations = 0
-        self.limits = chosen_limits(robot.model, limits)
-        self.velocities = np.arange(robot.model.nv)
+        self.limits = chosen_limits(robot.tree, limits)
+        self.velocities = np.arange(self.nv)
         # Of E Z, at the configuration farthest from singular.
-        self.motions, self.rank, self.smallest = robot.model.nv, 0, 0.0
+        self.motions, self.rank, self.smallest = self.nv, 0, 0.0
 
     def run(self, q: Vector, restarts: int) -> InverseKinematics:
         openings = closure_openings(self.robot, q)
@@ -185,7 +185,7 @@ class _Search:
                 if self._reached(best):
                     break
                 spread = _SPREADS[min(attempt, len(_SPREADS) - 1)]
-                place = self._moved(q, self.spaces.scale * random.uniform(-spread, spread, self.model.nv))
+                place = self._moved(q, self.spaces.scale * random.uniform(-spread, spread, self.nv))
                 beginning = self.assembler.assemble(place, restarts=0)
                 if not beginning.closes:
                     continue
@@ -306,29 +306,27 @@ class _Search:
 
     def _error_and_jacobian(self, q: Vector) -> tuple[Vector, Matrix]:
         """Stacked errors of all frames, in characteristic lengths and rad, and their derivative with respect to v."""
-        model, data = self.model, self.data
-        pin.computeJointJacobians(model, data, q)
-        errors, jacobians = [np.empty(0)], [np.empty((0, model.nv))]
-        for _, index, target in self.targets:
-            oMf = pin.updateFramePlacement(model, data, index)
-            # Without velocities, getFrameJacobian of Pinocchio 4.1 reads memory that is not its own.
-            J = pin.getFrameJacobian(model, data, index, pin.LOCAL).reshape(6, -1) if model.nv else np.empty((6, 0))
-            position = target.translation if isinstance(target, pin.SE3) else target
+        placements = self.frames.placements(q)
+        rows = np.zeros((len(placements), 6, 6))
+        rows[:, :3] = velocity_of_origin(origins(placements))
+        rows[:, 3:, 3:] = np.eye(3)
+        jacobians_in_world = self.frames.jacobian(rows, range(len(placements))).reshape(len(placements), 6, self.nv)
+        errors, jacobians = [np.empty(0)], [np.empty((0, self.nv))]
+        for (_, target), oMf, J in zip(self.targets, placements, jacobians_in_world, strict=True):
+            position = target.translation if isinstance(target, SE3) else target
             errors.append((oMf.translation - position) / self.spaces.length)
-            jacobians.append(oMf.rotation @ J[:3] / self.spaces.length)
-            if isinstance(target, pin.SE3):
+            jacobians.append(J[:3] / self.spaces.length)
+            if isinstance(target, SE3):
                 turn = target.rotation.T @ oMf.rotation
-                errors.append(pin.log3(turn))
-                jacobians.append(pin.Jlog3(turn) @ J[3:])
+                errors.append(log3(turn))
+                jacobians.append(log3_derivative(turn) @ oMf.rotation.T @ J[3:])
         return np.concatenate(errors), np.vstack(jacobians)
 
     def _errors(self, q: Vector) -> tuple[FrameError, ...]:
-        pin.forwardKinematics(self.model, self.data, q)
         errors = []
-        for name, index, target in self.targets:
-            oMf = pin.updateFramePlacement(self.model, self.data, index)
-            if isinstance(target, pin.SE3):
-                angle = math.hypot(*pin.log3(target.rotation.T @ oMf.rotation))
+        for (name, target), oMf in zip(self.targets, self.frames.placements(q), strict=True):
+            if isinstance(target, SE3):
+                angle = math.hypot(*log3(target.rotation.T @ oMf.rotation))
                 errors.append(FrameError(name, math.dist(oMf.translation, target.translation), angle))
             else:
                 errors.append(FrameError(name, math.dist(oMf.translation, target), 0.0))
@@ -344,7 +342,7 @@ def _singular_values(A: Matrix) -> Vector:
 
 def _target(name: str, target: Any) -> Any:
     """A target, checked: a pose, or a position (3,)."""
-    if isinstance(target, pin.SE3):
+    if isinstance(target, SE3):
         R, p = target.rotation, target.translation
         if np.isfinite(p).all() and np.abs(R.T @ R - np.eye(3)).max() <= 1e-6 and np.linalg.det(R) > 0.0:
             return target

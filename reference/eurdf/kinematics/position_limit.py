@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
 from eurdf.kinematics.array import Indices, Vector
-from eurdf.kinematics.velocity_names import velocity_names
+from eurdf.kinematics.tree_kinematics import TreeKinematics
 
 #: Which position limits to respect: all except ranges of zero width (True), none (False), or all (``"strict"``).
 Limits = bool | Literal["strict"]
@@ -79,32 +79,32 @@ class PositionLimits:
         return JointAtLimit(self.joints[velocity], float(limit), side)
 
 
-def position_limits(model: Any, *, strict: bool = False) -> PositionLimits:
-    """Position limits of a model.
+def position_limits(tree: TreeKinematics, *, strict: bool = False) -> PositionLimits:
+    """Position limits of a tree.
 
     If a URDF gives no range, lower and upper limit are both zero (`urdf-no-range`). Such a coordinate is unlimited,
     unless ``strict``.
     """
-    coordinates = np.zeros(model.nv, dtype=np.intp)
-    lower, upper = np.full(model.nv, -np.inf), np.full(model.nv, np.inf)
-    for joint in model.joints[1:]:
-        if joint.nv == 0 or joint.nq != joint.nv:
-            continue
-        v, q = slice(joint.idx_v, joint.idx_v + joint.nv), slice(joint.idx_q, joint.idx_q + joint.nq)
-        coordinates[v] = np.arange(q.start, q.stop)
-        lower[v], upper[v] = model.lowerPositionLimit[q], model.upperPositionLimit[q]
+    coordinates = np.zeros(tree.nv, dtype=np.intp)
+    driven = np.zeros(tree.nv, dtype=bool)
+    for q, v in zip(tree.own_coordinates, tree.own_velocities, strict=True):
+        if len(v) and len(q) == len(v):
+            coordinates[v.start : v.stop], driven[v.start : v.stop] = q, True
+    lowest, highest = tree.position_limits
+    lower, upper = np.full(tree.nv, -np.inf), np.full(tree.nv, np.inf)
+    lower[driven], upper[driven] = lowest[coordinates[driven]], highest[coordinates[driven]]
     if not strict:
         left_out = (lower == 0.0) & (upper == 0.0)
         lower[left_out], upper[left_out] = -np.inf, np.inf
-    return PositionLimits(tuple(velocity_names(model)), coordinates, lower, upper)
+    return PositionLimits(tuple(tree.velocity_names), coordinates, lower, upper)
 
 
-def chosen_limits(model: Any, limits: Limits) -> PositionLimits | None:
-    """The position limits of a model to respect, or None.
+def chosen_limits(tree: TreeKinematics, limits: Limits) -> PositionLimits | None:
+    """The position limits of a tree to respect, or None.
 
     Raises:
         ValueError: ``limits`` is not True, False or ``"strict"``.
     """
     if isinstance(limits, str) and limits != "strict":
         raise ValueError(f"limits is {limits!r}; use True, False or 'strict'")
-    return position_limits(model, strict=limits == "strict") if limits else None
+    return position_limits(tree, strict=limits == "strict") if limits else None

@@ -119,8 +119,8 @@ def project_velocity(robot: Robot, q: Vector, v: Vector, weights: Vector | Matri
     Raises:
         ValueError: ``q`` or ``v`` has another shape or is not finite, or ``weights`` is not a metric.
     """
-    W = metric(weights, robot.model.nv)
-    v = checked_array("v", v, (robot.model.nv,))
+    W = metric(weights, robot.tree.nv)
+    v = checked_array("v", v, (robot.tree.nv,))
     _, K = residual_and_jacobian(robot, start(robot, q, "q"))
     projected = nearest(TangentSpaces(robot).at(K).basis, W, v)
     finite("the velocity", projected)
@@ -151,8 +151,8 @@ def project_acceleration(
     Raises:
         ValueError: ``q``, ``v`` or ``a`` has another shape or is not finite, or ``weights`` is not a metric.
     """
-    W = metric(weights, robot.model.nv)
-    v, a, q = checked_array("v", v, (robot.model.nv,)), checked_array("a", a, (robot.model.nv,)), start(robot, q, "q")
+    W = metric(weights, robot.tree.nv)
+    v, a, q = checked_array("v", v, (robot.tree.nv,)), checked_array("a", a, (robot.tree.nv,)), start(robot, q, "q")
     _, K = residual_and_jacobian(robot, q)
     space = TangentSpaces(robot).at(K)
     forced = -space.inverse @ acceleration_drift(robot, q, v)

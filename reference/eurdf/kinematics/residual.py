@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.constraint_stack import ConstraintStack, all_constraints
 from eurdf.kinematics.constraints.kind import State
-from eurdf.pinocchio.arguments import checked_array, checked_data
+from eurdf.pinocchio.arguments import checked_array
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -77,8 +77,8 @@ def acceleration_drift(robot: Robot, q: Vector, v: Vector, data: Any = None) -> 
     Raises:
         ValueError: As in `residual`, also for ``v``.
     """
-    q, v = checked_array("q", q, (robot.model.nq,)), checked_array("v", v, (robot.model.nv,))
-    return all_constraints(robot).drift(q, v, checked_data(robot.model, data))
+    q, v = checked_array("q", q, (robot.tree.nq,)), checked_array("v", v, (robot.tree.nv,))
+    return all_constraints(robot).drift(q, v, robot.tree.memory(data))
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,5 +129,5 @@ def closure_openings(robot: Robot, q: Vector, data: Any = None) -> tuple[Opening
 
 def _constraints_at(robot: Robot, q: Vector, data: Any) -> tuple[ConstraintStack, State]:
     stack = all_constraints(robot)
-    data = None if data is None else checked_data(robot.model, data)
-    return stack, stack.at(checked_array("q", q, (robot.model.nq,)), stack.memory(data))
+    data = None if data is None else robot.tree.memory(data)
+    return stack, stack.at(checked_array("q", q, (robot.tree.nq,)), stack.memory(data))

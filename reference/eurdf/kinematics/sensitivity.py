@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pinocchio as pin
+from pinocchio import LOCAL
 
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.exceptions import DependentActuators
 from eurdf.kinematics.finite import finite, overflow_refused
-from eurdf.kinematics.frame_index import frame_index
+from eurdf.kinematics.frame_jacobian import frame_jacobian
 from eurdf.kinematics.metric import metric, orthonormal
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import residual_and_jacobian
@@ -48,7 +48,7 @@ def dq_dq_actuated(robot: Robot, q: Vector, weights: Vector | Matrix | None = No
             singular values are the cosines between the actuated and the free motions.
         ValueError: ``q`` is not a configuration, or ``weights`` is not a metric.
     """
-    W = metric(weights, robot.model.nv)
+    W = metric(weights, robot.tree.nv)
     _, K = residual_and_jacobian(robot, start(robot, q, "q"))
     spaces = TangentSpaces(robot)
     basis = spaces.at(K).basis
@@ -62,7 +62,7 @@ def dq_dq_actuated(robot: Robot, q: Vector, weights: Vector | Matrix | None = No
 
 @overflow_refused("the Jacobian")
 def actuated_jacobian(
-    robot: Robot, q: Vector, frame: str, reference: Any = pin.LOCAL, weights: Vector | Matrix | None = None
+    robot: Robot, q: Vector, frame: str, reference: Any = LOCAL, weights: Vector | Matrix | None = None
 ) -> Matrix:
     """Jacobian of a frame with respect to the actuated velocities: its twist is J D u.
 
@@ -86,10 +86,9 @@ def actuated_jacobian(
         DependentActuators: As in `dq_dq_actuated`.
         ValueError: The frame is unknown or ambiguous, ``q`` is not a configuration, or ``weights`` is not a metric.
     """
-    model, index = robot.model, frame_index(robot.model, frame)
     q = start(robot, q, "q")
-    J = pin.computeFrameJacobian(model, model.createData(), q, index, reference)
-    actuated = np.asarray(J.reshape(6, -1) @ dq_dq_actuated(robot, q, weights), dtype=np.float64)
+    J = frame_jacobian(robot.tree, q, frame, reference)
+    actuated = np.asarray(J @ dq_dq_actuated(robot, q, weights), dtype=np.float64)
     finite("the Jacobian", actuated)
     return actuated
 
@@ -103,14 +102,9 @@ def _refuse_dependent(robot: Robot, scale: Vector, basis: Matrix) -> None:
     if rank == len(rows):
         return
     concerned = rows[np.abs(left[:, rank:]).max(axis=1) > _PART]
-    joints = robot.model.joints
     names = [
         name
         for name in robot.actuation.joints
-        if _velocities(joints[robot.model.getJointId(name)]).intersection(concerned.tolist())
+        if not set(robot.tree.velocities_of(name)).isdisjoint(concerned.tolist())
     ]
     raise DependentActuators(tuple(names), len(rows), rank)
-
-
-def _velocities(joint: Any) -> set[int]:
-    return set(range(joint.idx_v, joint.idx_v + joint.nvExtended))

@@ -29,7 +29,7 @@ def split_configuration(robot: Robot, q: Vector) -> tuple[Vector, Vector]:
     Raises:
         ValueError: ``q`` has a wrong shape or is not finite.
     """
-    return _split("q", q, robot.actuation.idx_q, robot.model.nq)
+    return _split("q", q, robot.actuation.idx_q, robot.tree.nq)
 
 
 def merge_configuration(robot: Robot, q_actuated: Vector, q_free: Vector) -> Vector:
@@ -38,7 +38,7 @@ def merge_configuration(robot: Robot, q_actuated: Vector, q_free: Vector) -> Vec
     Raises:
         ValueError: One of the parts has a wrong shape or is not finite.
     """
-    return _merge("q", q_actuated, q_free, robot.actuation.idx_q, robot.model.nq)
+    return _merge("q", q_actuated, q_free, robot.actuation.idx_q, robot.tree.nq)
 
 
 def split_velocity(robot: Robot, v: Vector) -> tuple[Vector, Vector]:
@@ -54,7 +54,7 @@ def split_velocity(robot: Robot, v: Vector) -> tuple[Vector, Vector]:
     Raises:
         ValueError: ``v`` has a wrong shape or is not finite.
     """
-    return _split("v", v, robot.actuation.idx_v, robot.model.nv)
+    return _split("v", v, robot.actuation.idx_v, robot.tree.nv)
 
 
 def merge_velocity(robot: Robot, v_actuated: Vector, v_free: Vector) -> Vector:
@@ -63,7 +63,7 @@ def merge_velocity(robot: Robot, v_actuated: Vector, v_free: Vector) -> Vector:
     Raises:
         ValueError: One of the parts has a wrong shape or is not finite.
     """
-    return _merge("v", v_actuated, v_free, robot.actuation.idx_v, robot.model.nv)
+    return _merge("v", v_actuated, v_free, robot.actuation.idx_v, robot.tree.nv)
 
 
 def _split(name: str, whole: Vector, actuated: Indices, size: int) -> tuple[Vector, Vector]:

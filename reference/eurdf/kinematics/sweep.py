@@ -15,8 +15,7 @@ from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.position_limit import Limits, PositionLimits, chosen_limits
 from eurdf.kinematics.scale import characteristic_length
 from eurdf.mechanism.joint_type import JointType
-from eurdf.pinocchio.arguments import checked_count, checked_data
-from eurdf.pinocchio.coordinates import slots
+from eurdf.pinocchio.arguments import checked_count
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -115,8 +114,8 @@ def sweep(
         ValueError: ``actuator`` is not actuated, or has several coordinates; ``q0`` is not a configuration;
             ``steps`` is less than 1; ``data`` is of another model.
     """
-    steps, kept = checked_count("steps", steps, 1), chosen_limits(robot.model, limits)
-    data = checked_data(robot.model, data)
+    steps, kept = checked_count("steps", steps, 1), chosen_limits(robot.tree, limits)
+    data = robot.tree.memory(data)
     first = assemble(robot, q0, tolerance=_TOLERANCE)
     if not first.closes:
         raise NotClosable("no closed configuration was found near the start", first.open, first.q)
@@ -151,16 +150,20 @@ class _Drive:
 def _drive(robot: Robot, actuator: str, q: Vector, limits: PositionLimits | None) -> _Drive:
     if actuator not in robot.actuation.joints:
         raise ValueError(f"'{actuator}' is not an actuated joint of this robot")
-    slot = slots(robot.mechanism, robot.model)[actuator]
-    if slot.nv != 1:
-        raise ValueError(f"actuator '{actuator}' has {slot.nv} velocities; sweep moves joints with one velocity")
-    at = 0.0 if slot.joint.type is JointType.CONTINUOUS else float(q[slot.idx_q])
-    translates = slot.joint.type is JointType.PRISMATIC
+    velocities = robot.tree.velocities_of(actuator)
+    if len(velocities) != 1:
+        raise ValueError(
+            f"actuator '{actuator}' has {len(velocities)} velocities; sweep moves joints with one velocity"
+        )
+    (velocity,) = velocities
+    kind = next(joint.type for joint in robot.mechanism.joints if joint.name == actuator)
+    at = 0.0 if kind is JointType.CONTINUOUS else float(q[robot.tree.coordinate(actuator).idx_q])
+    translates = kind is JointType.PRISMATIC
     farthest = characteristic_length(robot) if translates else math.pi
     without: End = "characteristic length" if translates else "half turn"
-    lower, upper = (-math.inf, math.inf) if limits is None else (limits.lower[slot.idx_v], limits.upper[slot.idx_v])
+    lower, upper = (-math.inf, math.inf) if limits is None else (limits.lower[velocity], limits.upper[velocity])
     return _Drive(
-        slot.idx_v,
+        velocity,
         at,
         (
             float(lower) if math.isfinite(lower) else at - farthest,

@@ -136,11 +136,46 @@ class TreeKinematics(Protocol):
             ValueError: The joint has none, or several.
         """
 
+    @property
+    def velocity_names(self) -> Sequence[str]:
+        """For each velocity (nv) the name of its joint."""
+
+    @property
+    def position_limits(self) -> tuple[Vector, Vector]:
+        """The lower and the upper position limits (nq,) as in the files, both zero where there is no range."""
+
+    @property
+    def whole_turns(self) -> Mask:
+        """Which velocities (nv,) drive an angle whose whole turns change nothing."""
+
+    def velocities_of(self, joint: str) -> range:
+        """The indices in v of the velocities that move a joint: its leader's if it mimics.
+
+        Raises:
+            ValueError: The tree has no such joint.
+        """
+
+    def frames(self, names: Sequence[str]) -> FramePairs:
+        """Pairs of the world, as A, and the frames with these names, as B; by all velocities.
+
+        A frame is named by a link, a joint (its frame on the child side), or a frame of the description.
+
+        Raises:
+            ValueError: A frame is unknown, or two different frames have this name.
+        """
+
     def pairs(self, anchors: Sequence[tuple[Anchor, Anchor]], velocities: Indices | None) -> FramePairs:
         """Pairs of frames; ``velocities`` (n,) are the indices in v of the columns of their Jacobian, all if None."""
 
-    def memory(self) -> Any:
-        """Memory of the whole tree, which takes some 8 nv³ numbers, and saves time for small trees."""
+    def memory(self, given: Any = None) -> Any:
+        """Memory of the whole tree, which takes some 8 nv³ numbers, and saves time for small trees.
+
+        Args:
+            given: Memory that a caller of the package passed; without it, new memory is made.
+
+        Raises:
+            ValueError: What was passed is no memory of this tree.
+        """
 
     def neutral(self) -> Vector:
         """The neutral configuration (nq,)."""

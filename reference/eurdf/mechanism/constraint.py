@@ -67,6 +67,10 @@ class Closure(Constraint):
         """Frames A and B."""
         return self.a, self.b
 
+    def with_orientation_free(self) -> Closure:
+        """The closure that constrains positions alone as this one does; itself if it leaves orientations free."""
+        return self
+
 
 @dataclass(frozen=True, slots=True)
 class PointClosure(Closure):
@@ -83,6 +87,10 @@ class FrameClosure(Closure):
     type: ClassVar[str] = "6d"
     units: ClassVar[tuple[Unit, ...]] = ("m",) * 3 + ("rad",) * 3
 
+    def with_orientation_free(self) -> PointClosure:
+        """The 3d closure of the same frames."""
+        return PointClosure(self.name, self.a, self.b)
+
 
 @dataclass(frozen=True, slots=True)
 class HingeClosure(Closure):
@@ -95,6 +103,10 @@ class HingeClosure(Closure):
     type: ClassVar[str] = "hinge"
     units: ClassVar[tuple[Unit, ...]] = ("m",) * 3 + ("rad",) * 2
     axes: tuple[Vector3, Vector3] = ((0.0, 0.0, 1.0), (0.0, 0.0, 1.0))
+
+    def with_orientation_free(self) -> PointClosure:
+        """The 3d closure of the same frames."""
+        return PointClosure(self.name, self.a, self.b)
 
 
 @dataclass(frozen=True, slots=True)

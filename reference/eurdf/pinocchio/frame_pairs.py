@@ -47,7 +47,8 @@ class FramePairs:
     def memory(self, data: pin.Data | None = None) -> DataMemory | PathMemory:
         """Memory to compute in: ``data``, of the whole model, or without it the joints between the frames alone."""
         # Mimic joints have columns of their own in Pinocchio's Jacobians, which only the paths add to their leaders'.
-        if data is None or self.model.nv < self.model.nvExtended:
+        # Without velocities, Jacobians of Pinocchio 4.1 read memory that is not their own.
+        if data is None or not self.model.nv or self.model.nv < self.model.nvExtended:
             return PathMemory(self)
         return DataMemory(self, data)
 
@@ -164,10 +165,10 @@ class DataMemory:
         """See `eurdf.kinematics.tree_kinematics.PairMemory`."""
         if self._J is None:
             J = pin.getConstraintsJacobian(self._model, self._data, self._constraints, self._datas)
-            self._J = J.reshape(len(self._each), 6, -1)  # of the twist of A against B
+            self._J = J.reshape(len(self._each), 6, self._model.nv)  # of the twist of A against B
         J = self._J if len(which) == len(self._J) else self._J[which]
         K = np.matmul(-rows, J)
-        K = K.reshape(K.shape[0] * K.shape[1], -1)
+        K = K.reshape(K.shape[0] * K.shape[1], self._model.nv)
         return K if self._velocities is None else np.asarray(K[:, self._velocities])
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
@@ -16,7 +16,7 @@ from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.actuation import Actuation, build_actuation
 from eurdf.pinocchio.configuration import Vector, configuration_vector, own_coordinates
 from eurdf.pinocchio.constraint import build_constraint_models
-from eurdf.pinocchio.coordinates import slots
+from eurdf.pinocchio.coordinates import Slot, slots
 from eurdf.pinocchio.geometry import Meshes, Resolve, build_geometry
 from eurdf.pinocchio.model import build_model
 from eurdf.pinocchio.tree import PinocchioTree, build_tree
@@ -112,6 +112,23 @@ class Robot:
         if self.no_geometry is not None:
             raise self.no_geometry()
         return self.geometry
+
+    @cached_property
+    def slots(self) -> Mapping[str, Slot]:
+        """Each joint that has coordinates of its own, by name, with the indices of these and of its velocities."""
+        return MappingProxyType(slots(self.mechanism, self.model))
+
+    def configuration(self, coordinates: Mapping[str, Sequence[float]]) -> Vector:
+        """The configuration (nq,) in which joints have the given coordinates: the inverse of `coordinates`.
+
+        Args:
+            coordinates: By name of the joint, as a file states them; a joint that is not named is neutral.
+
+        Raises:
+            ValueError: A name is not a joint with coordinates, or a joint is given too few or too many of them, or a
+                quaternion of length 0.
+        """
+        return configuration_vector(self.mechanism, self.model, coordinates, self.slots)
 
     def coordinates(self, q: Vector) -> dict[str, tuple[float, ...]]:
         """The coordinates of a configuration as a file states them: the inverse of what makes `configurations`.

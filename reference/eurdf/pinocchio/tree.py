@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 from collections.abc import Mapping, Sequence
 from functools import cached_property
@@ -13,7 +14,9 @@ import pinocchio as pin
 
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.mechanism import Mechanism
+from eurdf.pinocchio.arguments import checked_data
 from eurdf.pinocchio.coordinates import slots
+from eurdf.pinocchio.frame_index import frame_index
 from eurdf.pinocchio.frame_pairs import FramePairs, Indices, Matrix, Site, Vector
 from eurdf.pinocchio.frames import body_frame_ids
 from eurdf.pinocchio.placement import placement_of
@@ -95,10 +98,54 @@ class PinocchioTree:
 
     def translates(self, joint: int) -> npt.NDArray[np.bool_]:
         """Which of the velocities of a joint only translate."""
+        return np.asarray(~self._subspace(joint)[3:].any(axis=0))
+
+    @cached_property
+    def velocity_names(self) -> list[str]:
+        """For each velocity (nv) the name of its joint."""
+        model = self.model
+        names, joints = [""] * self.nv, set(model.names)
+        for name, own in zip(model.names, self.own_velocities, strict=True):
+            # The coordinate of a leader that comes after one of its mimic joints belongs to a helper joint.
+            leader = name.removesuffix("/coordinate")
+            names[own.start : own.stop] = [leader if leader in joints else name] * len(own)
+        return names
+
+    @property
+    def position_limits(self) -> tuple[Vector, Vector]:
+        """The lower and the upper position limits (nq,)."""
+        return np.array(self.model.lowerPositionLimit), np.array(self.model.upperPositionLimit)
+
+    @cached_property
+    def whole_turns(self) -> npt.NDArray[np.bool_]:
+        """Which velocities (nv,) drive an angle whose whole turns change nothing, since it is not unwrapped."""
+        turns: npt.NDArray[np.bool_] = np.zeros(self.nv, dtype=bool)
+        for joint, (q, v) in enumerate(zip(self.own_coordinates, self.own_velocities, strict=True)):
+            if len(v) and len(q) == len(v):
+                turns[v.start : v.stop] = ~self._subspace(joint)[:3].any(axis=0)
+        for joint in self.model.mimicking_joints:  # a multiplier of 0.5 makes whole turns matter
+            turns[self.model.idx_vs[joint]] = False
+        return turns
+
+    def velocities_of(self, joint: str) -> range:
+        """The indices in v of the velocities that move a joint: its leader's if it mimics.
+
+        Raises:
+            ValueError: The tree has no such joint.
+        """
+        model = self.model
+        if not model.existJointName(joint):
+            near = difflib.get_close_matches(joint, list(model.names), n=1)
+            raise ValueError(f"the model has no joint '{joint}'" + (f"; did you mean '{near[0]}'?" if near else ""))
+        index: int = model.getJointId(joint)
+        return self.moving_velocities[index]
+
+    def _subspace(self, joint: int) -> Matrix:
+        """Motion subspace (6, n) of a joint at zero: rows linear, then angular."""
         moving = self.model.joints[joint]
         data = moving.createData()
         moving.calc(data, self._neutral)
-        return np.asarray(~data.S.reshape(6, -1)[3:].any(axis=0))
+        return np.array(data.S.reshape(6, -1))
 
     @cached_property
     def _neutral(self) -> Vector:
@@ -174,13 +221,25 @@ class PinocchioTree:
         columns = [self.inverse_dynamics(q, still, a, data) - gravity for a in motions.T]
         return np.array(columns).reshape(motions.T.shape).T
 
-    def memory(self) -> pin.Data:
-        """A `pin.Data`."""
-        return self.model.createData()
+    def memory(self, given: pin.Data | None = None) -> pin.Data:
+        """The given `pin.Data`, or a new one.
+
+        Raises:
+            ValueError: It is no `pin.Data`, or one of another model.
+        """
+        return checked_data(self.model, given)
 
     def pairs(self, anchors: Sequence[tuple[Anchor, Anchor]], velocities: Indices | None) -> FramePairs:
         """See `eurdf.kinematics.tree_kinematics.TreeKinematics`."""
         return FramePairs(self.model, [(self.site(a), self.site(b)) for a, b in anchors], velocities)
+
+    def frames(self, names: Sequence[str]) -> FramePairs:
+        """See `eurdf.kinematics.tree_kinematics.TreeKinematics`."""
+        world, pairs = Site(0, pin.SE3.Identity()), []
+        for name in names:
+            frame = self.model.frames[frame_index(self.model, name)]
+            pairs.append((world, Site(frame.parentJoint, pin.SE3(frame.placement))))
+        return FramePairs(self.model, pairs, None)
 
     def jacobian_along(self, joints: Sequence[int], q: Vector) -> Matrix:
         """The world Jacobian (6, nvExtended) at q (nq,), zero but in the columns of the joints and of their ancestors.

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 from eurdf.checking.advice.passive import PassiveMotions
 from eurdf.diagnostics import quoted
 from eurdf.kinematics.analysis import Analysis, LoopAnalysis, analyze
-from eurdf.mechanism.constraint import FrameClosure, PointClosure
 from eurdf.pinocchio.robot import build_robot
 
 if TYPE_CHECKING:
@@ -69,7 +68,7 @@ def advise_on_actuation(description: Described, robot: Robot, q: Vector, diagnos
 def _report_dependent(
     description: Described, robot: Robot, loop: LoopAnalysis, locking: Sequence[str], diagnostics: Diagnostics
 ) -> None:
-    """Report the dependent actuators of a group of loops, and the 6d closures that lock them where some were found."""
+    """Report the dependent actuators of a group of loops, and the closures whose orientation locks them, if found."""
     dependent = [name for together in loop.dependent_actuators for name in together]
     # Each is alone in its set, and has one velocity: of several, others may be free.
     one_each = len(frozenset(loop.joints).intersection(robot.actuation.joints)) == loop.actuated
@@ -91,14 +90,15 @@ def _report_dependent(
 
 
 def _locking(robot: Robot, q: Vector, loops: Sequence[LoopAnalysis]) -> list[tuple[str, ...]]:
-    """For each group, the 6d closures that as 3d ones free its dependent actuators and leave no motion uncontrolled.
+    """For each group, the closures that free its dependent actuators, and no other motion, if they hold positions only.
 
     Found by trial: each alone, then all of the group; of all groups at once, since none changes another.
     """
     mechanism, passive = robot.mechanism, PassiveMotions(robot)
     members = {name for loop in loops for name in loop.closures}
     group = [closure for closure in mechanism.closures if closure.name in members]
-    spatial = {closure.name for closure in group if isinstance(closure, FrameClosure)}
+    freer = {closure.name: closure.with_orientation_free() for closure in group}
+    spatial = {closure.name for closure in group if freer[closure.name] is not closure}
     uncontrolled = [len(passive.without_spins(loop)) for loop in loops]
     trials = [_trials([name for name in loop.closures if name in spatial]) for loop in loops]
     found: list[tuple[str, ...]] = [()] * len(loops)
@@ -107,7 +107,7 @@ def _locking(robot: Robot, q: Vector, loops: Sequence[LoopAnalysis]) -> list[tup
         if not pending:
             continue
         changed = {name for index in pending for name in tried[index]}
-        closures = tuple(PointClosure(each.name, each.a, each.b) if each.name in changed else each for each in group)
+        closures = tuple(freer[each.name] if each.name in changed else each for each in group)
         trial = build_robot(replace(mechanism, closures=closures), geometry=False)
         after = {loop.closures: loop for loop in analyze(trial, q).loops}
         passive = PassiveMotions(trial)

@@ -9,7 +9,6 @@ import numpy as np
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.loop import joints_of_loops
 from eurdf.kinematics.position_limit import position_limits
-from eurdf.kinematics.velocity_names import velocity_names
 from eurdf.writing.assembled import BeyondLimit, beyond_limits
 
 if TYPE_CHECKING:
@@ -60,15 +59,15 @@ def advise_on_limits(description: Described, robot: Robot, q: Vector, diagnostic
 
 def _beyond(robot: Robot, q: Vector) -> list[BeyondLimit]:
     """The coordinates of joints of the loops that are beyond their limits."""
-    names, first = velocity_names(robot.model), robot.model.idx_vs.tolist()
+    names, first = robot.tree.velocity_names, robot.tree.own_velocities
     joints = joints_of_loops(robot)
-    in_loops = {names[first[joint]] for joint in joints}
+    in_loops = {names[first[joint].start] for joint in joints}
     return [found for found in beyond_limits(robot.mechanism, robot.coordinates(q)) if found.joint in in_loops]
 
 
 def _middle(robot: Robot, q: Vector) -> Vector:
     """The configuration with each coordinate that has a range in the middle of it."""
-    limits = position_limits(robot.model)
+    limits = position_limits(robot.tree)
     ranged = np.isfinite(limits.lower) & np.isfinite(limits.upper)
     middle = np.array(q)
     middle[limits.coordinates[ranged]] = 0.5 * limits.lower[ranged] + 0.5 * limits.upper[ranged]

@@ -35,7 +35,7 @@ def skew(a: Matrix) -> Matrix:
 
 def origins(placements: Sequence[Any]) -> Matrix:
     """The translations (k, 3) of poses."""
-    return np.array([placement.translation for placement in placements])
+    return np.array([placement.translation for placement in placements]).reshape(-1, 3)
 
 
 def velocity_of_origin(p: Matrix) -> Matrix:
