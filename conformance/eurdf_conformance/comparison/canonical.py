@@ -40,7 +40,7 @@ def canonical_differences(
         *_part_differences(one.closures, other.closures, "/closures", "closure"),
         *_part_differences(one.actuators, other.actuators, "/actuators", "actuator of joint"),
         *_configuration_differences(one, other, expected.root),
-        *value_differences(expected.own, given.own, "/own", "the user's own data"),
+        *value_differences(expected.own, given.own, "/own", "user data"),
     ]
 
 

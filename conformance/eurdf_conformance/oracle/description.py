@@ -73,5 +73,5 @@ class Description:
     frames: dict[str, FrameReference] = field(default_factory=dict)
     #: By name, for each joint its coordinates.
     configurations: dict[str, dict[str, list[float]]] = field(default_factory=dict)
-    #: The user's own data, by JSON pointer.
+    #: User data, by JSON pointer.
     own: dict[str, Any] = field(default_factory=dict)

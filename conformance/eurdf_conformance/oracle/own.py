@@ -1,4 +1,4 @@
-"""The user's own data, by JSON pointer (RFC 6901): chapter Extensions, clauses EU-CAN-002 and 003."""
+"""User data, by JSON pointer (RFC 6901): chapter Extensions, clauses EU-CAN-002 and 003."""
 
 from __future__ import annotations
 

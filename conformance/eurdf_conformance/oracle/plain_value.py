@@ -12,7 +12,7 @@ from eurdf_conformance.oracle.spatial import Array
 
 
 def mapping(value: Any, allowed: Collection[str] | None = None) -> dict[str, Any]:
-    """The members of a mapping without the user's own, EU-EXT-002; of `allowed` keys only, if they are given."""
+    """The members of a mapping without user data, EU-EXT-002; of `allowed` keys only, if they are given."""
     if not isinstance(value, dict):
         raise NotRead(f"{value!r} is no mapping")
     members = {key: member for key, member in value.items() if not key.startswith("x-")}

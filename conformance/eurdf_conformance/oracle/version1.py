@@ -15,7 +15,7 @@ KEYS = ("closed_loop", "type", "name_mot", "joint_name", "joint_type")
 
 
 def version1(document: dict[str, Any]) -> Description:
-    """Read the five keys, EU-ONE-001; all others are the user's own, EU-ONE-008."""
+    """Read the five keys, EU-ONE-001; all others are user-defined, EU-ONE-008."""
     loops = sequence(document.get("closed_loop", []))
     types = sequence(document.get("type", ["6d"] * len(loops)))  # EU-ONE-004
     names = [text(name) for name in sequence(document.get("joint_name", []))]

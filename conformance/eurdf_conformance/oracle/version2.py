@@ -61,7 +61,7 @@ def version2(document: dict[str, Any]) -> Description:
 
 
 def closure(value: Any) -> Closure | None:
-    """A closure; one of a type of the user's own is left out, EU-CLO-012."""
+    """A closure; one of a user-defined type is left out, EU-CLO-012."""
     members = mapping(value, ("name", "type", "frames"))
     types: dict[str, Literal["3d", "6d"]] = {"3d": "3d", "6d": "6d"}
     kind = text(members.get("type"))

@@ -96,7 +96,7 @@ class Change(Part):
     damping: PerNumber | None = None
     friction: PerNumber | None = None
     armature: PerNumber | None = None
-    #: The user's own data, under keys that begin with `x-`.
+    #: User data, under keys that begin with `x-`.
     own: dict[str, Any] = {}
 
     @property
@@ -151,7 +151,7 @@ class Mechanism(Part):
     actuators: tuple[Actuator, ...] = ()
     #: At `assembled` every closure is closed. Those of version 1, whose files have none, are asked for all the same.
     configurations: dict[str, Configuration] = {}
-    #: The user's own data, under keys that begin with `x-`.
+    #: User data, under keys that begin with `x-`.
     own: dict[str, Any] = {}
 
     @property

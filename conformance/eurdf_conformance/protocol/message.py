@@ -179,7 +179,7 @@ class CanonicalRobot(Value):
     closures: list[CanonicalClosure]
     actuators: list[CanonicalActuator]
     configurations: dict[str, dict[str, Numbers]]
-    own: dict[str, Any] = Field(description="The user's own data, by the JSON pointer of their key.")
+    own: dict[str, Any] = Field(description="User data, by the JSON pointer of their key.")
 
 
 class Accepted(Answer):

@@ -92,7 +92,7 @@ def robot_renamed(robot: CanonicalRobot, names: Names, joint: Name) -> Canonical
 
 
 def _pointer(pointer: str, joint: Name) -> str:
-    """A JSON pointer to the user's own data, which may lead by the name of a joint."""
+    """A JSON pointer to user data, which may lead by the name of a joint."""
     match pointer.split("/"):
         case ["", "joints", name, *rest]:
             return "/".join([f"/joints{step(joint(key_of(name)))}", *rest])

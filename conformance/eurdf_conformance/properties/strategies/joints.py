@@ -101,7 +101,7 @@ def changes(draw: DrawFn, kind: Any, was: Plain, *, plain: bool = False) -> Chan
 
 @st.composite
 def stated(draw: DrawFn, kind: str) -> dict[str, Any]:
-    """Properties that the description states, in place of the URDF's, and the user's own data."""
+    """Properties that the description states, in place of the URDF's, and user data."""
     nq, nv = COORDINATES[kind], VELOCITIES[kind]
     ranges = {"armature": (0, 0.5), "damping": (0, 2), "friction": (0, 2), "velocity": (0, 9), "effort": (0, 9)}
     ranges |= {"lower": (-4, -2), "upper": (2, 4)} if kind in _BOUNDED else {}
