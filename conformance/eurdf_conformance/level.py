@@ -5,9 +5,10 @@ from __future__ import annotations
 from enum import StrEnum
 from typing import Literal
 
-Version = Literal["1", "2"]
+#: "2" is version 2.0.
+Version = Literal["1", "2", "2.1"]
 
-VERSIONS: tuple[Version, ...] = ("1", "2")
+VERSIONS: tuple[Version, ...] = ("1", "2", "2.1")
 
 
 class Level(StrEnum):

@@ -56,7 +56,7 @@ LEVELS: Mapping[Level, LevelSpec] = {
         (Level.ACCEPT, Level.STRUCTURE, Level.KINEMATICS),
         {
             "poses": ("EU-JNT-025", "EU-FRM-006"),
-            "residuals": ("EU-CLO-008", "EU-CLO-009"),
+            "residuals": ("EU-CLO-008", "EU-CLO-009", "EU-CLO-014"),
             "jacobian": ("EU-CLO-010", "EU-JNT-026"),
         },
     ),

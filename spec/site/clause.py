@@ -18,8 +18,10 @@ INFORMATIVE = frozenset({"tutorial", "rationale", "comparison", "bibliography"})
 #: The conformance level that tests a clause; ``parser`` if the suite cannot test it.
 LEVELS = ("accept", "structure", "kinematics", "dynamics", "diagnose", "parser")
 
-#: Versions of the format.
-VERSIONS = (1, 2)
+#: Versions of the format, with which clauses are marked; a clause of version 2 is also of version 2.1.
+VERSIONS = ("1", "2", "2.1")
+
+_UNMARKED = ("1", "2")
 
 ID = re.compile(r"EU-[A-Z]{3}-[0-9]{3}")
 
@@ -50,7 +52,7 @@ class Clause:
     keyword: str
     text: str
     level: str
-    versions: tuple[int, ...]
+    versions: tuple[str, ...]
     codes: tuple[str, ...]
     untested: str | None = None
     unenforced: str | None = None
@@ -138,7 +140,7 @@ def _clauses_of(chapter: Chapter) -> Iterator[Clause]:
         )
 
 
-def _versions(given: str | None) -> tuple[int, ...]:
+def _versions(given: str | None) -> tuple[str, ...]:
     if given is None:
-        return VERSIONS
-    return tuple(int(word) for word in given.split() if word.isdecimal())
+        return _UNMARKED
+    return tuple(given.split())

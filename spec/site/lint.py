@@ -152,8 +152,8 @@ def options(spec: Specification) -> Iterator[Finding]:
             yield _at(spec, clause, f"{clause.id} has {given}: one of {', '.join(LEVELS)}", "clause-level")
     for chapter, found in _directives(spec, "clause"):
         version = found.options.get("version")
-        if version is not None and version not in (" ".join(map(str, VERSIONS)), *map(str, VERSIONS)):
-            message = f"{found.argument} has the version '{version}': 1, 2 or 1 2"
+        if version is not None and version not in ("1 2", *VERSIONS):
+            message = f"{found.argument} has the version '{version}': 1, 2, 2.1 or 1 2"
             yield Finding(chapter.path, found.line, message, "clause-version")
 
 

@@ -101,7 +101,7 @@ def joint_named(robot: CanonicalRobot, name: str) -> CanonicalJoint:
 
 def test_the_reference_gives_its_name_and_claims_every_level() -> None:
     with Session(REFERENCE) as session:
-        assert session.started.claims == {"1": list(Level), "2": list(Level)}
+        assert session.started.claims == {"1": list(Level), "2": list(Level), "2.1": list(Level)}
         assert session.started.parser.name == "eurdf"
 
 

@@ -256,13 +256,17 @@ def test_the_badge_names_only_certified_levels(
 
 
 def certified_as(certificate: Certificate, levels: dict[str, set[Level]]) -> Certificate:
-    changed = (each.model_copy(update={"certified": each.level in levels[each.version]}) for each in certificate.levels)
+    changed = (
+        each.model_copy(update={"certified": each.level in levels.get(each.version, ())}) for each in certificate.levels
+    )
     return certificate.model_copy(update={"levels": tuple(changed)})
 
 
 def test_badge_shows_all_levels_by_version(failed: Certificate) -> None:
     every = set(Level)
     assert badge_texts(certified_as(failed, {"1": every, "2": every})) == ("Extended URDF 1 and 2", "all levels")
+    three = certified_as(failed, {"1": every, "2": every, "2.1": every})
+    assert badge_texts(three) == ("Extended URDF 1, 2 and 2.1", "all levels")
     assert badge_texts(certified_as(failed, {"1": {Level.ACCEPT}, "2": every})) == (
         "Extended URDF",
         "1: accept, 2: all levels",

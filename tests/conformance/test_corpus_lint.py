@@ -11,7 +11,7 @@ from eurdf_conformance.corpus.clause import Clause, read_clauses
 from eurdf_conformance.corpus.coverage import UNSAID, missing, said_in
 from eurdf_conformance.corpus.lines import lines_of
 from eurdf_conformance.corpus.read import read_cases
-from eurdf_conformance.level import VERSIONS, Version
+from eurdf_conformance.level import Version
 
 SOUND = Path(__file__).parents[1] / "data" / "conformance_lint"
 VALID, INVALID, EXPECTED = (
@@ -123,7 +123,7 @@ def test_the_lint_command_lists_errors_and_missing_cases(tmp_path: Path, capsys:
     root = str(laid(tmp_path))
     assert lint.main([root]) == 0
     out = capsys.readouterr().out
-    for version in VERSIONS:
+    for version in ("1", "2"):
         assert f"missing: EU-FRM-001 (version {version}): a valid case, an invalid case (unknown-frame)" in out
     assert "EU-ACT-001 (version 1)" in out
     assert "EU-ACT-001 (version 2)" not in out
@@ -198,14 +198,15 @@ def test_cases_missing_for_a_clause_are_listed(clauses: dict[str, Clause], cases
     ],
 )
 def test_a_case_tests_a_clause_in_its_version_only(cases: list[Case], lacks: list[str]) -> None:
-    found = list(missing(cases, clause(codes=("one",), versions=VERSIONS)))
-    assert found == [f"EU-FRM-001 (version {version}): {lack}" for version, lack in zip(VERSIONS, lacks, strict=True)]
+    found = list(missing(cases, clause(codes=("one",), versions=("1", "2"))))
+    assert found == [f"EU-FRM-001 (version {version}): {lack}" for version, lack in zip(("1", "2"), lacks, strict=True)]
 
 
 def test_a_clause_that_a_version_cannot_express_has_no_case() -> None:
     clauses = read_clauses()
     for name, why in UNSAID.items():
-        assert set(said_in(clauses[name])) == set(clauses[name].versions) - set(why) != set(clauses[name].versions)
+        stated = set(clauses[name].versions) - {"2.1"}
+        assert set(said_in(clauses[name])) == stated - set(why) != stated
         assert not any(f"version {version}" in line for line in missing([], {name: clauses[name]}) for version in why)
         citing = {case.case.version for case in read_cases() if name in case.case.clauses}
         assert citing.isdisjoint(why), f"{name} can be said in a version of which it is said that it cannot"

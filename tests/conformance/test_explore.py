@@ -17,11 +17,11 @@ from eurdf_conformance.corpus.read import CASES, CorpusCase, read_cases
 from eurdf_conformance.judging.conversation import Conversation
 from eurdf_conformance.judging.judge import Judgement, judge
 from eurdf_conformance.judging.verdict import Verdict
-from eurdf_conformance.level import VERSIONS, Level, Version
+from eurdf_conformance.level import Level, Version
 from eurdf_conformance.properties.catalogue import property_of
 from eurdf_conformance.properties.culprit import culprit
 from eurdf_conformance.properties.document import configuration
-from eurdf_conformance.properties.example import frozen_examples
+from eurdf_conformance.properties.example import DRAWN_VERSIONS, frozen_examples
 from eurdf_conformance.properties.explore import Trial, explore, search, try_property
 from eurdf_conformance.properties.harness import Harness
 from eurdf_conformance.properties.mechanism import Mechanism
@@ -151,7 +151,7 @@ def test_a_crash_is_shrunk_to_a_smaller_crash(tmp_path: Path) -> None:
     assert len(example.mechanism.types()) == 1
 
 
-@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("version", DRAWN_VERSIONS)
 def test_a_reduced_mechanism_still_closes_its_loops(version: Version) -> None:
     lost = Counter[str]()
     examples = [example.mechanism for example in frozen_examples(version)[:24]]

@@ -20,7 +20,8 @@ from support.parsers.oracle import OracleParser
 @pytest.mark.parametrize("name", MUTANTS)
 def test_a_case_that_cites_its_clause_catches_the_mutant(name: str) -> None:
     mutant = MUTANTS[name]
-    caught = tuple(version for version in VERSIONS if catching(mutant, version))
+    # A case of version 2.1 may also catch what those of version 2 must.
+    caught = tuple(version for version in said_in(read_clauses()[mutant.clause]) if catching(mutant, version))
     assert caught == mutant.versions, f"{mutant.clause}, {mutant.level}: {mutant.breaks}"
 
 
@@ -35,7 +36,7 @@ def test_a_correct_parser_is_not_caught(parser: type, version: Version) -> None:
 @pytest.mark.parametrize("name", SPEAKERS)
 def test_a_protocol_rule_catches_the_wrong_program(name: str) -> None:
     speaker = SPEAKERS[name]
-    three = SMOKE[VERSIONS[-1]]
+    three = SMOKE["2"]
     valid, invalid = (smoke_case(all_cases(), case_id) for case_id in (three.valid, three.invalid))
     with Session(speaker.parser) as session:
         asked = Setup(session, lambda: Session(speaker.parser), valid, invalid)

@@ -257,7 +257,7 @@ def test_configurations_are_lists_with_quaternions_of_unit_length() -> None:
 @pytest.mark.parametrize(
     "yaml",
     [
-        'extended_urdf: "2.1"',
+        'extended_urdf: "2.2"',
         "extended_urdf: 2.0",
         "root: fixed",
         two("rooot: fixed"),

@@ -543,7 +543,7 @@ def test_smoke_distinguishes_wrong_adapter_from_wrong_parser() -> None:
     assert code == 0
     assert "your adapter works so far" in out
     assert "your parser works so far" in out
-    assert "14 passed" in out
+    assert "21 passed" in out
     code, out = suite("--smoke", parser="Lenient")
     assert code == 1
     assert "your adapter works so far" in out

@@ -17,15 +17,16 @@ from pydantic import BaseModel, ValidationError
 
 from eurdf.diagnostics import Diagnostics
 from eurdf.format.read_extension import read_extension
-from eurdf.format.schema import FILES, Names, json_schema, main, schema_text
+from eurdf.format.schema import FILES, Names, SchemaVersion, json_schema, main, schema_text
 from eurdf.format.version1 import Version1
 from eurdf.format.version2 import Version2
+from eurdf.format.version2_1 import Version2_1
 from eurdf.reading.source import Source
 from eurdf.reading.yaml_reader import read_yaml
 
 ROOT = Path(__file__).parents[2]
-VERSIONS: tuple[Literal["1", "2"], ...] = ("1", "2")
-MODELS: dict[str, type[BaseModel]] = {"1": Version1, "2": Version2}
+VERSIONS: tuple[SchemaVersion, ...] = ("1", "2", "2.1")
+MODELS: dict[str, type[BaseModel]] = {"1": Version1, "2": Version2, "2.1": Version2_1}
 VALIDATORS = {version: Draft202012Validator(json_schema(version)) for version in VERSIONS}
 
 NAMES = Names(links=["base", "rod", "foot"], joints=["hip", "knee", "weld"], movable_joints=["hip", "knee"])
@@ -68,8 +69,37 @@ WHOLE: dict[str, dict[str, Any]] = {
     },
 }
 
+WHOLE["2.1"] = {
+    **WHOLE["2"],
+    "extended_urdf": "2.1",
+    "closures": [
+        *WHOLE["2"]["closures"],
+        {"name": "pin", "type": "hinge", "frames": ["rod", "tip"], "x-play": 1},
+        {"name": "bolt", "type": "hinge", "frames": ["rod", "tip"], "axis": [0, 1, 0.5]},
+        {"name": "peg", "type": "hinge", "frames": ["rod", "tip"], "axes": [[0, 1, 0.5], [1, 0, 0]]},
+    ],
+}
+
 #: What is put in place of a value.
-JUNK = [None, True, 0, -1, 1.5, "", "xy", "3d", "x-own", "spherical", [], {}, [1, 2, 3], [-1.5], ["a", "b"], [0] * 8]
+JUNK = [
+    None,
+    True,
+    0,
+    -1,
+    1.5,
+    "",
+    "xy",
+    "3d",
+    "hinge",
+    "x-own",
+    "spherical",
+    [],
+    {},
+    [1, 2, 3],
+    [-1.5],
+    ["a", "b"],
+    [0] * 8,
+]
 JUNK += [{"link": "a"}]
 
 #: What a key is renamed to, or what a key is added.
@@ -88,7 +118,7 @@ def accepted(version: str, document: Any) -> bool:
 
 
 @pytest.mark.parametrize("version", VERSIONS)
-def test_schema_file_is_current(version: Literal["1", "2"]) -> None:
+def test_schema_file_is_current(version: SchemaVersion) -> None:
     written = (ROOT / "schema" / FILES[version]).read_text(encoding="utf-8")
     assert written == schema_text(json_schema(version)), "run: python -m eurdf.format.schema schema"
 
@@ -102,7 +132,7 @@ def test_schema_files_are_written_to_given_folder(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("names", [None, NAMES])
 @pytest.mark.parametrize("version", VERSIONS)
-def test_schema_is_draft_2020_12(version: Literal["1", "2"], names: Names | None) -> None:
+def test_schema_is_draft_2020_12(version: SchemaVersion, names: Names | None) -> None:
     schema = json_schema(version, names)
     assert schema["$schema"] == Draft202012Validator.META_SCHEMA["$id"]
     assert ("$id" in schema) == (names is None)
@@ -123,7 +153,7 @@ def properties(schema: Any, path: str = "") -> Iterator[tuple[str, dict[str, Any
 
 
 @pytest.mark.parametrize("version", VERSIONS)
-def test_properties_have_title_description_and_valid_examples(version: Literal["1", "2"]) -> None:
+def test_properties_have_title_description_and_valid_examples(version: SchemaVersion) -> None:
     schema = json_schema(version)
     found = dict(properties(schema))
     assert len(found) >= 5
@@ -205,9 +235,9 @@ def edited_pieces(version: str) -> Iterator[Any]:
     if version == "1":
         yield from edits(WHOLE["1"])
         return
-    head = {"extended_urdf": "2.0"}
+    head = {"extended_urdf": WHOLE[version]["extended_urdf"]}
     yield from edits(head)
-    for key, value in WHOLE["2"].items():
+    for key, value in WHOLE[version].items():
         if isinstance(value, dict) and value:
             entries: list[Any] = [{name: entry} for name, entry in value.items()]
         else:
@@ -265,6 +295,21 @@ closures = mapping(
         "frames": st.lists(frame_references, min_size=2, max_size=2),
     }
 )
+hinges = mapping(
+    {
+        "name": names,
+        "type": st.just("hinge"),
+        "frames": st.lists(frame_references, min_size=2, max_size=2),
+    },
+    axis=vectors,
+) | mapping(
+    {
+        "name": names,
+        "type": st.just("hinge"),
+        "frames": st.lists(frame_references, min_size=2, max_size=2),
+        "axes": st.lists(vectors, min_size=2, max_size=2),
+    }
+)
 DOCUMENTS: dict[str, st.SearchStrategy[dict[str, Any]]] = {
     "1": st.builds(
         lambda known, paired, more: {**known, **paired, **more},
@@ -308,6 +353,11 @@ DOCUMENTS: dict[str, st.SearchStrategy[dict[str, Any]]] = {
         metadata=st.dictionaries(names, st.sampled_from(JUNK), max_size=2),
     ),
 }
+DOCUMENTS["2.1"] = st.builds(
+    lambda document, more: {**document, "extended_urdf": "2.1", "closures": [*document.get("closures", ()), *more]},
+    DOCUMENTS["2"],
+    st.lists(hinges, max_size=3),
+)
 
 
 @st.composite
@@ -371,7 +421,7 @@ def test_reading_reports_what_schema_rejects() -> None:
     assert seen > 200
 
 
-def robot_errors(version: Literal["1", "2"], text: str) -> list[str]:
+def robot_errors(version: SchemaVersion, text: str) -> list[str]:
     """What an editor says of a document, which knows the names of one robot."""
     validator = Draft202012Validator(json_schema(version, NAMES))
     return ["/".join(map(str, error.absolute_path)) for error in validator.iter_errors(yaml.safe_load(text))]
@@ -392,7 +442,7 @@ KNOWN_TO_THE_ROBOT: list[tuple[Literal["1", "2"], str]] = [
 
 
 @pytest.mark.parametrize(("version", "text"), KNOWN_TO_THE_ROBOT)
-def test_robot_schema_accepts_known_names(version: Literal["1", "2"], text: str) -> None:
+def test_robot_schema_accepts_known_names(version: SchemaVersion, text: str) -> None:
     assert robot_errors(version, text) == []
 
 
@@ -412,7 +462,7 @@ UNKNOWN_TO_THE_ROBOT: list[tuple[Literal["1", "2"], str, str]] = [
 
 
 @pytest.mark.parametrize(("version", "text", "where"), UNKNOWN_TO_THE_ROBOT)
-def test_robot_schema_rejects_unknown_names(version: Literal["1", "2"], text: str, where: str) -> None:
+def test_robot_schema_rejects_unknown_names(version: SchemaVersion, text: str, where: str) -> None:
     assert set(robot_errors(version, text)) == {where}
 
 

@@ -20,6 +20,15 @@ YAML = "workbench.yaml"
 ONE = "workbench.v1.yaml"
 URDF = "workbench.urdf"
 
+#: How the description begins.
+HEAD = """\
+extended_urdf: "2.0"
+urdf: workbench.urdf
+closures:
+  - name: pin
+    type: 3d
+"""
+
 # code, file, text to replace, replacement, text at the place that the diagnostic points at, part of message or hint
 # fmt: off
 FAULTS = [
@@ -109,6 +118,7 @@ FAULTS = [
     ("unknown-frame", YAML, "link: rocker,", "link: roker,", "roker", "did you mean 'rocker'?"),
     ("duplicate-frame", YAML, "name: rocker_top, link", "name: rocker, link", None, None),
     ("duplicate-closure-name", YAML, "joints:\n", "  - {name: pin, type: 3d, frames: [base, hand]}\njoints:\n", "pin, type", "'pin'"),
+    ("closure-axis-zero", YAML, HEAD, HEAD.replace("2.0", "2.1").replace("3d", "hinge\n    axis: [0, 0, 0.0]"), "[0, 0, 0.0]", "hinge 'pin'"),
     ("closure-same-frame", YAML, "[rod_tip, rocker_top]", "[rod_tip, rod_tip]", "rod_tip]", "itself"),
     ("closure-same-body", YAML, "[rod_tip, rocker_top]", "[rod_tip, rod]", None, "'rod_tip' and 'rod'"),
     ("closure-duplicate", YAML, "joints:\n", "  - {name: again, type: 6d, frames: [rocker_top, rod_tip]}\njoints:\n", "{name: again", "'pin'"),

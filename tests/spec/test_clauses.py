@@ -67,12 +67,12 @@ def test_clause_has_place_keyword_and_options() -> None:
         keyword="MUST",
         text="A gear MUST be one of\n\n- a wheel with teeth,\n- $n$ of them.",
         level="kinematics",
-        versions=(2,),
+        versions=("2",),
         codes=("gear-alone", "gear-loose"),
         untested="Gears: nobody has any.",
         unenforced=None,
     )
-    assert (second.id, second.line, second.keyword, second.versions) == ("EU-TST-002", 25, "SHOULD NOT", (1, 2))
+    assert (second.id, second.line, second.keyword, second.versions) == ("EU-TST-002", 25, "SHOULD NOT", ("1", "2"))
 
 
 def test_withdrawn_id_names_its_replacement() -> None:

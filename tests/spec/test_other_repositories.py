@@ -133,6 +133,6 @@ def test_catalogue_entry_matches_only_our_files() -> None:
     assert set(entry) == {"name", "description", "fileMatch", "url", "versions"}
     assert entry["url"] == entry["versions"]["2.0"]
     names = {version: url.rpartition("/")[2] for version, url in entry["versions"].items()}
-    assert names == {"1": FILES["1"], "2.0": FILES["2"]}
+    assert names == {"1": FILES["1"], "2.0": FILES["2"], "2.1": FILES["2.1"]}
     assert any(fnmatch("leg.eurdf.yaml", pattern) for pattern in entry["fileMatch"])
     assert not any(fnmatch(name, pattern) for name in ("robot.yaml", "config.yml") for pattern in entry["fileMatch"])

@@ -64,7 +64,10 @@ def test_diagnostic_shows_printed_message(site: Path) -> None:
     assert "did you mean" in page
 
 
-@pytest.mark.parametrize(("page", "schema"), [("schema_1", "extended-urdf-1"), ("schema_2", "extended-urdf-2.0")])
+@pytest.mark.parametrize(
+    ("page", "schema"),
+    [("schema_1", "extended-urdf-1"), ("schema_2", "extended-urdf-2.0"), ("schema_2_1", "extended-urdf-2.1")],
+)
 def test_every_schema_property_has_anchor_and_description(site: Path, page: str, schema: str) -> None:
     content = json.loads((ROOT / "schema" / f"{schema}.schema.json").read_text(encoding="utf-8"))
     anchors, text = _anchors(site, page), _text(site / f"{page}.html")

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Mechanism
+from eurdf_conformance.level import Version
 from eurdf_conformance.protocol.message import (
     CanonicalActuator,
     CanonicalClosure,
@@ -16,6 +17,9 @@ from eurdf_conformance.protocol.message import (
     CanonicalMimic,
     CanonicalRobot,
 )
+
+#: As the protocol calls them; a bare URDF is of version 2.
+_VERSIONS: Mapping[str, Version] = {"1": "1", "2.0": "2", "2.1": "2.1", "": "2"}
 
 # Nothing can bound their coordinates.
 _UNBOUNDED = frozenset({JointType.SPHERICAL, JointType.PLANAR, JointType.FLOATING})
@@ -25,12 +29,12 @@ def canonical_robot(mechanism: Mechanism) -> CanonicalRobot:
     """EU-CAN-001 to -004: the mechanism without style.
 
     Args:
-        mechanism: Read from a description, of either version.
+        mechanism: Read from a description, of any version.
     """
     joints = {joint.name: joint for joint in mechanism.joints}
     return CanonicalRobot(
         name=mechanism.name,
-        version="1" if mechanism.version == "1" else "2",
+        version=_VERSIONS[mechanism.version],
         root=mechanism.root,
         links=[body.name for body in mechanism.bodies if not body.virtual],
         frames=[frame.name for frame in mechanism.frames if frame.kind == "frame"],

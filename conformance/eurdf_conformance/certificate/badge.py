@@ -47,7 +47,7 @@ def badge_texts(certificate: Certificate) -> tuple[str, str]:
         return "Extended URDF", "not certified"
     said = [levels_text(certified[version], " ") for version in versions]
     if len(set(said)) == 1:
-        return f"Extended URDF {' and '.join(versions)}", said[0]
+        return f"Extended URDF {', '.join(versions[:-1])}{' and ' * (len(versions) > 1)}{versions[-1]}", said[0]
     return "Extended URDF", ", ".join(f"{version}: {text}" for version, text in zip(versions, said, strict=True))
 
 

@@ -64,7 +64,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--level", choices=list(map(str, Level)), action="append", default=[], help="test this level only (repeatable)"
     )
-    parser.add_argument("--format-version", choices=("1", "2"), help="test this version of the format only")
+    parser.add_argument("--format-version", choices=("1", "2", "2.1"), help="test this version of the format only")
     parser.add_argument("--known-failures", metavar="FILE", type=Path, help="YAML list of expected failures")
     parser.add_argument(
         "--certificate", metavar="DIR", type=named_folder, help="write a certificate: JSON, a page and a badge"

@@ -23,7 +23,7 @@ class Clause:
         keyword: MUST, MUST NOT, SHOULD, SHOULD NOT or MAY.
         text: What it says.
         level: Level at which it is tested; ``parser`` where no suite sees it.
-        versions: Versions of the format that it is of.
+        versions: Versions of the format that it is of; a clause of version 2 is also of version 2.1.
         codes: Diagnostics that say that it is not met.
         testable: Whether a suite can test it.
     """
@@ -61,7 +61,7 @@ def read_clauses() -> Mapping[str, Clause]:
             entry["keyword"],
             entry["text"],
             entry["level"],
-            tuple(version for version in VERSIONS if int(version) in entry["versions"]),
+            tuple(version for version in VERSIONS if {version, version.split(".")[0]} & set(entry["versions"])),
             frozenset(codes[entry["id"]]),
             entry["untested"] is None and entry["level"] != "parser",
         )

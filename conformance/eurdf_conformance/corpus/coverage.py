@@ -16,8 +16,9 @@ UNSAID: Mapping[str, Mapping[Version, str]] = {
 
 
 def said_in(clause: Clause) -> tuple[Version, ...]:
-    """The versions of a clause in which files can keep it or break it."""
-    return tuple(version for version in clause.versions if version not in UNSAID.get(clause.id, {}))
+    """The versions of a clause in which files can keep it or break it; what 2.1 shares with 2 is said in 2."""
+    own = (version for version in clause.versions if version != "2.1" or "2" not in clause.versions)
+    return tuple(version for version in own if version not in UNSAID.get(clause.id, {}))
 
 
 def missing(cases: Iterable[Case], clauses: Mapping[str, Clause], elsewhere: Iterable[str] = ()) -> Iterator[str]:

@@ -54,7 +54,8 @@ def _lines(item: Item, judgement: Judgement, reproduce: str, case: CorpusCase | 
     if case is not None and case.case.features:
         yield f"  features: {', '.join(case.case.features)}"
     clauses = read_clauses()
-    for name in dict.fromkeys((*_saying(judgement), *item.clauses)):
+    saying = (name for name in _saying(judgement) if item.version in clauses[name].versions)
+    for name in dict.fromkeys((*saying, *item.clauses)):
         yield f"  {name}: {clauses[name].text}" if name in clauses else f"  {name}"
     yield from _cut([_difference(each) for each in judgement.differences], "differences")
     if case is not None and isinstance(case.case, ValidCase):

@@ -27,9 +27,11 @@ class Closure:
     """Frames A and B, held together."""
 
     name: str
-    type: Literal["3d", "6d"]
+    type: Literal["3d", "6d", "hinge"]
     a: FrameReference
     b: FrameReference
+    #: Of a hinge: unit vectors, in A and in B.
+    axes: tuple[Array, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The residual of a closure: chapter Closures, EU-CLO-008 and 009."""
+"""The residual of a closure: chapter Closures, EU-CLO-008 and 009; of a hinge, `hinge`."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from eurdf_conformance.oracle import canonical, configuration, mass_matrix
+from eurdf_conformance.oracle import canonical, configuration, hinge, mass_matrix
 from eurdf_conformance.oracle.closing import closed
 from eurdf_conformance.oracle.configuration import Configuration
 from eurdf_conformance.oracle.description import Description
@@ -57,6 +57,11 @@ class OracleRobot:
         }
 
     @cached_property
+    def axes(self) -> dict[str, tuple[Array, ...]]:
+        """By name, the axes of hinges."""
+        return {closure.name: closure.axes for closure in self.description.closures}
+
+    @cached_property
     def masses(self) -> list[tuple[Inertia, Placed]]:
         """The inertias of links, and where the links are."""
         places = self.tree.links
@@ -88,12 +93,18 @@ class OracleRobot:
     def residuals(self, q: Configuration) -> dict[str, Array]:
         """The rows of r of each closure; m, rad."""
         at = self.kinematics(q)
-        return {name: residual(at, *closure) for name, closure in self.closures.items()}
+        return {
+            name: hinge.residual(at, a, b, self.axes[name]) if kind == "hinge" else residual(at, kind, a, b)
+            for name, (kind, a, b) in self.closures.items()
+        }
 
     def jacobians(self, q: Configuration) -> dict[str, Array]:
         """The rows of K of each closure."""
         at = self.kinematics(q)
-        return {name: jacobian(at, self._sharing, *closure) for name, closure in self.closures.items()}
+        return {
+            name: jacobian(at, self._sharing, *closure, *([self.axes[name]] if closure[0] == "hinge" else []))
+            for name, closure in self.closures.items()
+        }
 
     def residual(self, q: Configuration) -> Array:
         """The rows of r of all closures, in their order."""

@@ -6,6 +6,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from eurdf_conformance.level import Version
 from eurdf_conformance.oracle.description import Actuator, Change, Closure, Description, FrameReference
 from eurdf_conformance.oracle.not_read import NotRead
 from eurdf_conformance.oracle.own import own_data
@@ -31,22 +32,24 @@ CHANGES = {"spherical": ("merges",), "universal": ("axes",), "cylindrical": (), 
 
 
 def version2(document: dict[str, Any]) -> Description:
-    """Read a description whose `extended_urdf` is "2.0"."""
+    """Read a description whose `extended_urdf` is "2.0" or "2.1"."""
     members = mapping(document, KEYS)
-    if members["extended_urdf"] != "2.0":
+    versions: dict[str, Version] = {"2.0": "2", "2.1": "2.1"}
+    if members["extended_urdf"] not in versions:
         raise NotRead(f"version {members['extended_urdf']!r}")
+    version = versions[members["extended_urdf"]]
     roots: dict[str, Literal["fixed", "floating"]] = {"fixed": "fixed", "floating": "floating"}
     root = text(members.get("root", "fixed"))
     if root not in roots:
         raise NotRead(f"the root {root!r}")
     text(members.get("urdf", "robot.urdf"))
     mapping(members.get("metadata", {}))
-    closures = [closure(value) for value in sequence(members.get("closures", []))]
+    closures = [closure(value, version) for value in sequence(members.get("closures", []))]
     frames = [frame(value) for value in sequence(members.get("frames", []))]
     if len({name for name, _ in frames}) != len(frames):
         raise NotRead("two frames of one name")
     return Description(
-        version="2",
+        version=version,
         root=roots[root],
         closures=tuple(found for found in closures if found is not None),
         changes={name: change(value) for name, value in mapping(members.get("joints", {})).items()},
@@ -60,17 +63,33 @@ def version2(document: dict[str, Any]) -> Description:
     )
 
 
-def closure(value: Any) -> Closure | None:
+def closure(value: Any, version: Version) -> Closure | None:
     """A closure; one of a user-defined type is left out, EU-CLO-012."""
-    members = mapping(value, ("name", "type", "frames"))
-    types: dict[str, Literal["3d", "6d"]] = {"3d": "3d", "6d": "6d"}
+    members = mapping(value)
     kind = text(members.get("type"))
+    types: dict[str, Literal["3d", "6d", "hinge"]] = {"3d": "3d", "6d": "6d"}
+    if version == "2.1":
+        types["hinge"] = "hinge"
+    members = mapping(value, ("name", "type", "frames", *(("axis", "axes") if types.get(kind) == "hinge" else ())))
     if kind.startswith("x-"):
         return None
     if kind not in types or len(sequence(members.get("frames"))) != 2:
         raise NotRead(f"the closure {value!r}")
     a, b = (reference(item) for item in members["frames"])
-    return Closure(text(members.get("name")), types[kind], a, b)
+    return Closure(text(members.get("name")), types[kind], a, b, hinge_axes(members) if kind == "hinge" else ())
+
+
+def hinge_axes(members: dict[str, Any]) -> tuple[Array, Array]:
+    """The axis of a hinge in A and that in B; z where none is stated."""
+    if "axis" in members and "axes" in members:
+        raise NotRead("axis and axes")
+    if "axes" not in members:
+        both = unit(vector(members.get("axis", [0, 0, 1])))
+        return both, both
+    if len(stated := sequence(members["axes"])) != 2:
+        raise NotRead(f"the axes {stated!r}")
+    first, second = (unit(vector(axis)) for axis in stated)
+    return first, second
 
 
 def reference(value: Any) -> FrameReference:

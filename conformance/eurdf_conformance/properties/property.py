@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from eurdf_conformance.comparison.difference import Difference
-from eurdf_conformance.level import VERSIONS, Level, Version
-from eurdf_conformance.properties.example import Example, frozen_examples
+from eurdf_conformance.level import Level, Version
+from eurdf_conformance.properties.example import DRAWN_VERSIONS, Example, frozen_examples
 from eurdf_conformance.properties.harness import Harness
 from eurdf_conformance.properties.mechanism import Mechanism
 
@@ -54,7 +54,7 @@ class Property:
     clauses: tuple[str, ...]
     levels: tuple[Level, ...]
     check: Check
-    versions: tuple[Version, ...] = VERSIONS
+    versions: tuple[Version, ...] = DRAWN_VERSIONS
     applies: Callable[[Mechanism], bool] = anything
     examples: Callable[[Version], Sequence[Example]] = frozen_examples
     closures: int = 0

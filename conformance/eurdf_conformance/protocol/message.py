@@ -154,7 +154,7 @@ class CanonicalClosure(Value):
     """Two frames held together."""
 
     name: str
-    type: Literal["3d", "6d"]
+    type: Literal["3d", "6d", "hinge"]
     a: str = Field(description="A link of the body that frame A is on.")
     b: str = Field(description="A link of the body that frame B is on.")
 

@@ -31,6 +31,11 @@ SMOKE: dict[Version, Three] = {
     "2": Three(
         valid="closures/parallelogram-3d-closure", invalid="frames/closure-at-unknown-frame", evaluated="urdf/gantry"
     ),
+    "2.1": Three(
+        valid="closures/hinge-in-parallelogram",
+        invalid="schema/hinge-with-axis-and-axes",
+        evaluated="closures/hinge-with-axis",
+    ),
 }
 
 

@@ -71,7 +71,9 @@ def run(args: argparse.Namespace) -> int:
     schema: EditorSchema | None = None
     if description.extension.version != "1":
         text, output = source.text, None
-        notes: tuple[str, ...] = (f"'{source.file}' already has version 2.0: nothing to do",)
+        notes: tuple[str, ...] = (
+            f"'{source.file}' already has version {description.extension.version}: nothing to do",
+        )
     else:
         output = args.output
         reference = schema_named(document) if args.schema == "format" else None
@@ -179,7 +181,7 @@ def _result(
     return {
         "path": encodable(path),
         "from": version,
-        "to": "2.0",
+        "to": "2.0" if version == "1" else version,
         "output": None if output is None else encodable(output),
         "schema": None if schema is None else encodable(os.fspath(schema.path)),
         "notes": [encodable(note) for note in notes],

@@ -50,7 +50,7 @@ class ClosureInfo(_Entry):
     name: str
     """Name of the closure."""
     type: Annotated[str, Field(json_schema_extra={"enum": sorted(CLOSURES)})]
-    """Kind of the closure: 3d for position, 6d for position and orientation."""
+    """Kind of the closure: 3d for position, 6d for position and orientation, hinge for position and an axis."""
     rows: Count
     """Number of its constraint rows."""
     frames: tuple[str | None, str | None]
@@ -141,7 +141,7 @@ class RobotInfo(_Entry):
 
     name: str
     """Name of the robot in the URDF."""
-    version: Literal["1", "2.0", ""]
+    version: Literal["1", "2.0", "2.1", ""]
     """Extended URDF version of the description; empty for a plain URDF."""
     root: Literal["fixed", "floating"]
     """Whether the root link is fixed to the world or floating."""

@@ -27,7 +27,9 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         ),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("--version", choices=("1", "2"), default="2", help="version of the format; default: 2")
+    parser.add_argument(
+        "--version", choices=("1", "2", "2.1"), default="2", help="version of the format; default: 2, which is 2.0"
+    )
     parser.add_argument(
         "--for",
         dest="urdf",

@@ -39,13 +39,25 @@ class FrameReference:
 
 @dataclass(frozen=True, slots=True)
 class ClosureEntry:
-    """A loop closure as written; ``type`` can also be user-defined, ``x-…``."""
+    """A loop closure as written.
+
+    Attributes:
+        pointer: Where it is.
+        name: Unique in the file.
+        type: It can also be user-defined, ``x-…``.
+        a: Frame A.
+        b: Frame B.
+        axes: Of a hinge: the axis in A and the axis in B, as written or z.
+        axes_pointer: Where they are.
+    """
 
     pointer: Pointer
     name: str
     type: str
     a: FrameReference
     b: FrameReference
+    axes: tuple[Vector3, Vector3] | None = None
+    axes_pointer: Pointer = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +131,7 @@ class Extension:
 
     Attributes:
         document: The file.
-        version: ``1`` or ``2.0``.
+        version: ``1``, ``2.0`` or ``2.1``.
         urdf: Path of the URDF, relative to the YAML file.
         root: Whether the root link is fixed or floating.
         closures: In file order; likewise the other lists.
@@ -130,7 +142,7 @@ class Extension:
     """
 
     document: YamlDocument = field(repr=False, compare=False)
-    version: Literal["1", "2.0"]
+    version: Literal["1", "2.0", "2.1"]
     urdf: str = "robot.urdf"
     root: Root = "fixed"
     closures: tuple[ClosureEntry, ...] = ()

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from eurdf.format.version2 import JOINT_TYPES, KEYS
+from eurdf.format.version2 import JOINT_TYPES
+from eurdf.format.version2_1 import KEYS
 from eurdf.reading.source import BREAK
 from eurdf.reading.yaml_node import Pointer
 

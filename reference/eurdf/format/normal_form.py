@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from eurdf.format import version2
+from eurdf.format import version2, version2_1
 from eurdf.format.extension import (
     ActuatorEntry,
     ClosureEntry,
@@ -65,7 +65,7 @@ def _version1_joint(pointer: Pointer, name: str, joint_type: str) -> JointEntry:
 
 
 def from_version2(model: Version2, document: YamlDocument) -> Extension:
-    """The description in a file of version 2.0.
+    """The description in a file of version 2.0 or 2.1.
 
     Args:
         model: The file, accepted.
@@ -73,7 +73,7 @@ def from_version2(model: Version2, document: YamlDocument) -> Extension:
     """
     return Extension(
         document,
-        version="2.0",
+        version=model.extended_urdf,
         urdf=model.urdf,
         root=model.root,
         closures=tuple(_closure(("closures", index), closure) for index, closure in enumerate(model.closures)),
@@ -105,14 +105,24 @@ def _reference(pointer: Pointer, frame: str | version2.PoseOnLink | version2.Pos
     return FrameReference(pointer, joint=frame.joint, xyz=xyz, rpy=rpy)
 
 
-def _closure(pointer: Pointer, closure: version2.Closure) -> ClosureEntry:
+def _closure(pointer: Pointer, closure: version2_1.AnyClosure) -> ClosureEntry:
     a, b = closure.frames
+    axes: tuple[Vector3, Vector3] | None = None
+    axes_pointer: Pointer = ()
+    if isinstance(closure, version2_1.HingeAboutTwo):
+        axes = _vector(closure.axes[0]), _vector(closure.axes[1])
+        axes_pointer = (*pointer, "axes")
+    elif isinstance(closure, version2_1.Hinge):
+        axes = _vector(closure.axis), _vector(closure.axis)
+        axes_pointer = (*pointer, "axis")
     return ClosureEntry(
         pointer,
         closure.name,
         closure.type,
         _reference((*pointer, "frames", 0), a),
         _reference((*pointer, "frames", 1), b),
+        axes,
+        axes_pointer,
     )
 
 

@@ -13,6 +13,8 @@ from eurdf.format.near import near
 from eurdf.format.normal_form import from_version1, from_version2
 from eurdf.format.version1 import Version1
 from eurdf.format.version2 import VERSION, Version2
+from eurdf.format.version2_1 import VERSION as VERSION2_1
+from eurdf.format.version2_1 import Version2_1
 from eurdf.format.violation import described, quoted, violations
 from eurdf.reading.reporter import YamlReporter
 
@@ -48,9 +50,9 @@ def read_extension(document: YamlDocument, diagnostics: Diagnostics) -> Extensio
             _warn_of_near_misses(reporter)
             one = Version1.model_validate(data)
             return from_version1(one, document) if _lengths_agree(one, reporter) else None
-        if data[VERSION_KEY] != VERSION:  # already reported; report other errors too
-            known, data = False, {**data, VERSION_KEY: VERSION}
-        two = Version2.model_validate(data)
+        if data[VERSION_KEY] != version:  # already reported; report other errors too
+            known, data = False, {**data, VERSION_KEY: version}
+        two = (Version2_1 if version == VERSION2_1 else Version2).model_validate(data)
     except ValidationError as error:
         for diagnostic in violations(error, document):
             diagnostics.add(diagnostic)
@@ -58,12 +60,12 @@ def read_extension(document: YamlDocument, diagnostics: Diagnostics) -> Extensio
     return from_version2(two, document) if known else None
 
 
-def version_of(document: YamlDocument) -> Literal["1", "2.0"] | None:
+def version_of(document: YamlDocument) -> Literal["1", "2.0", "2.1"] | None:
     """The version of a file; None if it has an error that leaves this unknown."""
     return _version(YamlReporter(document, Diagnostics()))
 
 
-def _version(reporter: YamlReporter) -> Literal["1", "2.0"] | None:
+def _version(reporter: YamlReporter) -> Literal["1", "2.0", "2.1"] | None:
     """The version of a file (EU-VER-002, EU-VER-003); None if unknown."""
     data = reporter.document.data
     if VERSION_KEY in data:
@@ -93,19 +95,20 @@ def _version(reporter: YamlReporter) -> Literal["1", "2.0"] | None:
     return "1"
 
 
-def _written_version(reporter: YamlReporter) -> Literal["2.0"] | None:
-    """Version 2.0, or None if the file states another (EU-VER-001)."""
+def _written_version(reporter: YamlReporter) -> Literal["2.0", "2.1"] | None:
+    """Version 2.0 or 2.1, or None if the file states another (EU-VER-001)."""
     value = reporter.document.data[VERSION_KEY]
     pointer = (VERSION_KEY,)
-    quoted = f'write {VERSION_KEY}: "{VERSION}", in quotes'
-    if value == VERSION:
-        return VERSION
+    meant: Literal["2.0", "2.1"] = VERSION2_1 if value == float(VERSION2_1) else VERSION
+    quoted = f'write {VERSION_KEY}: "{meant}", in quotes'
+    if value in (VERSION, VERSION2_1):
+        return VERSION if value == VERSION else VERSION2_1
     if value in ("1", "1.0"):
         message = f"'{VERSION_KEY}' cannot be {described(value)}: a file of version 1 does not state its version"
         reporter.report("unsupported-version", message, pointer, f"leave '{VERSION_KEY}' out")
         return None
     if isinstance(value, str):
-        hint = f"the known version is {VERSION}: {quoted}"
+        hint = f"the known versions are {VERSION} and {VERSION2_1}: {quoted}"
         reporter.report(
             "unsupported-version", f"version {described(value)} of Extended URDF is not known", pointer, hint
         )
@@ -117,7 +120,7 @@ def _written_version(reporter: YamlReporter) -> Literal["2.0"] | None:
     if shown in ("the number 1", "the number 1.0"):
         quoted = f"leave '{VERSION_KEY}' out: a file of version 1 does not state its version"
     reporter.report("wrong-type", message, pointer, quoted)
-    return VERSION
+    return meant
 
 
 def _warn_of_near_misses(reporter: YamlReporter) -> None:

@@ -9,17 +9,32 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
+from pydantic import BaseModel
+
 from eurdf.format.field import OWN_KEY, is_own_key
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.version1 import Version1
 from eurdf.format.version2 import Version2
+from eurdf.format.version2_1 import Version2_1
 from eurdf.mechanism.joint_type import JointType
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
+#: Versions of the format, as commands name them: 2 is version 2.0.
+SchemaVersion = Literal["1", "2", "2.1"]
+
 #: File and identifier of each version's schema.
-FILES: dict[Literal["1", "2"], str] = {"1": "extended-urdf-1.schema.json", "2": "extended-urdf-2.0.schema.json"}
-_IDS = {"1": "urn:extended-urdf:schema:1", "2": "urn:extended-urdf:schema:2.0"}
+FILES: dict[SchemaVersion, str] = {
+    "1": "extended-urdf-1.schema.json",
+    "2": "extended-urdf-2.0.schema.json",
+    "2.1": "extended-urdf-2.1.schema.json",
+}
+_IDS = {
+    "1": "urn:extended-urdf:schema:1",
+    "2": "urn:extended-urdf:schema:2.0",
+    "2.1": "urn:extended-urdf:schema:2.1",
+}
+_MODELS: dict[SchemaVersion, type[BaseModel]] = {"1": Version1, "2": Version2, "2.1": Version2_1}
 
 Schema = dict[str, Any]
 
@@ -48,8 +63,8 @@ def names_of(urdf: Urdf) -> Names:
     return Names(tuple(urdf.links), tuple(urdf.joints), movable)
 
 
-def json_schema(version: Literal["1", "2"], names: Names | None = None) -> Schema:
-    """The schema of a version, generated from the models.
+def json_schema(version: SchemaVersion, names: Names | None = None) -> Schema:
+    """The schema of a version, as the models say it.
 
     With the names of one robot, an editor completes them. A file can itself define names that the URDF does not have:
     by the key ``frames``, and by giving joints another type. Where a file can define names, the schema offers those of
@@ -60,15 +75,14 @@ def json_schema(version: Literal["1", "2"], names: Names | None = None) -> Schem
         version: Version of the format.
         names: Names of one robot, or None for the schema of any.
     """
-    model = Version1 if version == "1" else Version2
-    schema = {"$schema": DIALECT, "$id": _IDS[version], **model.model_json_schema()}
+    schema = {"$schema": DIALECT, "$id": _IDS[version], **_MODELS[version].model_json_schema()}
     if names is not None:
         del schema["$id"]  # that of the schema of any robot
         _put_names(schema, version, names)
     return schema
 
 
-def _put_names(schema: Schema, version: Literal["1", "2"], names: Names) -> None:
+def _put_names(schema: Schema, version: SchemaVersion, names: Names) -> None:
     """Insert the names of one robot where names are expected."""
     definitions = schema["$defs"]
     movable: Schema = {"enum": list(names.movable_joints)}

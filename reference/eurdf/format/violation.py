@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Any
 from eurdf.diagnostics import Diagnostic, did_you_mean
 from eurdf.format.misplaced import Indentation, another_entry_hint, key_of_the_file_hint, key_outside_hint
 from eurdf.format.near import near
-from eurdf.format.version2 import EXCLUDED, FROM_VERSION1, JOINT_TYPES, KEYS, TAGS
+from eurdf.format.version2 import FROM_VERSION1, JOINT_TYPES
+from eurdf.format.version2_1 import ADDED_KEYS, CLOSURE_TYPES, EXCLUDED, KEYS, TAGS, VERSION
 from eurdf.reading.yaml_node import Pointer
 
 if TYPE_CHECKING:
@@ -83,6 +84,10 @@ def violations(error: ValidationError, document: YamlDocument) -> list[Diagnosti
     """
     details = error.errors(include_url=False)
     found = [_located(detail, document.data) for detail in details[:MOST]]
+    mistyped = {
+        each.pointer[:2] for each in found if each.pointer[:1] == ("closures",) and each.pointer[2:] == ("type",)
+    }
+    found = [each for each in found if not (each.pointer[:2] in mistyped and each.pointer[-1] in ADDED_KEYS)]
     lacking: dict[Pointer, list[str]] = {}
     for violation in found:
         if violation.type == "missing":
@@ -113,6 +118,28 @@ def violations(error: ValidationError, document: YamlDocument) -> list[Diagnosti
             Diagnostic(last.code, last.message, last.place, f"{last.hint}; {more}" if last.hint else more)
         )
     return diagnostics
+
+
+def _is_later_type(violation: _Violation, document: YamlDocument) -> bool:
+    """Whether a closure has a type that a later version than that of the file adds."""
+    return (
+        violation.pointer[:1] == ("closures",)
+        and violation.pointer[2:] == ("type",)
+        and violation.value in CLOSURE_TYPES[VERSION]
+        and violation.value not in _closure_types(document)
+    )
+
+
+def _closure_types(document: YamlDocument) -> Sequence[str]:
+    """The types of closure of the version of a file."""
+    version = document.data.get("extended_urdf")
+    return CLOSURE_TYPES.get(str(version), CLOSURE_TYPES["2.0"])
+
+
+def _version_hint(what: str, document: YamlDocument) -> str:
+    """Which line to change so that a file may have what version 2.1 adds."""
+    line = document.place(("extended_urdf",)).line
+    return f'{what} is of version {VERSION}: write extended_urdf: "{VERSION}" on line {line}'
 
 
 def subject(pointer: Pointer) -> str:
@@ -234,6 +261,11 @@ def _diagnostic(
             return Diagnostic("out-of-range", message, place)
         case "finite_number":
             return Diagnostic("out-of-range", f"{name} must be a finite number", place)
+        case "literal_error" if pointer[:1] == ("closures",):
+            if _is_later_type(violation, document):
+                message = f"{name} cannot be {described(value)} in a file of version 2.0"
+                return Diagnostic("wrong-value", message, place, _version_hint(f"type '{value}'", document))
+            return _wrong_choice(pointer, value, _closure_types(document), document)
         case "literal_error":
             return _wrong_choice(pointer, value, re.findall(r"'([^']*)'", context["expected"]), document)
         case "wrong-type" if isinstance(value, dict) and pointer[:-1] == ("joints",):
@@ -275,6 +307,8 @@ def _unknown_key(violation: _Violation, meant: str | None, document: YamlDocumen
         hint = outside
     elif not mapping and key in FROM_VERSION1:
         hint = f"it is a key of version 1; in version 2.0, use '{FROM_VERSION1[key]}'"
+    elif violation.mapping == "closures" and key in ADDED_KEYS:
+        hint = _version_hint(f"'{key}'", document)
     elif likely is not None:
         hint = f"did you mean '{likely}'?"
         if meant is None and (beside := another_entry_hint(violation.pointer, document)):

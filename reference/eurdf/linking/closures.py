@@ -6,9 +6,9 @@ from collections.abc import Iterable, Mapping
 
 from eurdf.format.extension import ClosureEntry
 from eurdf.linking.frame_names import FrameNames
-from eurdf.mechanism.constraint import CLOSURES, Closure
+from eurdf.mechanism.constraint import CLOSURES, Closure, HingeClosure
 from eurdf.mechanism.frame import Anchor
-from eurdf.mechanism.pose import Pose
+from eurdf.mechanism.pose import Pose, Vector3
 from eurdf.reading.reporter import YamlReporter
 
 
@@ -62,8 +62,22 @@ def link_closures(
                 (*entry.pointer, "type"),
             )
             continue
-        closures.append(kind(entry.name, a, b))
+        if entry.axes is None:
+            closures.append(kind(entry.name, a, b))
+        elif _have_directions(entry, entry.axes, reporter):
+            closures.append(HingeClosure(entry.name, a, b, entry.axes))
     return tuple(closures)
+
+
+def _have_directions(entry: ClosureEntry, axes: tuple[Vector3, Vector3], reporter: YamlReporter) -> bool:
+    """EU-CLO-013: no axis of a hinge is zero."""
+    zero = next((index for index, axis in enumerate(axes) if not any(axis)), None)
+    if zero is None:
+        return True
+    pointer = entry.axes_pointer if entry.axes_pointer[-1] == "axis" else (*entry.axes_pointer, zero)
+    hint = "write the direction of the pin in the frame; it may have any length"
+    reporter.report("closure-axis-zero", f"an axis of hinge '{entry.name}' is zero", pointer, hint)
+    return False
 
 
 def _movable(

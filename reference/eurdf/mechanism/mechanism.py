@@ -29,7 +29,7 @@ class Mechanism:
 
     Attributes:
         name: Name of the robot in the URDF.
-        version: Version of the description it was read from: ``1``, ``2.0``, or empty for a bare URDF.
+        version: Version of the description it was read from: ``1``, ``2.0``, ``2.1``, or empty for a bare URDF.
         root: Whether the root body is fixed to the world or floats in it.
         bodies: In depth-first order; the first is the root.
         joints: In depth-first order, fixed ones too; ``joints[i].child`` is ``bodies[i + 1]``.

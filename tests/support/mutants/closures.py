@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from eurdf_conformance.oracle import configuration, jacobian, robot
+from eurdf_conformance.oracle import configuration, hinge, jacobian, robot, version2
 from eurdf_conformance.oracle.logarithm import log6
 from eurdf_conformance.oracle.spatial import inverse, skew
 from support.mutants.mutant import Deviation, instead, means
@@ -85,6 +85,72 @@ def residual_3d_along_the_world() -> Deviation:
         return (at.root @ at.pose(a))[:3, :3] @ found if of == "3d" else found
 
     return instead(robot, "residual", changed)
+
+
+def _hinge(change: Callable[[Any, Any], Any]) -> Deviation:
+    """The residual of a hinge is another: change(aMb, axes)."""
+
+    def changed(right: Any, at: Any, a: Any, b: Any, axes: Any) -> Any:
+        return change(inverse(at.pose(a)) @ at.pose(b), axes)
+
+    return instead(hinge, "residual", changed)
+
+
+def _rows_of_hinge(aMb: Any, angular: Any) -> Any:
+    return np.concatenate([aMb[:3, 3], angular])
+
+
+@means("EU-CLO-014")
+def hinges_have_sines() -> Deviation:
+    """The angular rows of a hinge are components of a cross product, zero at opposite axes too."""
+    return _hinge(lambda M, axes: _rows_of_hinge(M, hinge.plane(axes[0]).T @ np.cross(axes[0], M[:3, :3] @ axes[1])))
+
+
+@means("EU-CLO-014")
+def hinges_are_6d_without_a_row() -> Deviation:
+    """The rows of a hinge are those of log6, without the rotation about the axis."""
+
+    def rows(aMb: Any, axes: Any) -> Any:
+        r = log6(aMb)
+        return np.concatenate([r[:3], hinge.plane(axes[0]).T @ r[3:]])
+
+    return _hinge(rows)
+
+
+@means("EU-CLO-014")
+def hinges_turn_the_other_way() -> Deviation:
+    """The angular rows of a hinge are those of the rotation from the axis in B to that in A."""
+
+    def changed(right: Any, at: Any, a: Any, b: Any, axes: Any) -> Any:
+        return right(at, a, b, axes) * [1, 1, 1, -1, -1]
+
+    return instead(hinge, "residual", changed)
+
+
+@means("EU-CLO-014")
+def hinges_measure_along_x_and_y() -> Deviation:
+    """The angular rows of a hinge are along x and y of A, whatever its axis."""
+    return instead(hinge, "plane", lambda right, a: np.eye(3)[:, :2])
+
+
+@means("EU-CLO-014")
+def hinges_near_minus_z_are_no_exception() -> Deviation:
+    """The angular rows of a hinge whose axis is nearly -z are not along those of the half turn about x."""
+    return instead(
+        hinge, "plane", lambda right, a: right(a) * [-1, -1] if np.hypot(a[0], a[1]) < 1e-9 > a[2] else right(a)
+    )
+
+
+@means("EU-CLO-014")
+def hinges_swap_their_axes() -> Deviation:
+    """The first axis of a hinge is in B, the second one in A."""
+    return instead(version2, "hinge_axes", lambda right, members: right(members)[::-1])
+
+
+@means("EU-CLO-014")
+def hinges_turn_about_x() -> Deviation:
+    """A hinge that states no axis turns about x."""
+    return instead(version2, "hinge_axes", lambda right, members: right({"axis": [1, 0, 0]} | members))
 
 
 @means("EU-CLO-010")

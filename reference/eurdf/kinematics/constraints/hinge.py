@@ -24,10 +24,11 @@ _LEAST_SINE = 1e-9
 
 
 class HingeClosures(Closures[HingeClosure]):
-    """r = (p, Eᵀ s), m and rad: s is the shortest rotation vector that takes axis a of A to β, axis b of B seen from A.
+    """EU-CLO-014: r = (p, Eᵀ s), m and rad.
 
-    With c = cos θ = a · β and g(c) = θ / sin θ, s = g(c) a × β. E (3, 2) spans the plane across a. Where β = -a, s is
-    half a turn about the first column of E, as the logarithm of a half turn is one of two.
+    s is the shortest rotation vector that takes axis a of A to β, axis b of B seen from A. With c = cos θ = a · β and
+    g(c) = θ / sin θ, s = g(c) a × β. E (3, 2) spans the plane across a. Where β = -a, s is half a turn about the first
+    column of E, as the logarithm of a half turn is one of two.
     """
 
     data = HingeClosure
