@@ -93,8 +93,8 @@ def test_closure_joins_named_frames_or_poses() -> None:
     rod, ankle, _ = full().closures
     assert (rod.name, rod.type, rod.pointer) == ("knee_rod", "6d", ("closures", 0))
     assert rod.b == FrameReference(("closures", 0, "frames", 1), name="knee_crank")
-    assert ankle.a == FrameReference(("closures", 1, "frames", 0), link="rod", xyz=(0.0, 0.0, 0.31))
-    assert ankle.b == FrameReference(("closures", 1, "frames", 1), joint="ankle", rpy=(0.0, 1.5, 0.0))
+    assert ankle.a == FrameReference(("closures", 1, "frames", 0), "rod", "link", xyz=(0.0, 0.0, 0.31))
+    assert ankle.b == FrameReference(("closures", 1, "frames", 1), "ankle", "joint", rpy=(0.0, 1.5, 0.0))
 
 
 def test_closure_can_have_user_defined_type() -> None:
@@ -121,7 +121,7 @@ def test_joints_are_read_in_all_forms() -> None:
     assert (joints["ball_screw"].lower, joints["ball_screw"].upper) == (-1.0, (2.5,))
     knee = joints["motor_knee"]
     assert (knee.velocity, knee.effort, knee.friction, knee.armature) == (12.0, 80.0, 1.0, 0.02)
-    assert knee.lower is knee.upper is knee.damping is knee.pitch is None
+    assert knee.lower is knee.upper is knee.damping is None
     assert knee.pointer == ("joints", "motor_knee")
 
 
@@ -131,8 +131,13 @@ def test_actuators_frames_and_configurations_are_read() -> None:
     assert (hip.joint, hip.gear_ratio, hip.rotor_inertia) == ("motor_hip", None, None)
     assert (knee.joint, knee.gear_ratio, knee.rotor_inertia) == ("motor_knee", -50.0, 1.2e-4)
     toe, heel = extension.frames
-    assert (toe.name, toe.reference.link, toe.reference.xyz) == ("toe_tip", "foot", (0.12, 0.0, -0.03))
-    assert (heel.name, heel.reference.joint, heel.pointer) == ("heel", "ankle", ("frames", 1))
+    assert (toe.name, toe.reference.name, toe.reference.xyz) == ("toe_tip", "foot", (0.12, 0.0, -0.03))
+    assert (heel.name, heel.reference.name, heel.reference.kind, heel.pointer) == (
+        "heel",
+        "ankle",
+        "joint",
+        ("frames", 1),
+    )
     assembled, ready = extension.configurations
     assert assembled.joints == {"motor_knee": (0.4,), "hip_ball": (0.0, 0.0, 0.0, 1.0)}
     assert (ready.name, ready.joints) == ("ready", {})

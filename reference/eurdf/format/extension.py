@@ -15,6 +15,9 @@ from eurdf.mechanism.pose import Vector3
 from eurdf.reading.yaml_node import Pointer
 from eurdf.reading.yaml_reader import YamlDocument
 
+#: A type that the description gives to a joint of the URDF.
+NewType = Literal["spherical", "universal", "cylindrical", "helical", "fixed"]
+
 
 @dataclass(frozen=True, slots=True)
 class FrameReference:
@@ -22,17 +25,15 @@ class FrameReference:
 
     Attributes:
         pointer: Its place.
-        name: Name; None for a pose written in place.
-        link: Link whose frame the pose is in, or None.
-        joint: Joint whose frame (on the child's side) the pose is in, or None.
+        name: Name of the frame, or of the link or joint whose frame (on the child's side) the pose is in.
+        kind: What the name is of; a frame has no pose.
         xyz: m.
         rpy: rad, about fixed axes.
     """
 
     pointer: Pointer
-    name: str | None = None
-    link: str | None = None
-    joint: str | None = None
+    name: str
+    kind: Literal["frame", "link", "joint"] = "frame"
     xyz: Vector3 = (0.0, 0.0, 0.0)
     rpy: Vector3 = (0.0, 0.0, 0.0)
 
@@ -70,7 +71,7 @@ class JointEntry:
         type: New type, or None to keep the URDF's own.
         split: A universal joint of version 1: two revolutes ``name_A`` and ``name_B``, for letters such as ``XY``.
         axes: Two axes of a universal joint in the joint's frame, as written; empty where none are.
-        pitch: m per revolution; None where none is written.
+        pitch: m per revolution, of a helical joint.
         merges: Names of three joints of the URDF that become this one; empty where none do.
         lower: Position limits, one number for all coordinates or one each; None where not written. Likewise the rest.
         upper: See ``lower``.
@@ -83,10 +84,10 @@ class JointEntry:
 
     pointer: Pointer
     name: str
-    type: Literal["spherical", "universal", "cylindrical", "helical", "fixed"] | None = None
+    type: NewType | None = None
     split: str = ""
     axes: tuple[Vector3, ...] = ()
-    pitch: float | None = None
+    pitch: float = 0.0
     merges: tuple[str, ...] = ()
     lower: float | tuple[float, ...] | None = None
     upper: float | tuple[float, ...] | None = None

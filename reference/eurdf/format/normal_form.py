@@ -101,8 +101,8 @@ def _reference(pointer: Pointer, frame: str | version2.PoseOnLink | version2.Pos
         return FrameReference(pointer, name=frame)
     xyz, rpy = _vector(frame.xyz), _vector(frame.rpy)
     if isinstance(frame, version2.PoseOnLink):
-        return FrameReference(pointer, link=frame.link, xyz=xyz, rpy=rpy)
-    return FrameReference(pointer, joint=frame.joint, xyz=xyz, rpy=rpy)
+        return FrameReference(pointer, frame.link, "link", xyz=xyz, rpy=rpy)
+    return FrameReference(pointer, frame.joint, "joint", xyz=xyz, rpy=rpy)
 
 
 def _closure(pointer: Pointer, closure: version2_1.AnyClosure) -> ClosureEntry:
@@ -140,7 +140,7 @@ def _joint(name: str, joint: version2.Joint) -> JointEntry:
         name,
         type=None if isinstance(joint, version2.Overridden) else joint.type,
         axes=axes,
-        pitch=joint.pitch if isinstance(joint, version2.Helical) else None,
+        pitch=joint.pitch if isinstance(joint, version2.Helical) else 0.0,
         merges=tuple(joint.merges or ()) if isinstance(joint, version2.Spherical) else (),
         lower=_numbers(limits.lower),
         upper=_numbers(limits.upper),

@@ -56,7 +56,7 @@ class FrameNames:
 
     def find(self, reference: FrameReference) -> Anchor | None:
         """The body and pose that a reference means; None, and a diagnostic, where it means none or two."""
-        if reference.name is not None:
+        if reference.kind == "frame":
             return self._by_name(reference.name, reference)
         body = self._body(reference)
         if body is None:
@@ -105,22 +105,22 @@ class FrameNames:
         return None
 
     def _body(self, reference: FrameReference) -> str | None:
-        if reference.link is not None:
-            if reference.link in self._urdf.links:
-                return reference.link
-            kind, name, candidates = "link", reference.link, chain(self._urdf.links)
+        name = reference.name
+        if reference.kind == "link":
+            if name in self._urdf.links:
+                return name
+            candidates = chain(self._urdf.links)
         else:
-            assert reference.joint is not None
-            child = self._joint_child(reference.joint)
+            child = self._joint_child(name)
             if child is not None:
                 return child
-            if reference.joint in self._faulty:
+            if name in self._faulty:
                 return None
-            kind, name, candidates = "joint", reference.joint, chain(self._urdf.joints, self._joints)
+            candidates = chain(self._urdf.joints, self._joints)
         self._reporter.report(
             "unknown-frame",
-            f"'{name}' is not a {kind} of the robot",
-            (*reference.pointer, kind),
+            f"'{name}' is not a {reference.kind} of the robot",
+            (*reference.pointer, reference.kind),
             partial(did_you_mean, name, candidates),
         )
         return None

@@ -193,10 +193,10 @@ def _closure_links(extension: Extension, urdf: Urdf) -> set[str]:
     references = {entry.name: entry.reference for entry in extension.frames}
 
     def link_of(reference: FrameReference) -> str | None:
-        if reference.name in references and reference.name not in urdf.links:
+        if reference.kind == "frame" and reference.name in references and reference.name not in urdf.links:
             reference = references[reference.name]
-        name = reference.link or reference.joint or reference.name or ""
-        if name in urdf.links and not reference.joint:
+        name = reference.name
+        if name in urdf.links and reference.kind != "joint":
             return name
         return urdf.joints[name].child if name in urdf.joints else None
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 
 from eurdf.diagnostics import Hint, did_you_mean
-from eurdf.format.extension import JointEntry
+from eurdf.format.extension import JointEntry, NewType
 from eurdf.format.urdf.data import Urdf
 from eurdf.linking.merging import PARALLEL, NotMergeable, check_chain, find_chains, fixed, merge
 from eurdf.mechanism.body import Body
@@ -144,7 +144,7 @@ class _Replacement:
             if joint is None or self.mimics(joint, entry.pointer):
                 return
             if entry.type is not None:
-                joint = self.retype(joint)
+                joint = self.retype(joint, entry.type)
         if joint is None:
             return
         # The type is valid even if an override is not, and what else names the joint means the new one.
@@ -235,27 +235,25 @@ class _Replacement:
 
     # -- new types ------------------------------------------------------------------------------------------------
 
-    def retype(self, joint: Joint) -> Joint | None:
+    def retype(self, joint: Joint, new: NewType) -> Joint | None:
         """EU-JNT-005: each new type replaces a joint that moves like a part of it."""
-        entry = self.entry
-        assert entry.type is not None
-        allowed = _REPLACES[entry.type]
+        allowed = _REPLACES[new]
         if joint.type not in allowed:
-            wanted = sorted(str(kind) for kind in allowed) if entry.type != "fixed" else ["moving"]
+            wanted = sorted(str(kind) for kind in allowed) if new != "fixed" else ["moving"]
             self.reporter.report(
                 "joint-kind",
-                f"joint '{joint.name}' is {joint.type} in the URDF and cannot become {entry.type}",
-                (*entry.pointer, "type"),
-                f"only a {' or '.join(wanted)} joint can become {entry.type}",
+                f"joint '{joint.name}' is {joint.type} in the URDF and cannot become {new}",
+                (*self.entry.pointer, "type"),
+                f"only a {' or '.join(wanted)} joint can become {new}",
             )
             return None
-        if entry.type == "fixed":
+        if new == "fixed":
             return fixed(joint)
-        if entry.type == "spherical":
+        if new == "spherical":
             return self._spread(joint, JointType.SPHERICAL)
-        if entry.type == "universal":
+        if new == "universal":
             return self.universal(joint)
-        if entry.type == "cylindrical":
+        if new == "cylindrical":
             return self.cylindrical(joint)
         return self.helical(joint)
 
@@ -340,7 +338,6 @@ class _Replacement:
         EU-INR-007: the limits of the angle are finite.
         """
         pitch = self.entry.pitch
-        assert pitch is not None
         if pitch == 0.0:
             self.report("joint-pitch-zero", f"the pitch of helical joint '{joint.name}' is 0", "pitch")
             return None

@@ -18,11 +18,10 @@ _TOO_DEEP = etree.XPath(f"boolean({'/*' * (DEPTH_LIMIT + 1)})")
 
 _DECLARED_ENCODING = re.compile(r"""<\?xml\s[^>]*?\sencoding\s*=\s*(["'])(.*?)\1""")
 _BEFORE_DOCTYPE = re.compile(r"(?:[ \t\r\n]+|<\?.*?\?>|<!--.*?-->)*+", re.DOTALL)
-_START_TAG = re.compile(r"<[^\s/>]+")
 _ATTRIBUTE = re.compile(r"""\s*([^\s=/>]+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
 
-#: In a well-formed file without DOCTYPE: a lone ``<`` begins an element, the rest is skipped.
-_MARKUP = re.compile(r"<(?:!--.*?-->|!\[CDATA\[.*?\]\]>|\?.*?\?>|/)?", re.DOTALL)
+#: In a well-formed file without DOCTYPE: ``<`` and a name begin an element, the rest is skipped.
+_MARKUP = re.compile(r"<(?:!--.*?-->|!\[CDATA\[.*?\]\]>|\?.*?\?>|/|([^\s/>]+))", re.DOTALL)
 
 
 class XmlDocument:
@@ -34,12 +33,12 @@ class XmlDocument:
             default namespace, since no URDF parser respects one.
     """
 
-    __slots__ = ("_ordinals", "_starts", "_totals", "root", "source")
+    __slots__ = ("_ordinals", "_tags", "_totals", "root", "source")
 
     def __init__(self, source: Source, root: etree._Element) -> None:
         self.source = source
         self.root = root
-        self._starts: dict[etree._Element, int] = {}
+        self._tags: dict[etree._Element, tuple[int, int]] = {}  # from "<" to the end of the name
         self._ordinals: dict[etree._Element, int] = {}
         self._totals: dict[tuple[etree._Element | None, str], int] = {}
 
@@ -50,28 +49,26 @@ class XmlDocument:
             element: An element of this file.
             attribute: Name of an attribute as lxml gives it. If the element lacks it, the place is the element's.
         """
-        if not self._starts:
+        if not self._tags:
             self._find_elements()
         pointer = self._path(element)
-        start = self._starts[element]
-        tag = _START_TAG.match(self.source.text, start)
-        assert tag is not None
+        start, after_name = self._tags[element]
         if attribute is None:
-            return self.source.place(start, tag.end(), pointer)
+            return self.source.place(start, after_name, pointer)
         name = _written_name(element, attribute)
         pointer += "/@" + name
-        end = tag.end()
+        end = after_name
         while found := _ATTRIBUTE.match(self.source.text, end):
             if found[1] == name:
                 return self.source.place(*found.span(2 if found[2] is not None else 3), pointer)
             end = found.end()
-        return self.source.place(start, tag.end(), pointer)
+        return self.source.place(start, after_name, pointer)
 
     def _find_elements(self) -> None:
         # Only once something is to be reported. libxml2 keeps no columns, and the line where a start tag ends.
-        starts = (found.start() for found in _MARKUP.finditer(self.source.text) if found.end() == found.start() + 1)
-        for start, element in zip(starts, self.root.iter("*"), strict=True):
-            self._starts[element] = start
+        tags = (found.span() for found in _MARKUP.finditer(self.source.text) if found[1])
+        for tag, element in zip(tags, self.root.iter("*"), strict=True):
+            self._tags[element] = tag
             siblings = (element.getparent(), element.tag)
             self._totals[siblings] = self._ordinals[element] = self._totals.get(siblings, 0) + 1
 

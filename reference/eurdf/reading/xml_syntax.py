@@ -84,8 +84,7 @@ def _not_closed(source: Source, problem: str, at: int, name: str, opened: int) -
     if problem == errors.XML_ERROR_NO_ELEMENTS:
         place = source.place(opened, opened + 1 + len(name))
         return FileError("xml-syntax", f"<{short(name)}> is never closed", place, f"close it with </{short(name)}>")
-    closing = _NAME.match(source.text, at)
-    assert closing is not None
+    closing = _name_at(source.text, at)
     line, _ = source.position(opened)
     name = short(name)
     message = f"</{short(closing[0])}> does not match the open <{name}> of line {line}; </{name}> is expected"
@@ -108,12 +107,12 @@ def _explain(text: str, problem: str, at: int) -> tuple[int, int, str, str | Non
         what = "'<!--'" if text.startswith("<!--", at) else "'<?'" if text.startswith("<?", at) else "this '<'"
         return at, end, f"{what} is never closed", None
     if problem == errors.XML_ERROR_DUPLICATE_ATTRIBUTE:
-        end = _end_of_name(text, at)
+        end = _name_at(text, at).end()
         return at, end, f"the attribute '{short(text[at:end])}' occurs twice in one element", None
     if problem == errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT:
         return at, end, "there is content after the end of the root element", "an XML file has one root element"
     if problem == errors.XML_ERROR_UNDEFINED_ENTITY:
-        end = _end_of_name(text, at + 1)
+        end = _name_at(text, at + 1).end()
         hint = "XML defines &lt; &gt; &amp; &quot; and &apos;; write &amp; for a single '&'"
         return at, end, f"the entity '{short(text[at:end])};' is unknown", hint
     if problem == errors.XML_ERROR_MISPLACED_XML_PI:
@@ -140,7 +139,6 @@ def _stray_character(text: str, at: int) -> tuple[int, int, str, str | None]:
     return at, end, f"{shown} is not allowed here", None
 
 
-def _end_of_name(text: str, at: int) -> int:
-    name = _NAME.match(text, at)
-    assert name is not None
-    return name.end()
+def _name_at(text: str, at: int) -> re.Match[str]:
+    """The name that begins there, empty if none does."""
+    return next(_NAME.finditer(text, at))

@@ -57,8 +57,8 @@ class YamlDocument:
         self.data: dict[str, Any] = root.data
         self.root = root
 
-    def place(self, pointer: Sequence[str | int] = (), key: bool = False) -> Place:
-        """Place of a value, or of its key.
+    def span(self, pointer: Sequence[str | int] = (), key: bool = False) -> Span:
+        """Indices in the text of the first character of a value, or of its key, and of the one after the last.
 
         A value that is an alias has the place of the alias; what is in it, that of where it is written.
 
@@ -76,8 +76,11 @@ class YamlDocument:
             node, key_span = collection.nodes[step], collection.keys.get(step)
         if key and key_span is not None:
             node = key_span
-        start, end = node if isinstance(node, tuple) else node.span
-        return self.source.place(start, end, json_pointer(pointer))
+        return node if isinstance(node, tuple) else node.span
+
+    def place(self, pointer: Sequence[str | int] = (), key: bool = False) -> Place:
+        """Place of a value, or of its key; for the arguments see `span`."""
+        return self.source.place(*self.span(pointer, key), json_pointer(pointer))
 
 
 def read_yaml(source: Source) -> YamlDocument:

@@ -82,13 +82,12 @@ def attach(
     spots: list[tuple[int, int, Pointer]] = []
     whole: dict[int, Pointer] = {}
     for pointer in pointers:
-        place = document.place(pointer, key=len(pointer) == 1)
-        assert place.line is not None
-        assert place.column is not None
-        spots.append((place.line, place.column, pointer))
+        start, _ = document.span(pointer, key=len(pointer) == 1)
+        line, column = document.source.position(start)
+        spots.append((line, column, pointer))
         value = document.place(pointer)
-        if len(pointer) == 1 and value.line == place.line and value.end_column is not None:
-            whole[place.line] = pointer
+        if len(pointer) == 1 and value.line == line and value.end_column is not None:
+            whole[line] = pointer
     spots.sort(key=lambda spot: spot[:2])
     positions = [spot[:2] for spot in spots]
     attached: dict[Pointer, Attached] = {pointer: Attached() for pointer in ((), *(spot[2] for spot in spots))}

@@ -187,7 +187,6 @@ class _Migration:
     def frame(self, reference: FrameReference) -> str:
         """The name of a closure's frame; the second half of a universal joint is now the joint itself."""
         name = reference.name
-        assert name is not None
         if name not in self.halves or name in self.urdf.links:
             return name
         joint, index = self.halves[name]
@@ -251,15 +250,8 @@ class _Migration:
         """The user-defined entries, as they are written if that is possible; and the comments outside them."""
         document = self.document
         source = document.source
-        starts = [0, *(found.end() for found in BREAK.finditer(source.text))]
-
-        def index(line: int | None, column: int | None) -> int:
-            assert line is not None
-            assert column is not None
-            return starts[line - 1] + column - 1
-
-        places = {key: document.place((key,), key=True) for key in document.data}
-        begins = sorted(index(place.line, place.column) for place in places.values())
+        spans = {key: document.span((key,), key=True) for key in document.data}
+        begins = sorted(start for start, _ in spans.values())
         begins.append(len(source.text))
         indices = [comment.index for comment in comments]
         entries = {}
@@ -267,11 +259,10 @@ class _Migration:
         for key, name in own_keys(document.data).items():
             if name != key:
                 self.notes.append(f"'{key}', your own data, is now '{name}'")
-            place = places[key]
             entries[key] = Entry(lines_of(name, document.data[key]))
-            if place.end_column is None:
+            start, begin = spans[key]
+            if begin is None or BREAK.search(source.text, start, begin):
                 continue
-            begin = index(place.line, place.end_column)
             end = begins[bisect_left(begins, begin)]
             inside = comments[bisect_left(indices, begin) : bisect_left(indices, end)]
             while inside and not inside[-1].beside:
