@@ -19,6 +19,9 @@ closures:
 """
 
 
+DISTANCE = HINGE.replace("hinge", "distance") + "    length: 0.155\n"
+
+
 def read(text: str) -> tuple[Extension | None, list[Diagnostic]]:
     diagnostics = Diagnostics()
     document = read_yaml(Source("robot.yaml", text, text.encode()))
@@ -42,10 +45,18 @@ def test_hinge_has_its_axes_or_z(more: str, axes: tuple[tuple[float, ...], ...])
     assert (closure.name, closure.type, closure.axes) == ("pin", "hinge", axes)
 
 
-def test_other_closures_have_no_axes() -> None:
+def test_distance_has_its_length() -> None:
+    extension, diagnostics = read(DISTANCE)
+    assert extension is not None
+    assert not diagnostics
+    (closure,) = extension.closures
+    assert (closure.type, closure.length) == ("distance", 0.155)
+
+
+def test_other_closures_have_neither_axes_nor_length() -> None:
     extension, _ = read(HINGE.replace("hinge", "6d"))
     assert extension is not None
-    assert extension.closures[0].axes is None
+    assert (extension.closures[0].axes, extension.closures[0].length) == (None, None)
 
 
 def test_version_2_0_is_read_alike_with_the_later_version() -> None:
@@ -70,9 +81,11 @@ def test_version_of_a_file_is_what_it_states(version: str) -> None:
         (HINGE + "    axis: [0, 0, 1]\n", "wrong-value", 4),
         (HINGE + "    axes: [[0, 0, 1]]\n", "wrong-value", 4),
         (HINGE.replace("hinge", "3d") + "    axis: [0, 0, 1]\n", "unknown-key", 6),
+        (DISTANCE, "wrong-value", 4),
+        (DISTANCE.replace("distance", "3d"), "unknown-key", 6),
     ],
 )
-def test_hinge_in_version_2_0_names_the_line_to_change(text: str, code: str, line: int) -> None:
+def test_closure_in_version_2_0_names_the_line_to_change(text: str, code: str, line: int) -> None:
     extension, diagnostics = read("# a robot\n" + text.replace("2.1", "2.0"))
     assert extension is None
     (found,) = diagnostics
@@ -86,15 +99,28 @@ def test_hinge_in_version_2_0_names_the_line_to_change(text: str, code: str, lin
     [
         (HINGE + "    axis: [0, 0, 1]\n    axes: [[0, 0, 1], [0, 0, 1]]\n", "conflicting-keys", 6, "exclude"),
         (HINGE.replace("hinge", "3d") + "    axes: [[0, 0, 1], [0, 0, 1]]\n", "conflicting-keys", 6, "type 'hinge'"),
-        (HINGE.replace("hinge", "hing") + "    axis: [0, 0, 1]\n", "wrong-value", 4, "'3d', '6d' or 'hinge'"),
+        (
+            HINGE.replace("hinge", "hing") + "    axis: [0, 0, 1]\n",
+            "wrong-value",
+            4,
+            "'3d', '6d', 'hinge' or 'distance'",
+        ),
         (HINGE.replace("    type: hinge\n", "    axis: [0, 0, 1]\n"), "missing-key", 3, "lacks 'type'"),
         (HINGE + "    axis: z\n", "wrong-type", 6, "must be a list"),
         (HINGE + "    axis: [0, 1]\n", "wrong-length", 6, "must have 3 items"),
         (HINGE + "    axes: [[0, 0, 1]]\n", "wrong-length", 6, "must have 2 items"),
-        (HINGE + "    length: 0.1\n", "unknown-key", 6, "'length'"),
+        (HINGE + "    length: 0.1\n", "conflicting-keys", 6, "'length' goes with type 'distance'"),
+        (HINGE + "    radius: 0.1\n", "unknown-key", 6, "'radius'"),
+        (DISTANCE.replace("0.155", "0.00009"), "out-of-range", 6, "'length' must be at least 0.0001, not 9e-05"),
+        (DISTANCE.replace("0.155", "[0.155]"), "wrong-type", 6, "'length' must be a number"),
+        (DISTANCE.replace("length: 0.155", "lenght: 0.155"), "unknown-key", 6, "'lenght'"),
+        (DISTANCE.replace("    length: 0.155\n", ""), "missing-key", 3, "lacks 'length'"),
+        (DISTANCE.replace("    type: distance\n", ""), "missing-key", 3, "lacks 'type'"),
+        (DISTANCE.replace("distance", "3d"), "conflicting-keys", 6, "'length' goes with type 'distance'"),
+        (DISTANCE + "    axis: [0, 0, 1]\n", "conflicting-keys", 7, "'axis' goes with type 'hinge'"),
     ],
 )
-def test_error_of_a_hinge_is_reported_once(text: str, code: str, line: int, said: str) -> None:
+def test_error_of_a_closure_is_reported_once(text: str, code: str, line: int, said: str) -> None:
     extension, diagnostics = read(text)
     assert extension is None
     (found,) = diagnostics

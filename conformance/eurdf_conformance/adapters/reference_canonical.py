@@ -6,9 +6,11 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from eurdf.mechanism.constraint import DistanceClosure, HingeClosure
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.pose import Vector3
 from eurdf_conformance.level import Version
 from eurdf_conformance.protocol.message import (
     CanonicalActuator,
@@ -40,7 +42,14 @@ def canonical_robot(mechanism: Mechanism) -> CanonicalRobot:
         frames=[frame.name for frame in mechanism.frames if frame.kind == "frame"],
         joints=[_joint(joint) for joint in mechanism.joints if joint.type is not JointType.FIXED],
         closures=[
-            CanonicalClosure(name=closure.name, type=closure.type, a=closure.a.body, b=closure.b.body)  # type: ignore[arg-type]
+            CanonicalClosure(
+                name=closure.name,
+                type=closure.type,  # type: ignore[arg-type]  # any that files can have
+                a=closure.a.body,
+                b=closure.b.body,
+                axes=[_unit(axis) for axis in closure.axes] if isinstance(closure, HingeClosure) else None,
+                length=closure.length if isinstance(closure, DistanceClosure) else None,
+            )
             for closure in mechanism.closures
         ],
         actuators=[
@@ -79,6 +88,12 @@ def _joint(joint: Joint) -> CanonicalJoint:
         if mimic is None
         else CanonicalMimic(joint=mimic.joint, multiplier=mimic.multiplier, offset=mimic.offset),
     )
+
+
+def _unit(axis: Vector3) -> list[float]:
+    largest = max(map(abs, axis))  # of any length, also of one whose square is out of range
+    scaled = [number / largest for number in axis]
+    return [number / math.hypot(*scaled) for number in scaled]
 
 
 def _limits(values: Iterable[float]) -> list[float | None]:

@@ -41,6 +41,8 @@ def canonical(urdf: Urdf, description: Description, tree: Tree) -> CanonicalRobo
                 type=closure.type,
                 a=link[tree.refer(closure.a).body],
                 b=link[tree.refer(closure.b).body],
+                axes=[axis.tolist() for axis in closure.axes] or None,
+                length=closure.length,
             )
             for closure in description.closures
         ],

@@ -8,6 +8,8 @@ from typing import Any, Literal
 from eurdf_conformance.level import Version
 from eurdf_conformance.oracle.spatial import Array
 
+ClosureType = Literal["3d", "6d", "hinge", "distance"]
+
 #: A number for all coordinates or velocities of a joint, or one each.
 PerNumber = list[float]
 
@@ -27,11 +29,13 @@ class Closure:
     """Frames A and B, held together."""
 
     name: str
-    type: Literal["3d", "6d", "hinge"]
+    type: ClosureType
     a: FrameReference
     b: FrameReference
     #: Of a hinge: unit vectors, in A and in B.
     axes: tuple[Array, ...] = ()
+    #: Of a distance, m.
+    length: float | None = None
 
 
 @dataclass(frozen=True)

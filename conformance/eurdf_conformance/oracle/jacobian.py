@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eurdf_conformance.oracle import hinge
+from eurdf_conformance.oracle import distance, hinge
 from eurdf_conformance.oracle.kinematics import Kinematics
 from eurdf_conformance.oracle.logarithm import log6, log6_derivative
 from eurdf_conformance.oracle.spatial import Array, adjoint, inverse, skew
@@ -20,7 +20,7 @@ def jacobian(at: Kinematics, sharing: Array, kind: str, a: Placed, b: Placed, ax
     Args:
         at: The configuration.
         sharing: G, which takes the velocities of the mechanism to those of every joint.
-        kind: 3d, 6d or hinge.
+        kind: 3d, 6d, hinge or distance.
         a: Frame A.
         b: Frame B.
         axes: Those of a hinge.
@@ -31,6 +31,8 @@ def jacobian(at: Kinematics, sharing: Array, kind: str, a: Placed, b: Placed, ax
     twist = adjoint(inverse(rMa)) @ between @ sharing
     if kind == "hinge":
         return np.asarray(hinge.derivative(aMb, axes) @ twist)
+    if kind == "distance":
+        return np.asarray(distance.derivative(aMb) @ twist)
     if kind == "3d":
         return np.asarray(twist[:3] - skew(aMb[:3, 3]) @ twist[3:])
     return np.asarray(log6_derivative(log6(aMb)) @ twist)

@@ -1,4 +1,4 @@
-"""The residual of a closure: chapter Closures, EU-CLO-008 and 009; of a hinge, `hinge`."""
+"""The residual of a 3d or 6d closure: chapter Closures, EU-CLO-008 and 009; others are in `hinge` and `distance`."""
 
 from __future__ import annotations
 

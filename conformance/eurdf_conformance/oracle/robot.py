@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from eurdf_conformance.oracle import canonical, configuration, hinge, mass_matrix
+from eurdf_conformance.oracle import canonical, configuration, distance, hinge, mass_matrix
 from eurdf_conformance.oracle.closing import closed
 from eurdf_conformance.oracle.configuration import Configuration
 from eurdf_conformance.oracle.description import Description
@@ -21,6 +21,9 @@ from eurdf_conformance.oracle.spatial import Array
 from eurdf_conformance.oracle.tree import Placed, Tree
 from eurdf_conformance.oracle.urdf import Inertia, Urdf
 from eurdf_conformance.protocol.message import CanonicalRobot, Jacobian, MassMatrix, Pose, Quantity, Values
+
+#: For each type of closure, what its rows are: lengths, `l`, and angles, `a`.
+ROWS = {"3d": "lll", "6d": "lllaaa", "hinge": "lllaa", "distance": "l"}
 
 
 @dataclass(frozen=True)
@@ -56,10 +59,10 @@ class OracleRobot:
             closure.name: (closure.type, refer(closure.a), refer(closure.b)) for closure in self.description.closures
         }
 
-    @cached_property
-    def axes(self) -> dict[str, tuple[Array, ...]]:
-        """By name, the axes of hinges."""
-        return {closure.name: closure.axes for closure in self.description.closures}
+    @property
+    def rows(self) -> dict[str, str]:
+        """By the name of a closure, for each of its rows whether it is an angle, `a`, or a length, `l`."""
+        return {name: ROWS[kind] for name, (kind, _, _) in self.closures.items()}
 
     @cached_property
     def masses(self) -> list[tuple[Inertia, Placed]]:
@@ -93,17 +96,22 @@ class OracleRobot:
     def residuals(self, q: Configuration) -> dict[str, Array]:
         """The rows of r of each closure; m, rad."""
         at = self.kinematics(q)
-        return {
-            name: hinge.residual(at, a, b, self.axes[name]) if kind == "hinge" else residual(at, kind, a, b)
-            for name, (kind, a, b) in self.closures.items()
-        }
+        found = {}
+        for closure, (kind, a, b) in zip(self.description.closures, self.closures.values(), strict=True):
+            if closure.length is not None:
+                found[closure.name] = distance.residual(at, a, b, closure.length)
+            elif closure.axes:
+                found[closure.name] = hinge.residual(at, a, b, closure.axes)
+            else:
+                found[closure.name] = residual(at, kind, a, b)
+        return found
 
     def jacobians(self, q: Configuration) -> dict[str, Array]:
         """The rows of K of each closure."""
         at = self.kinematics(q)
         return {
-            name: jacobian(at, self._sharing, *closure, *([self.axes[name]] if closure[0] == "hinge" else []))
-            for name, closure in self.closures.items()
+            closure.name: jacobian(at, self._sharing, *placed, *([closure.axes] if closure.axes else []))
+            for closure, placed in zip(self.description.closures, self.closures.values(), strict=True)
         }
 
     def residual(self, q: Configuration) -> Array:
@@ -133,7 +141,7 @@ class OracleRobot:
     def dimensions(self, q: Configuration) -> Dimensions:
         """Rank, mobility and the other words of dimension, which are meant at a closed configuration."""
         L = self.size(q) or 1.0
-        rows = np.concatenate([[], *([L] * 3 + [1.0] * (len(r) - 3) for r in self.residuals(q).values())])
+        rows = np.array([L if kind == "l" else 1.0 for kinds in self.rows.values() for kind in kinds])
         columns = np.array([L if kind == "l" else 1.0 for kind in configuration.kinds(self.tree)])
         driven = {actuator.joint for actuator in self.description.actuators}
         S = np.eye(len(columns))[[name in driven for name, _ in self.velocities]]

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
 
 from eurdf_conformance.level import Version
-from eurdf_conformance.oracle.description import Actuator, Change, Closure, Description, FrameReference
+from eurdf_conformance.oracle.description import Actuator, Change, Closure, ClosureType, Description, FrameReference
 from eurdf_conformance.oracle.not_read import NotRead
 from eurdf_conformance.oracle.own import own_data
 from eurdf_conformance.oracle.plain_value import mapping, number, numbers, sequence, text, vector
@@ -67,16 +68,20 @@ def closure(value: Any, version: Version) -> Closure | None:
     """A closure; one of a user-defined type is left out, EU-CLO-012."""
     members = mapping(value)
     kind = text(members.get("type"))
-    types: dict[str, Literal["3d", "6d", "hinge"]] = {"3d": "3d", "6d": "6d"}
+    types: dict[str, ClosureType] = {"3d": "3d", "6d": "6d"}
     if version == "2.1":
-        types["hinge"] = "hinge"
-    members = mapping(value, ("name", "type", "frames", *(("axis", "axes") if types.get(kind) == "hinge" else ())))
+        types |= {"hinge": "hinge", "distance": "distance"}
+    own: dict[str | None, tuple[str, ...]] = {"hinge": ("axis", "axes"), "distance": ("length",)}
+    members = mapping(value, ("name", "type", "frames", *own.get(types.get(kind), ())))
     if kind.startswith("x-"):
         return None
     if kind not in types or len(sequence(members.get("frames"))) != 2:
         raise NotRead(f"the closure {value!r}")
     a, b = (reference(item) for item in members["frames"])
-    return Closure(text(members.get("name")), types[kind], a, b, hinge_axes(members) if kind == "hinge" else ())
+    found = Closure(text(members.get("name")), types[kind], a, b)
+    if kind == "hinge":
+        return replace(found, axes=hinge_axes(members))
+    return replace(found, length=distance_length(members)) if kind == "distance" else found
 
 
 def hinge_axes(members: dict[str, Any]) -> tuple[Array, Array]:
@@ -90,6 +95,14 @@ def hinge_axes(members: dict[str, Any]) -> tuple[Array, Array]:
         raise NotRead(f"the axes {stated!r}")
     first, second = (unit(vector(axis)) for axis in stated)
     return first, second
+
+
+def distance_length(members: dict[str, Any]) -> float:
+    """The length of a distance, m; at least 0.1 mm."""
+    length = number(members.get("length"))
+    if length < 1e-4:
+        raise NotRead(f"the length {length!r}")
+    return length
 
 
 def reference(value: Any) -> FrameReference:

@@ -8,7 +8,14 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Field,
+    SerializerFunctionWrapHandler,
+    TypeAdapter,
+    model_serializer,
+)
 
 from eurdf_conformance.level import Level, Version
 
@@ -20,6 +27,7 @@ NO_ANSWER = "no_answer"
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Numbers = list[Number]
+Row3 = Annotated[Numbers, Field(min_length=3, max_length=3)]
 
 
 class Value(BaseModel):
@@ -154,9 +162,18 @@ class CanonicalClosure(Value):
     """Two frames held together."""
 
     name: str
-    type: Literal["3d", "6d", "hinge"]
+    type: Literal["3d", "6d", "hinge", "distance"]
     a: str = Field(description="A link of the body that frame A is on.")
     b: str = Field(description="A link of the body that frame B is on.")
+    axes: Annotated[list[Row3], Field(min_length=2, max_length=2)] | None = Field(
+        default=None, description="Of a hinge: the unit vectors of its axis in A and of that in B."
+    )
+    length: Number | None = Field(default=None, description="Of a distance: m.")
+
+    @model_serializer(mode="wrap")
+    def _of_its_type(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Without the members that closures of this type do not have."""
+        return {name: value for name, value in handler(self).items() if value is not None}
 
 
 class CanonicalActuator(Value):
@@ -195,9 +212,6 @@ class Rejected(Answer):
 
     outcome: Literal["rejected"] = "rejected"
     issues: list[Issue]
-
-
-Row3 = Annotated[Numbers, Field(min_length=3, max_length=3)]
 
 
 class Pose(Value):

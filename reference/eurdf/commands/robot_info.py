@@ -50,7 +50,7 @@ class ClosureInfo(_Entry):
     name: str
     """Name of the closure."""
     type: Annotated[str, Field(json_schema_extra={"enum": sorted(CLOSURES)})]
-    """Kind of the closure: 3d for position, 6d for position and orientation, hinge for position and an axis."""
+    """3d for position, 6d for position and orientation, hinge for position and an axis, distance for a distance."""
     rows: Count
     """Number of its constraint rows."""
     frames: tuple[str | None, str | None]

@@ -50,6 +50,7 @@ class ClosureEntry:
         b: Frame B.
         axes: Of a hinge: the axis in A and the axis in B, as written or z.
         axes_pointer: Where they are.
+        length: Of a distance: m.
     """
 
     pointer: Pointer
@@ -59,6 +60,7 @@ class ClosureEntry:
     b: FrameReference
     axes: tuple[Vector3, Vector3] | None = None
     axes_pointer: Pointer = ()
+    length: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -123,6 +123,7 @@ def _closure(pointer: Pointer, closure: version2_1.AnyClosure) -> ClosureEntry:
         _reference((*pointer, "frames", 1), b),
         axes,
         axes_pointer,
+        closure.length if isinstance(closure, version2_1.Distance) else None,
     )
 
 

@@ -13,24 +13,33 @@ from eurdf.format.version2 import Closure, FrameReference, Name, Vector, Version
 
 VERSION: Literal["2.1"] = "2.1"
 
-#: Keys of a closure that version 2.1 adds.
-_AXES = ("axis", "axes")
+#: Smallest length of a distance closure, m.
+LEAST_LENGTH = 1e-4
+
+#: Keys of a closure that version 2.1 adds, by the type that they go with.
+_KEYS_OF_TYPES = {"axis": "hinge", "axes": "hinge", "length": "distance"}
 
 
-class _Hinge(StrictMapping):
-    """Two frames that turn about one axis."""
+class _AddedClosure(StrictMapping):
+    """Two frames, related by a closure of a type that version 2.0 does not have."""
 
     name: Name = Field(title="Name", description="Name of the closure, unique in the file.", examples=["knee_pin"])
+    type: str
+    frames: Annotated[list[FrameReference], Field(min_length=2, max_length=2)] = Field(
+        title="Frames A and B",
+        description="Two frames, each a name, or a pose on a link or joint.",
+        examples=[["coupler_tip", "rocker_tip"]],
+    )
+
+
+class _Hinge(_AddedClosure):
+    """Two frames that turn about one axis."""
+
     type: Literal["hinge"] = Field(
         title="Type",
         description="hinge: the origin of frame B is held on that of A, and an axis of B along an axis of A (5 rows, m"
         " and rad).",
         examples=["hinge"],
-    )
-    frames: Annotated[list[FrameReference], Field(min_length=2, max_length=2)] = Field(
-        title="Frames A and B",
-        description="Two frames, each a name, or a pose on a link or joint.",
-        examples=[["coupler_tip", "rocker_tip"]],
     )
 
 
@@ -59,18 +68,39 @@ class HingeAboutTwo(_Hinge):
     )
 
 
+class Distance(_AddedClosure):
+    """Two frames whose origins are at a fixed distance."""
+
+    model_config = ConfigDict(title="Distance closure")
+
+    type: Literal["distance"] = Field(
+        title="Type",
+        description="distance: the origins of frames A and B are at a fixed distance, as those of the ball joints of a"
+        " rod (1 row, m).",
+        examples=["distance"],
+    )
+    length: Annotated[float, Field(ge=LEAST_LENGTH)] = Field(
+        title="Length", description="Distance between the origins of A and B, m, at least 0.0001.", examples=[0.155]
+    )
+
+
 def _closure_form(value: Any) -> str | None:
     if not isinstance(value, dict):
         return None
-    if value.get("type", "hinge") != "hinge" or value.keys().isdisjoint(("type", *_AXES)):
-        return "plain closure"
-    return "hinge with axes" if "axes" in value else "hinge"
+    implied = next((kind for key, kind in _KEYS_OF_TYPES.items() if key in value), None)
+    match value.get("type", implied):
+        case "hinge":
+            return "hinge with axes" if "axes" in value else "hinge"
+        case "distance":
+            return "distance"
+    return "plain closure"
 
 
 AnyClosure = Annotated[
     Annotated[Closure, Tag("plain closure")]
     | Annotated[Hinge, Tag("hinge")]
-    | Annotated[HingeAboutTwo, Tag("hinge with axes")],
+    | Annotated[HingeAboutTwo, Tag("hinge with axes")]
+    | Annotated[Distance, Tag("distance")],
     either(_closure_form, "a mapping {name: …, type: …, frames: …}"),
 ]
 
@@ -93,22 +123,31 @@ class Version2_1(Version2):  # noqa: N801 - the version has a point
 
 _ALONE = "'axis' and 'axes' exclude one another"
 
+
+def _of_other_types(*kinds: str) -> dict[str, str]:
+    """The keys of closures of other types than these, and why they do not go with them."""
+    return {key: f"'{key}' goes with type '{kind}'" for key, kind in _KEYS_OF_TYPES.items() if kind not in kinds}
+
+
 #: As in version 2.0, and of the forms that version 2.1 adds.
 KEYS: Mapping[str, tuple[str, ...]] = {
     **version2.KEYS,
     "plain closure": version2.KEYS["closures"],
     "hinge": tuple(Hinge.model_fields),
     "hinge with axes": tuple(HingeAboutTwo.model_fields),
+    "distance": tuple(Distance.model_fields),
 }
-TAGS = version2.TAGS | {"plain closure", "hinge", "hinge with axes"}
+TAGS = version2.TAGS | {"plain closure", "hinge", "hinge with axes", "distance"}
 EXCLUDED: Mapping[str, Mapping[str, str]] = {
     **version2.EXCLUDED,
-    "plain closure": {key: f"'{key}' goes with type 'hinge'" for key in _AXES},
-    "hinge with axes": {"axis": _ALONE},
+    "plain closure": _of_other_types(),
+    "hinge": _of_other_types("hinge"),
+    "hinge with axes": {"axis": _ALONE, **_of_other_types("hinge")},
+    "distance": _of_other_types("distance"),
 }
 
 #: Types of closure in each version, beside user-defined ones.
-CLOSURE_TYPES: Mapping[str, tuple[str, ...]] = {"2.0": ("3d", "6d"), VERSION: ("3d", "6d", "hinge")}
+CLOSURE_TYPES: Mapping[str, tuple[str, ...]] = {"2.0": ("3d", "6d"), VERSION: ("3d", "6d", "hinge", "distance")}
 
-#: Keys of a closure that version 2.1 adds.
-ADDED_KEYS = frozenset(_AXES)
+#: Keys that version 2.1 adds to a mapping of version 2.0, by the key of that mapping in `version2.KEYS`.
+ADDED_KEYS: Mapping[str, frozenset[str]] = {"closures": frozenset(_KEYS_OF_TYPES)}

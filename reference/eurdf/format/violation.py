@@ -87,7 +87,9 @@ def violations(error: ValidationError, document: YamlDocument) -> list[Diagnosti
     mistyped = {
         each.pointer[:2] for each in found if each.pointer[:1] == ("closures",) and each.pointer[2:] == ("type",)
     }
-    found = [each for each in found if not (each.pointer[:2] in mistyped and each.pointer[-1] in ADDED_KEYS)]
+    found = [
+        each for each in found if not (each.pointer[:2] in mistyped and each.pointer[-1] in ADDED_KEYS["closures"])
+    ]
     lacking: dict[Pointer, list[str]] = {}
     for violation in found:
         if violation.type == "missing":
@@ -307,7 +309,7 @@ def _unknown_key(violation: _Violation, meant: str | None, document: YamlDocumen
         hint = outside
     elif not mapping and key in FROM_VERSION1:
         hint = f"it is a key of version 1; in version 2.0, use '{FROM_VERSION1[key]}'"
-    elif violation.mapping == "closures" and key in ADDED_KEYS:
+    elif key in ADDED_KEYS.get(violation.mapping, ()):
         hint = _version_hint(f"'{key}'", document)
     elif likely is not None:
         hint = f"did you mean '{likely}'?"

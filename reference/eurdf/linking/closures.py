@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 
 from eurdf.format.extension import ClosureEntry
 from eurdf.linking.frame_names import FrameNames
-from eurdf.mechanism.constraint import CLOSURES, Closure, HingeClosure
+from eurdf.mechanism.constraint import CLOSURES, Closure, DistanceClosure, HingeClosure
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.pose import Pose, Vector3
 from eurdf.reading.reporter import YamlReporter
@@ -62,7 +62,9 @@ def link_closures(
                 (*entry.pointer, "type"),
             )
             continue
-        if entry.axes is None:
+        if entry.length is not None:
+            closures.append(DistanceClosure(entry.name, a, b, entry.length))
+        elif entry.axes is None:
             closures.append(kind(entry.name, a, b))
         elif _have_directions(entry, entry.axes, reporter):
             closures.append(HingeClosure(entry.name, a, b, entry.axes))

@@ -151,4 +151,6 @@ class Coupling(Constraint):
 
 
 #: The kinds of closure that files can state, by their type there.
-CLOSURES: Mapping[str, type[Closure]] = {kind.type: kind for kind in (PointClosure, FrameClosure, HingeClosure)}
+CLOSURES: Mapping[str, type[Closure]] = {
+    kind.type: kind for kind in (PointClosure, FrameClosure, HingeClosure, DistanceClosure)
+}

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from eurdf_conformance.oracle import configuration, hinge, jacobian, robot, version2
+from eurdf_conformance.oracle import configuration, distance, hinge, jacobian, robot, version2
 from eurdf_conformance.oracle.logarithm import log6
 from eurdf_conformance.oracle.spatial import inverse, skew
 from support.mutants.mutant import Deviation, instead, means
@@ -151,6 +151,51 @@ def hinges_swap_their_axes() -> Deviation:
 def hinges_turn_about_x() -> Deviation:
     """A hinge that states no axis turns about x."""
     return instead(version2, "hinge_axes", lambda right, members: right({"axis": [1, 0, 0]} | members))
+
+
+def _distance(change: Callable[[float, float], float]) -> Deviation:
+    """The residual of a distance is another: change(|p|, length)."""
+
+    def changed(right: Any, at: Any, a: Any, b: Any, length: float) -> Any:
+        return np.array([change(float(right(at, a, b, length)[0]) + length, length)])
+
+    return instead(distance, "residual", changed)
+
+
+@means("EU-CLO-015")
+def distances_are_squared() -> Deviation:
+    """The residual of a distance is a difference of squares."""
+    return _distance(lambda apart, length: apart**2 - length**2)
+
+
+@means("EU-CLO-015")
+def distances_have_no_sign() -> Deviation:
+    """The residual of a distance is positive where the origins are too near, too."""
+    return _distance(lambda apart, length: abs(apart - length))
+
+
+@means("EU-CLO-015")
+def distances_have_the_opposite_sign() -> Deviation:
+    """The residual of a distance is the length minus the distance of the origins."""
+    return _distance(lambda apart, length: length - apart)
+
+
+@means("EU-CLO-015")
+def distances_are_relative() -> Deviation:
+    """The residual of a distance is relative to its length."""
+    return _distance(lambda apart, length: apart / length - 1.0)
+
+
+@means("EU-CLO-015")
+def distances_have_length_1() -> Deviation:
+    """Every distance is 1 m."""
+    return instead(version2, "distance_length", lambda right, members: 1.0)
+
+
+@means("EU-CLO-010", versions=("2.1",))
+def k_of_distances_is_of_their_squares() -> Deviation:
+    """K of a distance is the derivative of half the square of the distance of the origins."""
+    return instead(distance, "derivative", lambda right, aMb: right(aMb) * np.linalg.norm(aMb[:3, 3]))
 
 
 @means("EU-CLO-010")

@@ -16,7 +16,10 @@ from eurdf.mechanism.constraint import DistanceClosure
 
 
 class DistanceClosures(Closures[DistanceClosure]):
-    """r = |p| - length, m, with p = ᴬp_B. At p = 0, where it has no derivative, u = p/|p| is taken along x of A."""
+    """EU-CLO-015: r = |p| - length, m, with p = ᴬp_B.
+
+    At p = 0, where r has no derivative, u = p/|p| is taken along x of A.
+    """
 
     data = DistanceClosure
 
