@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-import pinocchio as pin
 
 from eurdf.kinematics.array import Indices, Vector
 from eurdf.kinematics.assembly import start
@@ -18,9 +16,7 @@ from eurdf.kinematics.residual import CLOSED, closure_openings, residual
 from eurdf.kinematics.several import several
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_tolerance
-from eurdf.pinocchio.configuration import joint_coordinates
-from eurdf.pinocchio.coordinates import slots
-from eurdf.pinocchio.robot import Geometry, Robot, build_robot
+from eurdf.pinocchio.robot import Robot, build_robot, carried_over
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -82,7 +78,7 @@ def lock(
     if ROOT_JOINT in names and robot.mechanism.root == "floating":
         raise CannotLock(ROOT_JOINT, "it is the floating root; load the robot with root='fixed' instead")
     q, tolerance = start(robot, q, "q"), checked_tolerance(tolerance)
-    locked = lock_joints(robot.mechanism, names, joint_coordinates(robot.mechanism, robot.model, q))
+    locked = lock_joints(robot.mechanism, names, robot.joint_coordinates(q))
     _check_closed(robot, q, {constraint.name for constraint in locked.constraints}, tolerance)
     built = build_robot(locked.mechanism, geometry=False)
     idx_q, idx_v = _free_indices(robot, built)
@@ -92,7 +88,7 @@ def lock(
         built.tree,
         built.actuation,
         built.configurations,
-        robot.geometry and Geometry(*(_carried_over(each, robot.model, built.model) for each in robot.geometry)),
+        carried_over(robot, built),
         robot.no_geometry,
         robot.diagnostics,
         locked_joints=locked.joints,
@@ -122,32 +118,12 @@ def _check_closed(robot: Robot, q: Vector, names: Collection[str], tolerance: fl
         raise LockedOpen(tuple(found for found, stays in zip(openings, is_open, strict=True) if stays), tolerance)
 
 
-def _carried_over(geometry_model: Any, before: Any, after: Any) -> Any:
-    """The geometry, fixed to the joints of the new model.
-
-    Both models have the same frames in the same order: `build_model` creates the same frames for a fixed and a moving
-    joint, and frames that were added by hand come after them. So the first frame of each joint gives the new pose of
-    what is attached to the joint.
-    """
-    sites: dict[int, tuple[int, Any]] = {}
-    for old, new in zip(before.frames, after.frames, strict=False):
-        if old.parentJoint not in sites:
-            stays = old.placement == new.placement
-            jMj = pin.SE3.Identity() if stays else new.placement * old.placement.inverse()
-            sites[old.parentJoint] = new.parentJoint, jMj
-    carried = geometry_model.copy()
-    for geometry in carried.geometryObjects:
-        geometry.parentJoint, jMj = sites[geometry.parentJoint]
-        geometry.placement = jMj * geometry.placement
-    return carried
-
-
 def _free_indices(before: Robot, after: Robot) -> tuple[Indices, Indices]:
     """Indices of the coordinates and velocities of the new robot in those of the original one."""
     nq, nv = (7, 6) if after.mechanism.root == "floating" else (0, 0)
     idx_q, idx_v = list(range(nq)), list(range(nv))
-    old = slots(before.mechanism, before.model)
-    for name, new in sorted(slots(after.mechanism, after.model).items(), key=lambda item: item[1].idx_q):
+    old = before.slots
+    for name, new in sorted(after.slots.items(), key=lambda item: item[1].idx_q):
         idx_q += range(old[name].idx_q, old[name].idx_q + new.nq)
         idx_v += range(old[name].idx_v, old[name].idx_v + new.nv)
     return np.array(idx_q, dtype=np.intp), np.array(idx_v, dtype=np.intp)

@@ -9,7 +9,6 @@ import numpy as np
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.finite import finite, overflow_refused
-from eurdf.pinocchio.arguments import checked_data
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -39,7 +38,7 @@ def mass_matrix(robot: Robot, q: Vector, *, data: Any = None) -> Matrix:
         NumericalOverflow: M is not finite.
     """
     tree = robot.tree
-    M = tree.mass_times(start(robot, q, "q"), np.eye(tree.nv), checked_data(robot.model, data))
+    M = tree.mass_times(start(robot, q, "q"), np.eye(tree.nv), tree.memory(data))
     symmetric = np.asarray(0.5 * (M + M.T))
     finite("the mass matrix", symmetric)
     return symmetric

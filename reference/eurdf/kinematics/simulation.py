@@ -7,11 +7,11 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import pinocchio as pin
 
+from eurdf.kinematics.applied_force import AppliedForce, External
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import assemble, start
-from eurdf.kinematics.dynamics import External, applied_force, forward_dynamics
+from eurdf.kinematics.dynamics import forward_dynamics
 from eurdf.kinematics.exceptions import NotClosable, SimulationDiverged, StepTooLongWarning
 from eurdf.kinematics.finite import overflow_refused
 from eurdf.kinematics.residual import residual_and_jacobian
@@ -109,6 +109,7 @@ def simulate(
     if not (step > 0.0 and duration >= 0.0 and np.isfinite(duration / step)):
         raise ValueError("duration must be at least 0 s, and step above 0 s")
     tree, data, spaces = robot.tree, robot.tree.memory(), TangentSpaces(robot)
+    applied = AppliedForce(robot, external, dissipation)
     count = round(duration / step)
     times: Vector = np.linspace(0.0, count * step, count + 1)
     qs, vs = np.empty((count + 1, tree.nq)), np.empty((count + 1, tree.nv))
@@ -123,7 +124,7 @@ def simulate(
             raise SimulationDiverged(t, step)
         u = None if control is None else control(t, q, v)
         a = forward_dynamics(robot, q, v, u, external=external, dissipation=dissipation, data=data).a
-        power = float(applied_force(robot, q, v, u, external, dissipation, data) @ v)
+        power = float(applied.at(q, v, u) @ v)
         return np.asarray(np.linalg.solve(tree.integrate_derivative(begin, x), v), dtype=np.float64), a, power
 
     @overflow_refused("the configuration")
@@ -139,8 +140,7 @@ def simulate(
     def energies(q: Vector, v: Vector) -> tuple[float, float]:
         with np.errstate(over="ignore", invalid="ignore"):  # energies beyond all numbers are not warned of
             momentum = tree.mass_times(q, v[:, None], data)[:, 0]
-            gravity = float(pin.computePotentialEnergy(robot.model, data, q))
-            return 0.5 * float(v @ momentum), gravity + tree.springs.energy(q)
+            return 0.5 * float(v @ momentum), tree.potential_energy(q, data)
 
     initial = checked_array("v", np.zeros(tree.nv) if v is None else v, (tree.nv,))
     qs[0], vs[0] = closed(0.0, assembly.q, initial, 0)

@@ -37,12 +37,14 @@ class TangentSpaces:
     Attributes:
         scale: Unit (nv,) of each velocity: the characteristic length for one of a loop that only translates, else 1.
         length: Characteristic length, m.
+        dimensionless: Factors (nc, nv) that make K dimensionless.
     """
 
     def __init__(self, robot: Robot) -> None:
         self.length = characteristic_length(robot)
         self.scale = velocity_scale(robot, self.length)
         self._row_scale = row_scale(robot, self.length)
+        self.dimensionless = self._row_scale[:, None] * self.scale
         self._groups = independent_groups(robot)
 
     def at(self, K: Matrix) -> TangentSpace:

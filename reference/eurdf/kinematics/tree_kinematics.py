@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.mechanism.frame import Anchor
@@ -145,6 +145,14 @@ class TreeKinematics(Protocol):
         """The lower and the upper position limits (nq,) as in the files, both zero where there is no range."""
 
     @property
+    def damping(self) -> Vector:
+        """The viscous damping (nv,) of the joints, N·m·s/rad and N·s/m."""
+
+    @property
+    def dry_friction(self) -> Vector:
+        """The dry friction (nv,) of the joints, N·m and N."""
+
+    @property
     def whole_turns(self) -> Mask:
         """Which velocities (nv,) drive an angle whose whole turns change nothing."""
 
@@ -203,3 +211,48 @@ class TreeKinematics(Protocol):
 
     def mass_times(self, q: Vector, motions: Matrix, data: Any) -> Matrix:
         """The mass matrix at q (nq,), the armature included, times the columns (nv, n) of accelerations."""
+
+    def potential_energy(self, q: Vector, data: Any) -> float:
+        """The potential energy of gravity and springs at q (nq,), J."""
+
+
+class ConstrainedMotion(NamedTuple):
+    """What a solver of constrained dynamics found, with the terms that it used.
+
+    They are those of M a + h = τ + Kᵀ λ and K a = target if the constraints hold and K v = 0.
+
+    Attributes:
+        a: Acceleration (nv,).
+        lambdas: λ (nc,), as in `eurdf.kinematics.dynamics`.
+        bias: h (nv,).
+        r: The residual (nc,).
+        K: Its derivative (nc, nv).
+        target: What K a has to be (nc,).
+    """
+
+    a: Vector
+    lambdas: Vector
+    bias: Vector
+    r: Vector
+    K: Matrix
+    target: Vector
+
+
+class ConstrainedDynamics(Protocol):
+    """A solver of the dynamics of a tree with closed constraints, with memory of its own.
+
+    It can be wrong where rows are redundant or joints have no inertia: the caller has to judge its solution.
+    """
+
+    def solve(
+        self, q: Vector, v: Vector, force: Vector, gains: Sequence[tuple[float, float]], data: Any
+    ) -> ConstrainedMotion:
+        """The solution at q (nq,) and v (nv,), which may be not finite.
+
+        Args:
+            q: Configuration (nq,).
+            v: Velocity (nv,).
+            force: Generalized force τ (nv,).
+            gains: Baumgarte gains of each constraint: kp, 1/s², and kd, 1/s.
+            data: Memory of the whole tree.
+        """

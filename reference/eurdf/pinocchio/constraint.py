@@ -33,6 +33,11 @@ class NoConstraintModel(EurdfError, ValueError):  # noqa: N818 - part of the pub
         )
 
 
+def has_constraint_models(constraints: Iterable[Constraint]) -> bool:
+    """Whether Pinocchio has constraint models for these constraints."""
+    return all(type(constraint) in _CONTACT for constraint in constraints)
+
+
 def build_constraint_models(constraints: Iterable[Constraint], tree: PinocchioTree) -> list[pin.RigidConstraintModel]:
     """One constraint model a constraint, in their order and under their names.
 

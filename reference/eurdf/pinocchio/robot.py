@@ -14,10 +14,10 @@ from eurdf.diagnostics import Diagnostic
 from eurdf.mechanism.constraint import Constraint
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.actuation import Actuation, build_actuation
-from eurdf.pinocchio.configuration import Vector, configuration_vector, own_coordinates
+from eurdf.pinocchio.configuration import Vector, configuration_vector, joint_coordinates, own_coordinates
 from eurdf.pinocchio.constraint import build_constraint_models
 from eurdf.pinocchio.coordinates import Slot, slots
-from eurdf.pinocchio.geometry import Meshes, Resolve, build_geometry
+from eurdf.pinocchio.geometry import Meshes, Resolve, build_geometry, carry_over
 from eurdf.pinocchio.model import build_model
 from eurdf.pinocchio.tree import PinocchioTree, build_tree
 
@@ -148,6 +148,14 @@ class Robot:
         """
         return own_coordinates(self.mechanism, self.model, q)
 
+    def joint_coordinates(self, q: Vector) -> dict[str, tuple[float, ...]]:
+        """The same of every joint that is not fixed: also of those that mimic another, which follow from that one's.
+
+        Raises:
+            ValueError: q does not have the shape (nq,), or is not finite.
+        """
+        return joint_coordinates(self.mechanism, self.model, q)
+
     def __iter__(self) -> Iterator[Any]:
         return iter((self.model, self.constraint_models, self.actuation, self.visual_model, self.collision_model))
 
@@ -198,6 +206,13 @@ def build_robot(
         ),
         shapes,
     )
+
+
+def carried_over(before: Robot, after: Robot) -> Geometry | None:
+    """The geometry of a robot, fixed to the joints of another one whose bodies are at the same places."""
+    if before.geometry is None:
+        return None
+    return Geometry(*(carry_over(each, before.model, after.model) for each in before.geometry))
 
 
 def _nothing(uri: str) -> None:

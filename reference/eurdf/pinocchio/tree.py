@@ -116,6 +116,16 @@ class PinocchioTree:
         """The lower and the upper position limits (nq,)."""
         return np.array(self.model.lowerPositionLimit), np.array(self.model.upperPositionLimit)
 
+    @property
+    def damping(self) -> Vector:
+        """The viscous damping (nv,) of the joints."""
+        return np.array(self.model.damping)
+
+    @property
+    def dry_friction(self) -> Vector:
+        """The dry friction (nv,) of the joints."""
+        return np.array(self.model.upperDryFrictionLimit)
+
     @cached_property
     def whole_turns(self) -> npt.NDArray[np.bool_]:
         """Which velocities (nv,) drive an angle whose whole turns change nothing, since it is not unwrapped."""
@@ -220,6 +230,10 @@ class PinocchioTree:
         gravity = self.inverse_dynamics(q, still, still, data)
         columns = [self.inverse_dynamics(q, still, a, data) - gravity for a in motions.T]
         return np.array(columns).reshape(motions.T.shape).T
+
+    def potential_energy(self, q: Vector, data: pin.Data) -> float:
+        """The potential energy of gravity and springs at q (nq,), J."""
+        return float(pin.computePotentialEnergy(self.model, data, q)) + self.springs.energy(q)
 
     def memory(self, given: pin.Data | None = None) -> pin.Data:
         """The given `pin.Data`, or a new one.

@@ -1,0 +1,80 @@
+"""Forces that act on the joints: of motors, springs, damping and friction, and at frames."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from eurdf.kinematics.array import Matrix, Vector
+from eurdf.kinematics.tree_kinematics import FramePairs
+from eurdf.pinocchio.arguments import checked_array
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+#: Forces and moments at frames, by frame name: six numbers each, or a `pin.Force`.
+External = Mapping[str, ArrayLike]
+
+
+class AppliedForce:
+    """What acts on a robot at one state after the other, besides gravity and its closures."""
+
+    def __init__(self, robot: Robot, external: External | None, dissipation: bool) -> None:
+        """Take the forces that do not change.
+
+        Args:
+            robot: The robot.
+            external: For frames of the model, by name, the force and moment (6,) that act at the frame's origin, in
+                world axes, N and N·m.
+            dissipation: Whether damping and dry friction of the joints act.
+
+        Raises:
+            ValueError: A frame is unknown, or a force is not six finite numbers.
+        """
+        self._selection = robot.actuation.selection
+        self._tree = robot.tree
+        self._dissipation = dissipation
+        self._external: tuple[FramePairs, Matrix] | None = None
+        if external:
+            forces = [
+                checked_array(f"external['{name}']", getattr(given, "vector", given), (6,))
+                for name, given in external.items()
+            ]
+            self._external = robot.tree.frames(list(external)), np.array(forces)
+
+    def at(self, q: Vector, v: Vector, u: Vector | None = None, tau: Vector | None = None) -> Vector:
+        """Generalized force (nv,) of all but the springs.
+
+        Args:
+            q: Configuration (nq,).
+            v: Velocity (nv,).
+            u: Motor torques (nu,); zero by default.
+            tau: Additional generalized forces (nv,); zero by default.
+
+        Raises:
+            ValueError: ``u`` or ``tau`` has another shape or is not finite.
+        """
+        force = np.zeros(self._tree.nv) if tau is None else np.array(checked_array("tau", tau, (self._tree.nv,)))
+        if u is not None:
+            force += self._selection @ checked_array("u", u, (self._selection.shape[1],))
+        if self._external is not None:
+            force += self._at_frames(*self._external, q)
+        if self._dissipation:
+            force -= self._tree.damping * v + self._tree.dry_friction * np.sign(v)
+        return force
+
+    def total(self, q: Vector, v: Vector, u: Vector | None = None, tau: Vector | None = None) -> Vector:
+        """The same with that of the springs."""
+        force, springs = self.at(q, v, u, tau), self._tree.springs
+        return force + springs.force(q, len(force)) if len(springs) else force
+
+    def _at_frames(self, frames: FramePairs, forces: Matrix, q: Vector) -> Vector:
+        """Sum of the generalized forces: their power is that of the forces."""
+        memory = frames.memory()
+        origins = np.array([oMf.translation for oMf in memory.placements(q)])
+        moments = forces[:, 3:] + np.cross(origins, forces[:, :3])  # about the origin of the world
+        rows = np.concatenate((forces[:, :3], moments), axis=1)
+        return np.asarray(memory.jacobian(rows[:, None, :], range(len(rows))).sum(axis=0))
