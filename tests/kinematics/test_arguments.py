@@ -22,6 +22,7 @@ ARRAY = re.compile(r"\b(Vector|Matrix|ArrayLike|External|Mapping\[str, Any\]|tup
 #: A valid call of each public function, and of each method of a robot, that takes an array.
 CALLS: dict[str, dict[str, Any]] = {
     "Robot.coordinates": {"q": "q"},
+    "Robot.joint_coordinates": {"q": "q"},
     "achievable_acceleration": {"q": "q", "v": "v", "a": "v", "tau": "v", "external": {"coupler": 6}},
     "actuated_jacobian": {"q": "q", "frame": "coupler", "weights": "v"},
     "analyze": {"q": "q"},

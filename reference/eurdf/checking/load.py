@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from functools import partial
 
 from eurdf.checking.loops import closure_diagnostics
@@ -92,9 +91,8 @@ def load(
             diagnostics.add(found)
     if strict and diagnostics.error_count:
         raise InvalidRobot(description.path, tuple(diagnostics))
-    return replace(
-        robot,
+    return robot.diagnosed(
+        tuple(diagnostics),
         # The kinematics need no mesh, so that what `check` passes is loaded; but shapes are not left out in silence.
-        no_geometry=partial(InvalidRobot, description.path, tuple(missing), no_geometry) if lacks_mesh else None,
-        diagnostics=tuple(diagnostics),
+        partial(InvalidRobot, description.path, tuple(missing), no_geometry) if lacks_mesh else None,
     )

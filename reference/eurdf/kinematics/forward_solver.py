@@ -13,7 +13,7 @@ from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.equation_of_motion import Acceleration, EquationOfMotion
 from eurdf.kinematics.tangent_space import TangentSpaces
-from eurdf.kinematics.tree_kinematics import ConstrainedMotion
+from eurdf.kinematics.tree_kinematics import ConstrainedDynamics, ConstrainedMotion
 from eurdf.pinocchio.constrained_dynamics import build_constrained_dynamics
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ class ForwardSolver:
     def __init__(self, robot: Robot) -> None:
         # No reference to the robot: the cache would keep it alive.
         self._tree = robot.tree
-        self._solver = build_constrained_dynamics(robot)
+        self._solver: ConstrainedDynamics | None = build_constrained_dynamics(robot)
         self._scale = derived(robot, TangentSpaces).dimensionless
 
     @cached_property

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Protocol
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.mechanism.frame import Anchor
@@ -216,26 +216,35 @@ class TreeKinematics(Protocol):
         """The potential energy of gravity and springs at q (nq,), J."""
 
 
-class ConstrainedMotion(NamedTuple):
+class ConstrainedMotion(Protocol):
     """What a solver of constrained dynamics found, with the terms that it used.
 
     They are those of M a + h = τ + Kᵀ λ and K a = target if the constraints hold and K v = 0.
-
-    Attributes:
-        a: Acceleration (nv,).
-        lambdas: λ (nc,), as in `eurdf.kinematics.dynamics`.
-        bias: h (nv,).
-        r: The residual (nc,).
-        K: Its derivative (nc, nv).
-        target: What K a has to be (nc,).
     """
 
-    a: Vector
-    lambdas: Vector
-    bias: Vector
-    r: Vector
-    K: Matrix
-    target: Vector
+    @property
+    def a(self) -> Vector:
+        """Acceleration (nv,)."""
+
+    @property
+    def lambdas(self) -> Vector:
+        """λ (nc,), as in `eurdf.kinematics.dynamics`."""
+
+    @property
+    def bias(self) -> Vector:
+        """The h (nv,) of the equation."""
+
+    @property
+    def r(self) -> Vector:
+        """The residual (nc,)."""
+
+    @property
+    def K(self) -> Matrix:  # noqa: N802 - the field's own symbol
+        """Its derivative (nc, nv)."""
+
+    @property
+    def target(self) -> Vector:
+        """What K a has to be (nc,)."""
 
 
 class ConstrainedDynamics(Protocol):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -66,6 +66,14 @@ class Robot:
     no_geometry: Callable[[], Exception] | None = None
     diagnostics: tuple[Diagnostic, ...] = ()
     derived: dict[Any, Any] = field(default_factory=dict, init=False)
+
+    def diagnosed(
+        self, diagnostics: tuple[Diagnostic, ...], no_geometry: Callable[[], Exception] | None = None
+    ) -> Robot:
+        """The same robot with diagnostics; it keeps what was derived from it."""
+        robot = replace(self, diagnostics=diagnostics, no_geometry=no_geometry)
+        robot.derived.update(self.derived)
+        return robot
 
     @property
     def constraints(self) -> tuple[Constraint, ...]:
