@@ -28,6 +28,8 @@ def __getattr__(name: str) -> Any:
     module = _MODULES.get(name)
     if module is None:
         raise AttributeError(f"module 'eurdf' has no attribute '{name}'")
+    if module == __name__:  # a public submodule
+        return importlib.import_module(f"{module}.{name}")
     value = getattr(importlib.import_module(module), name)
     globals()[name] = value
     return value

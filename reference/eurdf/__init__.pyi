@@ -1,5 +1,6 @@
 """The public names of the package, each with the module that defines it."""
 
+from eurdf import batch as batch
 from eurdf.checking.check import check as check
 from eurdf.checking.load import load as load
 from eurdf.collection import collection_names as collection_names

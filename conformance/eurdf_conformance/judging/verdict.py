@@ -1,4 +1,4 @@
-"""The verdicts on an item."""
+"""The words for what became of an item."""
 
 from __future__ import annotations
 
@@ -6,21 +6,21 @@ from enum import StrEnum
 
 
 class Verdict(StrEnum):
-    """The verdict on an item. Only `PASSED` is a pass."""
+    """What became of an item. `PASSED` alone is a pass, whatever the others are."""
 
     PASSED = "passed"
     #: The answer is not the expected one.
     FAILED = "failed"
     #: The parser says that it lacks a feature.
     UNSUPPORTED = "unsupported"
-    #: The parser chose not to answer.
+    #: The parser would rather not answer.
     SKIPPED = "skipped"
-    #: The parser reported that it failed.
+    #: The parser failed by its own word.
     ERRORED = "errored"
     #: The process ended without an answer.
     CRASHED = "crashed"
     TIMED_OUT = "timed out"
-    #: The line is not a valid answer.
+    #: The line is no answer.
     MALFORMED = "malformed"
     #: The answer is to another request.
     MISPLACED = "misplaced"
@@ -32,7 +32,7 @@ class Verdict(StrEnum):
     NOT_RUN = "not run"
 
 
-#: Verdicts that point to an error in the adapter rather than in the parser.
+#: Verdicts that say something of how a parser is connected rather than of what it reads.
 OF_THE_ADAPTER = frozenset(
     {Verdict.CRASHED, Verdict.TIMED_OUT, Verdict.MALFORMED, Verdict.MISPLACED, Verdict.CHATTER, Verdict.NOT_STARTED}
 )

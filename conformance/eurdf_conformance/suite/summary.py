@@ -1,4 +1,4 @@
-"""The summary of a run, as the last lines that pytest prints."""
+"""What a run comes to, as the last lines that pytest writes."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from eurdf_conformance.visible import visible
 
 
 def summary_lines(run: Run, unexpected: Sequence[str], certificate: Path | None) -> Iterator[str]:
-    """The summary of a run.
+    """What a run comes to.
 
     Args:
         run: The run.
-        unexpected: Where the results differ from the known failures.
+        unexpected: What is not as the known failures say.
         certificate: Folder that a certificate was written into.
     """
     return map(visible, _lines(run, unexpected, certificate))

@@ -1,0 +1,89 @@
+"""The residual of the constraints and its derivative at many configurations."""
+
+from __future__ import annotations
+
+from concurrent.futures import Executor
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from eurdf.kinematics.array import Matrix
+from eurdf.kinematics.batch.arguments import checked_rows
+from eurdf.kinematics.batch.blocks import Progress, blocks
+from eurdf.kinematics.batch.problem import Problem, problem
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+
+def residual(
+    robot: Robot,
+    q: Matrix,
+    *,
+    block: int | None = None,
+    threads: int = 1,
+    executor: Executor | None = None,
+    progress: Progress | None = None,
+) -> Matrix:
+    """Residual of all constraints at B configurations, as `eurdf.residual` has it.
+
+    Args:
+        robot: The robot.
+        q: Configurations (B, nq).
+        block: See `eurdf.batch.forward_kinematics`, also for the following ones.
+        threads: Number of threads.
+        executor: Who works on blocks instead.
+        progress: Called after each block.
+
+    Returns:
+        r (B, nc), m and rad.
+
+    Raises:
+        ValueError: An argument has a wrong shape or is not finite.
+        NotImplementedError: A joint or constraint has a type that is not supported.
+    """
+    model = problem(robot)
+    rows = checked_rows("q", q, model.tree.nq)
+    (r,) = blocks(model.whole.numbers, block, threads, executor, progress).map(_residual, model, (rows,))
+    return r
+
+
+def residual_and_jacobian(
+    robot: Robot,
+    q: Matrix,
+    *,
+    block: int | None = None,
+    threads: int = 1,
+    executor: Executor | None = None,
+    progress: Progress | None = None,
+) -> tuple[Matrix, Matrix]:
+    """Residual of all constraints and its derivative at B configurations, as `eurdf.residual_and_jacobian` has them.
+
+    Args:
+        robot: The robot.
+        q: Configurations (B, nq).
+        block: See `eurdf.batch.forward_kinematics`, also for the following ones.
+        threads: Number of threads.
+        executor: Who works on blocks instead.
+        progress: Called after each block.
+
+    Returns:
+        r (B, nc), and K (B, nc, nv), in m and rad over the units of v.
+
+    Raises:
+        ValueError: As in `residual`.
+        NotImplementedError: As in `residual`.
+    """
+    model = problem(robot)
+    rows = checked_rows("q", q, model.tree.nq)
+    r, K = blocks(model.whole.numbers, block, threads, executor, progress).map(_residual_and_jacobian, model, (rows,))
+    return r, K
+
+
+def _residual(model: Problem, q: Matrix) -> tuple[Matrix]:
+    return (model.residual(q.T).T,)
+
+
+def _residual_and_jacobian(model: Problem, q: Matrix) -> tuple[Matrix, Matrix]:
+    at = model.whole.at(q.T)
+    return model.whole.residual(at).T, np.moveaxis(model.whole.jacobian(at), -1, 0)
