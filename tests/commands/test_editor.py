@@ -77,7 +77,7 @@ def test_hover_shows_meaning_and_unit(tmp_path: Path) -> None:
 
 
 #: One error of each kind that a schema can see: the file's body, the place that is underlined, and part of the message.
-FAULTS = [
+ERRORS = [
     ("|closurs: []\n", "Property closurs is not allowed"),
     ("root: |flying\n", 'Valid values: "fixed", "floating"'),
     ("closures:\n  - name: rod\n    type: |4d\n    frames: [a, b]\n", 'Valid values: "3d", "6d"'),
@@ -95,18 +95,18 @@ FAULTS = [
 @pytest.fixture(scope="module")
 def underlined(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[tuple[int, int, str]]]:
     """What is underlined in the file of each error, all opened in one editor."""
-    folder = tmp_path_factory.mktemp("faults")
+    folder = tmp_path_factory.mktemp("errors")
 
     async def session(editor: Editor) -> dict[str, list[tuple[int, int, str]]]:
         return {
             body: await editor.open(written(folder, body, name=f"fault_{index}.yaml")[0])
-            for index, (body, _) in enumerate(FAULTS)
+            for index, (body, _) in enumerate(ERRORS)
         }
 
     return in_editor(session)
 
 
-@pytest.mark.parametrize(("body", "said"), FAULTS, ids=[said for _, said in FAULTS])
+@pytest.mark.parametrize(("body", "said"), ERRORS, ids=[said for _, said in ERRORS])
 def test_schema_error_is_underlined(
     tmp_path: Path, underlined: dict[str, list[tuple[int, int, str]]], body: str, said: str
 ) -> None:

@@ -400,10 +400,10 @@ def test_error_of_a_whole_file_has_no_line() -> None:
 
 
 def test_a_yaml_syntax_error_may_be_at_any_place() -> None:
-    fault = ExpectedWarning(code="yaml-syntax", place=PLACE)
-    assert error_differences(fault, [issue("yaml-syntax", line=9, column=1)]) == []
-    assert error_differences(fault, [issue("yaml-syntax", file=None, line=None, column=None)]) == []
-    assert error_differences(fault, [issue("yaml-syntax", file="robot.urdf")])
+    expected = ExpectedWarning(code="yaml-syntax", place=PLACE)
+    assert error_differences(expected, [issue("yaml-syntax", line=9, column=1)]) == []
+    assert error_differences(expected, [issue("yaml-syntax", file=None, line=None, column=None)]) == []
+    assert error_differences(expected, [issue("yaml-syntax", file="robot.urdf")])
 
 
 def test_only_warnings_of_a_valid_case_are_reported() -> None:

@@ -12,7 +12,7 @@ from eurdf_conformance.level import VERSIONS, Level, Version
 from eurdf_conformance.runner.session import Session
 from eurdf_conformance.suite.protocol_check import Setup, check
 from eurdf_conformance.suite.smoke import SMOKE, smoke_case
-from support.mutants import MUTANTS, SPEAKERS, UNBROKEN, Mutant
+from support.mutants import MUTANTS, PROTOCOL_MUTANTS, UNBROKEN, Mutant
 from support.mutants.catching import catching
 from support.parsers.oracle import OracleParser
 
@@ -34,21 +34,21 @@ def test_a_correct_parser_is_not_caught(parser: type, version: Version) -> None:
     assert catching(mutant, version) is None
 
 
-@pytest.mark.parametrize("name", SPEAKERS)
+@pytest.mark.parametrize("name", PROTOCOL_MUTANTS)
 def test_a_protocol_rule_catches_the_wrong_program(name: str) -> None:
-    speaker = SPEAKERS[name]
+    mutant = PROTOCOL_MUTANTS[name]
     three = SMOKE["2"]
     valid, invalid = (smoke_case(all_cases(), case_id) for case_id in (three.valid, three.invalid))
-    with Session(speaker.parser) as session:
-        asked = Setup(session, lambda: Session(speaker.parser), valid, invalid)
-        found = {check(rule, asked).verdict for rule in RULES if speaker.clause in rule.clauses}
-    assert found & speaker.verdicts, found
+    with Session(mutant.parser) as session:
+        asked = Setup(session, lambda: Session(mutant.parser), valid, invalid)
+        found = {check(rule, asked).verdict for rule in RULES if mutant.clause in rule.clauses}
+    assert found & mutant.verdicts, found
 
 
 @pytest.mark.parametrize("version", VERSIONS)
 def test_each_must_has_a_mutant_or_a_reason(version: Version) -> None:
     broken = {mutant.clause for mutant in MUTANTS.values() if version in mutant.versions}
-    broken |= {speaker.clause for speaker in SPEAKERS.values()}
+    broken |= {mutant.clause for mutant in PROTOCOL_MUTANTS.values()}
     musts = {clause.id for clause in read_clauses().values() if clause.must and version in said_in(clause)}
     assert musts - broken == UNBROKEN.keys() & musts
     assert not broken & UNBROKEN.keys()

@@ -80,7 +80,7 @@ def test_runner_distinguishes_and_survives_misbehaviour(
 ) -> None:
     with Session(fake(way), timeout=0.5, line_limit=2**20) as session:
         assert accepts(load(session, "first"), "first")
-        outcome = load(session, "fault")
+        outcome = load(session, "trigger")
         assert isinstance(outcome, kind)
         assert words in str(outcome)
         assert outcome.word == {TimedOut: "timed out"}.get(kind, kind.__name__.lower())
@@ -94,7 +94,7 @@ def test_runner_distinguishes_and_survives_misbehaviour(
 )
 def test_unusual_but_correct_messages_are_answers(way: str) -> None:
     with Session(fake(way)) as session:
-        for name in ("first", "fault_Ω_関節", "next"):
+        for name in ("first", "trigger_Ω_関節", "next"):
             assert accepts(load(session, name), name)
         assert session.restarts == 0
 
@@ -102,7 +102,7 @@ def test_unusual_but_correct_messages_are_answers(way: str) -> None:
 def test_misbehaviour_is_never_a_rejection() -> None:
     assert not any(issubclass(kind, Answered) for _, kind, _, _ in WAYS)
     with Session(fake("errors")) as session:
-        outcome = load(session, "fault")
+        outcome = load(session, "trigger")
         assert isinstance(outcome, Answered)
         assert isinstance(outcome.answer, Errored)
         assert not isinstance(outcome.answer, Rejected)
@@ -112,10 +112,10 @@ def test_misbehaviour_is_never_a_rejection() -> None:
 
 def test_a_late_answer_does_not_answer_the_next_request() -> None:
     with Session(fake("late"), timeout=0.3) as session:
-        assert isinstance(load(session, "fault"), TimedOut)
+        assert isinstance(load(session, "trigger"), TimedOut)
         time.sleep(0.6)  # by now it would have answered
         assert accepts(load(session, "next"), "next")
-        assert accepts(load(session, "fault", timeout=5.0), "fault")
+        assert accepts(load(session, "trigger", timeout=5.0), "trigger")
 
 
 def test_a_process_that_ends_before_start_has_answered_nothing() -> None:
@@ -137,7 +137,7 @@ def test_the_log_before_the_first_request_is_kept() -> None:
 
 def test_crash_between_requests_is_reported_at_the_next() -> None:
     with Session(fake("exits_after_answering")) as session:
-        assert accepts(load(session, "fault"), "fault")
+        assert accepts(load(session, "trigger"), "trigger")
         time.sleep(0.2)
         outcome = load(session, "next")
         assert outcome == Crashed(4, None, "", before=True)
@@ -148,7 +148,7 @@ def test_crash_between_requests_is_reported_at_the_next() -> None:
 def test_crash_after_an_answer_has_exit_code() -> None:
     with Session(fake("exits_after_answering")) as session:
         for _ in range(30):
-            assert accepts(load(session, "fault"), "fault")
+            assert accepts(load(session, "trigger"), "trigger")
             outcome = load(session, "next")  # the process may be alive still, or be dying, or be dead
             assert isinstance(outcome, Crashed)
             assert outcome.code == 4
@@ -156,7 +156,7 @@ def test_crash_after_an_answer_has_exit_code() -> None:
 
 def test_line_after_an_answer_is_reported_at_the_next_request() -> None:
     with Session(fake("chatter_later")) as session:
-        assert accepts(load(session, "fault"), "fault")
+        assert accepts(load(session, "trigger"), "trigger")
         time.sleep(0.3)
         outcome = load(session, "next")
         assert isinstance(outcome, Chatter)
@@ -167,7 +167,7 @@ def test_line_after_an_answer_is_reported_at_the_next_request() -> None:
 
 def test_deaf_parser_is_restarted_after_its_last_answer() -> None:
     with Session(fake("closes_stdin"), timeout=0.5) as session:
-        assert accepts(load(session, "fault"), "fault")
+        assert accepts(load(session, "trigger"), "trigger")
         assert isinstance(load(session, "next"), TimedOut)
         assert accepts(load(session, "next"), "next")
 
@@ -175,7 +175,7 @@ def test_deaf_parser_is_restarted_after_its_last_answer() -> None:
 def test_request_larger_than_the_pipe_does_not_hang() -> None:
     configurations = [{f"joint_{index}": [0.123456789] for index in range(20_000)}]
     with Session(fake("hangs"), timeout=0.5) as session:
-        assert isinstance(load(session, "fault"), TimedOut)
+        assert isinstance(load(session, "trigger"), TimedOut)
         outcome = session.evaluate(configurations, [], ["mass"])
         assert isinstance(outcome, Answered)
         assert isinstance(outcome.answer, Evaluated)
@@ -190,12 +190,12 @@ def test_values_at_another_number_of_configurations_are_malformed() -> None:
 
 def test_the_log_of_a_failure_is_kept_and_bounded() -> None:
     with Session(fake("exits")) as session:
-        outcome = load(session, "fault")
+        outcome = load(session, "trigger")
         assert isinstance(outcome, Crashed)
         assert outcome.log == "cannot go on\n"
         assert "log: cannot go on" in str(outcome)
     with Session(fake("floods_stderr_for_ever"), timeout=0.5) as session:
-        outcome = load(session, "fault")
+        outcome = load(session, "trigger")
         assert isinstance(outcome, TimedOut)
         assert len(outcome.log) == 2**14
 
@@ -208,10 +208,10 @@ def test_a_shortened_log_keeps_the_error_line_of_node_js() -> None:
 
 def test_the_reason_is_one_line_and_the_log_has_details() -> None:
     with Session(fake("closes_stdout"), timeout=5.0) as session:
-        judgement = judge_outcome(load(session, "fault"))
+        judgement = judge_outcome(load(session, "trigger"))
         assert judgement.reason == "the process closed its standard output without answering"
     with Session(fake("null_for_a_number")) as session:
-        judgement = judge_outcome(load(session, "fault"))
+        judgement = judge_outcome(load(session, "trigger"))
         assert "null, which some libraries write for NaN or infinity; JSON has neither" in judgement.reason
         assert "a link" not in judgement.reason
         assert "a link" in judgement.log
@@ -223,7 +223,7 @@ def test_an_endless_line_takes_bounded_memory() -> None:
         assert accepts(load(session, "first"), "first")
         tracemalloc.start()
         try:
-            outcome = load(session, "fault")
+            outcome = load(session, "trigger")
             peak = tracemalloc.get_traced_memory()[1]
         finally:
             tracemalloc.stop()
@@ -321,12 +321,12 @@ def test_a_parser_gives_its_name_and_version() -> None:
 
 def test_a_parser_is_restarted_after_every_crash() -> None:
     with Session(fake("exits")) as session:
-        assert [load(session, "fault").word for _ in range(30)] == ["crashed"] * 30
+        assert [load(session, "trigger").word for _ in range(30)] == ["crashed"] * 30
         assert accepts(load(session, "next"), "next")
         assert session.restarts == 30
 
 
-@pytest.mark.parametrize("names", [["fault"], ["fault_1", "sound_1", "fault_2"]], ids=["all", "some"])
+@pytest.mark.parametrize("names", [["trigger"], ["trigger_1", "sound_1", "trigger_2"]], ids=["all", "some"])
 def test_crashes_give_the_same_results_in_any_number_of_sessions(names: list[str]) -> None:
     asked = [f"{name}_{number}" for number in range(8) for name in names]
 
@@ -340,7 +340,7 @@ def test_crashes_give_the_same_results_in_any_number_of_sessions(names: list[str
     found = judged(1)
     assert found == judged(3)
     crashed = {name for name, judgement in found.items() if judgement.verdict == Verdict.CRASHED}
-    assert crashed == {name for name in asked if name.startswith("fault")}
+    assert crashed == {name for name in asked if name.startswith("trigger")}
 
 
 def test_parser_that_cannot_restart_is_given_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -388,7 +388,7 @@ def test_a_restarted_parser_loads_the_robot_before_evaluating() -> None:
 )
 def test_parser_that_does_not_stop_is_killed_and_reported(way: str, kind: type[Outcome]) -> None:
     with Session(fake(way), stop_timeout=0.3) as session:
-        assert accepts(load(session, "fault"), "fault")
+        assert accepts(load(session, "trigger"), "trigger")
         process = session._process
     assert isinstance(session.ended, kind)
     assert process is not None
@@ -404,7 +404,7 @@ def test_a_parser_reads_end_of_input_after_stop() -> None:
 
 def test_child_processes_end_with_their_parser() -> None:
     with Session(fake("has_a_child")) as session:
-        outcome = load(session, "fault")
+        outcome = load(session, "trigger")
         assert isinstance(outcome, Answered)
         child = int(outcome.answer.issues[0].message)  # type: ignore[union-attr]
         assert runs(child)
@@ -415,7 +415,7 @@ def test_child_processes_end_with_their_parser() -> None:
 
 def test_a_child_of_a_dead_parser_blocks_nothing() -> None:
     with Session(fake("dies_before_its_child"), timeout=300.0) as session:
-        outcome = load(session, "fault")
+        outcome = load(session, "trigger")
         assert isinstance(outcome, Crashed)  # and not that it timed out
         assert has_ended(int(outcome.log))
 
@@ -439,7 +439,7 @@ import sys
 from support.parsers.sessions import fake, load
 from eurdf_conformance.runner.session import Session
 with Session(fake("spins"), timeout=60.0) as session:
-    load(session, "fault")
+    load(session, "trigger")
 """
 
 

@@ -219,7 +219,7 @@ def test_missing_values_are_reported_for_an_accepted_robot() -> None:
     assert parser.asked == ["load", "evaluate"]
 
 
-def fault(case: CorpusCase, **changes: object) -> Issue:
+def expected_issue(case: CorpusCase, **changes: object) -> Issue:
     said = case.case.model_dump()
     return Issue.model_validate({"code": said["code"], "message": "?", **said["place"], **changes})
 
@@ -228,13 +228,17 @@ def test_error_of_an_acceptable_robot_is_reported() -> None:
     def diagnose(case: CorpusCase, outcome: Outcome) -> Verdict:
         return judge(case, Level.DIAGNOSE, Conversation(Scripted(outcome))).verdict
 
-    assert diagnose(EITHER, accepts(None, fault(EITHER))) == diagnose(EITHER, rejects(fault(EITHER))) == Verdict.PASSED
+    assert (
+        diagnose(EITHER, accepts(None, expected_issue(EITHER)))
+        == diagnose(EITHER, rejects(expected_issue(EITHER)))
+        == Verdict.PASSED
+    )
     assert diagnose(EITHER, accepts()) == diagnose(EITHER, rejects()) == Verdict.FAILED
-    assert diagnose(INVALID, rejects(fault(INVALID))) == Verdict.PASSED
-    assert diagnose(INVALID, rejects(fault(INVALID, line=1))) == Verdict.FAILED
-    assert diagnose(INVALID, accepts(None, fault(INVALID))) == Verdict.FAILED
+    assert diagnose(INVALID, rejects(expected_issue(INVALID))) == Verdict.PASSED
+    assert diagnose(INVALID, rejects(expected_issue(INVALID, line=1))) == Verdict.FAILED
+    assert diagnose(INVALID, accepts(None, expected_issue(INVALID))) == Verdict.FAILED
     assert diagnose(VALID, accepts()) == Verdict.PASSED
-    assert diagnose(VALID, accepts(None, fault(INVALID, severity="warning"))) == Verdict.FAILED
+    assert diagnose(VALID, accepts(None, expected_issue(INVALID, severity="warning"))) == Verdict.FAILED
 
 
 def test_case_is_loaded_once_for_all_levels() -> None:
@@ -269,7 +273,7 @@ def test_the_smoke_cases_have_their_version_and_an_evaluation() -> None:
 
 def test_a_failure_text_shows_clause_place_and_command() -> None:
     item = next(each.item for each in case_items([INVALID]) if each.item.level == Level.DIAGNOSE)
-    judgement = judge(INVALID, Level.DIAGNOSE, Conversation(Scripted(rejects(fault(INVALID, column=6)))))
+    judgement = judge(INVALID, Level.DIAGNOSE, Conversation(Scripted(rejects(expected_issue(INVALID, column=6)))))
     line = Options(parser="cmd:./my parser").reproduce(item)
     lines = failure_text(item, judgement, line, INVALID).splitlines()
     assert lines == [

@@ -139,7 +139,7 @@ def test_version_2_without_version_is_not_version_1(text: str, key: str) -> None
 
 
 # text, code, pointer, line, column, part of the message or hint
-FAULTS = [
+ERRORS = [
     ("closed_loop: {a: b}\n", "wrong-type", "/closed_loop", 1, 14, "must be a list, not a mapping"),
     ("closed_loop: [a, b]\n", "wrong-type", "/closed_loop", 1, 14, "[[A, B], …]"),
     ("closed_loop: [[a, b], c]\n", "wrong-type", "/closed_loop/1", 1, 23, "item 2 of 'closed_loop' must be a list"),
@@ -165,7 +165,7 @@ FAULTS = [
 ]
 
 
-@pytest.mark.parametrize(("text", "code", "pointer", "line", "column", "said"), FAULTS)
+@pytest.mark.parametrize(("text", "code", "pointer", "line", "column", "said"), ERRORS)
 def test_one_error_gives_one_diagnostic(
     text: str, code: str, pointer: str, line: int, column: int | None, said: str
 ) -> None:

@@ -31,7 +31,7 @@ closures:
 
 # code, file, text to replace, replacement, text at the place that the diagnostic points at, part of message or hint
 # fmt: off
-FAULTS = [
+ERRORS = [
     # the description by itself
     ("yaml-syntax", YAML, "frames: [rod_tip, rocker_top]", "frames: [rod_tip, rocker_top", None, ""),
     ("yaml-duplicate-key", YAML, "x-note: kept", "urdf: other.urdf", "urdf: other", "'urdf'"),
@@ -217,7 +217,7 @@ def test_unedited_workbench_is_valid(file: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("code", "file", "old", "new", "at", "says"), FAULTS, ids=[f"{row[0]}-{index}" for index, row in enumerate(FAULTS)]
+    ("code", "file", "old", "new", "at", "says"), ERRORS, ids=[f"{row[0]}-{index}" for index, row in enumerate(ERRORS)]
 )
 def test_one_error_gives_one_diagnostic(
     tmp_path: Path, code: str, file: str, old: str | None, new: str, at: str | None, says: str | None
@@ -241,7 +241,7 @@ def test_one_error_gives_one_diagnostic(
 
 
 def test_every_linking_code_has_a_case() -> None:
-    shown = {row[0] for row in FAULTS}
+    shown = {row[0] for row in ERRORS}
     elsewhere = {
         "ambiguous-frame",
         "urdf-no-link",
@@ -255,7 +255,7 @@ def test_every_linking_code_has_a_case() -> None:
 
 
 def test_messages_are_sentences_without_full_stop(tmp_path: Path) -> None:
-    for index, (_, file, old, new, _, _) in enumerate(FAULTS):
+    for index, (_, file, old, new, _, _) in enumerate(ERRORS):
         folder = tmp_path / str(index)
         folder.mkdir()
         for found in _check(_workbench(folder, file, old, new), file).diagnostics:

@@ -15,8 +15,8 @@ if not FACTS:
 
 
 #: Errors of the published files: everything that `check` finds, but for the meshes that were left out.
-FAULTS = {name: {"urdf-no-range"} for name in FACTS}
-FAULTS["kangaroo_like"] |= {"closure-cannot-close"}
+ERRORS = {name: {"urdf-no-range"} for name in FACTS}
+ERRORS["kangaroo_like"] |= {"closure-cannot-close"}
 
 
 @pytest.fixture(scope="module")
@@ -60,7 +60,7 @@ def test_motion_has_published_dimensions(robots: dict[str, eurdf.Robot], name: s
 @pytest.mark.parametrize("name", FACTS)
 def test_only_known_errors_are_found(name: str) -> None:
     report = eurdf.check(WILD / name)
-    assert {found.code for found in report.diagnostics} - {"urdf-mesh-missing"} == FAULTS[name]
+    assert {found.code for found in report.diagnostics} - {"urdf-mesh-missing"} == ERRORS[name]
 
 
 @pytest.mark.parametrize("name", FACTS)

@@ -1,4 +1,4 @@
-"""A parser asked about cases, each of which it loads once for all levels."""
+"""Requests about cases, put to one parser. A case is loaded once for all levels."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from eurdf_conformance.runner.outcome import Answered, Outcome
 
 
 class Parser(Protocol):
-    """Who is asked: a `Session`, or a parser in this process."""
+    """What answers requests: a `Session`, or a parser in this process."""
 
     def load(self, description: Path, urdf: Path) -> Outcome:
         """Ask to read a robot."""
@@ -28,10 +28,10 @@ class Parser(Protocol):
 
 
 class Conversation:
-    """The questions on cases, put to one parser.
+    """Requests about cases, put to one parser.
 
     Attributes:
-        parser: Who is asked.
+        parser: The parser.
     """
 
     def __init__(self, parser: Parser) -> None:
@@ -40,18 +40,18 @@ class Conversation:
         self._loaded: Outcome | None = None
 
     def load(self, case: CorpusCase) -> Outcome:
-        """What came of loading a case; asked once, where the case before was the same."""
+        """The outcome of loading a case. The parser is asked once for consecutive calls with the same case."""
         if self._loaded is None or self._files != (case.description, case.urdf):
             self._files = case.description, case.urdf
             self._loaded = self.parser.load(*self._files)
         return self._loaded
 
     def forget(self) -> None:
-        """Load the next case whatever it is: the parser was asked for something else meanwhile."""
+        """Load the next case even if it is the same: the parser has had other requests in between."""
         self._loaded = None
 
     def evaluate(self, case: CorpusCase, quantities: Sequence[Quantity]) -> Outcome:
-        """What came of evaluating a valid case at its configurations; where it was not accepted, of loading it."""
+        """The outcome of evaluating a valid case at its configurations, or of loading it if it was not accepted."""
         assert isinstance(case.case, ValidCase)
         loaded = self.load(case)
         if not (isinstance(loaded, Answered) and isinstance(loaded.answer, Accepted)):

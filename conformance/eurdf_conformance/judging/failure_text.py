@@ -20,10 +20,10 @@ from eurdf_conformance.level_spec import LEVELS, Compared
 from eurdf_conformance.protocol.message import Issue
 from eurdf_conformance.visible import visible
 
-#: So many differences, and issues, of one item are shown.
+#: Number of differences, and of issues, shown for one item.
 _MOST = 12
 
-#: So many characters of a line of a file are shown.
+#: Number of characters shown of a line of a file.
 _WIDTH = 100
 
 #: The clauses that define a quantity, by its name.
@@ -33,13 +33,13 @@ _DEFINING: Mapping[str, Sequence[str]] = {
 
 
 def failure_text(item: Item, judgement: Judgement, reproduce: str, case: CorpusCase | None) -> str:
-    """What is printed of an item that did not pass; what a parser wrote steers no terminal.
+    """The text printed for an item that did not pass. Control characters from the parser are escaped.
 
     Args:
         item: The item.
-        judgement: What became of it.
+        judgement: Its verdict, with reason and differences.
         reproduce: The command line that runs it alone.
-        case: The case that it asks about, if it does.
+        case: Its case; None for a property or a protocol rule.
     """
     return visible("\n".join(_lines(item, judgement, reproduce, case)))
 
@@ -75,14 +75,14 @@ def _difference(difference: Difference) -> str:
 
 
 def _saying(judgement: Judgement) -> Iterator[str]:
-    """The clauses on the quantities that differ."""
+    """The clauses that define the quantities that differ."""
     for each in judgement.differences:
         if found := re.match(r"/values/\d+/(\w+)", each.pointer):
             yield from _DEFINING.get(found[1], ())
 
 
 def where_it_stood(judgement: Judgement, configurations: Sequence[Mapping[str, Sequence[float]]]) -> Iterator[str]:
-    """The configuration, of those asked for, of the first difference that is at one."""
+    """The configuration of the first difference in the values."""
     pointers = (re.match(r"/values/(\d+)", each.pointer) for each in judgement.differences)
     index = next((int(found[1]) for found in pointers if found), None)
     if index is not None and index < len(configurations):
@@ -101,7 +101,7 @@ def _cut(lines: Sequence[str], what: str) -> Iterator[str]:
 
 
 def _files(case: CorpusCase, level: Level, judgement: Judgement) -> Iterator[str]:
-    """The two files, and their lines that matter."""
+    """The two files, with the lines at the expected and reported places."""
     places: list[tuple[CasePlace | Issue, str]] = []
     if isinstance(case.case, InvalidCase):
         places.append((case.case.place, "expected"))

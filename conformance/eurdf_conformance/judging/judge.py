@@ -1,4 +1,4 @@
-"""What the answers of a parser on one case come to, at one level."""
+"""Judges the answers of a parser on one case at one level."""
 
 from __future__ import annotations
 
@@ -41,14 +41,14 @@ from eurdf_conformance.runner.outcome import (
 
 @dataclass(frozen=True, slots=True)
 class Judgement:
-    """What the answers come to.
+    """The verdict on the answers, with the reason.
 
     Attributes:
-        verdict: The word for it.
-        reason: What is wrong, in a sentence; empty where nothing is.
-        differences: Of answers that are not the expected ones.
-        issues: What the parser said that is wrong with the files.
-        log: What there is to know beside, which may differ from run to run.
+        verdict: The verdict.
+        reason: What is wrong, in one sentence; empty if nothing is.
+        differences: Differences between the expected and the given answer.
+        issues: The issues that the parser reported.
+        log: Further details, which may differ from run to run.
     """
 
     verdict: Verdict
@@ -65,12 +65,12 @@ _WIDTH = 200
 
 
 def judge(case: CorpusCase, level: Level, conversation: Conversation) -> Judgement:
-    """Ask a parser on a case, and say what its answers come to.
+    """Ask a parser about a case and judge its answers.
 
     Args:
         case: The case.
         level: One of its levels.
-        conversation: With the parser.
+        conversation: The conversation with the parser.
     """
     match LEVELS[level].compared:
         case Compared.OUTCOME:
@@ -84,11 +84,11 @@ def judge(case: CorpusCase, level: Level, conversation: Conversation) -> Judgeme
 
 
 def judge_outcome(outcome: Outcome, expected: str = "") -> Judgement:
-    """EU-PRO-006: what becomes of an item whose outcome is none of the answers that it was asked for.
+    """EU-PRO-006: the judgement if the outcome is not an answer of the requested kind.
 
     Args:
         outcome: The outcome.
-        expected: The word that the answer should be, if given.
+        expected: The `outcome` that the answer should have, if given.
     """
     match outcome:
         case Answered(answer=answer):
@@ -103,7 +103,7 @@ def judge_outcome(outcome: Outcome, expected: str = "") -> Judgement:
         case TimedOut():
             verdict, why = Verdict.TIMED_OUT, "no answer within the time limit"
         case Malformed(line=line, why=what, placed=placed):
-            # The beginning of an answer with an error says nothing; the error says where it is.
+            # The error names its place in the answer, so the beginning of the line is not shown.
             verdict, quoted = Verdict.MALFORMED, "" if placed else f": {line[:_WIDTH]!r}"
             why = f"invalid answer: {what}{quoted}"
         case Misplaced():
@@ -119,7 +119,7 @@ def judge_outcome(outcome: Outcome, expected: str = "") -> Judgement:
 
 
 def _judge_answer(answer: AnyAnswer) -> tuple[Judgement, str]:
-    """What an answer comes to that is not the one asked for, and what it is, in words of the suite."""
+    """The judgement of an answer of another kind than requested, and a description of that answer."""
     match answer:
         case Unsupported(feature=feature, reason=reason):
             return Judgement(Verdict.UNSUPPORTED, f"{feature}: {reason}" if reason else feature), "unsupported feature"
@@ -136,14 +136,14 @@ def _judge_answer(answer: AnyAnswer) -> tuple[Judgement, str]:
 
 
 def _to_load(case: CorpusCase) -> str:
-    """The answer that a case is to be loaded with."""
+    """The expected `outcome` of loading a case."""
     if not isinstance(case.case, InvalidCase):
         return "accepted"
     return "accepted or rejected" if case.case.either else "rejected"
 
 
 def _judge_accept(case: CorpusCase, conversation: Conversation) -> Judgement:
-    """EU-CNF-001, EU-CNF-002: valid in, invalid out; an error of inertia or closure may be either."""
+    """EU-CNF-001, EU-CNF-002: accept valid files, reject invalid ones; inertia and closure errors may be either."""
     outcome = conversation.load(case)
     match outcome, case.case:
         case Answered(answer=Accepted()), ValidCase():
@@ -189,7 +189,7 @@ def _judge_values(case: CorpusCase, conversation: Conversation, quantities: Sequ
 
 
 def _judge_diagnose(case: CorpusCase, conversation: Conversation) -> Judgement:
-    """EU-CNF-003, and that what is said to be wrong, and where, is what is wrong."""
+    """EU-CNF-003, and whether the reported issues have the expected codes and places."""
     outcome = conversation.load(case)
     match outcome, case.case:
         case Answered(answer=Accepted(issues=issues)), ValidCase(warnings=warnings):

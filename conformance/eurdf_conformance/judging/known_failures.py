@@ -1,4 +1,4 @@
-"""Known failures: what a parser's author expects to fail, in a strict file, so that nothing changes unnoticed.
+"""Known failures: items that the author of a parser expects to fail, listed in a file.
 
 The file is a YAML list of mappings ``{id, level, verdict, reason}``. It excuses nothing: a level with a known failure
 is not certified. But a run in which all known failures fail as stated, and nothing else does, is as expected.
@@ -41,7 +41,7 @@ class KnownFailure(BaseModel):
     level: Level
     """Level at which it fails."""
     verdict: Annotated[Verdict, BeforeValidator(_is_failure), Field(json_schema_extra={"enum": _FAILURES})]
-    """What becomes of it."""
+    """The expected verdict."""
     reason: Annotated[str, Field(pattern=r"\S")]
     """Why: a sentence for people, such as the address of an issue."""
 
@@ -65,7 +65,7 @@ class KnownFailures:
     failures: tuple[KnownFailure, ...] = ()
 
     def expects(self, result: Result) -> bool:
-        """Whether this very failure is known."""
+        """Whether the item is known to fail with this verdict."""
         return self.of(result.item) == result.verdict
 
     def of(self, item: Item) -> Verdict | None:
@@ -73,10 +73,10 @@ class KnownFailures:
         return next((known.verdict for known in self.failures if (known.id, known.level) == item.key), None)
 
     def unexpected(self, results: Iterable[Result], planned: Iterable[Item]) -> list[str]:
-        """What is not as the file says, one sentence each, in its order.
+        """Where the results differ from the file, one sentence each, in the order of the file.
 
         Args:
-            results: What became of the items.
+            results: The results of the items.
             planned: Every item of the suite.
         """
         verdicts = {result.item.key: result.verdict for result in results}
@@ -107,7 +107,7 @@ def read_known_failures(path: Path) -> KnownFailures:
     """Read a file of known failures.
 
     Raises:
-        WrongKnownFailures: It cannot be read, is no YAML, or does not fit; an item occurs in it twice.
+        WrongKnownFailures: It cannot be read, is not YAML, violates the schema, or lists an item twice.
     """
     try:
         value = load_strictly(path.read_text(encoding="utf-8"))
@@ -120,7 +120,7 @@ def read_known_failures(path: Path) -> KnownFailures:
     try:
         failures = _FILE.validate_python([] if value is None else value)
     except ValidationError as error:
-        raise WrongKnownFailures(path, [_fault(detail) for detail in error.errors()]) from error
+        raise WrongKnownFailures(path, [_error_text(detail) for detail in error.errors()]) from error
     names = Counter(f"{known.id}/{known.level}" for known in failures)
     twice = [f"{name} is listed {count} times" for name, count in names.items() if count > 1]
     if twice:
@@ -128,7 +128,7 @@ def read_known_failures(path: Path) -> KnownFailures:
     return KnownFailures(tuple(failures))
 
 
-def _fault(detail: Any) -> str:
+def _error_text(detail: Any) -> str:
     where = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in detail["loc"])
     return f"{where or 'the file'}: {detail['msg'].removeprefix('Value error, ')}"
 

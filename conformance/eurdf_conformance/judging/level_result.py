@@ -1,4 +1,4 @@
-"""The result of each level: what a run comes to, for each version of the format."""
+"""The result of each level of a run, for each version of the format."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ class LevelResult(BaseModel):
     asked: bool
     """Whether the user asked for it. If not, nothing was tested."""
     items: Count
-    """Number of cases and properties that the suite has there."""
+    """Number of cases and properties of the suite at this level."""
     counts: dict[Verdict, Count]
-    """How many of them have which verdict."""
+    """Number of items by verdict."""
     known_failures: Count
-    """How many of those that did not pass were expected not to."""
+    """Number of failures that were expected."""
     certified: bool
     """Whether it is claimed and every item has passed."""
 
@@ -68,18 +68,18 @@ def _level_result(run: Run, version: Version, level: Level, items: int, results:
 
 
 def is_certified(run: Run) -> bool:
-    """Whether every level that is claimed and asked for is certified, and there is one.
+    """Whether at least one level is claimed and requested, and all such levels are certified.
 
-    Where the user has asked for some levels only, each of them must be claimed, for one version at least.
+    If the user has requested only some levels, each of them must be claimed for at least one version.
     """
     tested = [result for result in level_results(run) if result.claimed and result.asked]
     return not unclaimed(run) and all(result.certified for result in tested)
 
 
 def unclaimed(run: Run) -> tuple[Level, ...]:
-    """The levels that the user has asked for and the parser claims for no version asked for.
+    """The requested levels that the parser claims for none of the requested versions.
 
-    Where the user has asked for all of them, one that is claimed will do.
+    If all levels are requested, one claimed level is enough.
     """
     missing = tuple(level for level in run.levels if not any(run.claims(version, level) for version in run.versions))
     return () if len(missing) < len(run.levels) == len(Level) else missing

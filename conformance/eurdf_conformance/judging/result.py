@@ -1,4 +1,4 @@
-"""One item of the suite, and what became of it: the value that travels from where it runs to where it is counted."""
+"""One item of the suite and its result, which a worker process sends to the process that counts."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from eurdf_conformance.level import Level, Version
 #: Name of a result among the user properties of a pytest report.
 RESULT = "eurdf_conformance.result"
 
-#: What no other item has: id and level.
+#: Unique key of an item: id and level.
 Key = tuple[str, Level]
 
 
@@ -33,18 +33,18 @@ class Item:
 
     @property
     def key(self) -> Key:
-        """What no other item has."""
+        """Unique key: id and level."""
         return self.id, self.level
 
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What became of an item."""
+    """The result of an item."""
 
     item: Item
     verdict: Verdict
-    #: What was expected and what was given, or what else went wrong: one text each, the most telling first. They hold
-    #: nothing that differs from run to run: no time, no process id.
+    #: What was expected and what was given, or what else went wrong: one text each, the most important first. They
+    #: contain nothing that differs from run to run: no time, no process id.
     differences: tuple[str, ...] = ()
     #: Command line that runs this item alone.
     reproduce: str = ""
@@ -54,7 +54,7 @@ class Result:
     seconds_in_parser: float = 0.0
 
     def __post_init__(self) -> None:
-        # A line of a broken parser may hold half of a surrogate pair, which is no text in any file.
+        # A line of a broken parser may contain a lone surrogate, which no encoding can represent.
         texts = tuple(text.encode("utf-8", "backslashreplace").decode("utf-8") for text in self.differences)
         object.__setattr__(self, "differences", texts)
 

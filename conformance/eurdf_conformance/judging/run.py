@@ -1,4 +1,4 @@
-"""All that is known at the end of one run of the suite: what the plug-in of pytest hands on."""
+"""Everything known at the end of a run of the suite, as collected by the plug-in of pytest."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ class Run:
     parser: str
     #: Name, version and claims that the parser reported; None if it could not be started.
     started: Started | None
-    #: Every item of the suite, at any level and for any version, whether it was asked or not. What is here, is
-    #: claimed and asked for, and has no result, counts as not run: nobody is certified on half of the suite.
+    #: Every item of the suite, at any level and for any version. An item that is claimed and requested but has no
+    #: result counts as not run, so a parser cannot be certified on half of the suite.
     planned: tuple[Item, ...]
     results: tuple[Result, ...]
     #: Levels and versions that the user asked for.
@@ -30,7 +30,7 @@ class Run:
     smoke: bool = False
     #: Further random mechanisms tried for each property.
     explore: int = 0
-    #: What these are drawn from.
+    #: The seed of these mechanisms.
     explore_seed: int = 0
     known_failures: KnownFailures = field(default=NONE_KNOWN)
 
@@ -43,9 +43,9 @@ class Run:
         return version in self.versions and level in self.levels
 
     def accounted(self) -> Iterator[Result]:
-        """A result for each item that is claimed and asked for, by id and level.
+        """A result for each item that is claimed and requested, by id and level.
 
-        Of an item with several results, which a run does not give, the last counts.
+        If an item has several results, which does not happen in a run, the last one counts.
         """
         results = {result.item.key: result for result in self.results}
         items = {item.key: item for item in self.planned} | {key: result.item for key, result in results.items()}

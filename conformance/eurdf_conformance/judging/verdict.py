@@ -1,4 +1,4 @@
-"""The words for what became of an item."""
+"""The verdicts on an item."""
 
 from __future__ import annotations
 
@@ -6,21 +6,21 @@ from enum import StrEnum
 
 
 class Verdict(StrEnum):
-    """What became of an item. `PASSED` alone is a pass, whatever the others are."""
+    """The verdict on an item. Only `PASSED` is a pass."""
 
     PASSED = "passed"
     #: The answer is not the expected one.
     FAILED = "failed"
     #: The parser says that it lacks a feature.
     UNSUPPORTED = "unsupported"
-    #: The parser would rather not answer.
+    #: The parser chose not to answer.
     SKIPPED = "skipped"
-    #: The parser failed by its own word.
+    #: The parser reported that it failed.
     ERRORED = "errored"
     #: The process ended without an answer.
     CRASHED = "crashed"
     TIMED_OUT = "timed out"
-    #: The line is no answer.
+    #: The line is not a valid answer.
     MALFORMED = "malformed"
     #: The answer is to another request.
     MISPLACED = "misplaced"
@@ -32,7 +32,7 @@ class Verdict(StrEnum):
     NOT_RUN = "not run"
 
 
-#: Verdicts that say something of how a parser is connected rather than of what it reads.
+#: Verdicts that point to an error in the adapter rather than in the parser.
 OF_THE_ADAPTER = frozenset(
     {Verdict.CRASHED, Verdict.TIMED_OUT, Verdict.MALFORMED, Verdict.MISPLACED, Verdict.CHATTER, Verdict.NOT_STARTED}
 )

@@ -1,4 +1,4 @@
-"""What there is to ask: the rules of the protocol, every case at each of its levels, and every property."""
+"""The items of the suite: protocol rules, every case at each of its levels, and every property."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class CaseItem:
 
 @dataclass(frozen=True)
 class ProtocolItem:
-    """A rule of the protocol, asked of those who claim a version."""
+    """A protocol rule, tested if the parser claims the version."""
 
     item: Item
     rule: ProtocolRule
@@ -35,14 +35,14 @@ class ProtocolItem:
 
 @dataclass(frozen=True)
 class PropertyItem:
-    """A property, asked of those who claim its level for a version."""
+    """A property, tested if the parser claims its level for the version."""
 
     item: Item
     property: Property
 
 
 def case_items(cases: Iterable[CorpusCase]) -> Iterator[CaseItem]:
-    """What there is to ask on cases."""
+    """The items of cases."""
     for case in cases:
         for level in case.levels:
             said = case.case
@@ -51,9 +51,9 @@ def case_items(cases: Iterable[CorpusCase]) -> Iterator[CaseItem]:
 
 
 def clauses_at(level: Level, version: Version, cited: Iterable[str], general: str) -> tuple[str, ...]:
-    """What an item at a level tests: of the clauses cited those that can be seen there, and one of the level itself.
+    """The clauses that an item tests: the cited ones that are visible at its level, and the one of the level itself.
 
-    A parser that has only said whether it accepts a description has shown nothing of what it makes of it.
+    An answer that only accepts a description does not show how the parser understood it.
     """
     clauses = read_clauses()
     seen = (name for name in cited if clauses[name].level in LEVELS[level].shows and version in clauses[name].versions)
@@ -75,7 +75,7 @@ def planned_items(cases: Iterable[CorpusCase]) -> Iterator[Item]:
 
 
 def protocol_items() -> Iterator[ProtocolItem]:
-    """What there is to ask on the protocol."""
+    """The items of the protocol."""
     for version in VERSIONS:
         for rule in RULES:
             item = Item(f"protocol/{rule.name}-{version}", Level.ACCEPT, version, rule.clauses, rule.title)
@@ -83,7 +83,7 @@ def protocol_items() -> Iterator[ProtocolItem]:
 
 
 def property_items() -> Iterator[PropertyItem]:
-    """What there is to ask on random mechanisms."""
+    """The items of properties."""
     for each in PROPERTIES:
         for level, version in product(each.levels, each.versions):
             clauses = clauses_at(level, version, each.clauses, LEVELS[level].clause)

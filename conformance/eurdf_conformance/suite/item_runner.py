@@ -23,17 +23,17 @@ from eurdf_conformance.visible import visible
 #: Name of the user property of a pytest report that holds what the parser reported about itself.
 STARTED = "eurdf_conformance.started"
 
-#: So many differences of one item are kept for the certificate.
+#: Number of differences of one item kept for the certificate.
 _KEPT = 20
 
 
 class ItemRunner:
-    """One parser, asked on item after item.
+    """Runs items on one parser.
 
     Attributes:
-        options: What the user asks for.
-        conversation: With the parser, on cases.
-        node: The test that runs.
+        options: The options of the user.
+        conversation: The conversation with the parser about cases.
+        node: The running test.
     """
 
     def __init__(self, options: Options, session: Session) -> None:
@@ -44,7 +44,7 @@ class ItemRunner:
 
     @property
     def session(self) -> Session:
-        """The parser, to be asked for something else than cases."""
+        """The parser, for requests that are not about cases."""
         self.conversation.forget()
         return self._session
 
@@ -59,15 +59,15 @@ class ItemRunner:
         case: CorpusCase | None = None,
         rather: Collection[Level] = (),
     ) -> None:
-        """Ask, keep what becomes of it, and fail the test that runs if it is no pass.
+        """Run an item, keep its result, and fail the running test unless the item passed.
 
         An item of a level that the parser does not claim is skipped.
 
         Args:
-            item: What is asked.
-            ask: Asks it.
-            case: The case that it is about, if it is.
-            rather: Levels at which it is asked rather, where the parser claims one; it is skipped then.
+            item: The item.
+            ask: Runs it and returns the judgement.
+            case: Its case, if any.
+            rather: Levels that replace this one; if the parser claims one of them, the item is skipped.
         """
         started = self._started()
         claimed = tuple(Level) if started is None else started.claims.get(item.version, ())
@@ -80,13 +80,13 @@ class ItemRunner:
         try:
             judgement = ask()
         except Exception as error:
-            # That an answer breaks the suite is a fault of the suite; it is no pass all the same.
+            # An exception here is an error in the suite, but the item has not passed either.
             why = f"an error in the suite itself, please report it: {type(error).__name__}: {error}"
             judgement = Judgement(Verdict.FAILED, why, log=traceback.format_exc())
         seconds, in_parser = time.perf_counter() - begin, self._session.seconds_in_parser - before
         reproduce = self.options.reproduce(item)
-        told = tuple(filter(None, (judgement.reason, *map(str, judgement.differences[:_KEPT]))))
-        result = Result(item, judgement.verdict, told, reproduce, seconds, in_parser)
+        texts = tuple(filter(None, (judgement.reason, *map(str, judgement.differences[:_KEPT]))))
+        result = Result(item, judgement.verdict, texts, reproduce, seconds, in_parser)
         self._keep(RESULT, result.to_json())
         self._tell(result, judgement, case)
 
@@ -101,7 +101,7 @@ class ItemRunner:
             pytest.fail(text + (f"\n  listed as '{known}' in the known failures" if known else ""), pytrace=False)
 
     def _started(self) -> Started | None:
-        """What the parser reports about itself; None if it does not start, which every item then reports."""
+        """What the parser reports about itself; None if it does not start. Every item then reports why."""
         try:
             started = self._session.started
         except NotStarted:

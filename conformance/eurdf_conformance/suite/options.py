@@ -1,4 +1,4 @@
-"""What the user of the suite asks for."""
+"""The options of the suite."""
 
 from __future__ import annotations
 
@@ -25,17 +25,17 @@ from eurdf_conformance.suite.reproduce import FOLDER, PACKAGE, START_TIMEOUT, TI
 #: Where the options of a run of pytest are kept.
 OPTIONS: pytest.StashKey[Options] = pytest.StashKey()
 
-#: The parser that is tested where none is named.
+#: The parser that is tested by default.
 REFERENCE = "eurdf_conformance.adapters.reference:PARSER"
 
 
 @dataclass(frozen=True)
 class Options:
-    """What the user of the suite asks for.
+    """The options of the suite.
 
     Attributes:
         parser: ``package.module:object`` or ``cmd:…``.
-        suite: What pytest was told to run: in a checkout a folder, elsewhere a package, with its plug-in.
+        suite: Arguments of pytest that select the suite: a folder in a checkout, else a package with its plug-in.
         timeout: Time allowed for an answer, s.
         start_timeout: Time allowed for a start, s.
         levels: Those to test.
@@ -43,7 +43,7 @@ class Options:
         known: Failures that are known.
         certificate: Folder to write a certificate into.
         explore: Further random mechanisms to try for each property.
-        explore_seed: What these are drawn from.
+        explore_seed: The seed of these mechanisms.
         smoke: Whether to try three cases only.
     """
 
@@ -60,7 +60,7 @@ class Options:
     smoke: bool = False
 
     def wants(self, item: Item) -> bool:
-        """Whether an item is of a level and a version asked for."""
+        """Whether the level and the version of an item are requested."""
         return item.level in self.levels and item.version in self.versions
 
     def reproduce(self, item: Item) -> str:
@@ -101,14 +101,14 @@ def add_options(parser: pytest.Parser) -> None:
 
 
 def read_options(config: pytest.Config) -> Options:
-    """What the command line says.
+    """The options on the command line.
 
     Raises:
-        pytest.UsageError: What it says cannot be.
+        pytest.UsageError: An option has an invalid value, or two options exclude each other.
     """
 
     def said(name: str, default: Any = None) -> Any:
-        # Where this plug-in came after the command line was read, it says nothing.
+        # If this plug-in was loaded after the command line was parsed, the options are missing.
         value = config.getoption(name, default)
         return default if value is None else value
 
@@ -124,7 +124,7 @@ def read_options(config: pytest.Config) -> Options:
     if explore < 0:
         raise pytest.UsageError("--explore must not be negative")
     if explore and said("--explore-seed") is None:
-        # Set where workers see it: all of them are to draw from one seed.
+        # Set in the configuration so that all workers use the same seed.
         config.option.explore_seed = random.SystemRandom().randrange(10**9)
     if said("--smoke", False) and (known is not None or explore):
         raise pytest.UsageError("--smoke cannot be combined with --known-failures or --explore")
@@ -153,5 +153,5 @@ def _is_beside(folder: Path) -> bool:
 
 
 def options_of(config: pytest.Config) -> Options:
-    """What the command line of a run of pytest said."""
+    """The options of a run of pytest."""
     return config.stash[OPTIONS]

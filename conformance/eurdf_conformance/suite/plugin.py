@@ -1,7 +1,7 @@
 """The plug-in of pytest: its options, one parser a worker, and at the end the certificate and a summary.
 
-A worker of pytest-xdist asks its own process of the parser. What becomes of an item travels in its report; the one who
-collects the reports, a worker or not, makes of them a `Run`.
+Each worker of pytest-xdist starts its own process of the parser. The result of an item is part of its report; the main
+process collects the reports into a `Run`.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Read the options, and where results are collected, collect them."""
+    """Read the options; in the main process, collect the results."""
     config.stash[OPTIONS] = read_options(config)
     if not hasattr(config, "workerinput"):
         config.pluginmanager.register(Collector(config), "eurdf_conformance.collector")
@@ -65,7 +65,7 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
 
 
 def group_of(nodeid: str) -> str:
-    """What the items of one worker have in common: the case, all rules of the protocol, or else the item."""
+    """The group of items that one worker runs: those of a case, all protocol rules, or a single item."""
     file, _, name = nodeid.partition("::")
     if file.endswith("test_protocol.py"):
         return file
@@ -73,13 +73,13 @@ def group_of(nodeid: str) -> str:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Ask on the protocol first; where there is nothing to ask, ask nothing."""
+    """Put the protocol rules first; deselect everything if no item is left to run."""
     asked = [item for item in items if not item.name.endswith("[NOTSET]")]
     items[:] = sorted(asked, key=lambda item: item.nodeid.partition("::")[0].endswith("test_protocol.py"), reverse=True)
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
-    """What makes the run useless is said once, before it; the first cases to try have their own words for it."""
+    """Report once, before the run, what makes it useless; a smoke run reports this in its own way."""
     options, said = options_of(session.config), session.config.option
     if hasattr(session.config, "workerinput") or said.collectonly:
         return
@@ -89,7 +89,7 @@ def pytest_sessionstart(session: pytest.Session) -> None:
         if options.certificate is not None:
             make_room(options.certificate)
         if not (options.smoke or said.parser_starts):
-            # Where there are no workers, who starts is asked.
+            # Without workers, this process starts the parser itself.
             session.config.stash[GREETED] = greeted = new_session(options)
             _ = greeted.started
             if session.config.getoption("dist", "no") != "no":
@@ -101,7 +101,7 @@ def pytest_sessionstart(session: pytest.Session) -> None:
 
 
 def pytest_collection_finish() -> None:
-    """What was collected stays to the end: the garbage collector need not look through it again and again."""
+    """Exclude the collected items, which live to the end, from garbage collection: this saves time."""
     gc.freeze()
 
 
@@ -115,20 +115,20 @@ def _session_item_runner(pytestconfig: pytest.Config, tmp_path_factory: pytest.T
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:
-    """End the parser that was started, where nothing was asked of it."""
+    """Stop the parser if it was started but not used."""
     if (session := config.stash.get(GREETED, None)) is not None:
         session.stop()
 
 
 @pytest.fixture
 def item_runner(_session_item_runner: ItemRunner, request: pytest.FixtureRequest) -> ItemRunner:
-    """The parser, to be asked by the test that runs."""
+    """The parser, for the running test."""
     _session_item_runner.node = request.node
     return _session_item_runner
 
 
 class Collector:
-    """What became of all items, of all workers."""
+    """Collects the results of all workers."""
 
     def __init__(self, config: pytest.Config) -> None:
         self._config = config
@@ -147,21 +147,21 @@ class Collector:
 
     @pytest.hookimpl(trylast=True)
     def pytest_sessionfinish(self, session: pytest.Session, exitstatus: int) -> None:
-        """Write the certificate, and let the run fail where a known failure is none."""
+        """Write the certificate; fail the run if the results differ from the known failures."""
         if not self._results and self._started is None:
             return
         run = self.run()
         self._unexpected = run.known_failures.unexpected(run.results, run.planned)
-        # Where nothing was asked of what the user asked for, all is not well.
+        # A run that tested none of the requested levels has failed.
         if (self._unexpected or unclaimed(run)) and exitstatus == pytest.ExitCode.OK:
             session.exitstatus = pytest.ExitCode.TESTS_FAILED
-        # Of a run that broke off there is none, and one that is there stays.
+        # An interrupted run writes no certificate and leaves an existing one alone.
         broke_off = exitstatus in (pytest.ExitCode.INTERRUPTED, pytest.ExitCode.INTERNAL_ERROR)
         if (run_folder := options_of(self._config).certificate) and not broke_off:
             write_certificate(run_folder, issue(run))
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
-        """Say what the run comes to."""
+        """Print the summary."""
         if not self._results and self._started is None:
             return
         terminalreporter.section("conformance to Extended URDF")
@@ -169,7 +169,7 @@ class Collector:
             terminalreporter.line(line)
 
     def run(self) -> Run:
-        """All that is known."""
+        """The run, from the results collected so far."""
         options = options_of(self._config)
         return Run(
             parser=options.parser,

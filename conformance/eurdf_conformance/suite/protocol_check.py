@@ -1,4 +1,4 @@
-"""The rules of the protocol, put to a parser."""
+"""Checks whether a parser follows the rules of the protocol."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from eurdf_conformance.runner.session import Session
 
 @dataclass(frozen=True, slots=True)
 class Setup:
-    """Who is setup, and with what.
+    """What a check of a rule needs.
 
     Attributes:
-        session: With the parser.
-        another: Makes a further session with it.
-        valid: A case that it should accept.
-        invalid: One that it should reject.
+        session: A session with the parser.
+        another: Opens a further session with it.
+        valid: A case that the parser should accept.
+        invalid: A case that it should reject.
     """
 
     session: Session
@@ -34,12 +34,12 @@ class Setup:
     invalid: CorpusCase
 
     def load(self, case: CorpusCase) -> Outcome:
-        """What comes of loading a case."""
+        """The outcome of loading a case."""
         return self.session.load(case.description, case.urdf)
 
 
 def check(rule: ProtocolRule, setup: Setup) -> Judgement:
-    """Whether a parser keeps a rule; where not, with the files that it was setup about."""
+    """Whether a parser follows a rule; if not, the log names the files that were loaded."""
     judgement = _CHECKS[rule](setup)
     if judgement.verdict == Verdict.PASSED or rule not in (QUIET, GOES_ON):
         return judgement
@@ -57,7 +57,7 @@ def _start(setup: Setup) -> Judgement:
 
 
 def _quiet(setup: Setup) -> Judgement:
-    """EU-PRO-002: whatever is answered, it is one line."""
+    """EU-PRO-002: every answer is one line."""
     for case in (setup.valid, setup.invalid, setup.valid):
         outcome = setup.load(case)
         if not isinstance(outcome, Answered):

@@ -1,4 +1,4 @@
-"""The command line that runs one item alone, as it stands in a failure and in a certificate."""
+"""The command line that runs one item alone, as shown in failures and certificates."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import shlex
 from dataclasses import dataclass, replace
 from itertools import product
 
-#: Time allowed where nothing else is said, s: for an answer, and for a start.
+#: Default time limits, s: for an answer, and for a start.
 TIMEOUT, START_TIMEOUT = 10.0, 30.0
 
 #: What pytest runs: in a checkout a folder, elsewhere a package, with its plug-in.
@@ -19,7 +19,7 @@ _TIMES = re.compile(r" --parser-(start-)?timeout=([0-9.e+-]+)")
 
 @dataclass(frozen=True)
 class Setting:
-    """What of a run matters to an item of it.
+    """The settings of a run that affect the result of an item.
 
     Attributes:
         parser: ``package.module:object`` or ``cmd:…``.
@@ -27,7 +27,7 @@ class Setting:
         timeout: Time allowed for an answer, s.
         start_timeout: Time allowed for a start, s.
         explore: Further random mechanisms to try for each property.
-        explore_seed: What these are drawn from.
+        explore_seed: The seed of these mechanisms.
     """
 
     parser: str
@@ -42,7 +42,7 @@ def command_line(setting: Setting, item_id: str, level: str) -> str:
     """The command line that runs one item alone.
 
     Args:
-        setting: Of the run.
+        setting: The settings of the run.
         item_id: Id of the item.
         level: Its level.
     """
@@ -55,15 +55,15 @@ def command_line(setting: Setting, item_id: str, level: str) -> str:
 
 
 def is_command_line(text: str, setting: Setting, item_id: str, level: str) -> bool:
-    """Whether a text is such a command line, whatever its time-outs, from a checkout or elsewhere.
+    """Whether a text is such a command line, with any time limits, from a checkout or an installed package.
 
     Args:
         text: The text.
-        setting: Of the run, as far as it is known; neither `suite` nor the time-outs matter.
+        setting: The settings of the run; `suite` and the time limits are ignored.
         item_id: Id of the item.
         level: Its level.
     """
-    # The parser may have options of these names too: its own come first, and there may be no others.
+    # The parser may have options of the same names, so only the options of the suite, which come first, are compared.
     times: dict[str, float | None] = {start: _seconds(value) for start, value in _TIMES.findall(text)}
     choices = product((FOLDER, PACKAGE), {TIMEOUT, times.get("")}, {START_TIMEOUT, times.get("start-")})
     return any(

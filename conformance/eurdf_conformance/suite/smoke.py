@@ -1,4 +1,4 @@
-"""Three cases of each version, to see first whether a parser is plugged in at all."""
+"""The smoke run: three cases of each version that show whether the adapter of a parser works."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class Three:
     evaluated: str
 
 
-#: Plain ones, that the smallest of parsers can do: a loop that one closure closes; a fault that no parser overlooks,
-#: XML that is none or a name of nothing; and a tree.
+#: Plain cases, within reach of the smallest parser: a loop with one closure; an obvious error, such as invalid XML or
+#: an unknown name; and a tree.
 SMOKE: dict[Version, Three] = {
     "1": Three(
         valid="frames/closure-behind-fixed-joints-v1", invalid="urdf/tag-not-closed-v1", evaluated="urdf/gantry-v1"
@@ -51,24 +51,24 @@ _LEVELS: Mapping[str, tuple[Level, ...]] = {
 
 
 def smoke_case(cases: Iterable[CorpusCase], name: str) -> CorpusCase:
-    """The case of a name."""
+    """The case with this name."""
     return next(case for case in cases if case.name == name)
 
 
 def smoke_levels(item: CaseItem) -> tuple[Level, ...]:
-    """The levels at which the case of an item may be asked, where it is among the first to try.
+    """The levels at which a case of the smoke run may be tested.
 
-    It is asked at the first of them that the parser claims: who claims anything is asked something.
+    It is tested at the first of them that the parser claims, so every parser with a claim is tested on something.
     """
     return _LEVELS.get(item.case.name, ())
 
 
 def smoke_lines(wrong: Sequence[Result], asked: bool) -> Iterator[str]:
-    """What is wrong, with the adapter and apart from that with the parser.
+    """The lines of a smoke run: first what is wrong with the adapter, then what is wrong with the parser.
 
     Args:
-        wrong: What did not pass.
-        asked: Whether there was anything to ask.
+        wrong: The results that did not pass.
+        asked: Whether anything was tested.
     """
     if not asked:
         yield "nothing was tested: your parser claims none of the requested levels"

@@ -1,4 +1,4 @@
-"""What a run comes to, as the last lines that pytest writes."""
+"""The summary of a run, as the last lines that pytest prints."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from eurdf_conformance.visible import visible
 
 
 def summary_lines(run: Run, unexpected: Sequence[str], certificate: Path | None) -> Iterator[str]:
-    """What a run comes to.
+    """The summary of a run.
 
     Args:
         run: The run.
-        unexpected: What is not as the known failures say.
+        unexpected: Where the results differ from the known failures.
         certificate: Folder that a certificate was written into.
     """
     return map(visible, _lines(run, unexpected, certificate))

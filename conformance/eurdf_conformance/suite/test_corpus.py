@@ -23,7 +23,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 
 def test_case(case_item: CaseItem, item_runner: ItemRunner) -> None:
-    """The answers of the parser on the case are the expected ones."""
+    """The parser gives the expected answers on the case."""
     item, case = case_item.item, case_item.case
     item_runner.run(
         item, lambda: judge(case, item.level, item_runner.conversation), case, _rather(case_item, item_runner.options)
@@ -31,7 +31,7 @@ def test_case(case_item: CaseItem, item_runner: ItemRunner) -> None:
 
 
 def _rather(item: CaseItem, options: Options) -> tuple[Level, ...]:
-    """The levels at which one of the first cases to try is asked rather than at that of the item."""
+    """The levels that replace the level of the item in a smoke run."""
     levels = smoke_levels(item) if options.smoke else ()
     earlier = levels[: levels.index(item.item.level)] if levels else ()
     return tuple(level for level in earlier if level in options.levels)

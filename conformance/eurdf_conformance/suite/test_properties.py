@@ -14,7 +14,7 @@ from eurdf_conformance.suite.options import options_of
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """One test a property and version; three cases tried out have none."""
+    """One test for each property and version; none in a smoke run."""
     options = options_of(metafunc.config)
     items = [] if options.smoke else [item for item in property_items() if options.wants(item.item)]
     metafunc.parametrize(
@@ -23,16 +23,16 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 
 def test_property(property_item: PropertyItem, item_runner: ItemRunner, tmp_path: Path) -> None:
-    """The property holds of the parser."""
+    """The parser satisfies the property."""
     item_runner.run(property_item.item, lambda: try_item(property_item, item_runner, tmp_path))
 
 
 def try_item(item: PropertyItem, item_runner: ItemRunner, folder: Path) -> Judgement:
-    """Try the property on the frozen examples, and on as many more as the user asks for."""
+    """Try the property on the frozen examples, and on further random mechanisms if requested."""
     level, version, count = item.item.level, item.item.version, item_runner.options.explore
     if not count:
         return try_property(item.property, level, Trial(item_runner.session, version, 0, folder))
-    # What crashes a parser is tried again and again, to make it small: the session of all items has no part in that.
+    # Shrinking repeats requests that crash the parser, so it uses a session of its own.
     with item_runner.new_session() as session:
         trial = Trial(session, version, count, folder, item_runner.options.explore_seed)
         judgement = try_property(item.property, level, trial)

@@ -22,7 +22,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 
 def test_protocol(protocol_item: ProtocolItem, item_runner: ItemRunner) -> None:
-    """The parser keeps the rule."""
+    """The parser follows the rule."""
     item, three = protocol_item.item, SMOKE[protocol_item.item.version]
     valid, invalid = (smoke_case(all_cases(), case_id) for case_id in (three.valid, three.invalid))
     setup = Setup(item_runner.session, item_runner.new_session, valid, invalid)

@@ -47,8 +47,8 @@ class Version1(BaseModel):
     type: list[ClosureType] = Field(
         default_factory=list,
         title="Closure types",
-        description="One for each pair of 'closed_loop', in its order. 3d: B's origin is held on A's. 6d: position and"
-        " orientation are. If the key is left out, all closures are 6d.",
+        description="One for each pair of 'closed_loop', in its order. 3d: the origins of frames A and B coincide. 6d:"
+        " their orientations also agree. If the key is left out, all closures are 6d.",
         examples=[["6d", "3d"]],
     )
     name_mot: list[MovingJointName] = Field(

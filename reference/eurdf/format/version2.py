@@ -176,7 +176,7 @@ class Closure(StrictMapping):
     name: Name = Field(title="Name", description="Name of the closure, unique in the file.", examples=["knee_rod"])
     type: ClosureType = Field(
         title="Type",
-        description="3d: the origin of frame B is held on that of A (3 rows, m). 6d: position and orientation are (6"
+        description="3d: the origins of frames A and B coincide (3 rows, m). 6d: their orientations also agree (6"
         " rows, m and rad). A user-defined type begins with x-.",
         examples=["6d", "3d"],
     )

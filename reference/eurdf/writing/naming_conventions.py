@@ -63,12 +63,12 @@ class Conventions:
 
     Attributes:
         closures: Match the whole name of a link or a joint, which then is one frame of a closure. The group ``side``
-            tells frames A and B apart; that of A sorts first. The group ``loop``, or the name without
-            its side, is what they have in common, and names the closure. The group ``type``, where it matches ``3d`` or
-            ``6d`` in any case, is its type. Where the group ``axis`` matches, the frame is a second one, on the axis of
-            the loop's hinge.
-        motors: Found in the name of an actuated joint.
-        sphericals: Found in the name of a joint that is spherical, not revolute.
+            distinguishes frames A and B; the one that sorts first is A. The group ``loop``, or else the name without
+            its side, is common to both frames and names the closure. If the group ``type`` matches ``3d`` or ``6d``, in
+            any case, it is the type of the closure. If the group ``axis`` matches, the frame is a second one on the
+            axis of the loop's hinge.
+        motors: Matches a part of the name of an actuated joint.
+        sphericals: Matches a part of the name of a joint that is spherical, not revolute.
     """
 
     closures: tuple[re.Pattern[str], ...]

@@ -3,7 +3,7 @@
 Each is a decorated function. Its docstring says what is wrong, the decorator which clause that violates, and how: the
 parser reads other files than it is given (`reads_…`), gives them another meaning (`means`), or gives another answer
 (`answers`, `describes`, `evaluates`, `reports`, `refuses`). Those of `missing_rules` are made of the list of codes.
-`SPEAKERS` are processes that violate the protocol.
+`PROTOCOL_MUTANTS` are parsers that violate the protocol.
 """
 
 from support.mutants import (  # noqa: F401  each adds its own
@@ -21,7 +21,7 @@ from support.mutants import (  # noqa: F401  each adds its own
     reporting,
 )
 from support.mutants.mutant import MUTANTS, Mutant
-from support.mutants.speaking import SPEAKERS
+from support.mutants.protocol import PROTOCOL_MUTANTS
 
 #: The clauses with a MUST that no mutant violates, each with the reason.
 UNBROKEN = {
@@ -33,4 +33,4 @@ UNBROKEN = {
     "EU-URD-034": "Meshes are read where geometry is loaded, which the suite does not ask for.",
 }
 
-__all__ = ["MUTANTS", "SPEAKERS", "UNBROKEN", "Mutant"]
+__all__ = ["MUTANTS", "PROTOCOL_MUTANTS", "UNBROKEN", "Mutant"]

@@ -1,7 +1,7 @@
 """Processes that are wrong, each in one way: ``python process.py WAY``. Each way is a function of the request.
 
 Most accept whatever they load, with the path in the message of an issue, so that an answer shows its request. They go
-wrong where the name of the description begins with ``fault``, or at `start`, or at `stop`. Nothing of the suite is
+wrong where the name of the description begins with ``trigger``, or at `start`, or at `stop`. Nothing of the suite is
 imported.
 """
 
@@ -450,7 +450,7 @@ def main(way):
                     say(answer)
             case "load" if wrong in ALWAYS:
                 wrong(request)
-            case "load" if wrong not in AT_START + AT_STOP and Path(request["description"]).name.startswith("fault"):
+            case "load" if wrong not in AT_START + AT_STOP and Path(request["description"]).name.startswith("trigger"):
                 wrong(request)
             case "load":
                 sound(request)

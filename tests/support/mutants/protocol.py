@@ -1,6 +1,6 @@
-"""Parsers that read well and violate the protocol. They are asked by the rules of the protocol, not by cases.
+"""Mutants that read correctly but violate the protocol. The protocol rules catch them, not the cases.
 
-Most relay a sound process, and change what it writes; the others are Python objects.
+Most relay a correct process and change the lines it writes; the others are Python objects.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ TESTS = str(Path(__file__).parents[2])
 
 
 @dataclass(frozen=True)
-class Speaker:
+class ProtocolMutant:
     """A parser that violates the protocol.
 
     Attributes:
-        wrong: What it does to each line, None where it ends before that; or the parser itself.
+        wrong: Changes each line, or returns None to end the process; or the parser class itself.
         clause: The clause that it violates.
-        verdicts: What counts as caught.
+        verdicts: The verdicts that count as caught.
     """
 
     wrong: Callable[[bytes], bytes | None] | type[Reference]
@@ -38,18 +38,18 @@ class Speaker:
 
     @property
     def parser(self) -> str:
-        """As the suite gets it."""
+        """The parser as an argument of the suite."""
         name = self.wrong.__name__
-        code = f"import sys; sys.path.insert(0, {TESTS!r}); from {__name__} import speak; speak({name!r})"
+        code = f"import sys; sys.path.insert(0, {TESTS!r}); from {__name__} import run; run({name!r})"
         return "cmd:" + shlex.join([sys.executable, "-c", code])
 
 
-SPEAKERS: dict[str, Speaker] = {}
+PROTOCOL_MUTANTS: dict[str, ProtocolMutant] = {}
 
 
 def _violates(clause: str, *verdicts: Verdict) -> Callable[[Any], Any]:
     def register(wrong: Any) -> Any:
-        SPEAKERS[wrong.__name__] = Speaker(wrong, clause, frozenset(verdicts))
+        PROTOCOL_MUTANTS[wrong.__name__] = ProtocolMutant(wrong, clause, frozenset(verdicts))
         return wrong
 
     return register
@@ -116,9 +116,9 @@ class GoneAfterRejecting(Reference):
         return answer
 
 
-def speak(name: str) -> None:
+def run(name: str) -> None:
     """Be one of them, over standard input and output."""
-    wrong = SPEAKERS[name].wrong
+    wrong = PROTOCOL_MUTANTS[name].wrong
     if isinstance(wrong, type):
         serve.main(f"{__name__}:{name}")
         return
