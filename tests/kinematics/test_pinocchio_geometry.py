@@ -18,6 +18,7 @@ from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.configuration import configuration_vector
 from eurdf.pinocchio.geometry import UnreadableMesh, build_geometry
+from eurdf.pinocchio.meshes import Mesh, read_meshes
 from eurdf.pinocchio.model import build_model
 from eurdf.pinocchio.robot import build_robot
 from support import by_hand
@@ -64,6 +65,15 @@ def parts(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "parts" / "tetrahedron.stl").write_text(TETRAHEDRON)
     (folder / "parts" / "wood.png").write_bytes(b"")
     return folder
+
+
+@pytest.fixture(scope="module")
+def tetrahedron(parts: Path) -> dict[str, Mesh]:
+    """The mesh by path, read once for many robots."""
+    path = str(parts / "parts" / "tetrahedron.stl")
+    meshes, reasons = read_meshes([(path, (1.0, 1.0, 1.0))], {path: path})
+    assert not reasons
+    return meshes
 
 
 class Finder:
@@ -141,7 +151,9 @@ def shapes(draw: st.DrawFn) -> str:
 
 @given(data=st.data(), root=st.sampled_from(["fixed", "floating"]))
 @settings(deadline=None)
-def test_tree_geometry_matches_pinocchio(parts: Path, data: st.DataObject, root: Root) -> None:
+def test_tree_geometry_matches_pinocchio(
+    parts: Path, tetrahedron: dict[str, Mesh], data: st.DataObject, root: Root
+) -> None:
     count = data.draw(st.integers(1, 6))
     names = data.draw(st.permutations([f"j{index}" for index in range(1, count)]))
     links = [
@@ -164,7 +176,7 @@ def test_tree_geometry_matches_pinocchio(parts: Path, data: st.DataObject, root:
     ]
     text = robot(*links, *joints)
     mechanism = mechanism_of(text, root)
-    built = build_robot(mechanism, geometry=True, resolve=Finder(parts))
+    built = build_robot(mechanism, geometry=True, resolve=Finder(parts), meshes=tetrahedron)
     assert_same_geometry(built.visual_model, pinocchios_own_geometry(text, built.model, "visual", parts))
     assert_same_geometry(built.collision_model, pinocchios_own_geometry(text, built.model, "collision", parts))
 

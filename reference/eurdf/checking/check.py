@@ -4,19 +4,16 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 from eurdf.checking.advice.angles import advise_on_angles
 from eurdf.checking.advice.lengths import advise_on_lengths
 from eurdf.checking.advice.mimics import advise_on_mimics
 from eurdf.checking.advice.quaternions import advise_on_quaternions
 from eurdf.checking.loops import closure_diagnostics
+from eurdf.checking.mesh_files import read_mesh_files
 from eurdf.diagnostics.report import Report
 from eurdf.linking.description import Described, Unlinked, describe, find_meshes
 from eurdf.reading.given import Given
-
-if TYPE_CHECKING:
-    pass
 
 
 def check(
@@ -48,12 +45,14 @@ def check(
     """
     description = describe(path, urdf, package_dirs=package_dirs, xacro_args=xacro_args)
     diagnostics = description.diagnostics
+    refused = diagnostics.refused  # without meshes, which the kinematics does not need
     meshes: dict[str, str] = {}
     if description.urdf is not None:
         meshes, missing = find_meshes(description.urdf, package_dirs)
-        for found in missing:
+        _, unreadable = read_mesh_files(description.urdf, meshes)
+        for found in (*missing, *unreadable):
             diagnostics.add(found)
-    if not isinstance(description, Unlinked) and not diagnostics.refused:
+    if not isinstance(description, Unlinked) and not refused:
         if isinstance(description, Described):
             if description.mechanism.closures:
                 _check_loops(description)

@@ -7,10 +7,11 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 
 from eurdf.checking.loops import closure_diagnostics
+from eurdf.checking.mesh_files import read_mesh_files
 from eurdf.exceptions import InvalidRobot
-from eurdf.linking.description import Unlinked, describe, find_meshes, place_of_file
+from eurdf.linking.description import Unlinked, describe, find_meshes
 from eurdf.mechanism.mechanism import Root
-from eurdf.pinocchio.geometry import UnreadableMesh
+from eurdf.pinocchio.meshes import Mesh
 from eurdf.pinocchio.robot import Robot, build_robot
 from eurdf.reading.given import Given
 
@@ -73,19 +74,18 @@ def load(
     if isinstance(description, Unlinked):
         raise InvalidRobot(description.path, tuple(diagnostics))
     files: dict[str, str] = {}
+    meshes: dict[str, Mesh] = {}
     lacks_mesh = False
     no_geometry = f"the geometry of {description.path} cannot be built; load it with geometry=False"
     if geometry:
         files, missing = find_meshes(description.urdf, package_dirs)
-        for found in missing:
+        meshes, unreadable = read_mesh_files(description.urdf, files)
+        for found in (*missing, *unreadable):
             diagnostics.add(found)
+        if unreadable.error_count:
+            raise InvalidRobot(description.path, tuple(diagnostics), no_geometry)
         lacks_mesh = any(found.code == "urdf-mesh-missing" for found in missing)
-    try:
-        robot = build_robot(description.mechanism, geometry=geometry and not lacks_mesh, resolve=files.get)
-    except UnreadableMesh as mesh:
-        place = partial(place_of_file, description.urdf, "mesh", mesh.uri)
-        diagnostics.report("urdf-mesh-unreadable", f"mesh '{mesh.uri}' cannot be read: {mesh.reason}", place)
-        raise InvalidRobot(description.path, tuple(diagnostics), no_geometry) from None
+    robot = build_robot(description.mechanism, geometry=geometry and not lacks_mesh, resolve=files.get, meshes=meshes)
     if strict or check_loops or "assembled" in description.mechanism.configurations:
         for found in closure_diagnostics(description, robot):
             diagnostics.add(found)

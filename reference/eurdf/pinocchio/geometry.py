@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 
 import coal
 import numpy as np
@@ -13,11 +13,12 @@ from eurdf.exceptions import EurdfError
 from eurdf.mechanism.body import Shape
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.frames import body_frame_ids
+from eurdf.pinocchio.meshes import Mesh, read_meshes
 from eurdf.pinocchio.placement import placement_of
 
 Resolve = Callable[[str], str | None]
-#: Cache of meshes, by path and scale.
-Meshes = dict[tuple[str, tuple[float, ...]], coal.BVHModelBase]
+#: Cache of the geometry of meshes, by path and scale.
+MeshCache = dict[tuple[str, tuple[float, ...]], coal.BVHModelBase]
 
 _GRAY = np.array((0.9, 0.9, 0.9, 1.0))
 _BLACK = np.array((0.0, 0.0, 0.0, 1.0))
@@ -30,7 +31,7 @@ class UnreadableMesh(EurdfError, ValueError):  # noqa: N818 - named like Invalid
     Attributes:
         uri: The URI in the URDF.
         path: Path of the file.
-        reason: The message of the mesh loader.
+        reason: Why not.
     """
 
     def __init__(self, uri: str, path: str, reason: str) -> None:
@@ -45,7 +46,8 @@ def build_geometry(
     model: pin.Model,
     kind: pin.GeometryType,
     resolve: Resolve,
-    meshes: Meshes | None = None,
+    meshes: Mapping[str, Mesh] | None = None,
+    cache: MeshCache | None = None,
 ) -> pin.GeometryModel:
     """Build the visual or the collision geometry of a mechanism.
 
@@ -58,15 +60,16 @@ def build_geometry(
         kind: ``pin.VISUAL`` or ``pin.COLLISION``.
         resolve: Path of the file that a URI of the URDF means. It must find every mesh; a texture that it does not find
             is left out.
-        meshes: Cache of meshes, which are shared; meshes read here are added. (The ``coal.CachedMeshLoader`` that
-            Python sees reads a mesh anew each time.)
+        meshes: The meshes by path, as `meshes_of` reads them; it does so by default.
+        cache: Cache of the geometry of meshes, which objects share; what is built here is added.
 
     Raises:
         UnreadableMesh: A mesh file cannot be read as a mesh.
         FileNotFoundError: `resolve` does not find a mesh.
     """
     geometry_model = pin.GeometryModel()
-    meshes = {} if meshes is None else meshes
+    meshes = meshes_of(mechanism, resolve) if meshes is None else meshes
+    cache = {} if cache is None else cache
     body_frames = body_frame_ids(mechanism)
     for body in mechanism.bodies:
         shapes = body.visuals if kind == pin.GeometryType.VISUAL else body.collisions
@@ -75,7 +78,7 @@ def build_geometry(
         frame_id = body_frames[body.name]
         frame = model.frames[frame_id]
         for index, shape in enumerate(shapes):
-            geometry, path, scale = _geometry(shape, resolve, meshes)
+            geometry, path, scale = _geometry(shape, resolve, meshes, cache)
             colored = shape.color is not None or shape.texture != ""
             geometry_model.addGeometryObject(
                 pin.GeometryObject(
@@ -95,7 +98,7 @@ def build_geometry(
 
 
 def _geometry(
-    shape: Shape, resolve: Resolve, meshes: Meshes
+    shape: Shape, resolve: Resolve, meshes: Mapping[str, Mesh], cache: MeshCache
 ) -> tuple[coal.CollisionGeometry, str, npt.NDArray[np.float64]]:
     """The geometry; the path of its mesh, or in its place the name Pinocchio gives to the kind; the scale."""
     size = shape.size
@@ -109,12 +112,10 @@ def _geometry(
         case "capsule":
             return coal.Capsule(*size), "CAPSULE", _FULL_SIZE
         case "mesh":
-            path = resolve(shape.filename)
-            if path is None:
-                raise FileNotFoundError(f"mesh '{shape.filename}' does not exist")
-            if (path, size) not in meshes:
-                meshes[path, size] = _read(shape, path)
-            return meshes[path, size], path, np.array(size)
+            path = _path(shape.filename, resolve)
+            if (path, size) not in cache:
+                cache[path, size] = _mesh_geometry(meshes[path], size)
+            return cache[path, size], path, np.array(size)
 
 
 def carry_over(geometry_model: pin.GeometryModel, before: pin.Model, after: pin.Model) -> pin.GeometryModel:
@@ -137,17 +138,48 @@ def carry_over(geometry_model: pin.GeometryModel, before: pin.Model, after: pin.
     return carried
 
 
-def _read(shape: Shape, path: str) -> coal.BVHModelBase:
-    try:
-        return coal.MeshLoader().load(path, np.array(shape.size))
-    except ValueError as error:
-        raise UnreadableMesh(shape.filename, path, _reason(error)) from None
+def meshes_of(mechanism: Mechanism, resolve: Resolve) -> dict[str, Mesh]:
+    """Read all mesh files of a mechanism.
+
+    Args:
+        mechanism: The mechanism.
+        resolve: Path of the file that a URI of the URDF means.
+
+    Returns:
+        The meshes by path.
+
+    Raises:
+        UnreadableMesh: A mesh file cannot be read as a mesh.
+        FileNotFoundError: `resolve` does not find a mesh.
+    """
+    shapes = [(shape.filename, shape.size) for shape in _shapes(mechanism) if shape.kind == "mesh"]
+    read, reasons = read_meshes(shapes, {uri: _path(uri, resolve) for uri, _ in shapes})
+    for uri, reason in reasons.items():
+        raise UnreadableMesh(uri, _path(uri, resolve), reason)
+    return read
 
 
-def _reason(error: ValueError) -> str:
-    """The message of coal's mesh loader, without places in its source code and its hint."""
-    lines = str(error).rpartition("message:")[2].strip().splitlines()
-    return lines[1].strip().rstrip(".") if len(lines) > 1 else "it is not a mesh"
+def _shapes(mechanism: Mechanism) -> Iterator[Shape]:
+    for body in mechanism.bodies:
+        yield from body.visuals
+        yield from body.collisions
+
+
+def _path(uri: str, resolve: Resolve) -> str:
+    path = resolve(uri)
+    if path is None:
+        raise FileNotFoundError(f"mesh '{uri}' does not exist")
+    return path
+
+
+def _mesh_geometry(mesh: Mesh, scale: tuple[float, ...]) -> coal.BVHModelOBBRSS:
+    """What ``coal.MeshLoader`` makes of the same triangles."""
+    geometry = coal.BVHModelOBBRSS()
+    geometry.beginModel(len(mesh.triangles), len(mesh.vertices))
+    geometry.addVertices(mesh.vertices * np.array(scale))
+    geometry.addTriangles(mesh.triangles)
+    geometry.endModel()
+    return geometry
 
 
 def _color(shape: Shape) -> npt.NDArray[np.float64]:

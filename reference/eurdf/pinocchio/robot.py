@@ -17,7 +17,8 @@ from eurdf.pinocchio.actuation import Actuation, build_actuation
 from eurdf.pinocchio.configuration import Vector, configuration_vector, joint_coordinates, own_coordinates
 from eurdf.pinocchio.constraint import build_constraint_models
 from eurdf.pinocchio.coordinates import Slot, slots
-from eurdf.pinocchio.geometry import Meshes, Resolve, build_geometry, carry_over
+from eurdf.pinocchio.geometry import MeshCache, Resolve, build_geometry, carry_over, meshes_of
+from eurdf.pinocchio.meshes import Mesh
 from eurdf.pinocchio.model import build_model
 from eurdf.pinocchio.tree import PinocchioTree, build_tree
 
@@ -179,6 +180,7 @@ def build_robot(
     *,
     geometry: bool,
     resolve: Resolve | None = None,
+    meshes: Mapping[str, Mesh] | None = None,
 ) -> Robot:
     """Build the robot of a mechanism.
 
@@ -186,19 +188,21 @@ def build_robot(
         mechanism: A sound mechanism.
         geometry: Whether to build the visual and collision geometry.
         resolve: Path of the file that a URI of the URDF means; needed for geometry with meshes.
+        meshes: The meshes by path, where they were read already.
 
     Raises:
-        UnreadableMesh: A mesh file is no mesh.
+        UnreadableMesh: A mesh file cannot be read as a mesh.
         FileNotFoundError: `resolve` does not find a mesh.
     """
     model = build_model(mechanism)
     shapes = None
     if geometry:
         find = _nothing if resolve is None else resolve
-        meshes: Meshes = {}
+        meshes = meshes_of(mechanism, find) if meshes is None else meshes
+        cache: MeshCache = {}
         shapes = Geometry(
-            build_geometry(mechanism, model, pin.GeometryType.VISUAL, find, meshes),
-            build_geometry(mechanism, model, pin.GeometryType.COLLISION, find, meshes),
+            build_geometry(mechanism, model, pin.GeometryType.VISUAL, find, meshes, cache),
+            build_geometry(mechanism, model, pin.GeometryType.COLLISION, find, meshes, cache),
         )
     at = slots(mechanism, model)
     return Robot(

@@ -1,0 +1,93 @@
+"""The process that reads mesh files: the request is JSON on standard input, the meshes are on standard output.
+
+It imports nothing of this package. The mesh loader of coal, assimp, is C++ that a damaged file makes crash, or take
+minutes and gigabytes; here this ends a process, not that of a caller.
+
+For each file, in order: a line of JSON, then, for a mesh, its vertices as doubles and its triangles as 64-bit integers.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import math
+import os
+import resource
+import signal
+import sys
+from typing import Any
+
+import coal
+import numpy as np
+
+_FULL_SIZE = np.ones(3)
+_GIT_LFS = b"version https://git-lfs"
+
+
+def main() -> None:
+    """Answer the request."""
+    request = json.load(sys.stdin.buffer)
+    # The mesh loader may print: its lines are no part of the answer.
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    _limit(resource.RLIMIT_CORE, 0)
+    for file in request["files"]:
+        _limit(resource.RLIMIT_AS, _address_space() + file["memory"])
+        used = resource.getrusage(resource.RUSAGE_SELF)
+        _limit(resource.RLIMIT_CPU, math.ceil(used.ru_utime + used.ru_stime + file["seconds"]))
+        signal.alarm(request["patience"])
+        head, arrays = _read(file["path"])
+        answers.write(json.dumps(head).encode() + b"\n")
+        for array in arrays:
+            answers.write(array.tobytes())
+        answers.flush()
+
+
+def _read(path: str) -> tuple[dict[str, Any], tuple[Any, ...]]:
+    """The number of vertices and triangles, and the arrays; or the reason why there are none."""
+    try:
+        if _begins(path, _GIT_LFS):
+            return {"error": "it is a pointer of Git LFS; fetch the file with `git lfs pull`"}, ()
+        # The smallest bounding volumes: these are thrown away.
+        mesh = coal.MeshLoader(coal.BV_AABB).load(path, _FULL_SIZE)
+        vertices = np.array(mesh.vertices(), np.float64).reshape(-1, 3)
+        triangles = np.empty((mesh.num_tris, 3), np.int64)
+        for index in range(mesh.num_tris):
+            triangle = mesh.tri_indices(index)
+            triangles[index] = triangle[0], triangle[1], triangle[2]
+    except MemoryError:
+        return {"error": "memory"}, ()
+    except Exception as error:
+        return {"error": "memory" if "bad_alloc" in str(error) else _reason(error)}, ()
+    return {"vertices": len(vertices), "triangles": len(triangles)}, (vertices, triangles)
+
+
+def _begins(path: str, data: bytes) -> bool:
+    """Whether a file begins with some bytes. It does not wait where the file is a pipe by now."""
+    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+    try:
+        return os.read(descriptor, len(data)) == data
+    finally:
+        os.close(descriptor)
+
+
+def _reason(error: Exception) -> str:
+    """The message of coal's mesh loader, without places in its source code and its hint."""
+    lines = str(error).rpartition("message:")[2].strip().splitlines()
+    return lines[1].strip().rstrip(".") if len(lines) > 1 else "it is not a mesh"
+
+
+def _address_space() -> int:
+    """The address space that this process has, in bytes."""
+    with contextlib.suppress(OSError), open("/proc/self/statm", encoding="ascii") as stream:
+        return int(stream.read().split()[0]) * resource.getpagesize()
+    return 0
+
+
+def _limit(what: int, soft: int) -> None:
+    with contextlib.suppress(OSError, ValueError):  # where the system knows no such bound, or has a lower one
+        resource.setrlimit(what, (soft, resource.getrlimit(what)[1]))
+
+
+if __name__ == "__main__":
+    main()
