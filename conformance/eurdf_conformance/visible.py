@@ -1,4 +1,4 @@
-"""Text of whoever wrote it, made fit to be looked at."""
+"""Escapes text of unknown origin so that it can be shown safely."""
 
 from __future__ import annotations
 

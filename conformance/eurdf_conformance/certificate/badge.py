@@ -12,7 +12,7 @@ _SVG = "http://www.w3.org/2000/svg"
 _GREEN, _GREY, _DARK = "#2e7d32", "#757575", "#444"
 
 # Advance widths of a sans-serif of 11 px, px: narrow, wide, and all other characters. Each text states how wide it is
-# (textLength), so the font of whoever looks at it cannot run out of its box.
+# (textLength), so no font of the viewer can overflow the box.
 _NARROW, _WIDE = "iljft|,.:1 I()", "mwMW"
 _WIDTHS = (3.9, 9.8, 6.7)
 _HEIGHT, _PADDING = 20, 7

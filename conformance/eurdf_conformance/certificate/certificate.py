@@ -54,7 +54,7 @@ class Scope(_Part):
     explore: Count
     """Number of further random mechanisms for each property."""
     explore_seed: int
-    """What these are drawn from; 0 where there are none."""
+    """The seed of these mechanisms; 0 if there are none."""
 
 
 class ClauseResult(_Part):
@@ -92,10 +92,10 @@ class Certificate(_Part):
     parser_option: str
     """The value of `--parser`: 'package.module:object', or 'cmd:' and a command line."""
     parser: ParserInfo | None
-    """What the parser says of itself; null if it could not be started."""
+    """Name, version and claims that the parser reported; null if it could not be started."""
     scope: Scope
     date: Annotated[str, Field(pattern=r"^\d{4}-\d{2}-\d{2}$")] | None
-    """Day of the run, where it is given: the word of whoever wrote the certificate, which no second run can verify."""
+    """Day of the run, if given. It is stated by the author of the certificate; a second run cannot verify it."""
     certified: bool
     """Whether every level claimed and asked for is certified."""
     levels: tuple[LevelResult, ...]
@@ -105,7 +105,7 @@ class Certificate(_Part):
     failures: tuple[Failure, ...]
     """By id and level."""
     unexpected: tuple[str, ...]
-    """What the file of known failures says and the run does not show."""
+    """Where the results differ from the file of known failures."""
 
     def at(self, version: Version, level: Level) -> LevelResult | None:
         """What it says of one level."""

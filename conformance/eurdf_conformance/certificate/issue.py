@@ -44,7 +44,7 @@ def installed_suite() -> Suite:
 
 
 def issue(run: Run) -> Certificate:
-    """What a run comes to. The date is that of the environment variable SOURCE_DATE_EPOCH; without it there is none."""
+    """The certificate of a run. Its date is that of the environment variable SOURCE_DATE_EPOCH, if that is set."""
     results = list(run.accounted())
     return Certificate(
         suite=installed_suite(),

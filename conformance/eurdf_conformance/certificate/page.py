@@ -1,4 +1,4 @@
-"""What the pages have in common: one HTML file that needs no other, in the light or the dark of whoever reads it."""
+"""The common parts of pages: each is one HTML file without dependencies, in a light and a dark style."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether a second run came to what a certificate says."""
+"""Compares a second run with a certificate."""
 
 from __future__ import annotations
 
@@ -41,13 +41,13 @@ class Replay(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
     same: bool
-    """Whether it came to the same."""
+    """Whether the results are the same."""
     differences: tuple[str, ...]
-    """In what it did not, a sentence each."""
+    """The differences, one sentence each."""
 
 
 def suite_differences(certificate: Certificate) -> list[str]:
-    """In what the suite of a certificate is not the one installed here, one line each."""
+    """Differences between the suite of a certificate and the installed one, one line each."""
     before, now = certificate.suite.model_dump(), installed_suite().model_dump()
     return [
         f"suite, {part}: {before[part]} in the certificate, {now[part]} here"
@@ -113,7 +113,7 @@ def _commands(certificate: Certificate) -> Iterator[str]:
 
 
 def _known(certificate: Certificate) -> Iterator[str]:
-    """Counts of known failures that are not those of the failures."""
+    """Counts of known failures that contradict the listed failures."""
     for failure in certificate.failures:
         if failure.known and failure.verdict == Verdict.NOT_RUN:
             yield f"{_name(failure)}: known failure, but the item was not run"
@@ -164,7 +164,7 @@ def _name(failure: Failure) -> str:
 
 
 def _essence(certificate: Certificate) -> dict[str, Any]:
-    """All that a second run is to come to again."""
+    """The results that a second run must reproduce."""
     value = certificate.model_dump(exclude={"suite", "parser_option", "date", "unexpected"})
     for failure in value["failures"]:
         del failure["known"], failure["reproduce"], failure["difference"]

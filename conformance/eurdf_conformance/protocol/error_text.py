@@ -1,4 +1,4 @@
-"""What is wrong with data that are to be a message, in words for whoever made them."""
+"""Error messages for data that do not fit the schema of a message."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from eurdf_conformance.json_pointer import step
 #: Errors reported at once, and characters shown of a value.
 _MOST, _WIDTH = 3, 60
 
-# Of these the value says nothing: it is that around what is missing, or too much as a whole.
+# For these kinds of error, pydantic's value is the surrounding object, which is not worth showing.
 _VALUE_APART = ("missing", "extra_forbidden", "union_tag_invalid", "union_tag_not_found", "json_invalid")
 
 
 def error_text(error: ValidationError, within: str = "", skip: int = 0) -> str:
-    """What is wrong, at which JSON pointer; the first few.
+    """The first few errors, each with its JSON pointer.
 
     Args:
-        error: What pydantic says.
+        error: The error of pydantic.
         within: Pointer to the data.
-        skip: So many parts of each location are no part of the pointer: they name the kind of message.
+        skip: Number of leading parts of each location that name the kind of message, not a place.
     """
     found = error.errors(include_url=False)
     words = [
@@ -36,7 +36,7 @@ def error_text(error: ValidationError, within: str = "", skip: int = 0) -> str:
 
 
 def not_finite(value: Any, within: str = "") -> Iterator[str]:
-    """Pointers to the numbers of plain data that JSON has none of: NaN and infinity."""
+    """Pointers to the numbers that JSON cannot represent: NaN and infinity."""
     match value:
         case float() if not math.isfinite(value):
             yield within

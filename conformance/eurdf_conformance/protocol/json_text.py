@@ -1,4 +1,4 @@
-"""A JSON text of whoever wrote it, and what is wrong with it that a parser may take in silence."""
+"""Reads JSON and reports errors that many JSON libraries accept silently."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ class Doubled(dict[str, Any]):
 
 
 def read_json(text: bytes) -> tuple[Any, list[str]]:
-    """The value of a JSON text in UTF-8, and what is wrong with it all the same, at which JSON pointer.
+    """The value of a JSON text in UTF-8, and its errors, each with its JSON pointer.
 
-    Reported are a key that occurs twice in an object, for one parser takes the first and another the last; NaN and
-    Infinity, which JSON has none of; and a number beyond the range of a double, in whose place infinity is.
+    Errors are a key that occurs twice in an object, since libraries differ in the value they keep; NaN and Infinity,
+    which JSON does not allow; and a number beyond the range of a double, which is read as infinity.
 
     Raises:
-        ValueError: It is no JSON, or not in UTF-8.
+        ValueError: It is not JSON, or not in UTF-8.
         RecursionError: It is nested too deep.
     """
     words: list[str] = []

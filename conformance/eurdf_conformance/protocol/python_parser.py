@@ -1,4 +1,4 @@
-"""Whether a Python object is a parser at all, said before it is asked for anything."""
+"""Checks whether a Python object is a parser, before the first request."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _LEVELS = ", ".join(Level)
 
 
 def parser_error(parser: Any) -> str:
-    """What keeps an object from being a `PythonParser`, in a sentence; empty where nothing does."""
+    """Why an object is not a `PythonParser`, in one sentence; empty if it is one."""
     missing = [name for name in ("name", "version", "language", "claims", "load") if not hasattr(parser, name)]
     if missing:
         return f"{described(parser)} has no {' and no '.join(missing)}"
@@ -28,7 +28,7 @@ def parser_error(parser: Any) -> str:
 
 
 def described(value: Any) -> str:
-    """A value in a word or two, for a sentence."""
+    """A short description of a value, for an error message."""
     if value is None or isinstance(value, bool | int | float):
         return repr(value)
     if isinstance(value, type):

@@ -17,9 +17,9 @@ _Reply = TypeVar("_Reply", bound=Answer)
 
 
 class WrongReply(Exception):  # noqa: N818 - it says what the reply is
-    """What an adapter gives is no answer: an error of its own, which its text states.
+    """The adapter made an invalid answer; the text says what is wrong.
 
-    It is no ValueError, which is what many parsers raise for wrong files, and adapters take for a rejection.
+    It is not a ValueError, because many parsers raise that for invalid files, and adapters turn it into a rejection.
     """
 
 
@@ -27,11 +27,11 @@ def accepted(robot: CanonicalRobot | Mapping[str, Any] | None = None, issues: It
     """The robot is read.
 
     Args:
-        robot: The canonical description, as a value or as plain data; None where structure is not claimed.
-        issues: What is wrong with it all the same, each at least a sentence.
+        robot: The canonical description, as a value or as plain data; None if structure is not claimed.
+        issues: Warnings and errors, each a sentence or an `Issue`.
 
     Raises:
-        WrongReply: The robot is no canonical description, or an issue is none.
+        WrongReply: The robot is not a canonical description, or an issue is invalid.
     """
     if isinstance(robot, Mapping):
         robot = _canonical(robot)
@@ -45,10 +45,10 @@ def rejected(*issues: Issue | str) -> Rejected:
     """The description is wrong.
 
     Args:
-        issues: Why, each at least a sentence.
+        issues: The reasons, each a sentence or an `Issue`.
 
     Raises:
-        WrongReply: An issue is none.
+        WrongReply: An issue is invalid.
     """
     return _reply(Rejected, issues=_issues(issues))
 
@@ -58,22 +58,22 @@ def unsupported(feature: str, reason: str = "") -> Unsupported:
 
     Args:
         feature: The feature, in a word or two.
-        reason: For people.
+        reason: An explanation for people.
 
     Raises:
-        WrongReply: They are no text.
+        WrongReply: One of them is not a string.
     """
     return _reply(Unsupported, feature=feature, reason=reason)
 
 
 def skipped(reason: str) -> Skipped:
-    """The parser would rather not.
+    """The parser chooses not to answer.
 
     Args:
-        reason: Why.
+        reason: The reason.
 
     Raises:
-        WrongReply: It is no text.
+        WrongReply: The reason is not a string.
     """
     return _reply(Skipped, reason=reason)
 

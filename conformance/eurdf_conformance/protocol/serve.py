@@ -50,45 +50,45 @@ Configuration = Mapping[str, Sequence[float]]
 
 
 class PythonParser(Protocol):
-    """A parser in Python; an `Evaluator` too, where it claims kinematics or dynamics."""
+    """A parser in Python. It is also an `Evaluator` if it claims kinematics or dynamics."""
 
     @property
     def name(self) -> str:
-        """What it is called."""
+        """Name of the parser."""
 
     @property
     def version(self) -> str:
-        """Its own version."""
+        """Version of the parser."""
 
     @property
     def language(self) -> str:
-        """The language it is written in."""
+        """The language that the parser is written in."""
 
     @property
     def claims(self) -> Mapping[Version, Sequence[Level]]:
         """For each version of the format, the levels claimed."""
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported | Skipped:
-        """Read a robot; `protocol.reply` makes what it returns. An exception says that the parser failed."""
+        """Read a robot and return an answer made by `protocol.reply`. An exception means that the parser failed."""
 
 
 @runtime_checkable
 class Evaluator(Protocol):
-    """A parser that says where things are."""
+    """A parser that computes poses and other quantities."""
 
     def evaluate(
         self, configurations: Sequence[Configuration], frames: Sequence[str], quantities: Sequence[Quantity]
     ) -> list[Values] | Unsupported | Skipped:
-        """Of the robot accepted last: what is asked for, at each configuration."""
+        """The requested quantities of the robot accepted last, at each configuration."""
 
 
 def serve(parser: PythonParser, requests: Iterable[bytes], answers: IO[bytes]) -> None:
-    """EU-PRO-001, EU-PRO-005: answer each request by one line, up to and with `stop`.
+    """EU-PRO-001, EU-PRO-005: answer each request by one line, up to and including `stop`.
 
     Args:
-        parser: Who answers.
-        requests: Lines.
-        answers: Where to write the lines that answer.
+        parser: The parser.
+        requests: Lines with requests.
+        answers: The file that gets the lines with answers.
     """
     for line in requests:
         answer = _answer_to(parser, line)
@@ -99,14 +99,14 @@ def serve(parser: PythonParser, requests: Iterable[bytes], answers: IO[bytes]) -
 
 
 class NoParser(Exception):  # noqa: N818 - it says what there is not
-    """There is no such parser; its text says why."""
+    """The parser does not exist; the text gives the reason."""
 
 
 def find_object(path: str) -> Any:
-    """The object that ``package.module:object`` names; where it is a class, one of it.
+    """The object that ``package.module:object`` names, or an instance if it is a class.
 
     Raises:
-        NoParser: There is no such module, it has no such object, or one cannot be made of the class without arguments.
+        NoParser: The module or the object does not exist, or the class needs arguments.
     """
     module, _, name = path.partition(":")
     try:
@@ -127,16 +127,16 @@ def find_object(path: str) -> Any:
         inspect.signature(found).bind()
     except TypeError:
         raise NoParser(f"the class {path} needs arguments; name an instance instead") from None
-    except ValueError:  # nobody knows
+    except ValueError:  # the signature is unknown
         pass
     return found()
 
 
 def main(path: str) -> None:
-    """Serve an object over standard input and output, of which it gets neither.
+    """Serve an object over standard input and output, which the object itself cannot use.
 
-    EU-PRO-002: what it, or a library below it, prints to standard output goes to standard error. Where the object is no
-    parser, the process ends at once and says so there.
+    EU-PRO-002: what the object or a library prints to standard output goes to standard error. If the object is not a
+    parser, the process ends at once with a message there.
     """
     requests, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     nothing = os.open(os.devnull, os.O_RDONLY)
@@ -159,7 +159,7 @@ def main(path: str) -> None:
 
 @dataclass(frozen=True)
 class _NoAnswer:
-    """What an adapter gave is no answer to the request of that id; why."""
+    """The adapter returned no valid answer to the request with this id; `why` gives the reason."""
 
     id: int
     why: str
@@ -176,7 +176,7 @@ def _answer_to(parser: PythonParser, line: bytes) -> AnyAnswer | _NoAnswer:
 
 
 def _answer(parser: PythonParser, request: AnyRequest) -> AnyAnswer | _NoAnswer:
-    """The parser's answer; an exception is its word that it failed, unless it says that the adapter is wrong."""
+    """The parser's answer. An exception means that the parser failed, or that the adapter is wrong."""
     try:
         match request:
             case Start():
@@ -222,12 +222,12 @@ def _written(answer: AnyAnswer | _NoAnswer) -> bytes:
         return json.dumps({"id": answer.id, NO_ANSWER: answer.why}).encode()
     try:
         return answer.model_dump_json().encode()
-    except ValueError as error:  # half a surrogate pair, which UTF-8 cannot say
+    except ValueError as error:  # a lone surrogate, which UTF-8 cannot represent
         return Errored(id=answer.id, message=f"the answer cannot be written: {error}").model_dump_json().encode()
 
 
 def _print_traceback(error: Exception) -> None:
-    """To the log: where it was raised, from the first line on that is not of this file."""
+    """Write the traceback to the log, without the frames of this file."""
     trace = error.__traceback__
     ours = (__file__, importlib.__file__, "<frozen importlib._bootstrap>", "<frozen importlib._bootstrap_external>")
     while trace is not None and trace.tb_frame.f_code.co_filename in ours:
@@ -236,7 +236,7 @@ def _print_traceback(error: Exception) -> None:
 
 
 def _id_in(line: bytes) -> int:
-    """The id of what is no request, as far as it has one."""
+    """The id of an invalid request; 0 if it has none."""
     try:
         given = json.loads(line)
     except (ValueError, RecursionError):
@@ -245,7 +245,7 @@ def _id_in(line: bytes) -> int:
     return found if type(found) is int else 0
 
 
-#: What an adapter may make by hand; where it cannot, pydantic names it.
+#: Names of the classes that an adapter may construct; pydantic's errors name them.
 _PARTS = {name for name, found in vars(message).items() if isinstance(found, type) and issubclass(found, Value)}
 
 

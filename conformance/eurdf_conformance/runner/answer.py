@@ -1,4 +1,4 @@
-"""What a line of standard output is: the answer to the request, or why it is not."""
+"""Reads a line of standard output as the answer to a request."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from eurdf_conformance.protocol.json_text import Doubled, may_have_errors, read_
 from eurdf_conformance.protocol.message import ANSWER, NO_ANSWER, AnyAnswer, AnyRequest, Evaluate, Evaluated, Stop
 from eurdf_conformance.runner.outcome import Malformed, Misplaced
 
-#: Characters that are kept of a line that is no answer.
+#: Number of characters kept of a line that is not an answer.
 SHOWN = 2000
 
 _ANY_TIME = ("unsupported", "skipped", "errored")
@@ -43,7 +43,7 @@ def shown(line: bytes) -> str:
 
 
 def _placed(answer: AnyAnswer, line: bytes, request: AnyRequest) -> AnyAnswer | Malformed | Misplaced:
-    """A sound answer, if it is one to the request."""
+    """The answer, if its kind and size fit the request."""
     if answer.id != request.id:
         return Misplaced(shown(line), request.id, answer.id)
     allowed = request.outcomes if isinstance(request, Stop) else (*request.outcomes, *_ANY_TIME)
@@ -57,7 +57,7 @@ def _placed(answer: AnyAnswer, line: bytes, request: AnyRequest) -> AnyAnswer | 
 
 
 def _unfit(line: bytes, request: AnyRequest, error: ValidationError) -> AnyAnswer | Malformed | Misplaced:
-    """Why a line does not fit the schema of any answer, or the answer that it is after all."""
+    """Why a line fits no schema of an answer, or the answer if it fits one after normalization."""
     try:
         value, found = read_json(line)
     except (ValueError, RecursionError) as why:
@@ -79,7 +79,7 @@ def _unfit(line: bytes, request: AnyRequest, error: ValidationError) -> AnyAnswe
 
 
 def _elsewhere(value: dict[str, Any], line: bytes, request: AnyRequest) -> Malformed | Misplaced | None:
-    """Why an object is not to be placed: it has no id, or two, or that of another request."""
+    """Why an object does not belong to the request: it has no id, two ids, or that of another request."""
     if isinstance(value, Doubled) and "id" in value.keys_twice:
         return Malformed(shown(line), "duplicate key 'id'")
     given_id = value.get("id")

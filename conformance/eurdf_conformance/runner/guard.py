@@ -19,12 +19,12 @@ from functools import cache
 
 
 def begins(group: int) -> None:
-    """Tell that a group of processes is to end with this process."""
+    """Register a group of processes that must end with this process."""
     _tell(f"+{group}")
 
 
 def ends(group: int) -> None:
-    """Tell that it is over, before its id can become that of another."""
+    """Unregister a group that has ended, before its id can be reused."""
     _tell(f"-{group}")
 
 
@@ -53,7 +53,7 @@ def _guard() -> subprocess.Popen[bytes]:
 
 
 def _watch(lines: Iterable[bytes]) -> None:
-    """The guard's part: to hear of groups until there is nobody to tell of any, and to kill those that are left."""
+    """The guard: read registrations until the pipe closes, then kill the groups that are left."""
     groups: set[int] = set()
     for line in lines:
         change = groups.add if line.startswith(b"+") else groups.discard

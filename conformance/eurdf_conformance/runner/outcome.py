@@ -1,4 +1,4 @@
-"""What can come of a request, each told apart; nothing but an `Answered` that is `rejected` is a rejection."""
+"""The possible outcomes of a request. Only an `Answered` with the answer `rejected` is a rejection."""
 
 from __future__ import annotations
 
@@ -126,7 +126,7 @@ class Misplaced:
 
 @dataclass(frozen=True, slots=True)
 class Chatter:
-    """More lines than requests: the answer stands among lines that are none.
+    """There are more lines than requests: the answer is among lines that are not answers.
 
     Attributes:
         lines: The others, each by its beginning.

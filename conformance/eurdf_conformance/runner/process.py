@@ -1,4 +1,4 @@
-"""One process of a parser: asked one request at a time, and ended when its answers can no longer be told apart."""
+"""One process of a parser. It gets one request at a time and is ended when answers can no longer be matched."""
 
 from __future__ import annotations
 
