@@ -57,8 +57,8 @@ def generate(
 ) -> Generation:
     """Describe a robot by the names in its URDF.
 
-    Three revolutes whose axes meet are merged as in version 1, unless one of them is a motor. The text is read once
-    more, so that whoever writes it knows that it is sound.
+    Three revolutes whose axes meet are merged as in version 1, unless one of them is a motor. The
+    generated text is read back to check that it is valid.
 
     Args:
         urdf: The URDF.
