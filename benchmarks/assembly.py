@@ -113,8 +113,8 @@ def compare(name: str, where: str, robot: eurdf.Robot, places: list[Vector]) -> 
     ours, over_v, over_q = medians
     columns = " ".join(f"{t * 1e3:6.2f} ms {r:9.0e}" for t, r in zip(medians, worst, strict=True))
     print(f"{name:32} {where:8} {columns} {over_v / ours:7.1f}x {over_q / ours:7.1f}x")
-    data, q = robot.model.createData(), places[0]
-    one = min(timed(lambda: residual_and_jacobian(robot, q, data))[0] for _ in range(100))
+    q = places[0]
+    one = min(timed(lambda: residual_and_jacobian(robot, q))[0] for _ in range(100))
     print(f"{'':32} {ours / one:8.1f} times one call of `residual_and_jacobian`, {one * 1e6:.0f} µs")
 
 
@@ -127,11 +127,11 @@ def timed(function: Callable[[], Any]) -> tuple[float, Any]:
 
 def slsqp_over_v(robot: eurdf.Robot, q: Vector) -> Vector:
     """The nearest closed configuration, by a step from q in its tangent space: ½ |v|² least, while r(q ⊕ v) = 0."""
-    model, data = robot.model, robot.model.createData()
+    model = robot.model
     v = fmin_slsqp(
         lambda v: 0.5 * v @ v,
         np.zeros(model.nv),
-        f_eqcons=lambda v: residual(robot, pin.integrate(model, q, v), data),
+        f_eqcons=lambda v: residual(robot, pin.integrate(model, q, v)),
         iter=200,
         iprint=0,
     )
@@ -140,12 +140,12 @@ def slsqp_over_v(robot: eurdf.Robot, q: Vector) -> Vector:
 
 def slsqp_over_q(robot: eurdf.Robot, q: Vector) -> Vector:
     """The nearest closed configuration by its coordinates: ½ |x - q|² least, while r(x) = 0, |quaternions| = 1."""
-    model, data = robot.model, robot.model.createData()
+    model = robot.model
     spheres = [slice(j.idx_q, j.idx_q + j.nq) for j in list(model.joints)[1:] if j.nq in (2, 4) and j.nq > j.nv]
 
     def constraints(x: Vector) -> Vector:
         lengths = [x[sphere] @ x[sphere] - 1.0 for sphere in spheres]
-        return np.concatenate([residual(robot, pin.normalize(model, x), data), lengths])
+        return np.concatenate([residual(robot, pin.normalize(model, x)), lengths])
 
     x = fmin_slsqp(lambda x: 0.5 * (x - q) @ (x - q), q, f_eqcons=constraints, iter=200, iprint=0)
     return np.asarray(pin.normalize(model, x))

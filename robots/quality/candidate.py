@@ -66,7 +66,7 @@ class Candidate:
         found: dict[str, Sweep | str] = {}
         for actuator in self.robot.actuation.joints:
             try:
-                found[actuator] = eurdf.sweep(self.robot, actuator, data=self.robot.data)
+                found[actuator] = eurdf.sweep(self.robot, actuator)
             except ValueError as reason:
                 found[actuator] = str(reason)
         return found

@@ -221,14 +221,14 @@ for target in (np.ones(3), pin.SE3.Random()):
     assert not found.converged
 for function, *arguments in [
     (eurdf.achievable_acceleration, none, none, none), (eurdf.actuated_jacobian, none, {link!r}), (eurdf.analyze, none),
-    (eurdf.assemble, none), (eurdf.closure_openings, none), (eurdf.closure_openings, none, robot.data),
+    (eurdf.assemble, none), (eurdf.closure_openings, none),
     (eurdf.differential_inverse_kinematics, none, {link!r}, np.ones(6)), (eurdf.dq_dq_actuated, none),
     (eurdf.forward_dynamics, none, none, none), (eurdf.forward_kinematics, none), (eurdf.forward_kinematics, {{}}),
     (eurdf.inverse_dynamics, none, none, none), (eurdf.lock, []), (eurdf.mass_matrix, none),
     (eurdf.merge_configuration, none, none), (eurdf.merge_velocity, none, none),
     (eurdf.project_acceleration, none, none, none), (eurdf.project_configuration, none),
-    (eurdf.project_velocity, none, none), (eurdf.residual, none), (eurdf.residual, none, robot.data),
-    (eurdf.residual_and_jacobian, none), (eurdf.residual_and_jacobian, none, robot.data),
+    (eurdf.project_velocity, none, none), (eurdf.residual, none),
+    (eurdf.residual_and_jacobian, none),
     (eurdf.split_configuration, none), (eurdf.split_velocity, none),
 ]:
     function(robot, *arguments)

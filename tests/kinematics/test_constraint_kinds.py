@@ -214,11 +214,8 @@ def test_jacobian_and_drift_are_derivatives_of_the_residual(kinds: Sequence[str]
     def Kv(t: float) -> Any:  # noqa: N802 - the field's own symbol
         return eurdf.residual_and_jacobian(robot, pin.integrate(model, q, t * v))[1] @ v
 
-    light, K = eurdf.residual_and_jacobian(robot, q)
-    full, K_full = eurdf.residual_and_jacobian(robot, q, robot.data)
+    _, K = eurdf.residual_and_jacobian(robot, q)
     assert K.shape == (robot.mechanism.nc, model.nv)
-    np.testing.assert_allclose(full, light, rtol=0.0, atol=1e-11)
-    np.testing.assert_allclose(K_full, K, rtol=0.0, atol=1e-9 * np.abs(K).max(initial=1.0))
     expected = np.column_stack([derivative(lambda t, e=e: r(t, e)) for e in np.eye(model.nv)])
     np.testing.assert_allclose(K, expected, rtol=0.0, atol=1e-7 * np.abs(K).max(initial=1.0))
     drift, differences = acceleration_drift(robot, q, v), derivative(Kv)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import tracemalloc
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -53,16 +52,17 @@ def test_memory_grows_linearly_with_four_bars(tmp_path: Path, in_series: bool) -
     assert peaks[2] < 16 * peaks[1]  # 8 where it is linear, 64 where it is quadratic
 
 
-def test_thousand_four_bars_need_no_data(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    made: list[Any] = []
-    monkeypatch.setattr(pin.Model, "createData", lambda model: made.append(model))
+def test_thousand_four_bars_need_small_data_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[int] = []
+    create = pin.Model.createData
+    monkeypatch.setattr(pin.Model, "createData", lambda model: (made.append(model.nv), create(model))[1])
     path = write(tmp_path, *four_bars(1000, in_series=True))
     loaded = eurdf.load(path, geometry=False)
     assert (loaded.model.nv, len(loaded.constraint_models)) == (3000, 1000)
     assembly = eurdf.assemble(loaded)
     assert assembly.converged
     assert eurdf.check(path).ok
-    assert made == []
+    assert max(made) <= 60
 
 
 # -- the bounds of EU-FIL-002 --------------------------------------------------------------------------------------

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 import eurdf
 from eurdf.kinematics.analysis import analyze
 from eurdf.kinematics.residual import closure_openings, residual, residual_and_jacobian
+from eurdf.pinocchio.frame_pairs import FramePairs, PathMemory
 from support.branching import JOINTS, MIMIC, branching, far_from_half_a_turn, somewhere
 from support.linkage import Linkage, closure, n_bar, swapped, translation
 
@@ -55,20 +56,43 @@ def test_jacobian_is_derivative_in_any_tree(seed: int, kinds: list[str]) -> None
     linkage = branching([JOINTS[kind]() for kind in kinds], random)
     q = somewhere(linkage.model, random)
     assume(far_from_half_a_turn(linkage, q))
-    _, K = residual_and_jacobian(linkage, q, linkage.model.createData())
+    _, K = residual_and_jacobian(linkage, q)
     np.testing.assert_allclose(K, differences(linkage, q), rtol=0.0, atol=1e-7 * np.abs(K).max())
 
 
 @given(seed=seeds, kinds=st.lists(st.sampled_from(sorted(JOINTS)), min_size=3, max_size=9))
 @settings(max_examples=50, deadline=None)
-def test_result_is_equal_with_and_without_data(seed: int, kinds: list[str]) -> None:
+def test_models_of_parts_equal_joint_by_joint(seed: int, kinds: list[str]) -> None:
     random = np.random.default_rng(seed)
-    linkage = branching([JOINTS[kind]() for kind in kinds], random)
-    q, data = somewhere(linkage.model, random), linkage.model.createData()
-    assume(far_from_half_a_turn(linkage, q))
-    np.testing.assert_allclose(residual(linkage, q), residual(linkage, q, data), rtol=0.0, atol=1e-12)
-    for light, full in zip(residual_and_jacobian(linkage, q), residual_and_jacobian(linkage, q, data), strict=True):
-        np.testing.assert_allclose(light, full, rtol=0.0, atol=1e-11)
+    check_parts(branching([JOINTS[kind]() for kind in kinds], random), random)
+
+
+@pytest.mark.parametrize("name", ["digit_2legs", "kangaroo_2legs", "stewart_platform", "bennett"])
+def test_several_models_equal_joint_by_joint(name: str) -> None:
+    robot = eurdf.load(name, geometry=False)
+    random = np.random.default_rng(0)
+    pairs = check_parts(robot, random)
+    assert sum(len(part.which) for part in pairs.parts) == len(robot.constraints)
+    assert all(part.coordinates is not None and part.pairs.model.nv <= 60 for part in pairs.parts)
+    assert (len(pairs.parts) > 1) == name.endswith("_2legs")
+
+
+def check_parts(linkage: Any, random: np.random.Generator) -> FramePairs:
+    q, v = somewhere(linkage.model, random), random.uniform(-1.0, 1.0, linkage.model.nv)
+    wanted = np.flatnonzero(random.random(linkage.model.nv) < 0.8)
+    pairs: FramePairs = linkage.tree.pairs([found.anchors for found in linkage.constraints], wanted)
+    parts, joints = pairs.memory(), PathMemory(pairs)
+    for one, other in zip(parts.placements(q), joints.placements(q), strict=True):
+        np.testing.assert_allclose(one.homogeneous, other.homogeneous, rtol=0.0, atol=1e-12)
+    which = random.permutation(len(linkage.constraints))[: random.integers(1, len(linkage.constraints) + 1)].tolist()
+    rows = random.uniform(-1.0, 1.0, (len(which), 4, 6))
+    expected = joints.jacobian(rows, which)
+    assert expected.shape == (4 * len(which), len(wanted))
+    np.testing.assert_allclose(parts.jacobian(rows, which), expected, rtol=0.0, atol=1e-11)
+    for found, other in zip(parts.motions(q, v)[1:], joints.motions(q, v)[1:], strict=True):
+        for one, two in zip(found, other, strict=True):
+            np.testing.assert_allclose(one.vector, two.vector, rtol=0.0, atol=1e-10)
+    return pairs
 
 
 def test_residual_6d_is_log6_of_b_in_a() -> None:
@@ -159,8 +183,7 @@ def test_joints_outside_loop_do_not_move_it() -> None:
     np.testing.assert_allclose(residual(linkage, moved), residual(linkage, q), atol=1e-12)
 
 
-@pytest.mark.parametrize("with_data", [False, True])
-def test_mimic_joint_adds_to_leader_column(with_data: bool) -> None:
+def test_mimic_joint_adds_to_leader_column() -> None:
     def robot(mimic: bool) -> Linkage:
         model = pin.buildModelFromXML(MIMIC, mimic=mimic)
         same, other = model.getJointId("same"), model.getJointId("other")
@@ -178,7 +201,7 @@ def test_mimic_joint_adds_to_leader_column(with_data: bool) -> None:
         row = free.model.idx_qs[free.model.getJointId(name)]
         q_free[row] = multiplier * q[leader] + offset
         G[row, leader] = multiplier
-    r, K = residual_and_jacobian(follows, q, follows.model.createData() if with_data else None)
+    r, K = residual_and_jacobian(follows, q)
     r_free, K_free = residual_and_jacobian(free, q_free)
     np.testing.assert_allclose(r, r_free, atol=1e-12)
     np.testing.assert_allclose(K, K_free @ G, atol=1e-12)
@@ -200,13 +223,12 @@ def test_opening_is_distance_and_angle() -> None:
         * pin.SE3(pin.exp3(np.array([0.0, 0.5, 0.0])), np.zeros(3))
         * translation(-4.0, 0.0, 0.0)
     )
-    for data in (None, model.createData()):
-        welded, pinned = closure_openings(linkage, turned, data)
-        assert (welded.name, pinned.name) == ("welded", "pinned")
-        assert welded.position == pytest.approx(5.0)
-        assert welded.angle == pytest.approx(0.5)
-        assert pinned.position == pytest.approx(5.0)
-        assert pinned.angle == 0.0
+    welded, pinned = closure_openings(linkage, turned)
+    assert (welded.name, pinned.name) == ("welded", "pinned")
+    assert welded.position == pytest.approx(5.0)
+    assert welded.angle == pytest.approx(0.5)
+    assert pinned.position == pytest.approx(5.0)
+    assert pinned.angle == 0.0
 
 
 def test_robot_without_closures_has_empty_residual() -> None:
@@ -223,11 +245,10 @@ def test_smallest_robots_have_a_jacobian(joints: int) -> None:
     if joints:
         model.addJoint(0, pin.JointModelRZ(), pin.SE3.Identity(), "hinge")
     linkage = Linkage(model, [closure(model, 0, translation(1.0, 0.0, 0.0), joints, pin.SE3.Identity())])
-    for data in (None, model.createData()):
-        r, K = residual_and_jacobian(linkage, np.zeros(joints), data)
-        np.testing.assert_allclose(r, [-1.0, 0.0, 0.0, 0.0, 0.0, 0.0], atol=1e-12)
-        assert K.shape == (6, joints)
-        assert analyze(linkage).residual > 0.5
+    r, K = residual_and_jacobian(linkage, np.zeros(joints))
+    np.testing.assert_allclose(r, [-1.0, 0.0, 0.0, 0.0, 0.0, 0.0], atol=1e-12)
+    assert K.shape == (6, joints)
+    assert analyze(linkage).residual > 0.5
 
 
 def test_long_chain_needs_no_data_or_recursion(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -94,7 +94,7 @@ class Quantities:
 
     @cached_property
     def _residual_and_jacobian(self) -> tuple[Matrix, Matrix]:
-        return residual_and_jacobian(self.robot, self.q, self.robot.data)
+        return residual_and_jacobian(self.robot, self.q)
 
     @cached_property
     def _masses(self) -> list[tuple[float, Matrix]]:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from eurdf.kinematics.array import Vector
+from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.descent import Descent
 from eurdf.kinematics.evaluation import Evaluation, evaluations
 from eurdf.kinematics.loop import LoopGroup, find_loops, independent_groups
@@ -29,9 +30,8 @@ from eurdf.pinocchio.arguments import checked_array, checked_count, checked_tole
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
-# Above this many velocities, creating a pin.Data (about 8 nv³ numbers) takes longer than it saves, and closing all
-# loops at once takes longer than one by one.
-_MOST_VELOCITIES_WITH_DATA = 60
+# Above this many velocities, closing all loops at once takes longer than one by one.
+_MOST_VELOCITIES_AT_ONCE = 60
 
 _MOST_STEPS = 60
 
@@ -44,9 +44,6 @@ _WORK_OF_A_CLOSURE = 3e5
 
 # Distance of the restarts from the first start (rad, or characteristic lengths); the last one is repeated.
 _SPREADS = (0.1, 0.3, 1.0, 2.0, 3.0)
-
-# Number of assemblers cached for a robot, each with its pin.Data: one for each set of held joints.
-_MOST_KEPT = 2
 
 
 #: Why an assembly did not converge: joints at their limits keep the loops open; the loops stay open though no limit
@@ -111,7 +108,7 @@ def assemble(
     Only joints of the loops move. The result is deterministic. The time is bounded even if the loops cannot be closed:
     at most ``restarts`` + 2 descents of at most 60 steps.
 
-    The structure of a small robot is analysed once and cached with the robot.
+    The structure of the robot is analysed once and kept with it.
 
     Args:
         robot: The robot.
@@ -130,18 +127,11 @@ def assemble(
         ValueError: ``q0`` is not a configuration, ``hold`` has a name that is not a joint of the model, or
             ``tolerance`` or ``restarts`` is negative.
     """
-    q, held = start(robot, q0), several(hold)
-    # Removed from the cache while in use, so that no other thread uses the same memory.
-    idle: dict[tuple[str, ...], Assembler] = robot.derived.setdefault(Assembler, {})
-    assembler = idle.pop(held, None) or Assembler(robot, held)
-    assembler.tolerance = checked_tolerance(tolerance)
-    assembler.limits = chosen_limits(robot.tree, limits)
-    assembly = assembler.assemble(q, checked_count("restarts", restarts, 0))
-    if robot.tree.nv <= _MOST_VELOCITIES_WITH_DATA:  # else the cache takes too much memory
-        if len(idle) >= _MOST_KEPT:
-            idle.clear()
-        idle[held] = assembler
-    return assembly
+    q = start(robot, q0)
+    with borrowed(robot, Assembler, several(hold)) as assembler:
+        assembler.tolerance = checked_tolerance(tolerance)
+        assembler.limits = chosen_limits(robot.tree, limits)
+        return assembler.assemble(q, checked_count("restarts", restarts, 0))
 
 
 def start(robot: Robot, q0: Vector | None = None, name: str = "q0") -> Vector:
@@ -182,7 +172,7 @@ class Assembler:
         loops = find_loops(robot)
         self._nc = loops[-1].rows.stop if loops else 0
         groups = list(independent_groups(robot, _held_velocities(tree, hold)))
-        small = tree.nv <= _MOST_VELOCITIES_WITH_DATA
+        small = tree.nv <= _MOST_VELOCITIES_AT_ONCE
         merged = [_merged(groups, self._nc)] if small and len(groups) > 1 else []
         length = characteristic_length(robot)
         made = evaluations(
@@ -190,7 +180,6 @@ class Assembler:
             groups + merged,
             row_scale(robot, length),
             velocity_scale(robot, length),
-            tree.memory() if small else None,
         )
         self.evaluations = made[: len(groups)]
         self._whole = made[len(groups) :] if merged else self.evaluations

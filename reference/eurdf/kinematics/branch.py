@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -65,22 +65,20 @@ class Point:
 class Branch:
     """Takes steps of one actuator of one robot."""
 
-    def __init__(self, robot: Robot, actuator: int, limits: PositionLimits | None, data: Any = None) -> None:
+    def __init__(self, robot: Robot, actuator: int, limits: PositionLimits | None) -> None:
         """Prepare the loops that an actuator moves.
 
         Args:
             robot: The robot.
             actuator: Index in v of the actuator that is moved.
             limits: The position limits of the passive joints, if any.
-            data: A `pin.Data` to compute in.
         """
         tree = self._tree = robot.tree
         held = set(robot.actuation.idx_v.tolist()) - {actuator}
         groups = [group for group in independent_groups(robot, held) if actuator in group.velocities]
         length = characteristic_length(robot)
         rows, unit = row_scale(robot, length), velocity_scale(robot, length)
-        data = tree.memory() if data is None else data
-        self._loops = evaluations(robot, groups, rows, unit, data)[0] if groups else None
+        self._loops = evaluations(robot, groups, rows, unit)[0] if groups else None
         self._rows = self._loops.row_scale if self._loops else np.empty(0)
         self._velocities = groups[0].velocities if groups else np.array([actuator])
         self._unit = unit[self._velocities]

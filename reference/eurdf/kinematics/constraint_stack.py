@@ -55,9 +55,9 @@ class ConstraintStack:
             of_kind = np.concatenate([np.arange(each.start, each.stop) for each in slices])
             self._kinds.append((kind, indices, of_kind))
 
-    def memory(self, data: Any = None) -> PairMemory:
-        """Memory to evaluate the constraints in; ``data`` as in `FramePairs.memory`."""
-        return self._pairs.memory(data)
+    def memory(self) -> PairMemory:
+        """Memory to evaluate the constraints in."""
+        return self._pairs.memory()
 
     def at(self, q: Vector, memory: PairMemory) -> State:
         """The constraints at q (nq,); another configuration in the same memory makes the state invalid."""
@@ -76,9 +76,9 @@ class ConstraintStack:
             K[rows] = kind.jacobian(at)
         return K
 
-    def drift(self, q: Vector, v: Vector, data: Any) -> Vector:
-        """K̇ v (m,) at q (nq,) and v (nv,); ``data`` is memory of the whole tree."""
-        motions = RelativeMotions(*self._pairs.motions(q, v, data))
+    def drift(self, q: Vector, v: Vector, memory: PairMemory) -> Vector:
+        """K̇ v (m,) at q (nq,) and v (nv,)."""
+        motions = RelativeMotions(*memory.motions(q, v))
         return self._stacked([kind.drift(motions).ravel() for kind, _, _ in self._kinds])
 
     def scale(self, length: float) -> Vector:

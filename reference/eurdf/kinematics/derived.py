@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Hashable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, TypeVar
 
@@ -23,21 +23,25 @@ def derived(robot: Robot, compute: Callable[[Robot], _T]) -> _T:
     return kept
 
 
-# Number of idle workspaces kept of each kind, each with its pin.Data.
+# Of working memory of one kind, kept for so many keys at most, and for each key so much for as many threads.
+_MOST_KEYS = 8
 _MOST_IDLE = 4
 
 
 @contextmanager
-def borrowed(robot: Robot, make: Callable[[Robot], _T]) -> Iterator[_T]:
-    """A workspace made of a robot alone, which no other thread uses meanwhile; it is kept for the next caller.
+def borrowed(robot: Robot, make: Callable[..., _T], *key: Hashable) -> Iterator[_T]:
+    """Working memory ``make(robot, *key)``, which no other thread uses meanwhile; it is kept for the next caller.
 
     Results must not depend on what it was used for before.
     """
-    idle: list[_T] = robot.derived.setdefault((borrowed, make), [])
+    kept: dict[tuple[Hashable, ...], list[_T]] = robot.derived.setdefault((borrowed, make), {})
     try:
-        workspace = idle.pop()
-    except IndexError:
-        workspace = make(robot)
-    yield workspace  # not kept after an error
+        memory = kept[key].pop()
+    except (KeyError, IndexError):
+        memory = make(robot, *key)
+    yield memory  # not kept after an error
+    if key not in kept and len(kept) >= _MOST_KEYS:
+        kept.clear()
+    idle = kept.setdefault(key, [])
     if len(idle) < _MOST_IDLE:
-        idle.append(workspace)
+        idle.append(memory)

@@ -48,8 +48,8 @@ class EquationOfMotion:
     def __init__(self, robot: Robot, q: Vector, v: Vector, data: Any) -> None:
         """Take a normalized q (nq,) and v (nv,), and memory of the whole tree."""
         self.robot, self.q, self.v, self.data = robot, q, v, data
-        self.r, self.K = residual_and_jacobian(robot, q, data)
-        self.drift = acceleration_drift(robot, q, v, data)
+        self.r, self.K = residual_and_jacobian(robot, q)
+        self.drift = acceleration_drift(robot, q, v)
         spaces = derived(robot, TangentSpaces)
         space = spaces.at(self.K)
         self.P, self.unit, self._basis = space.inverse, spaces.scale, space.basis

@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -27,9 +27,7 @@ class Evaluation:
         unit: Unit (n,) of each of its velocities.
     """
 
-    def __init__(
-        self, robot: Robot, group: LoopGroup, row_scale: Vector, velocity_scale: Vector, data: Any = None
-    ) -> None:
+    def __init__(self, robot: Robot, group: LoopGroup, row_scale: Vector, velocity_scale: Vector) -> None:
         """Prepare a group.
 
         Args:
@@ -37,14 +35,12 @@ class Evaluation:
             group: The group.
             row_scale: Factors (nc,) that make the rows of the residual of the whole robot dimensionless.
             velocity_scale: Unit (nv,) of each velocity of the robot.
-            data: Memory as in `FramePairs.memory`. Groups that go from one configuration to the next together may
-                share it.
         """
         self.group = group
         self.row_scale = row_scale[group.rows]
         self.unit = velocity_scale[group.velocities]
         self._stack = ConstraintStack(robot.tree, [robot.constraints[i] for i in group.closures], group.velocities)
-        self._memory = self._stack.memory(data)
+        self._memory = self._stack.memory()
         self._at: State | None = None
         self._held: Vector | None = None
 
@@ -81,7 +77,7 @@ class Evaluation:
 
 
 def evaluations(
-    robot: Robot, groups: Sequence[LoopGroup], row_scale: Vector, velocity_scale: Vector, data: Any
+    robot: Robot, groups: Sequence[LoopGroup], row_scale: Vector, velocity_scale: Vector
 ) -> list[Evaluation]:
     """An evaluation of each group; for the arguments see `Evaluation`."""
-    return [Evaluation(robot, group, row_scale, velocity_scale, data) for group in groups]
+    return [Evaluation(robot, group, row_scale, velocity_scale) for group in groups]

@@ -75,12 +75,11 @@ def forward_kinematics(
     goal = start(robot, goal, "actuated")
     path = robot.tree.difference(first.q, goal)  # zero except for the given joints
     assembler, spaces = Assembler(robot, given.joints, tolerance=tolerance), TangentSpaces(robot)
-    data = robot.tree.memory()
 
     q, done, step = first.q, 0.0, 1.0
     while done < 1.0:
         step = min(step, 1.0 - done)
-        _, K = residual_and_jacobian(robot, q, data)
+        _, K = residual_and_jacobian(robot, q)
         Z = spaces.at(K).basis
         v = Z @ (np.linalg.pinv(Z[given.velocities], rcond=1.0 / _FASTEST) @ (step * path[given.velocities]))
         motion = v / spaces.scale

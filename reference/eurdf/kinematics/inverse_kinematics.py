@@ -160,8 +160,7 @@ class _Search:
     def __init__(self, robot: Robot, targets: Mapping[str, Any], limits: Limits, tolerance: float) -> None:
         self.robot = robot
         self.nv = robot.tree.nv
-        self.data = robot.tree.memory()
-        self.frames = robot.tree.frames(list(targets)).memory(self.data)
+        self.frames = robot.tree.frames(list(targets)).memory()
         self.targets = [(name, _target(name, target)) for name, target in targets.items()]
         self.assembler = Assembler(robot, limits=limits)
         self.spaces = TangentSpaces(robot)
@@ -272,7 +271,7 @@ class _Search:
 
     def _free_motions(self, q: Vector) -> Matrix:
         """Basis Z (nv, m) of the motions that keep the loops closed, orthonormal in the units of the velocities."""
-        _, K = residual_and_jacobian(self.robot, q, self.data)
+        _, K = residual_and_jacobian(self.robot, q)
         return orthonormal(self.spaces.at(K).basis, np.diag(self.spaces.scale**-2.0))
 
     def _look_at_rank(self, A: Matrix) -> None:

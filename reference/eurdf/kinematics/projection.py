@@ -12,6 +12,7 @@ import numpy as np
 
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import Assembler, start
+from eurdf.kinematics.derived import derived
 from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.metric import metric, nearest
@@ -59,7 +60,7 @@ def project_configuration(
     q = start(robot, q, "q")
     if np.abs(residual(robot, q)).max(initial=0.0) <= tolerance:
         return q
-    assembler, spaces, data = Assembler(robot, tolerance=tolerance), TangentSpaces(robot), tree.memory()
+    assembler, spaces = Assembler(robot, tolerance=tolerance), derived(robot, TangentSpaces)
     assembly = assembler.assemble(q)
     if not assembly.closes:
         raise NotClosable("no closed configuration was found near the given one", assembly.open, assembly.q)
@@ -73,7 +74,7 @@ def project_configuration(
     here = assembly.q
     cost = 0.5 * float(away(here) @ W @ away(here))
     for _ in range(_MOST_STEPS):
-        _, K = residual_and_jacobian(robot, here, data)
+        _, K = residual_and_jacobian(robot, here)
         space, g = spaces.at(K), gradient(here)
         Z, multipliers = space.basis, space.inverse.T @ g
         slope = Z.T @ g
@@ -81,7 +82,7 @@ def project_configuration(
         columns = []
         for direction in Z.T:
             beside = tree.integrate(here, _DIFFERENCE * direction)
-            _, K_beside = residual_and_jacobian(robot, beside, data)
+            _, K_beside = residual_and_jacobian(robot, beside)
             columns.append((gradient(beside) - K_beside.T @ multipliers - normal) / _DIFFERENCE)
         H = Z.T @ np.column_stack(columns) if columns else np.zeros((0, 0))
         step = _downhill(H, slope)
@@ -122,7 +123,7 @@ def project_velocity(robot: Robot, q: Vector, v: Vector, weights: Vector | Matri
     W = metric(weights, robot.tree.nv)
     v = checked_array("v", v, (robot.tree.nv,))
     _, K = residual_and_jacobian(robot, start(robot, q, "q"))
-    projected = nearest(TangentSpaces(robot).at(K).basis, W, v)
+    projected = nearest(derived(robot, TangentSpaces).at(K).basis, W, v)
     finite("the velocity", projected)
     return projected
 
@@ -154,7 +155,7 @@ def project_acceleration(
     W = metric(weights, robot.tree.nv)
     v, a, q = checked_array("v", v, (robot.tree.nv,)), checked_array("a", a, (robot.tree.nv,)), start(robot, q, "q")
     _, K = residual_and_jacobian(robot, q)
-    space = TangentSpaces(robot).at(K)
+    space = derived(robot, TangentSpaces).at(K)
     forced = -space.inverse @ acceleration_drift(robot, q, v)
     projected = forced + nearest(space.basis, W, a - forced)
     finite("the acceleration", projected)

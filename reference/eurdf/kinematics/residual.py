@@ -8,12 +8,16 @@ K v = d/dt r(q ⊕ t v) at t = 0 (EU-CLO-010), at every configuration, closed or
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.constraint_stack import ConstraintStack, all_constraints
 from eurdf.kinematics.constraints.kind import State
+from eurdf.kinematics.derived import borrowed
+from eurdf.kinematics.tree_kinematics import PairMemory
 from eurdf.pinocchio.arguments import checked_array
 
 if TYPE_CHECKING:
@@ -23,32 +27,29 @@ if TYPE_CHECKING:
 CLOSED = 1e-6
 
 
-def residual(robot: Robot, q: Vector, data: Any = None) -> Vector:
+def residual(robot: Robot, q: Vector) -> Vector:
     """Residual of all constraints, stacked in their order.
 
     Args:
         robot: The robot.
         q: Configuration (nq,).
-        data: A `pin.Data` of the model to compute in. Without one, forward kinematics runs along the loops alone, in
-            time and memory linear in their length: slower for small robots, but a `pin.Data` holds some 8 nv³ numbers.
 
     Returns:
         r (nc,): m and rad.
 
     Raises:
-        ValueError: ``q`` has another shape or is not finite, or ``data`` is of another model.
+        ValueError: ``q`` has another shape or is not finite.
     """
-    stack, at = _constraints_at(robot, q, data)
-    return stack.residual(at)
+    with _evaluated(robot, q) as (stack, at):
+        return stack.residual(at)
 
 
-def residual_and_jacobian(robot: Robot, q: Vector, data: Any = None) -> tuple[Vector, Matrix]:
+def residual_and_jacobian(robot: Robot, q: Vector) -> tuple[Vector, Matrix]:
     """Residual of all constraints and its derivative (EU-CLO-010).
 
     Args:
         robot: The robot.
         q: Configuration (nq,).
-        data: A `pin.Data` of the model to compute in, or None: see `residual`.
 
     Returns:
         r (nc,), and K (nc, nv), in m and rad over the units of v.
@@ -56,11 +57,11 @@ def residual_and_jacobian(robot: Robot, q: Vector, data: Any = None) -> tuple[Ve
     Raises:
         ValueError: As in `residual`.
     """
-    stack, at = _constraints_at(robot, q, data)
-    return stack.residual(at), stack.jacobian(at)
+    with _evaluated(robot, q) as (stack, at):
+        return stack.residual(at), stack.jacobian(at)
 
 
-def acceleration_drift(robot: Robot, q: Vector, v: Vector, data: Any = None) -> Vector:
+def acceleration_drift(robot: Robot, q: Vector, v: Vector) -> Vector:
     """The drift d = K̇ v of the constraints, exact at every configuration, closed or not.
 
     It is d²/dt² r(q ⊕ t v) at t = 0, so that r̈ = K a + d.
@@ -69,7 +70,6 @@ def acceleration_drift(robot: Robot, q: Vector, v: Vector, data: Any = None) -> 
         robot: The robot.
         q: Configuration (nq,).
         v: Velocity (nv,), rad/s or m/s.
-        data: A `pin.Data` of the model to compute in; without one, one is made.
 
     Returns:
         d (nc,), m/s² and rad/s², in the rows of the residual.
@@ -78,7 +78,8 @@ def acceleration_drift(robot: Robot, q: Vector, v: Vector, data: Any = None) -> 
         ValueError: As in `residual`, also for ``v``.
     """
     q, v = checked_array("q", q, (robot.tree.nq,)), checked_array("v", v, (robot.tree.nv,))
-    return all_constraints(robot).drift(q, v, robot.tree.memory(data))
+    with borrowed(robot, _memory) as memory:
+        return all_constraints(robot).drift(q, v, memory)
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,23 +112,27 @@ class Opening:
         return not max(self.position, self.angle) <= CLOSED
 
 
-def closure_openings(robot: Robot, q: Vector, data: Any = None) -> tuple[Opening, ...]:
+def closure_openings(robot: Robot, q: Vector) -> tuple[Opening, ...]:
     """How far each constraint is open, in their order.
 
     Args:
         robot: The robot.
         q: Configuration (nq,).
-        data: A `pin.Data` of the model to compute in, or None: see `residual`.
 
     Raises:
         ValueError: As in `residual`.
     """
-    stack, at = _constraints_at(robot, q, data)
-    openings = stack.openings(at)
+    with _evaluated(robot, q) as (stack, at):
+        openings = stack.openings(at)
     return tuple(Opening(found.name, *opening) for found, opening in zip(stack.constraints, openings, strict=True))
 
 
-def _constraints_at(robot: Robot, q: Vector, data: Any) -> tuple[ConstraintStack, State]:
-    stack = all_constraints(robot)
-    data = None if data is None else robot.tree.memory(data)
-    return stack, stack.at(checked_array("q", q, (robot.tree.nq,)), stack.memory(data))
+@contextmanager
+def _evaluated(robot: Robot, q: Vector) -> Iterator[tuple[ConstraintStack, State]]:
+    stack, q = all_constraints(robot), checked_array("q", q, (robot.tree.nq,))
+    with borrowed(robot, _memory) as memory:
+        yield stack, stack.at(q, memory)
+
+
+def _memory(robot: Robot) -> PairMemory:
+    return all_constraints(robot).memory()

@@ -130,11 +130,11 @@ def simulate(
     @overflow_refused("the configuration")
     def closed(t: float, q: Vector, v: Vector, newton_steps: int) -> tuple[Vector, Vector]:
         for _ in range(newton_steps):
-            r, K = residual_and_jacobian(robot, q, data)
+            r, K = residual_and_jacobian(robot, q)
             q = tree.normalized(tree.integrate(q, -spaces.at(K).inverse @ r))
             if not np.isfinite(q).all():
                 raise SimulationDiverged(t, step)
-        _, K = residual_and_jacobian(robot, q, data)
+        _, K = residual_and_jacobian(robot, q)
         return q, v - spaces.at(K).inverse @ (K @ v)
 
     def energies(q: Vector, v: Vector) -> tuple[float, float]:

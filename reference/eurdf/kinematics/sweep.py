@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -85,7 +85,6 @@ def sweep(
     *,
     steps: int = 200,
     limits: Limits = True,
-    data: Any = None,
 ) -> Sweep:
     """Move one actuator from a closed configuration to its position limits, with the other actuators held.
 
@@ -107,20 +106,18 @@ def sweep(
         steps: Number of steps of each of the two paths.
         limits: Whether position limits end a path. A range of zero width counts as no range (`urdf-no-range`), unless
             ``limits`` is ``"strict"``.
-        data: A `pin.Data` of the model to compute in (O(nv³) numbers); by default a new one is created.
 
     Raises:
         NotClosable: The loops cannot be closed at q0.
         ValueError: ``actuator`` is not actuated, or has several coordinates; ``q0`` is not a configuration;
-            ``steps`` is less than 1; ``data`` is of another model.
+            ``steps`` is less than 1.
     """
     steps, kept = checked_count("steps", steps, 1), chosen_limits(robot.tree, limits)
-    data = robot.tree.memory(data)
     first = assemble(robot, q0, tolerance=_TOLERANCE)
     if not first.closes:
         raise NotClosable("no closed configuration was found near the start", first.open, first.q)
     drive = _drive(robot, actuator, first.q, kept)
-    branch = Branch(robot, drive.velocity, kept, data)
+    branch = Branch(robot, drive.velocity, kept)
     start = branch.at(first.q)
     below = _follow(branch, start, drive.bounds[0] - drive.at, steps, start.smallest)
     above = _follow(branch, start, drive.bounds[1] - drive.at, steps, below.largest)

@@ -49,6 +49,14 @@ class PairMemory(Protocol):
             The derivative (k r, n) of all rows, stacked, by the velocities that the pairs were asked for with.
         """
 
+    def motions(self, q: Vector, v: Vector) -> tuple[Sequence[Any], Sequence[Any], Sequence[Any]]:
+        """How the pairs move at q (nq,) while every joint keeps its velocity v (nv,).
+
+        Returns:
+            ᴬM_B of each pair as `pin.SE3`; and as `pin.Motion` the twist ξ of B against A in the axes of B, m/s and
+            rad/s, and ξ̇.
+        """
+
 
 class Springs(Protocol):
     """Springs, each on one coordinate."""
@@ -66,23 +74,8 @@ class Springs(Protocol):
 class FramePairs(Protocol):
     """Pairs of frames A, B. Threads may share it, each with memory of its own."""
 
-    def memory(self, data: Any = None) -> PairMemory:
-        """Memory to compute in.
-
-        Args:
-            data: Memory of the whole tree, as `TreeKinematics.memory` makes; without it, time and memory are linear in
-                the joints between the frames.
-        """
-
-    def motions(self, q: Vector, v: Vector, data: Any) -> tuple[Sequence[Any], Sequence[Any], Sequence[Any]]:
-        """How the pairs move at q (nq,) while every joint keeps its velocity v (nv,).
-
-        ``data`` is memory of the whole tree.
-
-        Returns:
-            ᴬM_B of each pair as `pin.SE3`; and as `pin.Motion` the twist ξ of B against A in the axes of B, m/s and
-            rad/s, and ξ̇.
-        """
+    def memory(self) -> PairMemory:
+        """Memory to compute in."""
 
 
 class TreeKinematics(Protocol):

@@ -1,13 +1,15 @@
-"""Relative poses of pairs of frames, and their Jacobians, by two methods.
+"""Relative poses of pairs of frames, and their Jacobians, in models of the joints between the frames alone.
 
-Through a `pin.Data` of the whole model, which takes some 8 nv³ numbers, and along the joints between the frames alone,
-in time and memory linear in their number.
+A `pin.Data` takes some 8 nv³ numbers. So pairs that share joints, and several such clusters as long as they are small,
+have a model of their own. For what Pinocchio has no Jacobian, and for a cluster that is too large, the joints are
+followed one by one, in time and memory linear in their number.
 """
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -34,6 +36,11 @@ class Site(NamedTuple):
 
 Pair = tuple[Site, Site]
 
+# A model of several clusters has at most this many velocities, ...
+_BUNDLED = 40
+# ... and that of one cluster at most this many: its `pin.Data` takes 14 MB.
+_LARGEST = 60
+
 
 class FramePairs:
     """Pairs of frames A, B of one model, and what does not depend on a configuration. Threads may share it."""
@@ -44,32 +51,77 @@ class FramePairs:
         self.pairs = pairs
         self.velocities = velocities
 
-    def memory(self, data: pin.Data | None = None) -> DataMemory | PathMemory:
-        """Memory to compute in: ``data``, of the whole model, or without it the joints between the frames alone."""
-        # Mimic joints have columns of their own in Pinocchio's Jacobians, which only the paths add to their leaders'.
-        # Without velocities, Jacobians of Pinocchio 4.1 read memory that is not their own.
-        if data is None or not self.model.nv or self.model.nv < self.model.nvExtended:
-            return PathMemory(self)
-        return DataMemory(self, data)
+    def memory(self) -> PartMemories:
+        """Memory to compute in."""
+        return PartMemories(self)
 
-    def motions(self, q: Vector, v: Vector, data: pin.Data) -> tuple[list[Any], list[Any], list[Any]]:
-        """See `eurdf.kinematics.tree_kinematics.FramePairs`.
+    @cached_property
+    def parts(self) -> list[Part]:
+        """The pairs, divided among models that share no joint."""
+        bundles: list[tuple[list[int], set[int]]] = []
+        found: list[Part] = []
+        size = 0
+        for which, joints in self._clusters():
+            velocities = sum(self.model.nvs[joint] for joint in joints)
+            # Mimic joints have columns of their own in Pinocchio's Jacobians, which only the paths add to their
+            # leaders'. Without velocities, Jacobians of Pinocchio 4.1 read memory that is not their own.
+            if velocities > _LARGEST or not all(self.model.nvs[joint] for joint in joints) or not joints:
+                found.append(Part(which, FramePairs(self.model, [self.pairs[i] for i in which], self.velocities)))
+            elif bundles and size + velocities <= _BUNDLED:
+                bundles[-1][0].extend(which)
+                bundles[-1][1].update(joints)
+                size += velocities
+            else:
+                bundles.append((list(which), set(joints)))
+                size = velocities
+        return found + [self._part(sorted(which), sorted(joints)) for which, joints in bundles]
 
-        With V and A the twists and spatial accelerations of the frames, each in its own axes, and M = ᴬM_B, the twist
-        of B in A is ξ = V_B - Ad(M⁻¹) V_A, and ξ̇ = A_B - Ad(M⁻¹) A_A + ξ × Ad(M⁻¹) V_A.
-        """
-        pin.forwardKinematics(self.model, data, q, v, np.zeros(self.model.nv))
-        placements, twists, accelerations = [], [], []
-        for a, b in self.pairs:
-            oMa, twist_a, acceleration_a = _motion(data, a)
-            oMb, twist_b, acceleration_b = _motion(data, b)
-            aMb = oMa.actInv(oMb)
-            carried = aMb.actInv(twist_a)
-            twist = twist_b - carried
-            placements.append(aMb)
-            twists.append(twist)
-            accelerations.append(acceleration_b - aMb.actInv(acceleration_a) + twist.cross(carried))
-        return placements, twists, accelerations
+    def _clusters(self) -> list[tuple[list[int], set[int]]]:
+        """Pairs that share joints with one another, and these joints."""
+        clusters: dict[int, tuple[list[int], set[int]]] = {}
+        member: dict[int, int] = {}  # of each joint the first pair of its cluster, if it was not joined to another
+        leader = list(range(len(self.pairs)))
+
+        def find(pair: int) -> int:
+            while leader[pair] != pair:
+                leader[pair] = leader[leader[pair]]
+                pair = leader[pair]
+            return pair
+
+        for index, signs in enumerate(self._signs):
+            for joint in signs:
+                leader[find(index)] = find(member.setdefault(joint, index))
+        for index, signs in enumerate(self._signs):
+            which, joints = clusters.setdefault(find(index), ([], set()))
+            which.append(index)
+            joints.update(signs)
+        return list(clusters.values())
+
+    def _part(self, which: list[int], joints: list[int]) -> Part:
+        """The pairs with these indices, in a model of the joints between them; a parent comes before its children."""
+        model, small = self.model, pin.Model()
+        index = {0: 0}
+        for joint in joints:
+            above = index.get(self._parents[joint], 0)  # what carries both frames of a pair does not matter
+            placement = model.jointPlacements[joint]
+            index[joint] = small.addJoint(above, model.joints[joint], placement, model.names[joint])
+        pairs = [
+            (Site(index.get(a.joint, 0), a.placement), Site(index.get(b.joint, 0), b.placement))
+            for a, b in (self.pairs[each] for each in which)
+        ]
+        coordinates = _joined(range(model.idx_qs[joint], model.idx_qs[joint] + model.nqs[joint]) for joint in joints)
+        velocities = _joined(range(model.idx_vs[joint], model.idx_vs[joint] + model.nvs[joint]) for joint in joints)
+        wanted = range(model.nv) if self.velocities is None else self.velocities.tolist()
+        column = {velocity: at for at, velocity in enumerate(wanted)}
+        own = [at for at, velocity in enumerate(velocities.tolist()) if velocity in column]
+        columns = np.array([column[velocity] for velocity in velocities[own].tolist()], np.intp)
+        small_velocities = None if len(own) == small.nv else np.array(own, np.intp)
+        return Part(which, FramePairs(small, pairs, small_velocities), coordinates, velocities, columns)
+
+    @property
+    def size(self) -> int:
+        """Number of columns of the Jacobian."""
+        return int(self.model.nv) if self.velocities is None else len(self.velocities)
 
     @cached_property
     def constraints(self) -> tuple[Any, list[Any], Any]:
@@ -141,16 +193,108 @@ class FramePairs:
         return found
 
 
+@dataclass(frozen=True, eq=False)
+class Part:
+    """Some of the pairs, and where they are evaluated.
+
+    Attributes:
+        which: Indices of the pairs, ascending.
+        pairs: The same in a model of the joints between them; or in the whole model, to be followed joint by joint.
+        coordinates: Indices in q of the coordinates of that model; None for the whole model.
+        velocities: Indices in v of its velocities.
+        columns: Columns of the Jacobian that its own columns are.
+    """
+
+    which: list[int]
+    pairs: FramePairs
+    coordinates: Indices | None = None
+    velocities: Indices | None = None
+    columns: Indices | None = None
+
+    @cached_property
+    def position(self) -> dict[int, int]:
+        """Of each pair its index among those of the part."""
+        return {pair: index for index, pair in enumerate(self.which)}
+
+    def memory(self) -> DataMemory | PathMemory:
+        """Memory to evaluate them in."""
+        return PathMemory(self.pairs) if self.coordinates is None else DataMemory(self.pairs)
+
+
+class PartMemories:
+    """Memory of all parts of some pairs. See `eurdf.kinematics.tree_kinematics.PairMemory`."""
+
+    def __init__(self, pairs: FramePairs) -> None:
+        self._size, self._count = pairs.size, len(pairs.pairs)
+        self._parts = [(part, part.memory()) for part in pairs.parts]
+        self._selections: dict[tuple[int, ...], list[tuple[list[int], list[int]]]] = {}
+
+    def placements(self, q: Vector) -> list[Any]:
+        """ᴬM_B of each pair at q (nq,)."""
+        if len(self._parts) == 1:
+            ((part, memory),) = self._parts
+            return memory.placements(q if part.coordinates is None else q[part.coordinates])
+        found: list[Any] = [None] * self._count
+        for part, memory in self._parts:
+            placements = memory.placements(q if part.coordinates is None else q[part.coordinates])
+            for index, placement in zip(part.which, placements, strict=True):
+                found[index] = placement
+        return found
+
+    def jacobian(self, rows: Matrix, which: Sequence[int]) -> Matrix:
+        """Derivative of rows of some pairs by the velocities, where `placements` last was."""
+        k, r = rows.shape[:2]
+        key = tuple(which)
+        selections = self._selections.get(key)
+        if selections is None:
+            selections = self._selections[key] = [_selection(part, key) for part, _ in self._parts]
+        if len(self._parts) == 1:
+            ((part, memory),) = self._parts
+            K = memory.jacobian(rows, selections[0][1])
+            if part.columns is None or _identity(part.columns, self._size):
+                return K
+        K = np.zeros((k, r, self._size))
+        for (part, memory), (of_rows, of_part) in zip(self._parts, selections, strict=True):
+            if of_part:
+                block = memory.jacobian(rows[of_rows], of_part).reshape(len(of_part), r, -1)
+                if part.columns is None:
+                    K[of_rows] = block
+                else:
+                    K[np.array(of_rows)[:, None], :, part.columns] = np.swapaxes(block, 1, 2)
+        return K.reshape(k * r, self._size)
+
+    def motions(self, q: Vector, v: Vector) -> tuple[list[Any], list[Any], list[Any]]:
+        """See `eurdf.kinematics.tree_kinematics.PairMemory`."""
+        found: list[list[Any]] = [[None] * self._count for _ in range(3)]
+        for part, memory in self._parts:
+            own = memory.motions(*((q, v) if part.coordinates is None else (q[part.coordinates], v[part.velocities])))
+            for all_pairs, of_part in zip(found, own, strict=True):
+                for index, value in zip(part.which, of_part, strict=True):
+                    all_pairs[index] = value
+        return found[0], found[1], found[2]
+
+
+def _selection(part: Part, which: Sequence[int]) -> tuple[list[int], list[int]]:
+    """Those of the pairs asked for that are in a part: their indices among these, and in the part."""
+    chosen = [(row, part.position[pair]) for row, pair in enumerate(which) if pair in part.position]
+    return [row for row, _ in chosen], [index for _, index in chosen]
+
+
+def _identity(columns: Indices, size: int) -> bool:
+    return len(columns) == size and bool((columns == np.arange(size)).all())
+
+
 class DataMemory:
     """A `pin.Data`, for small models without mimic joints: nearly all is done by Pinocchio."""
 
-    def __init__(self, pairs: FramePairs, data: pin.Data) -> None:
-        self._model, self._data = pairs.model, data
+    def __init__(self, pairs: FramePairs) -> None:
+        self._pairs = pairs.pairs
+        self._model, self._data = pairs.model, pairs.model.createData()
         self._constraints, models, datas = pairs.constraints
         self._datas = pin.StdVec_RigidConstraintData(datas)
         self._each = list(zip(models, self._datas, strict=True))
-        everything = pairs.velocities is None or len(pairs.velocities) == self._model.nv
-        self._velocities = None if everything else pairs.velocities
+        self._velocities, self._still = pairs.velocities, np.zeros(pairs.model.nv)
+        self._all = list(range(len(self._each)))
         self._J: Matrix | None = None
 
     def placements(self, q: Vector) -> list[Any]:
@@ -166,10 +310,19 @@ class DataMemory:
         if self._J is None:
             J = pin.getConstraintsJacobian(self._model, self._data, self._constraints, self._datas)
             self._J = J.reshape(len(self._each), 6, self._model.nv)  # of the twist of A against B
-        J = self._J if len(which) == len(self._J) else self._J[which]
+        J = self._J if list(which) == self._all else self._J[list(which)]
         K = np.matmul(-rows, J)
         K = K.reshape(K.shape[0] * K.shape[1], self._model.nv)
         return K if self._velocities is None else np.asarray(K[:, self._velocities])
+
+    def motions(self, q: Vector, v: Vector) -> tuple[list[Any], list[Any], list[Any]]:
+        """See `eurdf.kinematics.tree_kinematics.PairMemory`."""
+        pin.forwardKinematics(self._model, self._data, q, v, self._still)
+        data = self._data
+        return _relative(
+            tuple((data.oMi[joint], data.v[joint], data.a[joint], placement) for joint, placement in pair)
+            for pair in self._pairs
+        )
 
 
 class PathMemory:
@@ -200,7 +353,7 @@ class PathMemory:
         """See `eurdf.kinematics.tree_kinematics.PairMemory`."""
         if self._J is None:
             self._J = self._jacobian()
-        n = self._pairs.model.nv if self._pairs.velocities is None else len(self._pairs.velocities)
+        n = self._pairs.size
         K = np.zeros((*rows.shape[:2], n))
         for own, index, part in zip(rows, which, K, strict=True):
             in_J, signs, in_K, twice = self._pairs.columns[index]
@@ -211,6 +364,21 @@ class PathMemory:
                 part[:, in_K] = block
         return K.reshape(K.shape[0] * K.shape[1], n)
 
+    def motions(self, q: Vector, v: Vector) -> tuple[list[Any], list[Any], list[Any]]:
+        """See `eurdf.kinematics.tree_kinematics.PairMemory`."""
+        still = (pin.SE3.Identity(), pin.Motion.Zero(), pin.Motion.Zero())
+        moved: dict[int, Any] = {}
+        for (joint, parent, placement, moving, _), data in zip(self._pairs.joints, self._datas, strict=True):
+            moving.calc(data, q, v)
+            oMi, twist, acceleration = moved.get(parent, still)
+            iMj = placement * data.M
+            own = pin.Motion(data.v)
+            twist = iMj.actInv(twist) + own
+            moved[joint] = oMi * iMj, twist, iMj.actInv(acceleration) + pin.Motion(data.c) + twist.cross(own)
+        return _relative(
+            tuple((*moved.get(joint, still), placement) for joint, placement in pair) for pair in self._pairs.pairs
+        )
+
     def _jacobian(self) -> Matrix:
         """The world Jacobian (6, …) of the joints between the frames, each with columns of its own."""
         joints = self._pairs.joints
@@ -220,7 +388,28 @@ class PathMemory:
         return J
 
 
-def _motion(data: pin.Data, site: Site) -> tuple[Any, Any, Any]:
-    """Placement in the world of a frame, and its twist and spatial acceleration in its own axes."""
-    joint, placement = site
-    return data.oMi[joint] * placement, placement.actInv(data.v[joint]), placement.actInv(data.a[joint])
+def _relative(ends: Iterable[Sequence[Any]]) -> tuple[list[Any], list[Any], list[Any]]:
+    """How frames B move against frames A.
+
+    With V and A the twists and spatial accelerations of the frames, each in its own axes, and M = ᴬM_B, the twist of B
+    in A is ξ = V_B - Ad(M⁻¹) V_A, and ξ̇ = A_B - Ad(M⁻¹) A_A + ξ × Ad(M⁻¹) V_A.
+
+    Args:
+        ends: Of each pair, for A and for B: the placement, twist and acceleration of the joint, and the placement of
+            the frame in it.
+    """
+    placements, twists, accelerations = [], [], []
+    for (oMa, twist_a, acceleration_a), (oMb, twist_b, acceleration_b) in (
+        ((oMi * iMf, iMf.actInv(v), iMf.actInv(a)) for oMi, v, a, iMf in pair) for pair in ends
+    ):
+        aMb = oMa.actInv(oMb)
+        carried = aMb.actInv(twist_a)
+        twist = twist_b - carried
+        placements.append(aMb)
+        twists.append(twist)
+        accelerations.append(acceleration_b - aMb.actInv(acceleration_a) + twist.cross(carried))
+    return placements, twists, accelerations
+
+
+def _joined(ranges: Iterable[range]) -> Indices:
+    return np.array([index for each in ranges for index in each], np.intp)

@@ -48,7 +48,7 @@ class Couplings(Kind[Coupling]):
 
     def jacobian(self, at: State) -> Matrix:
         """The coefficients, in the columns of their joints."""
-        return self._K
+        return np.array(self._K)
 
     def drift(self, motions: RelativeMotions) -> Matrix:
         """0."""
