@@ -385,12 +385,12 @@ x-masses:
 
 def test_comments_and_user_data_are_kept() -> None:
     description = described(COMMENTED)
-    assert migrate(description, schema=schema_named(description.extension.document)).text == MIGRATED
+    assert migrate(description, schema=schema_named(description.extension.document, description.urdf)).text == MIGRATED
 
 
 def test_windows_line_ends_change_nothing() -> None:
     description = described(COMMENTED.replace("\n", "\r\n"))
-    assert migrate(description, schema=schema_named(description.extension.document)).text == MIGRATED
+    assert migrate(description, schema=schema_named(description.extension.document, description.urdf)).text == MIGRATED
 
 
 def test_changes_are_listed() -> None:
@@ -582,3 +582,65 @@ def test_line_breaks_of_yaml_1_1_are_ordinary_characters(tmp_path: Path, text: s
         old = read_yaml(Source("robot.yaml", text.format(mark), text.format(mark).encode())).data
         data = read_yaml(Source("new.yaml", new, new.encode())).data
         assert {key.removeprefix("x-"): data[key] for key in data if key.startswith("x-")} == old
+
+
+# -- mimic joints, which version 1 ignores -----------------------------------------------------------------------------
+
+MIMICKING = WORKBENCH.read_text(encoding="utf-8")
+
+
+def with_mimics(text: str, urdf: str = MIMICKING) -> Described:
+    diagnostics = Diagnostics()
+    given = read_urdf(
+        read_xml(Source("robot.urdf", urdf, urdf.encode())), Diagnostics(), mimic_diagnostics=Diagnostics()
+    )
+    extension = read_extension(read_yaml(Source("robot.yaml", text, text.encode())), diagnostics)
+    assert given is not None
+    assert extension is not None
+    mechanism = link(given, extension, diagnostics)
+    assert mechanism is not None
+    return Described("robot.yaml", diagnostics, given, mechanism, extension)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("name_mot: [motor, follow]\n", "  follow: {mimic: false}\n"),
+        ("joint_name: [follow]\njoint_type: [FIXED]\n", "  follow: {type: fixed, mimic: false}\n"),
+        ("joint_name: [grip]\njoint_type: [FIXED]\n", "  follow: {mimic: false}\n"),
+    ],
+)
+def test_mimic_joints_are_freed_in_version_2_1(text: str, said: str) -> None:
+    description = with_mimics(text)
+    migration = migrate(description)
+    assert migration.text.startswith('extended_urdf: "2.1"\n')
+    assert said in migration.text
+    assert any("'mimic: false'" in note and "joint 'follow'" in note for note in migration.notes)
+    assert migration.mechanism.version == "2.1"
+    assert_same_motion(description.mechanism, migration.mechanism)
+
+
+def test_merged_joints_that_mimic_are_freed_in_their_entry() -> None:
+    urdf = MIMICKING.replace('<child link="wrist_2"/>', '<child link="wrist_2"/><mimic joint="motor"/>')
+    migration = migrate(with_mimics("closed_loop: []\n", urdf))
+    assert "merges: [wrist_x, wrist_y, wrist_z], mimic: false}" in migration.text
+    assert {joint.name: joint.type.value for joint in migration.mechanism.joints}["wrist_z"] == "spherical"
+
+
+def test_mimic_joint_without_leader_is_not_migrated() -> None:
+    urdf = MIMICKING.replace('mimic joint="grip"', 'mimic joint="nobody"')
+    with pytest.raises(NotMigratable, match="'follow' mimics 'nobody', which does not exist") as found:
+        migrate(with_mimics("name_mot: [follow]\n", urdf))
+    assert "remove it from the URDF (line 65)" in str(found.value)
+
+
+def test_version_2_0_is_written_where_it_suffices() -> None:
+    assert migrated("name_mot: [motor]\n").text.startswith('extended_urdf: "2.0"\n')
+
+
+def test_first_line_names_the_schema_of_the_version_written() -> None:
+    text = "# yaml-language-server: $schema=../schema/extended-urdf-1.schema.json\nname_mot: [follow]\n"
+    description = with_mimics(text)
+    named = schema_named(description.extension.document, description.urdf)
+    assert named == "../schema/extended-urdf-2.1.schema.json"
+    assert schema_named(description.extension.document, URDF) == "../schema/extended-urdf-2.0.schema.json"

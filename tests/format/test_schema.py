@@ -78,12 +78,20 @@ WHOLE["2.1"] = {
         {"name": "bolt", "type": "hinge", "frames": ["rod", "tip"], "axis": [0, 1, 0.5]},
         {"name": "peg", "type": "hinge", "frames": ["rod", "tip"], "axes": [[0, 1, 0.5], [1, 0, 0]]},
     ],
+    "joints": {
+        **WHOLE["2"]["joints"],
+        "heel": {"stiffness": 1200, "rest": -0.1},
+        "toe": {"type": "universal", "axes": "xy", "stiffness": [3, 0], "rest": [1, 2], "x-own": 1},
+        "jaw": {"mimic": False},
+    },
+    "actuators": [*WHOLE["2"]["actuators"], {"joint": "heel", "name": "left", "control": [-3, 3]}],
 }
 
 #: What is put in place of a value.
 JUNK = [
     None,
     True,
+    False,
     0,
     -1,
     1.5,
@@ -103,7 +111,7 @@ JUNK = [
 JUNK += [{"link": "a"}]
 
 #: What a key is renamed to, or what a key is added.
-KEYS = ["", "x-own", "type", "joint", "axes", "limits", "joint_type"]
+KEYS = ["", "x-own", "type", "joint", "axes", "limits", "joint_type", "stiffness", "rest", "mimic", "name"]
 
 
 def accepted(version: str, document: Any) -> bool:
@@ -354,9 +362,22 @@ DOCUMENTS: dict[str, st.SearchStrategy[dict[str, Any]]] = {
     ),
 }
 DOCUMENTS["2.1"] = st.builds(
-    lambda document, more: {**document, "extended_urdf": "2.1", "closures": [*document.get("closures", ()), *more]},
+    lambda document, hinges, joints, actuators: {
+        **document,
+        "extended_urdf": "2.1",
+        "closures": [*document.get("closures", ()), *hinges],
+        "joints": {**document.get("joints", {}), **joints},
+        "actuators": [*document.get("actuators", ()), *actuators],
+    },
     DOCUMENTS["2"],
     st.lists(hinges, max_size=3),
+    st.dictionaries(
+        names.filter(lambda name: not name.startswith("x-")),
+        mapping({"stiffness": one_or_several(magnitudes, 6)}, rest=one_or_several(numbers, 6), mimic=st.just(False))
+        | mapping({"type": st.just("cylindrical")}, mimic=st.just(False)),
+        max_size=2,
+    ),
+    st.lists(mapping({"joint": names}, name=names, control=st.lists(numbers, min_size=2, max_size=2)), max_size=2),
 )
 
 

@@ -67,7 +67,6 @@ def test_actuators_keep_order_and_place() -> None:
 def test_version_1_merges_and_has_fixed_root() -> None:
     extension = sound(PUBLISHED)
     assert extension.version == "1"
-    assert extension.merges_revolutes
     assert (extension.urdf, extension.root) == ("robot.urdf", "fixed")
 
 

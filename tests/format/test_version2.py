@@ -80,7 +80,6 @@ def test_top_level_is_read() -> None:
     assert (extension.version, extension.urdf, extension.root) == ("2.0", "leg.urdf", "floating")
     assert extension.metadata == {"license": "BSD-3-Clause", "anything": [1, None]}
     assert extension.own_data[("x-note",)] == "kept"
-    assert not extension.merges_revolutes
 
 
 def test_defaults_are_applied() -> None:

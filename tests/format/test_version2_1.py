@@ -94,6 +94,82 @@ def test_closure_in_version_2_0_names_the_line_to_change(text: str, code: str, l
     assert 'write extended_urdf: "2.1" on line 2' in found.hint
 
 
+JOINT = 'extended_urdf: "2.1"\njoints:\n  heel: {%s}\n'
+ACTUATOR = 'extended_urdf: "2.1"\nactuators:\n  - {joint: heel, %s}\n'
+
+
+def test_joint_has_springs_and_is_freed() -> None:
+    extension, diagnostics = read(JOINT % "stiffness: [2, 3.5], rest: 0.1, mimic: false")
+    assert extension is not None
+    assert not diagnostics
+    (joint,) = extension.joints
+    assert (joint.stiffness, joint.rest, joint.freed) == ((2, 3.5), 0.1, True)
+
+
+def test_joint_without_them_has_none() -> None:
+    extension, _ = read(JOINT % "damping: 2")
+    assert extension is not None
+    (joint,) = extension.joints
+    assert (joint.stiffness, joint.rest, joint.freed) == (None, None, False)
+
+
+def test_actuator_has_name_and_control_range() -> None:
+    extension, _ = read(ACTUATOR % "name: left, gear_ratio: 5, control: [-3, 4.5]")
+    assert extension is not None
+    (actuator,) = extension.actuators
+    assert (actuator.name, actuator.gear_ratio, actuator.control) == ("left", 5, (-3, 4.5))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        JOINT % "stiffness: 3",
+        JOINT % "mimic: false",
+        JOINT % "type: fixed, mimic: false",
+        JOINT % "type: helical, pitch: 1, stiffness: 3",
+        ACTUATOR % "name: left",
+        ACTUATOR % "control: [-1, 1]",
+    ],
+)
+def test_key_of_version_2_1_in_version_2_0_names_the_line_to_change(text: str) -> None:
+    extension, diagnostics = read(text.replace("2.1", "2.0"))
+    assert extension is None
+    (found,) = diagnostics
+    assert (found.code, found.line) == ("unknown-key", 3)
+    assert found.hint is not None
+    assert 'write extended_urdf: "2.1" on line 1' in found.hint
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "said"),
+    [
+        (JOINT % "rest: 0.1", "missing-key", "has 'rest' but lacks 'stiffness'"),
+        (JOINT % "stiffness: -0.1", "out-of-range", "at least 0, not -0.1"),
+        (JOINT % "stiffness: stiff", "wrong-type", "must be a number or a list of numbers"),
+        (JOINT % "mimic: true", "wrong-value", "must be false, not true"),
+        (JOINT % "mimic: 0", "wrong-type", "must be false, not 0"),
+        (JOINT % "mimic: no", "wrong-type", "must be false, not 'no'"),
+        (JOINT % "stifness: 3", "unknown-key", "'stifness'"),
+        (ACTUATOR % "control: [1]", "wrong-length", "must have 2 items"),
+        (ACTUATOR % "control: 5", "wrong-type", "must be a list"),
+        (ACTUATOR % "name: ''", "wrong-value", "is empty"),
+    ],
+)
+def test_error_of_an_added_key_is_reported_once(text: str, code: str, said: str) -> None:
+    extension, diagnostics = read(text)
+    assert extension is None
+    (found,) = diagnostics
+    assert (found.code, found.line) == (code, 3)
+    assert said in found.message
+
+
+def test_hints_in_version_2_0_list_its_own_keys() -> None:
+    _, (found,) = read(JOINT.replace("2.1", "2.0") % "colour: 3")
+    assert found.hint is not None
+    assert "'armature'" in found.hint
+    assert "'stiffness'" not in found.hint
+
+
 @pytest.mark.parametrize(
     ("text", "code", "line", "said"),
     [

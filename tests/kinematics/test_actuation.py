@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from support.described import at, body, codes, load
+import eurdf
+from eurdf.commands.main import main
+from support.described import at, body, codes, load, written
 from support.plain_urdf import joint_element, link_element, robot
 from support.star import CONTENT, STAR
 
@@ -117,3 +122,50 @@ def test_actuator_is_moving_joint_listed_once(yaml: str, error: str) -> None:
 def test_selection_is_computed_once() -> None:
     actuation = load(STAR, "actuators: [c, a]\n").actuation
     assert actuation.selection is actuation.selection
+
+
+# -- names and control ranges ----------------------------------------------------------------------------------------
+
+MOTORS = """\
+extended_urdf: "2.1"
+joints: {d: spherical}
+actuators:
+  - {joint: c, name: a, control: [-3, 4.5]}
+  - {joint: a, name: c}
+  - {joint: d, control: [0, 2]}
+  - b
+"""
+
+
+def test_actuators_have_stated_names_or_those_of_their_joints() -> None:
+    actuation = load(STAR, MOTORS).actuation
+    assert (actuation.joints, actuation.names) == (("c", "a", "d", "b"), ("a", "c", "d", "b"))
+
+
+def test_control_range_holds_for_each_velocity() -> None:
+    unlimited = [-np.inf, np.inf]
+    expected = [[-3.0, 4.5], unlimited, [0.0, 2.0], [0.0, 2.0], [0.0, 2.0], unlimited]
+    assert load(STAR, MOTORS).actuation.control.tolist() == expected
+
+
+def test_robot_without_actuators_has_no_control_range() -> None:
+    assert load(STAR).actuation.control.shape == (0, 2)
+
+
+def test_locked_actuator_loses_name_and_range() -> None:
+    locked = eurdf.lock(load(STAR, MOTORS), ["c"])
+    assert locked.actuation.names == ("c", "d", "b")
+    assert "c" not in locked.mechanism.motors
+
+
+def test_info_shows_names_ranges_and_springs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = MOTORS.replace("{d: spherical}", "{d: spherical, b: {stiffness: 7.5, rest: 0.25}}")
+    path = str(written(tmp_path, STAR, text))
+    assert main(["info", path, "--json"]) == 0
+    info = json.loads(capsys.readouterr().out)
+    motors = {each["joint"]: (each["name"], each["control"]) for each in info["actuator_list"]}
+    assert motors == {"c": ("a", [-3.0, 4.5]), "a": ("c", None), "d": ("d", [0.0, 2.0]), "b": ("b", None)}
+    springs = {each["name"]: (each["stiffness"], each["rest"]) for each in info["joint_list"] if each["stiffness"]}
+    assert springs == {"b": ([7.5], [0.25])}
+    assert main(["info", path]) == 0
+    assert "spring 7.5, rest 0.25" in capsys.readouterr().out

@@ -29,6 +29,19 @@ closures:
     type: 3d
 """
 
+#: The description up to its actuators.
+TOP = (Path(__file__).parents[1] / "data" / "workbench.yaml").read_text(encoding="utf-8").partition("actuators:")[0]
+
+
+def later(old: str, new: str, more: str = "") -> tuple[str, str]:
+    """An edit of the upper part of the description, which is then of version 2.1, and more below it."""
+    assert TOP.count(old) == 1
+    below = f"actuators:\n{more}"
+    return (TOP + "actuators:\n") if more else TOP, TOP.replace("2.0", "2.1").replace(old, new) + (
+        below if more else ""
+    )
+
+
 # code, file, text to replace, replacement, text at the place that the diagnostic points at, part of message or hint
 # fmt: off
 ERRORS = [
@@ -136,6 +149,13 @@ ERRORS = [
     ("actuator-merged", YAML, "  - motor\n", "  - motor\n  - wrist_y\n", "wrist_y\n", "'hand_ball'"),
     ("joint-mimics", YAML, "  stage: {limits: {velocity: 1.5}, armature: 0.02}", "  follow: {type: helical, pitch: 1}", "{type: helical", "'grip'"),
     ("joint-mimics", YAML, "  stage: {limits: {velocity: 1.5}, armature: 0.02}", "  grip: cylindrical", "cylindrical", "'follow'"),
+    ("joint-mimics", YAML, *later("  stage:", "  follow: {limits: {velocity: 1}}\n  stage:"), "{velocity: 1}}", "limits of joint 'follow'"),
+    ("joint-not-mimic", YAML, *later("  stage:", "  grip: {mimic: false}\n  stage:"), "false", "'grip' mimics no other"),
+    ("joint-not-mimic", YAML, *later("merges: [wrist_x, wrist_y, wrist_z]", "merges: [wrist_x, wrist_y, wrist_z], mimic: false"), "false", "merged joints"),
+    ("joint-property", YAML, *later("merges: [wrist_x, wrist_y, wrist_z]", "merges: [wrist_x, wrist_y, wrist_z], stiffness: 3"), "3}", "cannot have a spring"),
+    ("joint-property", YAML, *later("armature: 0.02", "stiffness: [2, 3]"), "[2, 3]", "one number"),
+    ("duplicate-actuator-name", YAML, *later("joints:", "joints:", "  - {joint: pivot, name: motor}\n"), "motor", "of joint 'pivot'"),
+    ("actuator-control-reversed", YAML, *later("joints:", "joints:", "  - {joint: pivot, control: [5, -5]}\n"), "[5, -5]", "lower bound 5"),
     ("joint-kind", YAML, "  stage: {limits: {velocity: 1.5}, armature: 0.02}", "  stage: spherical", "spherical\n", "prismatic"),
     ("joint-kind", YAML, "  stage: {limits: {velocity: 1.5}, armature: 0.02}", "  tip: spherical", "spherical\n", "fixed"),
     ("joint-axis-zero", YAML, "  stage: {limits: {velocity: 1.5}, armature: 0.02}", "  elbow: {type: universal, axes: [[0, 0, 1], [0, 0, 0]]}", "[0, 0, 0]", ""),

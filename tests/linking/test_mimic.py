@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -81,18 +82,27 @@ def test_invalid_yaml_leaves_mimics_undecided(tmp_path: Path) -> None:
     assert [found.code for found in eurdf.check(folder).diagnostics] == ["yaml-syntax"]
 
 
-@pytest.mark.parametrize("text", [gripper(), gripper("nobody")])
-def test_migrate_refuses_mimics_ignored_in_version_1(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str
-) -> None:
+def test_migrate_frees_mimic_joints_that_version_1_ignores(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = written(tmp_path, gripper(), "name_mot: [left]\n").parent
+    before = eurdf.load(folder, geometry=False)
+    out = folder / "new.yaml"
+    assert main(["migrate", str(folder), "-o", str(out), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["to"] == "2.1"
+    assert (folder / "extended-urdf-2.1.schema.json").exists()
+    after = eurdf.load(out, geometry=False)
+    assert after.model == before.model
+    assert after.actuation.joints == ("left",)
+
+
+def test_migrate_refuses_mimic_joint_that_version_2_refuses(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    text = gripper("nobody")
     folder = written(tmp_path, text, "name_mot: [left]\n").parent
     assert main(["migrate", str(folder)]) == 2
     printed = capsys.readouterr()
     assert printed.out == ""
-    assert "joint 'left' has a <mimic> in the URDF" in printed.err
-    assert "remove <mimic> from the URDF and migrate again" in printed.err
-    plain = text.replace(MIMIC.format("drive", -2, 0.1), "").replace(MIMIC.format("nobody", -2, 0.1), "")
-    (folder / "robot.urdf").write_text(plain, encoding="utf-8")
+    assert "joint 'left' mimics 'nobody', which does not exist" in printed.err
+    assert "remove it from the URDF (line 1) and migrate again" in printed.err
+    (folder / "robot.urdf").write_text(text.replace(MIMIC.format("nobody", -2, 0.1), ""), encoding="utf-8")
     assert main(["migrate", str(folder)]) == 0
 
 

@@ -40,7 +40,7 @@ def actuated(linkage: Linkage, joints: Sequence[str] | None = None) -> Robot:
     found = [model.joints[model.getJointId(name)] for name in names]
     idx_q = np.array([joint.idx_q + k for joint in found for k in range(joint.nq)], np.intp)
     idx_v = np.array([joint.idx_v + k for joint in found for k in range(joint.nv)], np.intp)
-    actuation = Actuation(names, idx_q, idx_v, model.nv)
+    actuation = Actuation(names, idx_q, idx_v, model.nv, names, np.full((len(idx_v), 2), (-np.inf, np.inf)))
     closures = tuple(found for found in linkage.constraints if isinstance(found, Closure))
     mechanism = Mechanism("linkage", "", "fixed", (), (), closures=closures)  # without bodies and joints
     return Robot(mechanism, model, linkage.tree, actuation, linkage.configurations)

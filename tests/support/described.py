@@ -21,7 +21,10 @@ LIMITED = '<axis xyz="{}"/><limit lower="-3" upper="3" effort="1" velocity="1"/>
 
 
 def load(urdf: str, yaml: str = "", **options: Any) -> eurdf.Robot:
-    """The robot of a URDF and a description of version 2, less its first line; of a bare URDF where there is none."""
+    """The robot of a URDF and a description; of a bare URDF where there is none.
+
+    A description that states no version is of version 1 if it has a key of it, else of version 2.0.
+    """
     with tempfile.TemporaryDirectory() as folder:
         options.setdefault("geometry", False)
         return eurdf.load(written(Path(folder), urdf, yaml), **options)
@@ -34,12 +37,13 @@ def codes(urdf: str, yaml: str = "") -> list[str]:
 
 
 def written(folder: Path, urdf: str, yaml: str) -> Path:
-    """The files, in a folder. A text with a key of version 1 is of version 1."""
+    """The files of `load`, in a folder."""
     (folder / "robot.urdf").write_text(urdf, encoding="utf-8")
     if not yaml:
         return folder / "robot.urdf"
     one = re.search(r"^(closed_loop|type|name_mot|joint_name|joint_type|note):", yaml, re.MULTILINE)
-    (folder / "robot.yaml").write_text(yaml if one else f'extended_urdf: "2.0"\n{yaml}', encoding="utf-8")
+    stated = yaml.startswith("extended_urdf:")
+    (folder / "robot.yaml").write_text(yaml if one or stated else f'extended_urdf: "2.0"\n{yaml}', encoding="utf-8")
     return folder / "robot.yaml"
 
 

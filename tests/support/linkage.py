@@ -47,7 +47,9 @@ class Linkage:
     def actuation(self) -> Actuation:
         rows = [row for name in self.actuated for row in velocities(self.model, name)]
         coordinates = [row for name in self.actuated for row in coordinates_of(self.model, name)]
-        return Actuation(tuple(self.actuated), np.array(coordinates, np.intp), np.array(rows, np.intp), self.model.nv)
+        control = np.full((len(rows), 2), (-np.inf, np.inf))
+        indices = np.array(coordinates, np.intp), np.array(rows, np.intp)
+        return Actuation(tuple(self.actuated), *indices, self.model.nv, tuple(self.actuated), control)
 
 
 def velocities(model: Any, joint: str) -> range:

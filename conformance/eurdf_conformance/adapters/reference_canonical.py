@@ -10,6 +10,7 @@ from eurdf.mechanism.constraint import DistanceClosure, HingeClosure
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.pose import Vector3
 from eurdf_conformance.level import Version
 from eurdf_conformance.protocol.message import (
@@ -57,6 +58,8 @@ def canonical_robot(mechanism: Mechanism) -> CanonicalRobot:
                 joint=name,
                 gear_ratio=list(joints[name].properties.gear_ratio),
                 rotor_inertia=list(joints[name].properties.rotor_inertia),
+                name=mechanism.motors[name].name if name in mechanism.motors else None,
+                control=_control(mechanism.motors.get(name)),
             )
             for name in mechanism.actuators
         ],
@@ -84,6 +87,8 @@ def _joint(joint: Joint) -> CanonicalJoint:
         damping=list(joint.properties.damping),
         friction=list(joint.properties.friction),
         armature=list(joint.properties.armature),
+        stiffness=list(joint.properties.stiffness) or None,
+        rest=list(joint.properties.rest) or None,
         mimic=None
         if mimic is None
         else CanonicalMimic(joint=mimic.joint, multiplier=mimic.multiplier, offset=mimic.offset),
@@ -94,6 +99,10 @@ def _unit(axis: Vector3) -> list[float]:
     largest = max(map(abs, axis))  # of any length, also of one whose square is out of range
     scaled = [number / largest for number in axis]
     return [number / math.hypot(*scaled) for number in scaled]
+
+
+def _control(motor: Motor | None) -> list[float] | None:
+    return None if motor is None or motor.control is None else list(motor.control)
 
 
 def _limits(values: Iterable[float]) -> list[float | None]:

@@ -12,6 +12,7 @@ from eurdf_conformance.comparison.universal import (
     velocities,
     with_defaults,
     with_limits,
+    with_springs,
 )
 from eurdf_conformance.json_pointer import step
 from eurdf_conformance.protocol.message import CanonicalActuator, CanonicalClosure, CanonicalJoint, CanonicalRobot
@@ -76,7 +77,7 @@ def plain_robot(robot: CanonicalRobot, bodies: Iterable[Iterable[str]], links: I
     for body in map(list, bodies):
         first_link |= dict.fromkeys(body, min(body, key=str.encode))
     repeated: list[Difference] = []
-    joints = _by_name(robot.joints, "/joints", lambda joint: joint.name, repeated)
+    joints = _by_name([with_springs(joint) for joint in robot.joints], "/joints", lambda joint: joint.name, repeated)
     actuators = _by_name(robot.actuators, "/actuators", lambda actuator: actuator.joint, repeated)
     closures = _by_name(robot.closures, "/closures", lambda closure: closure.name, repeated)
     configurations: dict[str, dict[str, Sequence[float]]] = {

@@ -10,6 +10,7 @@ from eurdf_conformance.protocol.message import CanonicalActuator, CanonicalJoint
 
 _TURNING = frozenset({"revolute", "continuous"})
 _LISTS = ("lower", "upper", "velocity", "effort", "damping", "friction", "armature")
+_SPRINGS = ("stiffness", "rest")
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +24,9 @@ class Pair:
     def joint(self) -> CanonicalJoint:
         """The one joint, between the outer two bodies; its lists are those of the two in a row."""
         lists = {key: [*getattr(self.first, key), *getattr(self.second, key)] for key in _LISTS}
+        if self.first.stiffness or self.second.stiffness:
+            for key in _SPRINGS:
+                lists[key] = [*(getattr(self.first, key) or [0.0]), *(getattr(self.second, key) or [0.0])]
         return self.first.model_copy(
             update={"name": self.name, "type": "universal", "child": self.second.child, **lists}
         )
@@ -36,6 +40,8 @@ class Pair:
             joint=self.name,
             gear_ratio=[*(one.gear_ratio or ()), *(two.gear_ratio or ())],
             rotor_inertia=[*(one.rotor_inertia or ()), *(two.rotor_inertia or ())],
+            name=one.name if one.name == two.name else None,
+            control=one.control if one.control == two.control else None,
         )
 
     def coordinates(self, configuration: Mapping[str, Sequence[float]]) -> list[float] | None:
@@ -69,14 +75,27 @@ def universal_pairs(joints: Sequence[CanonicalJoint], links: Collection[str]) ->
 
 
 def with_defaults(actuator: CanonicalActuator, velocities: int) -> CanonicalActuator:
-    """EU-CAN-005, step 6: `gear_ratio` and `rotor_inertia` left out are 1 and 0."""
-    if actuator.gear_ratio is not None and actuator.rotor_inertia is not None:
-        return actuator
+    """EU-CAN-005, step 6: `gear_ratio` and `rotor_inertia` left out are 1 and 0, `name` is that of the joint."""
     return CanonicalActuator(
         joint=actuator.joint,
         gear_ratio=[1.0] * velocities if actuator.gear_ratio is None else actuator.gear_ratio,
         rotor_inertia=[0.0] * velocities if actuator.rotor_inertia is None else actuator.rotor_inertia,
+        name=actuator.joint if actuator.name is None else actuator.name,
+        control=actuator.control,
     )
+
+
+def with_springs(joint: CanonicalJoint) -> CanonicalJoint:
+    """EU-CAN-005, step 6: no springs are springs with the stiffness 0, and the rest position of such a spring is 0."""
+    if joint.stiffness is None and joint.rest is None:
+        return joint
+    if not any(joint.stiffness or ()):
+        return joint.model_copy(update={"stiffness": None, "rest": None})
+    stiffness = joint.stiffness or []
+    rest = [0.0] * len(stiffness) if joint.rest is None else joint.rest
+    if len(rest) != len(stiffness):
+        return joint
+    return joint.model_copy(update={"rest": [at if k else 0.0 for at, k in zip(rest, stiffness, strict=True)]})
 
 
 def with_limits(joint: CanonicalJoint) -> CanonicalJoint:

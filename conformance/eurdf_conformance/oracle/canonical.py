@@ -86,5 +86,9 @@ def canonical_actuator(actuator: Actuator, joints: dict[str, Joint]) -> Canonica
     if actuator.joint not in joints or not (nv := joints[actuator.joint].kind.nv) or joints[actuator.joint].mimic:
         raise NotRead(f"the actuator {actuator.joint!r}")
     return CanonicalActuator(
-        joint=actuator.joint, gear_ratio=[actuator.gear_ratio] * nv, rotor_inertia=[actuator.rotor_inertia] * nv
+        joint=actuator.joint,
+        gear_ratio=[actuator.gear_ratio] * nv,
+        rotor_inertia=[actuator.rotor_inertia] * nv,
+        name=actuator.name,
+        control=actuator.control,
     )

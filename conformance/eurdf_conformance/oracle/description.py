@@ -51,8 +51,10 @@ class Change:
     #: m a revolution.
     pitch: float = 0.0
     merges: tuple[str, ...] = ()
-    #: lower, upper, velocity, effort, damping, friction, armature.
+    #: lower, upper, velocity, effort, damping, friction, armature, stiffness, rest.
     stated: dict[str, PerNumber] = field(default_factory=dict)
+    #: Whether the joint, or each of those merged, mimics no other, whatever the URDF says: EU-JNT-033.
+    freed: bool = False
 
 
 @dataclass(frozen=True)
@@ -63,6 +65,9 @@ class Actuator:
     gear_ratio: float = 1.0
     #: kg·m²
     rotor_inertia: float = 0.0
+    name: str | None = None
+    #: Smallest and largest torque or force, N·m or N.
+    control: list[float] | None = None
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Limits, damping, friction and armature of a joint: chapter Joints, Properties, and EU-ACT-006."""
+"""Limits, damping, friction, armature and springs of a joint: chapter Joints, Properties, and EU-ACT-006."""
 
 from __future__ import annotations
 
@@ -26,11 +26,16 @@ class Properties:
     damping: list[float]
     friction: list[float]
     armature: list[float]
+    #: One a coordinate; None where there is no spring.
+    stiffness: list[float] | None
+    rest: list[float] | None
 
 
 def properties(joint: Joint, actuator: Actuator | None) -> Properties:
     """What the description states of a joint, and else what the URDF says of it."""
-    nv = joint.kind.nv
+    nv, springs = joint.kind.nv, len(joint.kind.bounded)  # a coordinate that can have limits can have a spring
+    if "stiffness" in joint.change.stated and not springs:
+        raise NotRead(f"a spring of {joint.name!r}")
     armature = actuator.gear_ratio**2 * actuator.rotor_inertia if actuator else 0.0  # EU-ACT-006
     each = sources(joint)
     k = length_of_a_radian(joint)
@@ -56,6 +61,8 @@ def properties(joint: Joint, actuator: Actuator | None) -> Properties:
         damping=of("damping", nv, [source.damping * k**2 if source else 0.0 for source in each]),
         friction=of("friction", nv, [source.friction * k if source else 0.0 for source in each]),
         armature=of("armature", nv, [armature] * nv),
+        stiffness=of("stiffness", springs, []) if "stiffness" in stated else None,
+        rest=of("rest", springs, [0.0] * springs) if "stiffness" in stated else None,
     )
 
 

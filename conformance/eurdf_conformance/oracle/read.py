@@ -13,7 +13,7 @@ from eurdf_conformance.oracle.not_read import NotRead
 from eurdf_conformance.oracle.plain_value import text
 from eurdf_conformance.oracle.robot import OracleRobot
 from eurdf_conformance.oracle.tree import build
-from eurdf_conformance.oracle.urdf import read_urdf
+from eurdf_conformance.oracle.urdf import Urdf, read_urdf
 from eurdf_conformance.oracle.version1 import KEYS as KEYS_1
 from eurdf_conformance.oracle.version1 import version1
 from eurdf_conformance.oracle.version2 import KEYS as KEYS_2
@@ -35,16 +35,32 @@ def read(description: Path | None, urdf: Path, version: Version | None = None) -
     found = described(description) if description else Description(version=version or "2")
     if version not in (None, found.version):
         raise NotRead(f"the description is of version {found.version}")
-    for names in (closure.name for closure in found.closures), (actuator.joint for actuator in found.actuators):
+    for names in (
+        (closure.name for closure in found.closures),
+        (actuator.joint for actuator in found.actuators),
+        (actuator.name or actuator.joint for actuator in found.actuators),
+    ):
         if any(count > 1 for count in Counter(names).values()):
             raise NotRead("a closure or an actuator that occurs twice")
-    source = read_urdf(urdf)
+    source = freed(read_urdf(urdf), found)
     if found.version == "1":
         source = source.without_mimics()
         found = with_merges_found(found, source)
     robot = OracleRobot(source, found, build(source, found))
     robot.canonical()  # so that every name in the description is looked up
     return robot
+
+
+def freed(urdf: Urdf, description: Description) -> Urdf:
+    """The URDF without the mimics of the joints that the description frees, EU-JNT-033."""
+    for name, change in description.changes.items():
+        if change.freed:
+            named = change.merges or (name,)
+            mimicking = [each for each in named if each in urdf.joints and urdf.joints[each].mimic]
+            if not mimicking:
+                raise NotRead(f"{name!r} mimics no joint")
+            urdf = urdf.without_mimics(mimicking)
+    return urdf
 
 
 def described(path: Path) -> Description:

@@ -77,9 +77,7 @@ class OracleRobot:
     @cached_property
     def armature(self) -> Array:
         """One a velocity, kg·m² or kg."""
-        motors = {actuator.joint: actuator for actuator in self.description.actuators}
-        found = [properties(joint, motors.get(joint.name)).armature for joint in self.tree.joints if not joint.mimic]
-        return np.array([each for joint in found for each in joint])
+        return armature_at_leaders(self)
 
     def kinematics(self, q: Configuration) -> Kinematics:
         """Where the bodies are, and how they can move."""
@@ -173,6 +171,14 @@ class OracleRobot:
                     found = None if center is None else center.tolist()
             values = values.model_copy(update={quantity: found})
         return values
+
+
+def armature_at_leaders(robot: OracleRobot) -> Array:
+    """One a velocity, kg·m² or kg: Gᵀ diag(I) G, with the armature I of every joint, mimics too, EU-JNT-032."""
+    motors = {actuator.joint: actuator for actuator in robot.description.actuators}
+    found = [properties(joint, motors.get(joint.name)).armature for joint in robot.tree.joints]
+    G = configuration.sharing(robot.tree)
+    return np.diag(G.T @ np.diag([each for joint in found for each in joint]) @ G)
 
 
 def world_pose(at: Kinematics, frame: Placed) -> Pose:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.parsers import expat
@@ -81,9 +82,11 @@ class Urdf:
         (root,) = (name for name in self.links if name not in carried)
         return root
 
-    def without_mimics(self) -> Urdf:
-        """The URDF as version 1 has it, EU-ONE-009."""
-        return replace(self, joints={name: replace(joint, mimic=None) for name, joint in self.joints.items()})
+    def without_mimics(self, of: Collection[str] | None = None) -> Urdf:
+        """The URDF in which the joints named mimic no other; None: no joint does, as in version 1, EU-ONE-009."""
+        named = self.joints if of is None else of
+        joints = {name: replace(joint, mimic=None) if name in named else joint for name, joint in self.joints.items()}
+        return replace(self, joints=joints)
 
     def below(self, link: str) -> list[UrdfJoint]:
         """The joints on a link, in the order of the file."""

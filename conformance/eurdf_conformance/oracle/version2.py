@@ -27,6 +27,8 @@ KEYS = (
 )
 PROPERTIES = ("limits", "damping", "friction", "armature")
 LIMITS = ("lower", "upper", "velocity", "effort")
+#: Since version 2.1.
+SPRING = ("stiffness", "rest")
 
 #: For each type that a joint can become, the keys that go with it.
 CHANGES = {"spherical": ("merges",), "universal": ("axes",), "cylindrical": (), "helical": ("pitch",), "fixed": ()}
@@ -53,8 +55,8 @@ def version2(document: dict[str, Any]) -> Description:
         version=version,
         root=roots[root],
         closures=tuple(found for found in closures if found is not None),
-        changes={name: change(value) for name, value in mapping(members.get("joints", {})).items()},
-        actuators=tuple(actuator(value) for value in sequence(members.get("actuators", []))),
+        changes={name: change(value, version) for name, value in mapping(members.get("joints", {})).items()},
+        actuators=tuple(actuator(value, version) for value in sequence(members.get("actuators", []))),
         frames=dict(frames),
         configurations={
             name: {joint: numbers(value) for joint, value in mapping(configuration).items()}
@@ -124,29 +126,46 @@ def frame(value: Any) -> tuple[str, FrameReference]:
     return text(members.pop("name", None)), reference(members)
 
 
-def actuator(value: Any) -> Actuator:
-    """A joint by its name, or with its gear."""
+def actuator(value: Any, version: Version) -> Actuator:
+    """A joint by its name, or with its motor."""
     if isinstance(value, str):
         return Actuator(value)
-    members = mapping(value, ("joint", "gear_ratio", "rotor_inertia"))
+    members = mapping(
+        value, ("joint", "gear_ratio", "rotor_inertia", *(("name", "control") if version == "2.1" else ()))
+    )
     gear, rotor = number(members.get("gear_ratio", 1)), number(members.get("rotor_inertia", 0))
-    return Actuator(text(members.get("joint")), gear, rotor)
+    name = text(members["name"]) if "name" in members else None
+    return Actuator(text(members.get("joint")), gear, rotor, name, control_range(members))
 
 
-def change(value: Any) -> Change:
+def control_range(members: dict[str, Any]) -> list[float] | None:
+    """The range of torque or force of an actuator, EU-ACT-009; None where none is stated."""
+    if "control" not in members:
+        return None
+    stated = [number(value) for value in sequence(members["control"])]
+    if len(stated) != 2 or stated[0] > stated[1]:
+        raise NotRead(f"the control range {stated!r}")
+    return stated
+
+
+def change(value: Any, version: Version) -> Change:
     """A type alone, or a mapping with a type, properties, or both."""
     members = {"type": value} if isinstance(value, str) else mapping(value)
     kind = members.get("type")
     if kind is not None and text(kind) not in CHANGES:
         raise NotRead(f"the type {kind!r}")
-    members = mapping(members, ("type", *PROPERTIES, *CHANGES.get(kind or "", ())))
+    added = (*SPRING, "mimic") if version == "2.1" else ()
+    members = mapping(members, ("type", *PROPERTIES, *added, *CHANGES.get(kind or "", ())))
+    if members.get("mimic", False) is not False or ("rest" in members and "stiffness" not in members):
+        raise NotRead(f"the joint {value!r}")
     stated = members | mapping(members.get("limits", {}), LIMITS)
     return Change(
         type=kind,
         axes=axes(members.get("axes")) if kind == "universal" else (),
         pitch=number(members.get("pitch")) if kind == "helical" else 0.0,
         merges=tuple(text(name) for name in sequence(members.get("merges", []))),
-        stated={name: numbers(stated[name]) for name in (*LIMITS, *PROPERTIES[1:]) if name in stated},
+        stated={name: numbers(stated[name]) for name in (*LIMITS, *PROPERTIES[1:], *SPRING) if name in stated},
+        freed="mimic" in members,
     )
 
 

@@ -8,14 +8,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import (
-    BaseModel,
-    ConfigDict,
-    Field,
-    SerializerFunctionWrapHandler,
-    TypeAdapter,
-    model_serializer,
-)
+from pydantic import BaseModel, ConfigDict, Field, SerializerFunctionWrapHandler, TypeAdapter, model_serializer
 
 from eurdf_conformance.level import Level, Version
 
@@ -35,6 +28,17 @@ class Value(BaseModel):
 
     # Unknown members of an answer are an error: a misspelt one would be a part that nobody reads.
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+
+    #: Members that a message does not have where they are None: those that version 2.1 adds.
+    optional: ClassVar[frozenset[str]] = frozenset()
+
+    @model_serializer(mode="wrap")
+    def _without_optional(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        written: dict[str, Any] = handler(self)
+        for name in self.optional:
+            if written.get(name) is None:
+                written.pop(name, None)
+        return written
 
 
 class Request(Value):
@@ -134,6 +138,8 @@ class CanonicalMimic(Value):
 class CanonicalJoint(Value):
     """A joint that moves."""
 
+    optional = frozenset({"stiffness", "rest"})
+
     name: str
     type: Literal[
         "revolute",
@@ -155,11 +161,15 @@ class CanonicalJoint(Value):
     damping: Numbers
     friction: Numbers
     armature: Numbers
+    stiffness: Numbers | None = Field(default=None, description="Of springs, one a coordinate, N·m/rad or N/m.")
+    rest: Numbers | None = Field(default=None, description="Where they have no force, one a coordinate, rad or m.")
     mimic: CanonicalMimic | None = None
 
 
 class CanonicalClosure(Value):
     """Two frames held together."""
+
+    optional = frozenset({"axes", "length"})
 
     name: str
     type: Literal["3d", "6d", "hinge", "distance"]
@@ -170,18 +180,19 @@ class CanonicalClosure(Value):
     )
     length: Number | None = Field(default=None, description="Of a distance: m.")
 
-    @model_serializer(mode="wrap")
-    def _of_its_type(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Without the members that closures of this type do not have."""
-        return {name: value for name, value in handler(self).items() if value is not None}
-
 
 class CanonicalActuator(Value):
     """A joint with a motor; ratio and inertia one a velocity."""
 
+    optional = frozenset({"name", "control"})
+
     joint: str
     gear_ratio: Numbers | None = None
     rotor_inertia: Numbers | None = None
+    name: str | None = Field(default=None, description="Its name; that of the joint if left out.")
+    control: Annotated[Numbers, Field(min_length=2, max_length=2)] | None = Field(
+        default=None, description="Smallest and largest torque or force at the joint, N·m or N."
+    )
 
 
 class CanonicalRobot(Value):

@@ -8,12 +8,13 @@ import os
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.output_file import write_new
 
 if TYPE_CHECKING:
+    from eurdf.format.schema import SchemaVersion
     from eurdf.format.urdf.data import Urdf
 
 #: The message if a description goes to the standard output.
@@ -55,7 +56,7 @@ def add_schema_option(parser: argparse.ArgumentParser) -> None:
 
 
 def schema_beside(
-    output: str | os.PathLike[str], version: Literal["1", "2"], choice: str, urdf: Urdf, force: bool = False
+    output: str | os.PathLike[str], version: SchemaVersion, choice: str, urdf: Urdf, force: bool = False
 ) -> EditorSchema | None:
     """The schema to write beside a description, or None; nothing is written yet.
 

@@ -218,10 +218,11 @@ def _joints(info: RobotInfo) -> Table:
     table = new_table("joint", "type", "parent", "child", "nv", "")
     table.columns[4].justify = "right"
     for joint in info.joint_list:
-        if joint.actuated:
-            note = cell("actuated", "cyan")
-        else:
-            note = cell(f"mimics {joint.mimics}" if joint.mimics else "", "dim")
+        notes = [f"mimics {joint.mimics}"] if joint.mimics else []
+        if any(joint.stiffness):
+            stiffness = ", ".join(f"{each:g}" for each in joint.stiffness)
+            notes.append(f"spring {stiffness}, rest {', '.join(f'{each:g}' for each in joint.rest)}")
+        note = cell("; ".join(["actuated", *notes]), "cyan") if joint.actuated else cell("; ".join(notes), "dim")
         table.add_row(
             cell(joint.name, "bold"), joint.type.value, cell(joint.parent), cell(joint.child), str(joint.nv), note
         )

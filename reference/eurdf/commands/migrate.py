@@ -23,9 +23,10 @@ if TYPE_CHECKING:
 _DESCRIPTION = """\
 Convert a description from version 1 to version 2, with the same model.
 
-Version 2 states explicitly what version 1 implies: merged revolute joints, names of closures. Comments and your own
-data are kept; your own keys get the prefix x-. Before the result is written, it is read and checked: if its model
-differs, nothing is written.
+Version 2 states explicitly what version 1 implies: merged revolute joints, names of closures. If the URDF has mimic
+joints, which version 1 lets move freely, the result has version 2.1, which can say so; else version 2.0. Comments and
+your own data are kept; your own keys get the prefix x-. Before the result is written, it is read and checked: if its
+model differs, nothing is written.
 """
 
 
@@ -53,7 +54,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def run(args: argparse.Namespace) -> int:
     """Migrate and write a description, print notes, and return the exit code."""
     from eurdf.linking.description import Described, Unlinked, describe
-    from eurdf.writing.migrated_text import NotMigratable, schema_named
+    from eurdf.writing.migrated_text import NotMigratable, schema_named, version_needed
     from eurdf.writing.migration import migrate
 
     path = select_one(args.path)
@@ -69,6 +70,7 @@ def run(args: argparse.Namespace) -> int:
     document = description.extension.document
     source, urdf = document.source, description.urdf.document.source
     schema: EditorSchema | None = None
+    written: str = description.extension.version
     if description.extension.version != "1":
         text, output = source.text, None
         notes: tuple[str, ...] = (
@@ -76,10 +78,10 @@ def run(args: argparse.Namespace) -> int:
         )
     else:
         output = args.output
-        reference = schema_named(document) if args.schema == "format" else None
+        reference = schema_named(document, description.urdf) if args.schema == "format" else None
         if output is not None and not _leads_to_a_schema(reference, output):
             refuse_to_replace(output, args.force)
-            schema = schema_beside(output, "2", args.schema, description.urdf, args.force)
+            schema = schema_beside(output, version_needed(description.urdf), args.schema, description.urdf, args.force)
             reference = None if schema is None else schema.reference
         try:
             urdf_path = urdf_named(output or source.file, urdf)
@@ -88,7 +90,7 @@ def run(args: argparse.Namespace) -> int:
             line = document.place(reason.pointer).line if reason.pointer else None
             where = f"{source.file}:{line}" if line else source.file
             raise CannotRun(f"cannot migrate: {where}: {reason}") from None
-        text, notes = migration.text, migration.notes
+        text, notes, written = migration.text, migration.notes, migration.mechanism.version
         if not urdf.is_file:
             notes = (*notes, not_in_a_file(urdf, urdf_path))
         if output is not None:
@@ -98,7 +100,7 @@ def run(args: argparse.Namespace) -> int:
         elif reference is None and args.schema != "none":
             notes = (*notes, NOT_BESIDE)
     if args.json:
-        write_json(_result(path, description.extension.version, output, schema, notes, text))
+        write_json(_result(path, description.extension.version, written, output, schema, notes, text))
         return 0
     if args.output is None:
         write_yaml(text)
@@ -174,14 +176,20 @@ def print_notes(sentences: tuple[str, ...] | list[str]) -> None:
 
 
 def _result(
-    path: str, version: str, output: str | None, schema: EditorSchema | None, notes: tuple[str, ...], text: str
+    path: str,
+    version: str,
+    written: str,
+    output: str | None,
+    schema: EditorSchema | None,
+    notes: tuple[str, ...],
+    text: str,
 ) -> dict[str, Any]:
     from eurdf.diagnostics.report import encodable
 
     return {
         "path": encodable(path),
         "from": version,
-        "to": "2.0" if version == "1" else version,
+        "to": written,
         "output": None if output is None else encodable(output),
         "schema": None if schema is None else encodable(os.fspath(schema.path)),
         "notes": [encodable(note) for note in notes],

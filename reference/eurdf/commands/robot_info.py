@@ -42,6 +42,10 @@ class JointInfo(_Entry):
     """Whether it is actuated."""
     mimics: str | None
     """Leader of a mimic joint, or null."""
+    stiffness: tuple[float, ...]
+    """Stiffness of a spring on each coordinate, N·m/rad or N/m; empty without springs."""
+    rest: tuple[float, ...]
+    """Coordinate at which each of these springs has no force, rad or m."""
 
 
 class ClosureInfo(_Entry):
@@ -70,6 +74,10 @@ class ActuatorInfo(_Entry):
     """Type of the joint."""
     nv: Count
     """Number of velocities actuated."""
+    name: str
+    """Name of the actuator: that of the joint unless stated."""
+    control: tuple[float, float] | None
+    """Smallest and largest torque or force at the joint, N·m or N; null if not stated."""
 
 
 class FrameInfo(_Entry):
@@ -221,6 +229,7 @@ def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
     rows = residual(robot, analysis.q)
     starts = np.cumsum([0, *(closure.rows for closure in mechanism.closures)])
     joints = {joint.name: joint for joint in mechanism.joints}
+    controls = {joint: motor.control for joint, motor in mechanism.motors.items()}
     return RobotInfo(
         name=mechanism.name,
         version=mechanism.version,  # type: ignore[arg-type]  # checked by the model
@@ -284,8 +293,14 @@ def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
         motion_list=tuple(MotionInfo(joints=motion.joints) for motion in analysis.motions),
         dependent_list=analysis.dependent_actuators,
         actuator_list=tuple(
-            ActuatorInfo(joint=name, type=joints[name].type, nv=joints[name].coordinates.nv)
-            for name in mechanism.actuators
+            ActuatorInfo(
+                joint=joint,
+                type=joints[joint].type,
+                nv=joints[joint].coordinates.nv,
+                name=name,
+                control=controls.get(joint),
+            )
+            for joint, name in zip(mechanism.actuators, robot.actuation.names, strict=True)
         ),
         frame_list=tuple(
             FrameInfo(name=frame.name, body=frame.body) for frame in mechanism.frames if frame.kind == "frame"
@@ -311,6 +326,8 @@ def _joint_infos(robot: Robot) -> Iterator[JointInfo]:
             nv=6,
             actuated=False,
             mimics=None,
+            stiffness=(),
+            rest=(),
         )
     at, actuated = slots(mechanism, robot.model), set(robot.actuation.joints)
     for joint in mechanism.joints:
@@ -326,6 +343,8 @@ def _joint_infos(robot: Robot) -> Iterator[JointInfo]:
             nv=slot.nv if slot else 0,
             actuated=joint.name in actuated,
             mimics=joint.mimic.joint if joint.mimic else None,
+            stiffness=joint.properties.stiffness,
+            rest=joint.properties.rest,
         )
 
 

@@ -156,6 +156,7 @@ unknown-joint              EU-JNT-001 error   A name is not a joint of the robot
 unknown-actuator           EU-ACT-001 error   An actuator names a joint that does not exist.
 own-key-is-joint           EU-EXT-003 warning A user-defined key is the name of a joint, but has no effect on it.
 length-mismatch            EU-ONE-003 error   Two corresponding lists have different lengths.
+duplicate-actuator-name    EU-ACT-008 error   Two actuators have the same name.
 duplicate-replacement      EU-JNT-002 error   A joint is changed or merged more than once.
 duplicate-joint-name       EU-JNT-003 error   The name of a joint that the description creates is already in use.
 """,
@@ -167,7 +168,9 @@ actuator-immobile          EU-ACT-002 error   An actuated joint cannot move.
 actuator-duplicate         EU-ACT-003 error   A joint is listed as an actuator twice.
 actuator-mimic             EU-ACT-004 error   An actuated joint is a mimic joint.
 actuator-merged            EU-ACT-005 error   An actuated joint was merged into another.
+actuator-control-reversed  EU-ACT-009 error   The lower bound of a control range is above the upper bound.
 joint-mimics               EU-JNT-004 error   A mimic joint is changed or merged, or its leader is replaced or merged.
+joint-not-mimic            EU-JNT-033 error   A joint is freed that mimics no other.
 joint-kind                 EU-JNT-005 error   The type of a joint does not allow this replacement.
 joint-axis-zero            EU-JNT-006 error   An axis of a universal joint is zero.
 joint-axes-parallel        EU-JNT-007 error   Two axes of a universal joint, or of joints to merge, are parallel.

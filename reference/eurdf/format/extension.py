@@ -82,6 +82,9 @@ class JointEntry:
         damping: N·m·s/rad or N·s/m.
         friction: N·m or N.
         armature: kg·m² or kg.
+        stiffness: Of springs, N·m/rad or N/m.
+        rest: Coordinates at which the springs have no force, rad or m.
+        freed: Whether the joint, or each of those merged, has a coordinate of its own despite its ``<mimic>``.
     """
 
     pointer: Pointer
@@ -98,16 +101,30 @@ class JointEntry:
     damping: float | tuple[float, ...] | None = None
     friction: float | tuple[float, ...] | None = None
     armature: float | tuple[float, ...] | None = None
+    stiffness: float | tuple[float, ...] | None = None
+    rest: float | tuple[float, ...] | None = None
+    freed: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class ActuatorEntry:
-    """An actuated joint; gear ratio and rotor inertia (kg·m²) are None where not written."""
+    """An actuated joint; what is not written is None.
+
+    Attributes:
+        pointer: Where it is.
+        joint: Name of the joint.
+        gear_ratio: Motor revolutions per joint revolution.
+        rotor_inertia: kg·m².
+        name: Name of the actuator.
+        control: Smallest and largest torque or force at the joint, N·m or N.
+    """
 
     pointer: Pointer
     joint: str
     gear_ratio: float | None = None
     rotor_inertia: float | None = None
+    name: str | None = None
+    control: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,7 +155,6 @@ class Extension:
         urdf: Path of the URDF, relative to the YAML file.
         root: Whether the root link is fixed or floating.
         closures: In file order; likewise the other lists.
-        merges_revolutes: Whether three revolute joints whose axes meet become one spherical joint (version 1).
         metadata: The file's metadata.
         own_data: User data, as plain values, by the pointer of their key: at any level of a version 2 file,
             at the top of a version 1 file.
@@ -153,7 +169,6 @@ class Extension:
     actuators: tuple[ActuatorEntry, ...] = ()
     frames: tuple[FrameEntry, ...] = ()
     configurations: tuple[ConfigurationEntry, ...] = ()
-    merges_revolutes: bool = False
     metadata: Mapping[str, object] = field(default_factory=dict)
     own_data: Mapping[Pointer, object] = field(default_factory=dict)
 

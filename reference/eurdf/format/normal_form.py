@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
-from eurdf.format import version2, version2_1
+from eurdf.format import actuator2_1, joint2_1, version2, version2_1
 from eurdf.format.extension import (
     ActuatorEntry,
     ClosureEntry,
@@ -51,7 +52,6 @@ def from_version1(model: Version1, document: YamlDocument) -> Extension:
         closures=closures,
         joints=joints,
         actuators=tuple(ActuatorEntry(("name_mot", index), name) for index, name in enumerate(model.name_mot)),
-        merges_revolutes=True,
         own_data={(key,): value for key, value in (model.model_extra or {}).items()},
     )
 
@@ -150,13 +150,20 @@ def _joint(name: str, joint: version2.Joint) -> JointEntry:
         damping=_numbers(joint.damping),
         friction=_numbers(joint.friction),
         armature=_numbers(joint.armature),
+        stiffness=_numbers(joint.stiffness) if isinstance(joint, joint2_1.Added) else None,
+        rest=_numbers(joint.rest) if isinstance(joint, joint2_1.Added) else None,
+        freed=isinstance(joint, joint2_1.Added) and joint.mimic is False,
     )
 
 
 def _actuator(pointer: Pointer, actuator: str | version2.Geared) -> ActuatorEntry:
     if isinstance(actuator, str):
         return ActuatorEntry(pointer, actuator)
-    return ActuatorEntry(pointer, actuator.joint, actuator.gear_ratio, actuator.rotor_inertia)
+    entry = ActuatorEntry(pointer, actuator.joint, actuator.gear_ratio, actuator.rotor_inertia)
+    if not isinstance(actuator, actuator2_1.Geared):
+        return entry
+    control = None if actuator.control is None else (actuator.control[0], actuator.control[1])
+    return replace(entry, name=actuator.name, control=control)
 
 
 def _vector(numbers: Sequence[float]) -> Vector3:

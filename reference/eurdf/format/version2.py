@@ -343,7 +343,8 @@ _JOINT_MODELS: dict[str, type[JointProperties]] = {
 }
 
 
-def _joint_form(value: Any) -> str | None:
+def joint_form(value: Any) -> str | None:
+    """The tag of the form that the entry of a joint has, or None."""
     if isinstance(value, str):
         return "type alone"
     if not isinstance(value, dict):
@@ -367,7 +368,7 @@ Joint = TypeAliasType(
         | Annotated[Cylindrical, Tag("cylindrical joint")]
         | Annotated[Helical, Tag("helical joint")]
         | Annotated[Fixed, Tag("fixed joint")],
-        either(_joint_form, "a joint type, or a mapping {type: …, limits: …}"),
+        either(joint_form, "a joint type, or a mapping {type: …, limits: …}"),
     ],
 )
 
@@ -394,12 +395,16 @@ class Geared(StrictMapping):
     )
 
 
+def actuator_form(value: Any) -> str | None:
+    """The tag of the form that an actuator has, or None."""
+    if isinstance(value, dict):
+        return "geared actuator"
+    return "by name" if isinstance(value, str) else None
+
+
 Actuator = Annotated[
     Annotated[MovingJointName, Tag("by name")] | Annotated[Geared, Tag("geared actuator")],
-    either(
-        lambda value: {str: "by name", dict: "geared actuator"}.get(type(value)),
-        "the name of a joint, or a mapping {joint: …, gear_ratio: …}",
-    ),
+    either(actuator_form, "the name of a joint, or a mapping {joint: …, gear_ratio: …}"),
 ]
 
 

@@ -7,8 +7,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, Tag
 
-from eurdf.format import version2
-from eurdf.format.field import StrictMapping, either
+from eurdf.format import actuator2_1, joint2_1, version2
+from eurdf.format.field import ByName, StrictMapping, either
 from eurdf.format.version2 import Closure, FrameReference, Name, Vector, Version2
 
 VERSION: Literal["2.1"] = "2.1"
@@ -119,7 +119,22 @@ class Version2_1(Version2):  # noqa: N801 - the version has a point
         description="Pairs of frames that are held together.",
         examples=[[{"name": "knee_pin", "type": "hinge", "frames": ["coupler_tip", "rocker_tip"], "axis": [0, 1, 0]}]],
     )
+    joints: ByName[joint2_1.Joint] = Field(  # type: ignore[assignment]  # with more properties
+        default={},
+        title="Joints",
+        description=version2.Version2.model_fields["joints"].description,
+        examples=[{"hip_ball": "spherical", "spring_ankle": {"stiffness": 1200.0, "rest": 0.1}}],
+    )
+    actuators: list[actuator2_1.Actuator] = Field(  # type: ignore[assignment]  # with more properties
+        default=[],
+        title="Actuators",
+        description="The joints that have a motor: names, or mappings with name, gear and control range.",
+        examples=[["motor_hip_x", {"joint": "motor_knee", "gear_ratio": 50, "control": [-80, 80]}]],
+    )
 
+
+#: Forms of the entry of a joint that are mappings.
+_JOINT_FORMS = ("kept type", *(f"{kind} joint" for kind in version2.JOINT_TYPES))
 
 _ALONE = "'axis' and 'axes' exclude one another"
 
@@ -136,6 +151,8 @@ KEYS: Mapping[str, tuple[str, ...]] = {
     "hinge": tuple(Hinge.model_fields),
     "hinge with axes": tuple(HingeAboutTwo.model_fields),
     "distance": tuple(Distance.model_fields),
+    "geared actuator": (*version2.KEYS["geared actuator"], *actuator2_1.ADDED),
+    **{form: (*version2.KEYS[form], *joint2_1.ADDED) for form in _JOINT_FORMS},
 }
 TAGS = version2.TAGS | {"plain closure", "hinge", "hinge with axes", "distance"}
 EXCLUDED: Mapping[str, Mapping[str, str]] = {
@@ -149,5 +166,9 @@ EXCLUDED: Mapping[str, Mapping[str, str]] = {
 #: Types of closure in each version, beside user-defined ones.
 CLOSURE_TYPES: Mapping[str, tuple[str, ...]] = {"2.0": ("3d", "6d"), VERSION: ("3d", "6d", "hinge", "distance")}
 
-#: Keys that version 2.1 adds to a mapping of version 2.0, by the key of that mapping in `version2.KEYS`.
-ADDED_KEYS: Mapping[str, frozenset[str]] = {"closures": frozenset(_KEYS_OF_TYPES)}
+#: Keys that version 2.1 adds, by the last field or tag on the way to their mapping.
+ADDED_KEYS: Mapping[str, tuple[str, ...]] = {
+    "closures": tuple(_KEYS_OF_TYPES),
+    "geared actuator": actuator2_1.ADDED,
+    **dict.fromkeys(_JOINT_FORMS, joint2_1.ADDED),
+}

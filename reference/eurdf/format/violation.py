@@ -35,6 +35,7 @@ _EXPECTED = {
     "list_type": "a list",
     "dict_type": "a mapping",
     "model_type": "a mapping",
+    "bool_type": "false",
 }
 
 #: Lengths of pairs and vectors, which are exact; other lists can have from 1 to 6 or 7 items.
@@ -305,11 +306,12 @@ def _unknown_key(violation: _Violation, meant: str | None, document: YamlDocumen
         return Diagnostic("conflicting-keys", f"{subject(mapping)}: {excluded[key]}", place)
     keys = KEYS[violation.mapping]
     likely = meant or _likeliest_key(key, (*keys, *excluded))
+    later = () if document.data.get("extended_urdf") == VERSION else ADDED_KEYS.get(violation.mapping, ())
     if meant is None and (outside := key_of_the_file_hint(violation.pointer)):
         hint = outside
     elif not mapping and key in FROM_VERSION1:
         hint = f"it is a key of version 1; in version 2.0, use '{FROM_VERSION1[key]}'"
-    elif key in ADDED_KEYS.get(violation.mapping, ()):
+    elif key in later:
         hint = _version_hint(f"'{key}'", document)
     elif likely is not None:
         hint = f"did you mean '{likely}'?"
@@ -318,7 +320,7 @@ def _unknown_key(violation: _Violation, meant: str | None, document: YamlDocumen
     elif beside := another_entry_hint(violation.pointer, document):
         hint = beside
     else:
-        known = ", ".join(f"'{known}'" for known in keys)
+        known = ", ".join(f"'{known}'" for known in keys if known not in later)
         hint = f"the keys here are {known}; your own keys begin with 'x-'"
     return Diagnostic("unknown-key", f"{subject(mapping)} has an unknown key {quoted(key)}", place, hint)
 

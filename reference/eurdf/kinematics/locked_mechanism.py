@@ -94,6 +94,7 @@ def lock_joints(mechanism: Mechanism, joints: Iterable[str], coordinates: Coordi
                 coupling.with_joints_locked(values) for coupling in mechanism.couplings if coupling.name not in constant
             ),
             actuators=tuple(name for name in mechanism.actuators if name not in at),
+            motors=MappingProxyType({name: motor for name, motor in mechanism.motors.items() if name not in at}),
             configurations=MappingProxyType(kept),
         ),
         tuple(at),

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def spring_force(robot: Robot, q: Vector) -> Vector:
-    """Generalized force of the springs (EU-JNT-031).
+    """Generalized force of the springs (EU-JNT-035).
 
     A spring with the stiffness k on a coordinate c has the force -k (c - rest). That of a mimic joint acts on its
     leader, multiplied by the multiplier.

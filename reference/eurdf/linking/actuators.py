@@ -36,6 +36,7 @@ def link_actuators(
         reporter: Gets what is found.
     """
     listed: dict[str, None] = {}
+    named: dict[str, str] = {}  # by name of an actuator, its joint
     for entry in entries:
         name = entry.joint
         pointer = _pointer_of_name(entry, reporter.document)
@@ -73,9 +74,34 @@ def link_actuators(
                 pointer,
                 f"actuate '{joint.mimic.joint}'",
             )
-        else:
+        elif _has_motor(entry, named, reporter):
             listed[name] = None
+            named[entry.name or name] = name
     return tuple(listed)
+
+
+def _has_motor(entry: ActuatorEntry, named: Mapping[str, str], reporter: YamlReporter) -> bool:
+    """EU-ACT-008, EU-ACT-009: the name of an actuator is unique, and its control range is in order."""
+    name = entry.name or entry.joint
+    if name in named:
+        pointer = _pointer_of_name(entry, reporter.document) if entry.name is None else (*entry.pointer, "name")
+        reporter.report(
+            "duplicate-actuator-name",
+            f"there is already an actuator '{name}', of joint '{named[name]}'",
+            pointer,
+            "give every actuator a unique name; an actuator without a name has that of its joint",
+        )
+        return False
+    if entry.control is not None and entry.control[0] > entry.control[1]:
+        lower, upper = entry.control
+        reporter.report(
+            "actuator-control-reversed",
+            f"the lower bound {lower:g} of the control range of actuator '{name}' is above the upper bound {upper:g}",
+            (*entry.pointer, "control"),
+            "swap the two bounds",
+        )
+        return False
+    return True
 
 
 def with_motor(joint: Joint, entry: ActuatorEntry, *, armature_given: bool) -> Joint:

@@ -13,6 +13,7 @@ from eurdf.linking.inertia import turned
 from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.mimic import drivers
 from eurdf.mechanism.pose import IDENTITY, Pose
 
 
@@ -43,6 +44,10 @@ def _not_finite(mechanism: Mechanism, urdf: Urdf, extension: Extension | None) -
             if not all(map(math.isfinite, joints[entry.joint].properties.armature)):
                 what = f"the armature of joint '{entry.joint}', gear_ratio² · rotor_inertia,"
                 yield what, extension.document.place(entry.pointer)
+        pointers = {entry.name: entry.pointer for entry in extension.joints}
+        for name, what in _not_finite_at_leaders(mechanism):
+            place = urdf.document.place(urdf.joints[name].element)
+            yield what, extension.document.place(pointers[name]) if name in pointers else place
     root = mechanism.bodies[0]
     pose_of = {root.name: IDENTITY}  # in the frame of the root, at zero
     in_joint = {root.name: (root.name, IDENTITY)}  # the body that the last joint moves, and the pose in its frame
@@ -75,6 +80,17 @@ def _not_finite(mechanism: Mechanism, urdf: Urdf, extension: Extension | None) -
             if not all(_is_finite(pose_of[anchor.body] * anchor.pose) for anchor in closure.anchors):
                 what = f"the pose of a frame of closure '{closure.name}' at zero"
                 yield what, extension.document.place(pointers[closure.name])
+
+
+def _not_finite_at_leaders(mechanism: Mechanism) -> Iterator[tuple[str, str]]:
+    """The mimic joints with a property that is not finite at their leader (EU-JNT-032), and what it is."""
+    joints = {joint.name: joint for joint in mechanism.joints}
+    for name, mimic in drivers({joint.name: joint.mimic for joint in mechanism.joints if joint.mimic}).items():
+        m, own = abs(mimic.multiplier), joints[name].properties
+        for key, factor in (("armature", m * m), ("damping", m * m), ("friction", m), ("stiffness", m * m)):
+            # Zero times infinity is not a number, but nothing is added at the leader.
+            if any(each and not math.isfinite(factor * each) for each in getattr(own, key)):
+                yield name, f"the {key} of mimic joint '{name}' at its leader '{mimic.joint}'"
 
 
 def _about_origin(pose: Pose, inertia: Inertia) -> tuple[float, ...]:

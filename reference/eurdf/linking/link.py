@@ -14,6 +14,7 @@ from eurdf.linking.closures import link_closures
 from eurdf.linking.configurations import link_configurations
 from eurdf.linking.finiteness import check_finite
 from eurdf.linking.frame_names import FrameNames
+from eurdf.linking.freeing import freed_joints
 from eurdf.linking.ranges import check_ranges
 from eurdf.linking.replacement import Joints, replace_joints
 from eurdf.linking.urdf_tree import bodies_of, joint_of
@@ -22,6 +23,7 @@ from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, Root
 from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic, drivers
+from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.spanning_tree import depth_first, rigid_roots
 from eurdf.reading.reporter import YamlReporter
 from eurdf.reading.yaml_node import json_pointer
@@ -60,13 +62,15 @@ def link(
         The mechanism, or None where an error was found.
     """
     before = diagnostics.error_count
+    if extension is not None:
+        reporter = YamlReporter(extension.document, diagnostics)
+        urdf = urdf.without_mimics(freed_joints(extension.joints, urdf, reporter))
     mimics = {} if mimic else {joint.name: joint.mimic for joint in urdf.joints.values() if joint.mimic}
     if not mimic or (extension is not None and extension.version == "1"):
         urdf = urdf.without_mimics()
     if extension is None:
         mechanism = _bare(urdf, diagnostics, root or "fixed")
     else:
-        reporter = YamlReporter(extension.document, diagnostics)
         mechanism = _described(urdf, extension, reporter, root or extension.root)
         mechanism = replace(mechanism, configurations=_led(mechanism, drivers(mimics)))
         _reserve_names(extension, reporter, mechanism.root)
@@ -109,7 +113,7 @@ def _described(urdf: Urdf, extension: Extension, reporter: YamlReporter, root: R
         urdf,
         _closure_links(extension, urdf),
         reporter,
-        merges_revolutes=extension.merges_revolutes,
+        version=extension.version,
     )
     check_ranges(urdf, joints.by_name, reporter.diagnostics)
     _own_keys(extension, urdf, reporter)
@@ -147,6 +151,13 @@ def _described(urdf: Urdf, extension: Extension, reporter: YamlReporter, root: R
         MappingProxyType({name: MappingProxyType(of) for name, of in configurations.items()}),
         MappingProxyType(dict(extension.metadata)),
         MappingProxyType({json_pointer(pointer): value for pointer, value in extension.own_data.items()}),
+        motors=MappingProxyType(
+            {
+                entry.joint: Motor(entry.name or entry.joint, entry.control)
+                for entry in entries
+                if entry.joint in actuators and (entry.name is not None or entry.control is not None)
+            }
+        ),
     )
 
 

@@ -30,6 +30,9 @@ _REPLACES: dict[str, frozenset[JointType]] = {
     "fixed": frozenset(JointType) - {JointType.FIXED},
 }
 
+#: Types without a spring: their velocities are not the rates of their coordinates (EU-JNT-009).
+_SPRINGLESS = frozenset({JointType.SPHERICAL, JointType.PLANAR, JointType.FLOATING})
+
 #: Types whose coordinates are angles and lengths that a limit can bound (EU-JNT-009).
 _LIMITED = frozenset(
     {JointType.REVOLUTE, JointType.PRISMATIC, JointType.UNIVERSAL, JointType.CYLINDRICAL, JointType.HELICAL}
@@ -64,7 +67,7 @@ def replace_joints(
     closure_links: Collection[str],
     reporter: YamlReporter,
     *,
-    merges_revolutes: bool,
+    version: str,
 ) -> set[str]:
     """Apply every entry of the description, then the three-revolute rule of version 1.
 
@@ -74,7 +77,8 @@ def replace_joints(
         urdf: The URDF.
         closure_links: Links that carry a frame of a closure.
         reporter: Gets what is found.
-        merges_revolutes: Whether version 1's rule holds.
+        version: Version of the description: version 1 merges revolutes by itself; since version 2.1, a description
+            may state springs and losses of mimic joints.
 
     Returns:
         Names of the joints that an invalid entry refers to, or would have made.
@@ -103,10 +107,10 @@ def replace_joints(
             continue
         seen.add(entry.name)
         before = len(reporter.diagnostics)
-        _Replacement(entry, joints, urdf, mimicking, mimicked, closure_links, reporter).apply()
+        _Replacement(entry, joints, urdf, mimicking, mimicked, closure_links, reporter, version).apply()
         if len(reporter.diagnostics) > before:
             faulty.update({entry.name, *entry.merges, *(f"{entry.name}_{letter}" for letter in entry.split)})
-    if merges_revolutes:
+    if version == "1":
         for chain in find_chains(urdf, joints.by_name, seen, closure_links):
             first, second, ball = merge(chain, chain.joints[2].name)
             for joint in (first, second, ball):
@@ -126,6 +130,7 @@ class _Replacement:
     mimicked: Mapping[str, str]
     closure_links: Collection[str]
     reporter: YamlReporter
+    version: str
 
     def report(self, code: str, message: str, *keys: str | int, hint: str | None = None) -> None:
         self.reporter.report(
@@ -168,7 +173,23 @@ class _Replacement:
         return joint
 
     def mimics(self, joint: Joint, pointer: Pointer) -> bool:
-        """EU-JNT-004: joints that mimic or are mimicked stay as the URDF has them."""
+        """EU-JNT-004: joints that mimic or are mimicked stay as the URDF has them.
+
+        EU-JNT-030: since version 2.1, a mimic joint may have losses, an armature and springs of its own.
+        """
+        stays = self.entry.type is None and not self.entry.merges
+        limited = any(getattr(self.entry, key) is not None for key in ("lower", "upper", "velocity", "effort"))
+        if joint.name in self.mimicking and stays and self.version == "2.1":
+            if not limited:
+                return False
+            leader = self.mimicking[joint.name]
+            self.reporter.report(
+                "joint-mimics",
+                f"the limits of joint '{joint.name}' cannot be changed: it mimics '{leader}'",
+                (*pointer, "limits"),
+                f"change the limits of '{leader}', or free the joint with mimic: false",
+            )
+            return True
         if joint.name in self.mimicking:
             why = f"it mimics '{self.mimicking[joint.name]}'"
         elif joint.name in self.mimicked and self.entry.type is not None:
@@ -179,7 +200,9 @@ class _Replacement:
             "joint-mimics",
             f"joint '{joint.name}' cannot be changed: {why}",
             pointer,
-            "remove <mimic> from the URDF, or do not change the joint",
+            "free the mimic joint with mimic: false, or do not change the joint"
+            if self.version == "2.1"
+            else "remove <mimic> from the URDF, or do not change the joint",
         )
         return True
 
@@ -365,7 +388,7 @@ class _Replacement:
     # -- overrides ------------------------------------------------------------------------------------------------
 
     def override(self, joint: Joint) -> Joint | None:
-        """EU-JNT-009, EU-JNT-010: properties in the description replace those of the URDF."""
+        """EU-JNT-009, EU-JNT-010, EU-JNT-031: properties in the description replace those of the URDF."""
         entry = self.entry
         if joint.type is JointType.FIXED:
             stated = [key for key in _PROPERTIES if getattr(entry, key) is not None]
@@ -385,6 +408,9 @@ class _Replacement:
             if bounds_position and joint.type not in _LIMITED:
                 self.report("joint-property", f"{joint.type} joint '{joint.name}' cannot have position limits", *keys)
                 return None
+            if attribute in ("stiffness", "rest") and joint.type in _SPRINGLESS:
+                self.report("joint-property", f"{joint.type} joint '{joint.name}' cannot have a spring", *keys)
+                return None
             n = joint.coordinates.nv
             values = stated if isinstance(stated, tuple) else (stated,) * n
             if len(values) != n:
@@ -398,6 +424,8 @@ class _Replacement:
             changes[attribute] = values
         if not changes:
             return joint
+        if "stiffness" in changes:
+            changes.setdefault("rest", (0.0,) * joint.coordinates.nv)
         properties = replace(joint.properties, **changes)
         if "armature" in changes:
             self.joints.armature_given.add(joint.name)
@@ -430,4 +458,6 @@ _PROPERTIES: dict[str, tuple[str, ...]] = {
     "damping": ("damping",),
     "friction": ("friction",),
     "armature": ("armature",),
+    "stiffness": ("stiffness",),
+    "rest": ("rest",),
 }

@@ -16,6 +16,7 @@ from eurdf.mechanism.body import Body
 from eurdf.mechanism.constraint import Closure, Constraint, Coupling
 from eurdf.mechanism.frame import Frame
 from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.motor import Motor
 
 Root = Literal["fixed", "floating"]
 
@@ -41,6 +42,7 @@ class Mechanism:
         metadata: The file's metadata.
         own_data: User data in the file, as plain values, by the JSON pointer of their key.
         couplings: Linear relations of joint coordinates, in file order.
+        motors: By actuated joint, the name of the actuator and its control range, where the file states one of them.
     """
 
     name: str
@@ -55,6 +57,7 @@ class Mechanism:
     metadata: Mapping[str, object] = field(default_factory=lambda: MappingProxyType({}))
     own_data: Mapping[str, object] = field(default_factory=lambda: MappingProxyType({}))
     couplings: tuple[Coupling, ...] = ()
+    motors: Mapping[str, Motor] = field(default_factory=lambda: MappingProxyType({}))
 
     @property
     def constraints(self) -> tuple[Constraint, ...]:

@@ -39,6 +39,8 @@ def differences(one: Mechanism, other: Mechanism) -> list[str]:
         found.append("the order of the closures differs")
     if a.actuators != b.actuators:
         found.append("the actuators or their order differ")
+    if a.motors != b.motors:
+        found.append("the names or control ranges of actuators differ")
     return found
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,24 +12,34 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.motor import Motor
 from eurdf.pinocchio.coordinates import Slot, slots
+
+_UNLIMITED = (-math.inf, math.inf)
 
 
 @dataclass(frozen=True, eq=False)
 class Actuation:
     """The actuated joints, in file order, and their indices in a model, one for each velocity (EU-ACT-007).
 
+    Names and control ranges are those of the description (EU-ACT-010).
+
     Attributes:
         joints: Their names.
         idx_q: Indices of all their coordinates in q, joint by joint.
         idx_v: Indices of all their velocities in v, joint by joint; there are nu.
         nv: Number of velocities of the model.
+        names: Names of the actuators, one for each joint.
+        control: Smallest and largest torque or force (nu, 2) of each velocity, N·m or N; -inf and inf where none is
+            stated.
     """
 
     joints: tuple[str, ...]
     idx_q: npt.NDArray[np.intp]
     idx_v: npt.NDArray[np.intp]
     nv: int
+    names: tuple[str, ...]
+    control: npt.NDArray[np.float64]
 
     @cached_property
     def selection(self) -> npt.NDArray[np.float64]:
@@ -50,9 +61,15 @@ def build_actuation(mechanism: Mechanism, model: pin.Model, at: Mapping[str, Slo
         at: The `slots` of the two, if the caller has them.
     """
     if not mechanism.actuators:
-        return Actuation((), np.empty(0, np.intp), np.empty(0, np.intp), model.nv)
+        return Actuation((), np.empty(0, np.intp), np.empty(0, np.intp), model.nv, (), np.empty((0, 2)))
     at = slots(mechanism, model) if at is None else at
     actuated = [at[name] for name in mechanism.actuators]
     idx_q = np.array([slot.idx_q + k for slot in actuated for k in range(slot.nq)], np.intp)
     idx_v = np.array([slot.idx_v + k for slot in actuated for k in range(slot.nv)], np.intp)
-    return Actuation(mechanism.actuators, idx_q, idx_v, model.nv)
+    motors = [mechanism.motors.get(name, Motor(name)) for name in mechanism.actuators]
+    control = [
+        motor.control or _UNLIMITED for motor, slot in zip(motors, actuated, strict=True) for _ in range(slot.nv)
+    ]
+    return Actuation(
+        mechanism.actuators, idx_q, idx_v, model.nv, tuple(motor.name for motor in motors), np.array(control)
+    )

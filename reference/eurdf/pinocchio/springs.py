@@ -62,7 +62,7 @@ NO_SPRINGS = Springs(np.empty(0, np.intp), np.empty(0, np.intp), np.empty(0), np
 
 
 def build_springs(mechanism: Mechanism, at: Mapping[str, Slot]) -> Springs:
-    """The springs of a mechanism; a stiffness of 0 is no spring.
+    """EU-JNT-031: the springs of a mechanism; a stiffness of 0 is no spring.
 
     Args:
         mechanism: The mechanism.

@@ -6,6 +6,7 @@ import re
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 from eurdf.diagnostics import FileError
 from eurdf.format.extension import Extension, FrameReference, JointEntry
@@ -14,6 +15,7 @@ from eurdf.format.schema import FILES
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.version1 import Version1
 from eurdf.format.version2 import VERSION
+from eurdf.format.version2_1 import VERSION as VERSION2_1
 from eurdf.format.yaml_text import (
     WIDTH,
     Entry,
@@ -80,11 +82,16 @@ def migrated(
     return _Migration(extension, urdf, merged, urdf_path, schema).migrated()
 
 
-def schema_named(document: YamlDocument) -> str | None:
+def version_needed(urdf: Urdf) -> Literal["2", "2.1"]:
+    """The lowest version that states what version 1 states with a URDF: 2.1 frees mimic joints (EU-ONE-009)."""
+    return "2.1" if any(joint.mimic for joint in urdf.joints.values()) else "2"
+
+
+def schema_named(document: YamlDocument, urdf: Urdf) -> str | None:
     """Path of the schema of version 2, where a file of version 1 names that of version 1; None where it names none."""
     for match in map(_MODELINE.match, document.source.text.splitlines()):
         if match and match[1].strip().endswith(FILES["1"]):
-            return match[1].strip().removesuffix(FILES["1"]) + FILES["2"]
+            return match[1].strip().removesuffix(FILES["1"]) + FILES[version_needed(urdf)]
     return None
 
 
@@ -130,6 +137,8 @@ class _Migration:
         self.merged = merged
         self.urdf_path = urdf_path
         self.schema = schema
+        self.version = version_needed(urdf)
+        self.mimicking = {joint.name for joint in urdf.joints.values() if joint.mimic}
         self.halves = split_halves(extension)
         self.notes: list[str] = []
 
@@ -146,7 +155,7 @@ class _Migration:
             "actuators": list(self.actuators(attached)),
         }
         entries = [
-            Entry(lines_of("extended_urdf", VERSION), (*line, *head)),
+            Entry(lines_of("extended_urdf", VERSION if self.version == "2" else VERSION2_1), (*line, *head)),
             Entry(lines_of("urdf", self.urdf_path)),
         ]
         foot = attached[()].beside
@@ -200,7 +209,9 @@ class _Migration:
 
     def joints(self, attached: Mapping[Pointer, Attached]) -> Iterator[Entry]:
         pointers: dict[str, Pointer] = {entry.name: entry.pointer for entry in self.extension.joints}
-        for name in (*pointers, *self.merged):
+        changed = {*pointers, *(joint for joints in self.merged.values() for joint in joints)}
+        freed = [name for name in self.urdf.joints if name in self.mimicking and name not in changed]
+        for name in (*pointers, *self.merged, *freed):
             if is_own_key(name):
                 raise NotMigratable(
                     f"joint '{name}' cannot be a key: in version 2, keys that begin with 'x-' are your own data",
@@ -210,7 +221,15 @@ class _Migration:
             lines = lines_of(entry.name, self.joint(entry))
             yield Entry(lines, *_together(attached, [("joint_name", index), ("joint_type", index)]))
         for name, joints in self.merged.items():
-            yield Entry(lines_of(name, {"type": "spherical", "merges": list(joints)}))
+            freeing = {} if self.mimicking.isdisjoint(joints) else {"mimic": False}
+            yield Entry(lines_of(name, {"type": "spherical", "merges": list(joints), **freeing}))
+        for name in freed:
+            yield Entry(lines_of(name, {"mimic": False}))
+        if self.mimicking:
+            freed = [name for name in self.urdf.joints if name in self.mimicking]
+            self.notes.append(
+                f"freed with 'mimic: false', because version 1 ignores <mimic> and version 2 does not: {_joints(freed)}"
+            )
         if self.merged:
             self.notes.append(
                 "merged from three revolutes, which version 1 does implicitly and version 2 states: spherical "
@@ -223,9 +242,10 @@ class _Migration:
             )
 
     def joint(self, entry: JointEntry) -> Value:
+        freeing = {"mimic": False} if entry.name in self.mimicking else {}
         if not entry.split:
-            return entry.type
-        return {"type": "universal", "axes": entry.split.lower()}
+            return {"type": entry.type, **freeing} if freeing else entry.type
+        return {"type": "universal", "axes": entry.split.lower(), **freeing}
 
     def actuators(self, attached: Mapping[Pointer, Attached]) -> Iterator[Entry]:
         entries = iter(self.extension.actuators)

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from eurdf.diagnostics import Diagnostics
 from eurdf.format.urdf.data import Urdf
+from eurdf.format.urdf.elements import UrdfReader
+from eurdf.format.urdf.mimics import check_mimics
 from eurdf.linking.description import Described
 from eurdf.linking.rereading import reread
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.same_model import differences, with_universal_joints
+from eurdf.reading.reporter import XmlReporter
 from eurdf.reading.yaml_node import json_pointer
 from eurdf.writing.migrated_text import NotMigratable, migrated, own_keys
-
-#: Joints that a refusal names.
-_NAMED = 50
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +48,7 @@ def migrate(description: Described, urdf_path: str = "robot.urdf", schema: str |
         NotMigratable: Version 2 cannot say the same.
     """
     extension, urdf, before = description.extension, description.urdf, description.mechanism
-    _refuse_mimics(urdf)
+    _refuse_wrong_mimics(urdf)
     result = migrated(extension, urdf, merged_by_rule(description), urdf_path, schema)
     after, diagnostics = reread(result.text, urdf, extension.document.source.file)
     if after is None:
@@ -62,19 +63,20 @@ def migrate(description: Described, urdf_path: str = "robot.urdf", schema: str |
     return Migration(result.text, (*result.notes, *_order(before, after)), after)
 
 
-def _refuse_mimics(urdf: Urdf) -> None:
-    """Refuse mimic joints: version 1 ignores what version 2 does not (EU-ONE-009).
+def _refuse_wrong_mimics(urdf: Urdf) -> None:
+    """Refuse mimic joints that are errors in version 2, where version 1 ignores them (EU-ONE-009).
 
     Raises:
         NotMigratable: There are some.
     """
-    names = [f"'{joint.name}'" for joint in urdf.joints.values() if joint.mimic]
-    if names:
-        shown = ", ".join(names[:_NAMED]) + (f" and {len(names) - _NAMED} more" if len(names) > _NAMED else "")
-        what = f"joint {shown} has" if len(names) == 1 else f"joints {shown} have"
+    diagnostics = Diagnostics()
+    reporter = XmlReporter(urdf.document, diagnostics)
+    check_mimics(UrdfReader(reporter, reporter), urdf.joints)
+    if diagnostics.errors:
+        found = diagnostics.errors[0]
         raise NotMigratable(
-            f"{what} a <mimic> in the URDF, which version 1 ignores and version 2 does not; "
-            "remove <mimic> from the URDF and migrate again: in version 1 this changes nothing",
+            f"{found.message}; version 1 ignores <mimic> and version 2 does not: remove it from the URDF (line "
+            f"{found.line}) and migrate again, which changes nothing in version 1",
             (),
         )
 

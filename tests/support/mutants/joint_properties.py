@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from importlib import import_module
 from typing import Any
 
 import numpy as np
 
-from eurdf_conformance.oracle import canonical, joint_property
-from support.mutants.mutant import Deviation, instead, means
+from eurdf_conformance.oracle import canonical, configuration, joint_property, robot
+from support.mutants.mutant import Deviation, describes, instead, means, refuses
 
 
 def _properties(where: Callable[[Any], Any], change: Callable[[Any, Any], dict[str, Any]]) -> Deviation:
@@ -139,6 +140,93 @@ def rotor_is_not_geared() -> Deviation:
 def motors_have_no_armature() -> Deviation:
     """A motor adds no armature."""
     return _armature(lambda motor: None)
+
+
+@means("EU-JNT-031")
+def springs_rest_at_zero() -> Deviation:
+    """The rest position of a spring is 0, whatever the description states."""
+    return _properties(lambda joint: joint.change.stated, _spring(lambda k, rest: (k, [0.0] * len(rest))))
+
+
+@means("EU-JNT-031")
+def springs_act_on_the_first_coordinate() -> Deviation:
+    """A joint with several coordinates has a spring on the first one only."""
+    return _properties(
+        lambda joint: joint.change.stated, _spring(lambda k, rest: ([k[0], *[0.0] * (len(k) - 1)], rest))
+    )
+
+
+@means("EU-JNT-031")
+def springs_are_left_out() -> Deviation:
+    """A joint has no spring."""
+    return _properties(lambda joint: joint.change.stated, lambda found, joint: {"stiffness": None, "rest": None})
+
+
+def _spring(change: Callable[[Any, Any], Any]) -> Callable[[Any, Any], dict[str, Any]]:
+    def changed(found: Any, joint: Any) -> dict[str, Any]:
+        if found.stiffness is None:
+            return {}
+        return dict(zip(("stiffness", "rest"), change(found.stiffness, found.rest), strict=True))
+
+    return changed
+
+
+@means("EU-JNT-032")
+def armature_of_mimic_joints_is_left_out() -> Deviation:
+    """The mass matrix contains the armatures of joints that mimic no other only."""
+    return _at_leader(lambda multiplier: 0.0)
+
+
+@means("EU-JNT-032")
+def armature_of_mimic_joints_is_not_squared() -> Deviation:
+    """The armature of a mimic joint counts at its leader multiplied by the multiplier, not by its square."""
+    return _at_leader(abs)
+
+
+@means("EU-JNT-032")
+def armature_of_mimic_joints_counts_once() -> Deviation:
+    """The armature of a mimic joint counts at its leader as it is."""
+    return _at_leader(lambda multiplier: 1.0)
+
+
+def _at_leader(factor: Callable[[float], float]) -> Deviation:
+    def armature(right: Any, of: Any) -> Any:
+        found = np.zeros(len(of.velocities))
+        columns = {column: i for i, column in enumerate(of.velocities)}
+        motors = {actuator.joint: actuator for actuator in of.description.actuators}
+        for joint, (driver, multiplier, _) in zip(of.tree.joints, configuration.drivers(of.tree), strict=True):
+            for i, own in enumerate(joint_property.properties(joint, motors.get(joint.name)).armature):
+                found[columns[of.tree.joints[driver].name, i]] += own * (factor(multiplier) if joint.mimic else 1.0)
+        return found
+
+    return instead(robot, "armature_at_leaders", armature)
+
+
+@means("EU-JNT-034")
+def freed_joints_mimic() -> Deviation:
+    """A joint that the description frees mimics its leader all the same."""
+    # The package has a function of the name of the module.
+    return instead(import_module("eurdf_conformance.oracle.read"), "freed", lambda right, urdf, description: urdf)
+
+
+@refuses("EU-JNT-030")
+def mimic_joints_have_no_properties(data: Any, urdf: Any) -> bool:
+    """Rejects a description that states properties of a mimic joint."""
+    mimics = {joint.get("name") for joint in urdf.iter("joint") if joint.find("mimic") is not None}
+    joints = data.get("joints", {})
+    return any(name in mimics and "mimic" not in entry for name, entry in joints.items() if isinstance(entry, dict))
+
+
+@describes("EU-ACT-010")
+def actuators_have_no_names(robot: Any) -> dict[str, Any]:
+    """An actuator has the name of its joint, whatever the description states."""
+    return {"actuators": [each.model_copy(update={"name": None}) for each in robot.actuators]}
+
+
+@describes("EU-ACT-010")
+def control_ranges_are_left_out(robot: Any) -> dict[str, Any]:
+    """An actuator has no control range."""
+    return {"actuators": [each.model_copy(update={"control": None}) for each in robot.actuators]}
 
 
 def _armature(change: Callable[[Any], Any]) -> Deviation:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -84,12 +84,15 @@ class Urdf:
     root: str
     children: Mapping[str, tuple[UrdfJoint, ...]]
 
-    def without_mimics(self) -> Urdf:
-        """The same URDF in which no joint mimics another."""
-        if all(joint.mimic is None for joint in self.joints.values()):
+    def without_mimics(self, of: Collection[str] | None = None) -> Urdf:
+        """The same URDF in which some joints, or all if none are named, mimic no other."""
+        if not any(joint.mimic and (of is None or joint.name in of) for joint in self.joints.values()):
             return self
-        joints = {name: joint._replace(mimic=None) for name, joint in self.joints.items()}
-        children = {link: tuple(joints[joint.name] for joint in of) for link, of in self.children.items()}
+        joints = {
+            name: joint._replace(mimic=None) if of is None or name in of else joint
+            for name, joint in self.joints.items()
+        }
+        children = {link: tuple(joints[joint.name] for joint in below) for link, below in self.children.items()}
         return replace(self, joints=joints, children=children)
 
     def walk(self) -> Iterator[UrdfJoint]:
