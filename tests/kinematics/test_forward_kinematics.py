@@ -304,7 +304,7 @@ def test_frames_are_found_by_name_or_nearest_suggested() -> None:
     np.testing.assert_allclose(actuated_jacobian(same, np.zeros(1), "a"), np.eye(6)[:, 3:4], atol=1e-12)
     model.addFrame(pin.Frame("a", a, 0, translation(1.0, 0.0, 0.0), pin.FrameType.OP_FRAME), False)
     with pytest.raises(ValueError, match="frame name 'a' is ambiguous"):
-        actuated_jacobian(same, np.zeros(1), "a")
+        actuated_jacobian(actuated(Linkage(model, [], ["a"])), np.zeros(1), "a")
 
 
 @given(seed=st.integers(0, 2**32 - 1))

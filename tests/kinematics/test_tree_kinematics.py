@@ -60,7 +60,7 @@ def test_frame_jacobian_equals_pinocchio(name: str, reference: Any) -> None:
     q = tree.integrate(tree.neutral(), np.random.default_rng(0).uniform(-1.0, 1.0, tree.nv))
     for index in (model.nframes // 2, model.nframes - 1):
         expected = pin.computeFrameJacobian(model, model.createData(), q, index, reference)
-        found = frame_jacobian(tree, q, model.frames[index].name, reference)
+        found = frame_jacobian(robot, q, model.frames[index].name, reference)
         np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-12 * np.abs(expected).max())
 
 

@@ -19,7 +19,7 @@ from eurdf.kinematics.array import Vector
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.descent import Descent
 from eurdf.kinematics.evaluation import Evaluation, evaluations
-from eurdf.kinematics.loop import LoopGroup, find_loops, independent_groups
+from eurdf.kinematics.loop import LoopGroup, find_loops, independent_groups, merged
 from eurdf.kinematics.position_limit import JointAtLimit, Limits, PositionLimits, chosen_limits
 from eurdf.kinematics.residual import CLOSED, Opening
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
@@ -38,6 +38,10 @@ _MOST_STEPS = 60
 # Bound of the multiplications in the steps of one assembly, about five seconds. Groups with hundreds of shared joints
 # end before all restarts; a group with a single step above this bound is not tried.
 _MOST_WORK = 1e10
+
+# A residual with rows below this, in m and rad and in shares of the characteristic length, is of closed loops for
+# certain: how far a closure is open differs from its rows by a factor below 10.
+_WELL_CLOSED = 0.1 * CLOSED
 
 # Cost of the residual and Jacobian of one closure, in multiplications.
 _WORK_OF_A_CLOSURE = 3e5
@@ -173,16 +177,16 @@ class Assembler:
         self._nc = loops[-1].rows.stop if loops else 0
         groups = list(independent_groups(robot, _held_velocities(tree, hold)))
         small = tree.nv <= _MOST_VELOCITIES_AT_ONCE
-        merged = [_merged(groups, self._nc)] if small and len(groups) > 1 else []
-        length = characteristic_length(robot)
+        whole = [merged(groups)] if small and len(groups) > 1 else []
+        length = self._length = characteristic_length(robot)
         made = evaluations(
             robot,
-            groups + merged,
+            groups + whole,
             row_scale(robot, length),
             velocity_scale(robot, length),
         )
         self.evaluations = made[: len(groups)]
-        self._whole = made[len(groups) :] if merged else self.evaluations
+        self._whole = made[len(groups) :] if whole else self.evaluations
         self.iterations = 0
         self._work = 0.0  # of the current assembly, in multiplications
         self._gave_up = False  # whether the last assembly gave up
@@ -214,6 +218,15 @@ class Assembler:
             reason=None if converged else "rounding" if closes else self._why_open(at_limits),
             at_limits=at_limits,
         )
+
+    def closed(self, q: Vector) -> Vector | None:
+        """The configuration that one descent from q (nq,) leads to; None if that leaves a loop open, or close to it."""
+        end, descents, _ = self._descend(self._within_limits(q, self.evaluations), self._whole)
+        for descent in descents:
+            r, b = descent.r, descent.evaluation.row_scale * descent.r * self._length
+            if not max(np.abs(r).max(initial=0.0), np.abs(b).max(initial=0.0)) <= _WELL_CLOSED:
+                return None
+        return end
 
     def _why_open(self, at_limits: Sequence[JointAtLimit]) -> AssemblyReason:
         if self._gave_up:
@@ -322,16 +335,6 @@ def work_of_step(group: LoopGroup) -> float:
     """Multiplications for the smaller of A Aᵀ and Aᵀ A, and for the evaluation of A."""
     m, n = len(group.rows), len(group.velocities)
     return float(m) * n * min(m, n) + _WORK_OF_A_CLOSURE * len(group.closures)
-
-
-def _merged(groups: Sequence[LoopGroup], nc: int) -> LoopGroup:
-    """All groups as one."""
-    return LoopGroup(
-        closures=tuple(sorted(index for group in groups for index in group.closures)),
-        rows=np.arange(nc),
-        velocities=np.sort(np.concatenate([group.velocities for group in groups])),
-        coordinates=np.sort(np.concatenate([group.coordinates for group in groups])),
-    )
 
 
 def _held_velocities(tree: TreeKinematics, names: str | Iterable[str]) -> list[int]:

@@ -10,6 +10,7 @@ from pinocchio import LOCAL
 
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import start
+from eurdf.kinematics.derived import derived
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.frame_jacobian import frame_jacobian
 from eurdf.kinematics.rank import numerical_rank
@@ -79,9 +80,9 @@ def differential_inverse_kinematics(
     if not 0.0 < singular < 1.0:
         raise ValueError(f"singular is {singular!r}; give a number between 0 and 1")
     q = start(robot, q, "q")
-    spaces = TangentSpaces(robot)
+    spaces = derived(robot, TangentSpaces)
     C = _actuated_motions(robot, q, spaces)
-    J = frame_jacobian(robot.tree, q, frame, reference)
+    J = frame_jacobian(robot, q, frame, reference)
     scale = np.array((1.0 / spaces.length,) * 3 + (1.0,) * 3)
     left, values, right = np.linalg.svd(scale[:, None] * (J @ C), full_matrices=False)
     rank = int(np.count_nonzero(values > singular * values.max(initial=0.0)))

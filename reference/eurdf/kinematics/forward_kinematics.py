@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eurdf.kinematics.array import Indices, Vector
-from eurdf.kinematics.assembly import Assembler, assemble, start
+from eurdf.kinematics.assembly import Assembler, start
+from eurdf.kinematics.derived import borrowed, derived
+from eurdf.kinematics.driven_motion import DrivenMotion
 from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.residual import closure_openings, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.mechanism.mechanism import ROOT_JOINT
-from eurdf.pinocchio.arguments import checked_array
+from eurdf.pinocchio.arguments import checked_array, checked_tolerance
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -66,39 +68,74 @@ def forward_kinematics(
             between them. In the last case, call the function for intermediate configurations one after the other.
         ValueError: ``actuated`` or ``q0`` does not fit this robot.
     """
-    first = assemble(robot, q0, tolerance=tolerance)
-    if not first.closes:
-        raise NotClosable("no closed configuration was found near the start", first.open, first.q)
+    tolerance = checked_tolerance(tolerance)
+    with borrowed(robot, Assembler) as assembler:
+        first = _closed(assembler, start(robot, q0), tolerance)
     given = _given(robot, actuated)
-    goal = np.array(first.q)
+    goal = np.array(first)
     goal[given.coordinates] = given.values
     goal = start(robot, goal, "actuated")
-    path = robot.tree.difference(first.q, goal)  # zero except for the given joints
-    assembler, spaces = Assembler(robot, given.joints, tolerance=tolerance), TangentSpaces(robot)
+    velocities = tuple(given.velocities.tolist())
+    with borrowed(robot, Assembler, tuple(given.joints)) as assembler, borrowed(robot, DrivenMotion, velocities) as by:
+        assembler.tolerance, assembler.limits = tolerance, None
+        return _follow(robot, given, first, goal, assembler, by)
 
-    q, done, step = first.q, 0.0, 1.0
+
+def _closed(assembler: Assembler, q: Vector, tolerance: float) -> Vector:
+    """The start, closed.
+
+    Raises:
+        NotClosable: The loops cannot be closed there.
+    """
+    assembler.tolerance, assembler.limits = tolerance, None
+    closed = assembler.closed(q)
+    if closed is not None:
+        return closed
+    first = assembler.assemble(q)
+    if not first.closes:
+        raise NotClosable("no closed configuration was found near the start", first.open, first.q)
+    return first.q
+
+
+def _follow(
+    robot: Robot, given: _Given, first: Vector, goal: Vector, assembler: Assembler, driven: DrivenMotion
+) -> Vector:
+    """Move the given joints from the first configuration to the goal."""
+    tree, scale = robot.tree, derived(robot, TangentSpaces).scale
+    path = tree.difference(first, goal)  # zero except for the given joints
+    q, done, step = first, 0.0, 1.0
     while done < 1.0:
         step = min(step, 1.0 - done)
-        _, K = residual_and_jacobian(robot, q)
-        Z = spaces.at(K).basis
-        v = Z @ (np.linalg.pinv(Z[given.velocities], rcond=1.0 / _FASTEST) @ (step * path[given.velocities]))
-        motion = v / spaces.scale
+        v = driven.velocity(q, step * path[given.velocities])
+        if v is None:
+            v = _blocked_velocity(robot, q, given, step * path[given.velocities])
+        motion = v / scale
         if np.abs(motion).max(initial=0.0) > _LONGEST_MOTION and step > _SHORTEST_STEP:
             step *= 0.5
             continue
-        at = goal if done + step >= 1.0 else robot.tree.integrate(first.q, (done + step) * path)
-        expected = robot.tree.integrate(q, v)
+        at = goal if done + step >= 1.0 else tree.integrate(first, (done + step) * path)
+        expected = tree.integrate(q, v)
         expected[given.coordinates] = at[given.coordinates]
-        closed = assembler.assemble(expected, restarts=0)
-        corrected = float(np.linalg.norm(robot.tree.difference(expected, closed.q) / spaces.scale))
-        allowed = max(_MOST_CORRECTION * float(np.linalg.norm(motion)), _LEAST_CORRECTION)
-        if closed.closes and corrected <= allowed:
-            q, done, step = closed.q, done + step, 2.0 * step
-            continue
+        closed = assembler.closed(expected)
+        if closed is None:
+            assembly = assembler.assemble(expected, restarts=0)
+            closed = assembly.q if assembly.closes else None
+        if closed is not None:
+            corrected = float(np.linalg.norm(tree.difference(expected, closed) / scale))
+            if corrected <= max(_MOST_CORRECTION * float(np.linalg.norm(motion)), _LEAST_CORRECTION):
+                q, done, step = closed, done + step, 2.0 * step
+                continue
         step *= 0.5
         if step < _SHORTEST_STEP:
             raise _stopped(robot, assembler, q, goal, given.coordinates)
     return q
+
+
+def _blocked_velocity(robot: Robot, q: Vector, given: _Given, driven: Vector) -> Vector:
+    """The velocity (nv,) whose driven velocities are nearest to these, where loops may block them."""
+    _, K = residual_and_jacobian(robot, q)
+    Z = derived(robot, TangentSpaces).at(K).basis
+    return np.asarray(Z @ (np.linalg.pinv(Z[given.velocities], rcond=1.0 / _FASTEST) @ driven))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

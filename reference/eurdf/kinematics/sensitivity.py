@@ -9,6 +9,8 @@ from pinocchio import LOCAL
 
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import start
+from eurdf.kinematics.derived import borrowed, derived
+from eurdf.kinematics.driven_motion import DrivenMotion
 from eurdf.kinematics.exceptions import DependentActuators
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.frame_jacobian import frame_jacobian
@@ -48,9 +50,16 @@ def dq_dq_actuated(robot: Robot, q: Vector, weights: Vector | Matrix | None = No
             singular values are the cosines between the actuated and the free motions.
         ValueError: ``q`` is not a configuration, or ``weights`` is not a metric.
     """
+    q = start(robot, q, "q")
+    if weights is None:
+        with borrowed(robot, DrivenMotion, tuple(robot.actuation.idx_v.tolist())) as driven:
+            certain = driven.derivative(q)
+        if certain is not None:
+            finite("the derivative", certain)
+            return certain
     W = metric(weights, robot.tree.nv)
-    _, K = residual_and_jacobian(robot, start(robot, q, "q"))
-    spaces = TangentSpaces(robot)
+    _, K = residual_and_jacobian(robot, q)
+    spaces = derived(robot, TangentSpaces)
     basis = spaces.at(K).basis
     selection = robot.actuation.selection.T
     _refuse_dependent(robot, spaces.scale, basis)
@@ -87,7 +96,7 @@ def actuated_jacobian(
         ValueError: The frame is unknown or ambiguous, ``q`` is not a configuration, or ``weights`` is not a metric.
     """
     q = start(robot, q, "q")
-    J = frame_jacobian(robot.tree, q, frame, reference)
+    J = frame_jacobian(robot, q, frame, reference)
     actuated = np.asarray(J @ dq_dq_actuated(robot, q, weights), dtype=np.float64)
     finite("the Jacobian", actuated)
     return actuated
