@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-from eurdf.kinematics import forward_solver
+from eurdf.kinematics import independence
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.dynamics import achievable_acceleration, forward_dynamics, inverse_dynamics
 from eurdf.kinematics.exceptions import (
@@ -44,6 +44,7 @@ from support.linkage import (
     stewart,
     swapped,
     translation,
+    weighted,
 )
 from support.plain_urdf import joint_element
 
@@ -70,16 +71,6 @@ LINKAGES = {
     "stewart platform": stewart,
     "five-bar with rounded axes": lambda: tilted(5, decimals=6, actuated=("j0", "j4")),
 }
-
-
-def weighted(linkage: Linkage, seed: int = 0) -> Linkage:
-    """With some inertia at every joint, and armature at the motors."""
-    random, model = np.random.default_rng(seed), linkage.model
-    for joint in range(1, model.njoints):
-        centre, A = random.uniform(-0.3, 0.3, 3), random.uniform(-0.3, 0.3, (3, 3))
-        model.inertias[joint] = pin.Inertia(random.uniform(0.5, 2.0), centre, A @ A.T + 0.02 * np.eye(3))
-    model.armature = 0.1 * linkage.actuation.selection.sum(axis=1)
-    return linkage
 
 
 def assert_same(found: Any, expected: Any) -> None:
@@ -300,7 +291,7 @@ def test_pinocchio_solver_and_elimination_agree(name: str, monkeypatch: pytest.M
 
     one = forward_dynamics(robot, q, v, u, gains=(100.0, 20.0))
     with monkeypatch.context() as patched:
-        patched.setattr(forward_solver, "INDEPENDENT", 0.0)
+        patched.setattr(independence, "INDEPENDENT", 0.0)
         other = forward_dynamics(robot, q, v, u, gains=(100.0, 20.0))
     np.testing.assert_allclose(one.a, other.a, atol=1e-7 * (1.0 + np.abs(other.a).max()))
     largest = np.abs(stacked(other.forces)).max()

@@ -250,6 +250,17 @@ def ball_ended(kind: str) -> Linkage:
     return loop(pairs, "3d", end)
 
 
+def weighted(linkage: Linkage, seed: int = 0, size: float = 1.0) -> Linkage:
+    """With some inertia at every joint, a factor on its lengths, and armature at the motors."""
+    random, model = np.random.default_rng(seed), linkage.model
+    for joint in range(1, model.njoints):
+        centre, A = random.uniform(-0.3, 0.3, 3), random.uniform(-0.3, 0.3, (3, 3))
+        moments = size**2 * (A @ A.T + 0.02 * np.eye(3))
+        model.inertias[joint] = pin.Inertia(random.uniform(0.5, 2.0), size * centre, moments)
+    model.armature = 0.1 * linkage.actuation.selection.sum(axis=1)
+    return linkage
+
+
 def described(linkage: Linkage) -> tuple[str, str]:
     """The two files of a linkage: its URDF, and its description without the line of the version."""
     model = linkage.model

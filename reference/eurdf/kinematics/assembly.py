@@ -151,7 +151,7 @@ def start(robot: Robot, q0: Vector | None = None, name: str = "q0") -> Vector:
     if q0 is None:
         return robot.tree.neutral()
     q = robot.tree.normalized(checked_array(name, q0, (robot.tree.nq,)))
-    if not np.isfinite(q).all() or not robot.tree.is_normalized(q):
+    if not robot.tree.is_normalized(q):  # NaN is not
         raise ValueError(f"{name} has a quaternion, or a (cos, sin) pair, whose length is zero or overflows")
     return q
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterator
-from contextlib import contextmanager
-from typing import TYPE_CHECKING, TypeVar
+from collections.abc import Callable, Hashable
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -28,20 +28,32 @@ _MOST_KEYS = 8
 _MOST_IDLE = 4
 
 
-@contextmanager
-def borrowed(robot: Robot, make: Callable[..., _T], *key: Hashable) -> Iterator[_T]:
+class borrowed(Generic[_T]):  # noqa: N801 - used like a function
     """Working memory ``make(robot, *key)``, which no other thread uses meanwhile; it is kept for the next caller.
 
-    Results must not depend on what it was used for before.
+    Results must not depend on what it was used for before. After an error it is not kept.
     """
-    kept: dict[tuple[Hashable, ...], list[_T]] = robot.derived.setdefault((borrowed, make), {})
-    try:
-        memory = kept[key].pop()
-    except (KeyError, IndexError):
-        memory = make(robot, *key)
-    yield memory  # not kept after an error
-    if key not in kept and len(kept) >= _MOST_KEYS:
-        kept.clear()
-    idle = kept.setdefault(key, [])
-    if len(idle) < _MOST_IDLE:
-        idle.append(memory)
+
+    __slots__ = ("_kept", "_key", "_memory")
+
+    def __init__(self, robot: Robot, make: Callable[..., _T], *key: Hashable) -> None:
+        kept: dict[tuple[Hashable, ...], list[_T]] = robot.derived.setdefault((borrowed, make), {})
+        self._kept, self._key = kept, key
+        try:
+            memory = kept[key].pop()
+        except (KeyError, IndexError):
+            memory = make(robot, *key)
+        self._memory = memory
+
+    def __enter__(self) -> _T:
+        return self._memory
+
+    def __exit__(self, kind: Any, error: BaseException | None, trace: TracebackType | None) -> None:
+        if error is not None:
+            return
+        kept = self._kept
+        if self._key not in kept and len(kept) >= _MOST_KEYS:
+            kept.clear()
+        idle = kept.setdefault(self._key, [])
+        if len(idle) < _MOST_IDLE:
+            idle.append(self._memory)

@@ -26,7 +26,6 @@ from eurdf.kinematics.exceptions import UnderactuatedMotion
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.forward_solver import SOLVED, ForwardSolver
 from eurdf.pinocchio.arguments import checked_array, checked_tolerance
-from eurdf.pinocchio.constrained_dynamics import stated_gains
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -74,7 +73,7 @@ def forward_dynamics(
     with the least norm, in units of the characteristic length.
 
     Pinocchio's proximal solver is used (Carpentier, Budhiraja, Mansard, *Proximal and sparse resolution of constrained
-    dynamic equations*, 2021) if it has the constraints and joints of the robot, the closures are closed to 1e-11 and
+    dynamic equations*, 2021) if it has the constraints and joints of the robot, the closures are closed to 1e-9 and
     K v = 0, the dimensionless K Kᵀ has a condition number of at most 1e6, and the solution satisfies both equations to
     1e-9. Otherwise the equations are solved by elimination, which is slower: redundant rows that differ by rounding
     would lock the mechanism, and Pinocchio needs inertia at every joint, even at one that the closures do not let move.
@@ -105,13 +104,13 @@ def forward_dynamics(
         data = None if data is None else robot.tree.memory(data)
         force = AppliedForce(robot, external, dissipation).total(q, v, u, tau)
         if gains is None:
-            each = stated_gains(robot)
+            each = solver.gains.now()
         else:
             kp, kd = checked_array("gains", gains, (2,)).tolist()
             each = [(kp, kd)] * len(robot.constraints)
         a, lambdas = solver.solve(robot, q, v, force, each, data)
-    finite("the acceleration", a, lambdas)
-    return ForwardDynamics(a, per_constraint(robot, lambdas))
+        forces = tuple([lambdas[rows] for rows in solver.rows])
+    return ForwardDynamics(a, forces)
 
 
 def inverse_dynamics(

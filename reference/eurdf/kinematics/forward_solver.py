@@ -3,43 +3,45 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.kinematics.array import Vector
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.equation_of_motion import Acceleration, EquationOfMotion
+from eurdf.kinematics.finite import finite
+from eurdf.kinematics.independence import Independence, norm
+from eurdf.kinematics.loop import find_loops
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.kinematics.tree_kinematics import ConstrainedDynamics, ConstrainedMotion
-from eurdf.pinocchio.constrained_dynamics import build_constrained_dynamics
+from eurdf.pinocchio.constrained_dynamics import StatedGains, build_constrained_dynamics
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
-#: Up to this condition number of the dimensionless K Kᵀ, the rows of K are independent beyond doubt. The smallest
-#: singular value of K is then at least 1e-3 of the largest one, and `eurdf.kinematics.rank.numerical_rank` counts all
-#: values that are above 3e-5 of it.
-INDEPENDENT = 1e6
-
-#: Residuals (m, rad) and their rates, relative to 1 plus the largest velocity, up to which the solver's drift is exact
-#: to 1e-9.
-CLOSED = 1e-11
+#: Residuals (m, rad), and their rates relative to 1 plus the norm of v, up to which closures count as closed here. Such
+#: a residual changes the acceleration as much as what the solver leaves out. `eurdf.assemble` closes to 1e-10.
+CLOSED = 1e-9
 
 #: Accepted error of the solver in either equation, relative to the largest term.
 SOLVED = 1e-9
 
 
 class ForwardSolver:
-    """Solves the equation of motion of one robot at one state after the other, by one thread at a time."""
+    """Solves the equation of motion of one robot at one state after the other, by one thread at a time.
+
+    Attributes:
+        gains: The Baumgarte gains that the constraint models have.
+        rows: Of each constraint its rows.
+    """
 
     def __init__(self, robot: Robot) -> None:
         # No reference to the robot: the cache would keep it alive.
         self._tree = robot.tree
         self._solver: ConstrainedDynamics | None = build_constrained_dynamics(robot)
-        self._scale = derived(robot, TangentSpaces).dimensionless
+        self.gains = StatedGains(robot)
+        self.rows = tuple(loop.rows for loop in find_loops(robot))
+        self._independence = Independence(derived(robot, TangentSpaces).dimensionless)
 
     @cached_property
     def data(self) -> Any:
@@ -52,7 +54,7 @@ class ForwardSolver:
         q: Vector,
         v: Vector,
         force: Vector,
-        gains: Sequence[tuple[float, float]],
+        gains: list[tuple[float, float]],
         data: Any = None,
         *,
         nearly_closed: bool = False,
@@ -71,40 +73,34 @@ class ForwardSolver:
 
         Raises:
             UndeterminedMotion: A joint without inertia can move.
+            NumericalOverflow: The result is not finite.
         """
         data = self.data if data is None else data
         if self._solver is not None:
             found = self._solver.solve(q, v, force, gains, data)
             if self._is_beyond_doubt(found, q, v, force, data, nearly_closed):
-                return Acceleration(found.a, found.lambdas)
-        return EquationOfMotion(robot, q, v, data).eliminate(force, gains)
+                return Acceleration(found.a, -found.on_a)
+        solution = EquationOfMotion(robot, q, v, data).eliminate(force, gains)
+        finite("the acceleration", *solution)
+        return solution
 
     def _is_beyond_doubt(
         self, found: ConstrainedMotion, q: Vector, v: Vector, force: Vector, data: Any, nearly_closed: bool
     ) -> bool:
         """Whether the constraints hold, their rows are independent, and the solution satisfies both equations."""
-        a, K, carried = found.a, found.K, found.K.T @ found.lambdas
-        if not (nearly_closed or (_largest(found.r) <= CLOSED and _largest(K @ v) <= CLOSED * (1.0 + _largest(v)))):
+        a, J, on_a = found.a, found.J, found.on_a
+        if not (nearly_closed or found.closed_to(CLOSED, CLOSED * (1.0 + norm(v)))):
             return False
-        if not _condition(K * self._scale) <= INDEPENDENT:
+        if not self._independence.is_shown(J):
             return False
-        wrong = self._tree.inverse_dynamics(q, v, a, data) - force - carried
-        if not _largest(wrong) <= SOLVED * max(_largest(found.bias), _largest(force), _largest(carried)):
+        missed = norm(J @ a - found.target)
+        if not (_is_small(missed, norm(found.target)) or _is_small(missed, norm(J.ravel()) * norm(a))):
             return False
-        terms = np.abs(K) @ np.abs(a) + np.abs(found.target)
-        return _largest(K @ a - found.target) <= SOLVED * _largest(terms)
+        carried = on_a @ J
+        wrong = norm(self._tree.inverse_dynamics(q, v, a, data) - force - carried)
+        # The bias last: it is rarely needed.
+        return _is_small(wrong, norm(carried) + norm(force)) or _is_small(wrong, norm(found.bias))
 
 
-def _largest(values: Vector) -> float:
-    return float(np.abs(values).max(initial=0.0))
-
-
-def _condition(A: Matrix) -> float:
-    """A bound of the condition number of A Aᵀ from above: ‖A Aᵀ‖ ‖(A Aᵀ)⁻¹‖ in Frobenius' norm."""
-    square = A @ A.T
-    try:
-        inverse = np.linalg.inv(square).ravel()
-    except np.linalg.LinAlgError:
-        return math.inf
-    square = square.ravel()
-    return math.sqrt(square @ square) * math.sqrt(inverse @ inverse)
+def _is_small(error: float, terms: float) -> bool:
+    return error <= SOLVED * terms < math.inf

@@ -212,7 +212,8 @@ class TreeKinematics(Protocol):
 class ConstrainedMotion(Protocol):
     """What a solver of constrained dynamics found, with the terms that it used.
 
-    They are those of M a + h = τ + Kᵀ λ and K a = target if the constraints hold and K v = 0.
+    They are those of M a + h = τ + Jᵀ f and J a = target if the constraints hold and J v = 0. J and f are of bodies A:
+    they are -K and -λ.
     """
 
     @property
@@ -220,24 +221,23 @@ class ConstrainedMotion(Protocol):
         """Acceleration (nv,)."""
 
     @property
-    def lambdas(self) -> Vector:
-        """λ (nc,), as in `eurdf.kinematics.dynamics`."""
+    def on_a(self) -> Vector:
+        """The f (nc,): forces on the bodies A."""
+
+    @property
+    def J(self) -> Matrix:  # noqa: N802 - the field's own symbol
+        """Minus the derivative of the residual (nc, nv)."""
+
+    @property
+    def target(self) -> Vector:
+        """What J a has to be (nc,)."""
 
     @property
     def bias(self) -> Vector:
         """The h (nv,) of the equation."""
 
-    @property
-    def r(self) -> Vector:
-        """The residual (nc,)."""
-
-    @property
-    def K(self) -> Matrix:  # noqa: N802 - the field's own symbol
-        """Its derivative (nc, nv)."""
-
-    @property
-    def target(self) -> Vector:
-        """What K a has to be (nc,)."""
+    def closed_to(self, position: float, velocity: float) -> bool:
+        """Whether each row of the residual is at most ``position``, m or rad, and its rate at most ``velocity``."""
 
 
 class ConstrainedDynamics(Protocol):
@@ -247,7 +247,7 @@ class ConstrainedDynamics(Protocol):
     """
 
     def solve(
-        self, q: Vector, v: Vector, force: Vector, gains: Sequence[tuple[float, float]], data: Any
+        self, q: Vector, v: Vector, force: Vector, gains: list[tuple[float, float]], data: Any
     ) -> ConstrainedMotion:
         """The solution at q (nq,) and v (nv,), which may be not finite.
 

@@ -13,6 +13,8 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
+_FLOATS = np.dtype(np.float64)
+
 
 def checked_array(name: str, given: Any, *shapes: tuple[int, ...]) -> npt.NDArray[np.float64]:
     """The given numbers as an array of one of the shapes.
@@ -25,6 +27,8 @@ def checked_array(name: str, given: Any, *shapes: tuple[int, ...]) -> npt.NDArra
     Raises:
         ValueError: It has another shape, or something in it is not a finite number.
     """
+    if type(given) is np.ndarray and given.dtype is _FLOATS and given.shape in shapes and _all_finite(given):
+        return given  # sooner than by the steps below
     expected = " or ".join(map(str, shapes))
     try:
         as_given = np.asarray(given)
@@ -40,6 +44,10 @@ def checked_array(name: str, given: Any, *shapes: tuple[int, ...]) -> npt.NDArra
         place = f"{name}{at}" if at else name
         raise ValueError(f"{place} is {values[tuple(at)]}, not finite; expected finite numbers of shape {expected}")
     return values
+
+
+def _all_finite(values: npt.NDArray[np.float64]) -> bool:
+    return bool(np.count_nonzero(np.isfinite(values)) == values.size)  # sooner than by all()
 
 
 def checked_count(name: str, given: Any, least: int) -> int:

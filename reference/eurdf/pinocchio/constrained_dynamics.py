@@ -29,14 +29,26 @@ _ACCURACY = 1e-14
 
 
 class ConstrainedMotion(NamedTuple):
-    """See `eurdf.kinematics.tree_kinematics.ConstrainedMotion`."""
+    """See `eurdf.kinematics.tree_kinematics.ConstrainedMotion`; it is valid until the solver is used again."""
 
     a: Vector
-    lambdas: Vector
-    bias: Vector
-    r: Vector
-    K: Matrix
+    on_a: Vector
+    J: Matrix
     target: Vector
+    data: pin.Data
+    each: list[pin.RigidConstraintData]
+
+    @property
+    def bias(self) -> Vector:
+        """The h (nv,) of the equation."""
+        return np.asarray(self.data.nle)
+
+    def closed_to(self, position: float, velocity: float) -> bool:
+        """Whether each row of the residual is at most ``position``, m or rad, and its rate at most ``velocity``."""
+        return all(
+            found.contact_placement_error.isZero(position) and found.contact_velocity_error.isZero(velocity)
+            for found in self.each
+        )
 
 
 class ConstrainedDynamics:
@@ -53,34 +65,24 @@ class ConstrainedDynamics:
         for constraint_model in constraint_models:
             self._models.append(constraint_model)
             self._datas.append(constraint_model.createData())
-        self._rows = [
-            (data, 3 if constraint_model.type == pin.ContactType.CONTACT_3D else 6)
-            for constraint_model, data in zip(self._models, self._datas, strict=True)
-        ]
-        self._gains: list[Gains] = []
+        self._each = list(self._datas)
         self._settings = pin.ProximalSettings(_ACCURACY, _ACCURACY, _MU, _MOST_STEPS)
+        self._gains: list[Gains] = []
 
-    def solve(self, q: Vector, v: Vector, force: Vector, gains: Sequence[Gains], data: pin.Data) -> ConstrainedMotion:
+    def solve(self, q: Vector, v: Vector, force: Vector, gains: list[Gains], data: pin.Data) -> ConstrainedMotion:
         """See `eurdf.kinematics.tree_kinematics.ConstrainedDynamics`."""
-        self._set(gains)
         model, models, datas = self._model, self._models, self._datas
-        pin.initConstraintDynamics(model, data, models, datas)
-        a = np.array(pin.constraintDynamics(model, data, q, v, force, models, datas, self._settings))
-        return ConstrainedMotion(
-            a,
-            -data.lambda_c,
-            np.array(data.nle),
-            -np.concatenate([found.contact_placement_error.vector[:count] for found, count in self._rows]),
-            -pin.getConstraintsJacobian(model, data, models, datas).reshape(-1, model.nv),
-            -data.primal_rhs_contact,
-        )
-
-    def _set(self, gains: Sequence[Gains]) -> None:
         if gains != self._gains:
-            self._gains = list(gains)
-            for constraint_model, (kp, kd) in zip(self._models, gains, strict=True):
+            self._gains = gains
+            for constraint_model, (kp, kd) in zip(models, gains, strict=True):
                 parameters = constraint_model.m_baumgarte_parameters
                 parameters.Kp, parameters.Kd = kp, kd
+        pin.initConstraintDynamics(model, data, models, datas)
+        a = np.array(pin.constraintDynamics(model, data, q, v, force, models, datas, self._settings))
+        J = pin.getConstraintsJacobian(model, data, models, datas)
+        if model.nv == 1:
+            J = J.reshape(-1, 1)
+        return ConstrainedMotion(a, data.lambda_c, J, data.primal_rhs_contact, data, self._each)
 
 
 def build_constrained_dynamics(robot: Robot) -> ConstrainedDynamics | None:
@@ -91,9 +93,17 @@ def build_constrained_dynamics(robot: Robot) -> ConstrainedDynamics | None:
     return ConstrainedDynamics(model, robot.constraint_models)
 
 
-def stated_gains(robot: Robot) -> list[Gains]:
-    """The Baumgarte gains that the constraint models have, of each constraint; zero where there are no models."""
-    if not has_constraint_models(robot.constraints):
-        return [(0.0, 0.0)] * len(robot.constraints)
-    each = [constraint_model.m_baumgarte_parameters for constraint_model in robot.constraint_models]
-    return [(parameters.Kp, parameters.Kd) for parameters in each]
+class StatedGains:
+    """The Baumgarte gains that the constraint models of a robot have; zero where there are no models."""
+
+    def __init__(self, robot: Robot) -> None:
+        """Keep where they are, since they may change."""
+        self._none: list[Gains] | None = None
+        if not has_constraint_models(robot.constraints):
+            self._none = [(0.0, 0.0)] * len(robot.constraints)
+            return
+        self._stated = [constraint_model.m_baumgarte_parameters for constraint_model in robot.constraint_models]
+
+    def now(self) -> list[Gains]:
+        """Those of each constraint now."""
+        return self._none or [(parameters.Kp, parameters.Kd) for parameters in self._stated]

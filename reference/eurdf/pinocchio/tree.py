@@ -61,12 +61,12 @@ class PinocchioTree:
         self._sites = sites
         self._first = first
 
-    @property
+    @cached_property
     def nq(self) -> int:
         """Number of coordinates."""
         return int(self.model.nq)
 
-    @property
+    @cached_property
     def nv(self) -> int:
         """Number of velocities."""
         return int(self.model.nv)
@@ -208,7 +208,7 @@ class PinocchioTree:
 
     def normalized(self, q: Vector) -> Vector:
         """The configuration with its quaternions, and cosines and sines, of unit length."""
-        return np.array(pin.normalize(self.model, q))
+        return np.asarray(pin.normalize(self.model, q))
 
     def is_normalized(self, q: Vector) -> bool:
         """Whether they are of unit length, to 1e-9."""

@@ -1,0 +1,55 @@
+"""Whether the rows of K are independent beyond doubt, without a singular value decomposition."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from eurdf.kinematics.array import Matrix
+
+#: Up to this condition number of the dimensionless K Kᵀ, in Frobenius' norm, the rows of K are independent beyond
+#: doubt. The smallest singular value of K is then at least 1e-3 of the largest one, and
+#: `eurdf.kinematics.rank.numerical_rank` counts all values if none is below 3e-5 of it.
+INDEPENDENT = 1e6
+
+
+class Independence:
+    """Judges the K of one robot at one configuration after the other, by one thread at a time.
+
+    The last K that was decomposed is kept. Singular values change by no more than the norm of a change of the matrix
+    (Weyl), so that near it no other decomposition is needed to know that one would find the rows independent. So what
+    is found does not depend on what is kept.
+    """
+
+    def __init__(self, scale: Matrix) -> None:
+        """``scale`` (nc, nv) makes K dimensionless."""
+        self._scale = scale
+        self._largest_scale = float(scale.max(initial=0.0))
+        # A matrix K, the norm of its dimensionless A, and a bound of the smallest singular value of A from below.
+        self._kept: tuple[Matrix, float, float] | None = None
+
+    def is_shown(self, K: Matrix) -> bool:
+        """Whether ‖A Aᵀ‖ ‖(A Aᵀ)⁻¹‖ is at most `INDEPENDENT`, with A the dimensionless K (nc, nv)."""
+        if self._kept is not None:
+            other, size, bound = self._kept
+            change = self._largest_scale * norm((K - other).ravel())
+            least, most = bound - change, size + change
+            if least > 0.0 and math.sqrt(len(K)) * most * most <= INDEPENDENT * least * least:
+                return True
+        A = K * self._scale
+        square = A @ A.T
+        try:
+            inverse = norm(np.linalg.inv(square).ravel())
+        except np.linalg.LinAlgError:
+            return False
+        if not norm(square.ravel()) * inverse <= INDEPENDENT:
+            return False
+        self._kept = np.array(K), norm(A.ravel()), 1.0 / math.sqrt(inverse)
+        return True
+
+
+def norm(values: Any) -> float:
+    """The Euclidean norm of values (n,); infinite if a square overflows."""
+    return math.sqrt(values.dot(values))

@@ -1,0 +1,178 @@
+"""Where forward dynamics trusts the simulator's solver, and where it eliminates."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import eurdf
+from eurdf.kinematics import forward_solver
+from eurdf.kinematics.derived import borrowed
+from eurdf.kinematics.equation_of_motion import EquationOfMotion
+from eurdf.kinematics.independence import INDEPENDENT, Independence
+from support.linkage import Y, Z, loop, weighted
+
+seeds = st.integers(0, 2**32 - 1)
+
+
+class Counted:
+    """Counts the eliminations within a context."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.count = 0
+        counted = self
+
+        class Counting(EquationOfMotion):
+            def eliminate(self, *arguments: Any) -> Any:
+                counted.count += 1
+                return super().eliminate(*arguments)
+
+        monkeypatch.setattr(forward_solver, "EquationOfMotion", Counting)
+
+
+@pytest.fixture
+def eliminations(monkeypatch: pytest.MonkeyPatch) -> Counted:
+    return Counted(monkeypatch)
+
+
+def state(robot: Any, seed: int = 0, reach: float = 0.1) -> tuple[Any, Any]:
+    random = np.random.default_rng(seed)
+    first = eurdf.assemble(robot).q
+    q = eurdf.assemble(robot, pin.integrate(robot.model, first, random.uniform(-reach, reach, robot.model.nv))).q
+    return q, eurdf.project_velocity(robot, q, random.uniform(-1.0, 1.0, robot.model.nv))
+
+
+def by_pinocchio(robot: Any, q: Any, v: Any, tau: Any) -> tuple[Any, Any]:
+    """Acceleration and λ by `pin.constraintDynamics`."""
+    model, data = robot.model, robot.model.createData()
+    models, datas = pin.StdVec_RigidConstraintModel(), pin.StdVec_RigidConstraintData()
+    for constraint_model in robot.constraint_models:
+        models.append(constraint_model)
+        datas.append(constraint_model.createData())
+    pin.initConstraintDynamics(model, data, models, datas)
+    a = pin.constraintDynamics(model, data, q, v, tau, models, datas, pin.ProximalSettings(1e-14, 1e-14, 1e-8, 50))
+    return np.array(a), -np.array(data.lambda_c)
+
+
+@pytest.mark.parametrize("name", ["digit_leg", "kangaroo_leg", "stewart_platform", "cassie_leg"])
+def test_regular_robot_is_solved_without_elimination(name: str, eliminations: Counted) -> None:
+    robot = eurdf.load(name, geometry=False)
+    for seed in range(3):
+        q, v = state(robot, seed)
+        tau = np.random.default_rng(seed).normal(size=robot.model.nv)
+        found = eurdf.forward_dynamics(robot, q, v, tau=tau)
+        assert eliminations.count == 0
+        a, lambdas = by_pinocchio(robot, q, v, tau)
+        np.testing.assert_allclose(found.a, a, atol=1e-9 * np.abs(a).max())
+        np.testing.assert_allclose(np.concatenate(found.forces), lambdas, atol=1e-9 * np.abs(lambdas).max())
+        exact = EquationOfMotion(robot, q, v, robot.data).eliminate(tau, [(0.0, 0.0)] * len(robot.constraints))
+        np.testing.assert_allclose(found.a, exact.a, atol=1e-8 * np.abs(a).max())
+        np.testing.assert_allclose(np.concatenate(found.forces), exact.lambdas, atol=1e-7 * np.abs(lambdas).max())
+
+
+@pytest.mark.parametrize("name", ["five_bar", "four_bar", "sarrus"])
+def test_redundant_rows_are_eliminated(name: str, eliminations: Counted) -> None:
+    robot = eurdf.load(name, geometry=False)
+    q, v = state(robot)
+    found = eurdf.forward_dynamics(robot, q, v)
+    assert eliminations.count == 1
+    _, K = eurdf.residual_and_jacobian(robot, q)
+    h = pin.rnea(robot.model, robot.data, q, v, found.a)
+    np.testing.assert_allclose(K.T @ np.concatenate(found.forces), h, atol=1e-9 * (1.0 + np.abs(h).max()))
+
+
+def stretched(bend: float, size: float = 1.0) -> Any:
+    """Two bars in a vertical slide whose ends are held, stretched but for a bend: K loses rank where it is 0."""
+    joints = [
+        ("P", (0.0, 0.0, 0.0), Z),
+        ("R", (0.0, 0.0, 0.0), Z),
+        ("R", (1.0, 0.0, 0.0), Z),
+        ("R", (1.5, bend / 2.0, 0.0), Y),
+    ]
+    return weighted(loop(joints, "3d", (2.0, bend, 0.0), actuated=(), size=size), size=size)
+
+
+@pytest.mark.parametrize(("bend", "rank", "eliminated"), [(1e-2, 3, 0), (1e-3, 3, 1), (0.0, 2, 1)])
+def test_elimination_decides_near_singular_pose(bend: float, rank: int, eliminated: int, eliminations: Counted) -> None:
+    robot, zero = stretched(bend), np.zeros(4)
+    assert eurdf.analyze(robot, zero).rank == rank
+    found = eurdf.forward_dynamics(robot, zero, zero, tau=np.ones(4))
+    assert eliminations.count == eliminated
+    _, K = eurdf.residual_and_jacobian(robot, zero)
+    N = np.linalg.svd(K)[2][rank:].T
+    M = eurdf.mass_matrix(robot, zero)
+    h = pin.rnea(robot.model, robot.model.createData(), zero, zero, zero)
+    expected = N @ np.linalg.solve(N.T @ M @ N, N.T @ (np.ones(4) - h))
+    np.testing.assert_allclose(found.a, expected, atol=1e-9 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+def test_unit_of_length_does_not_matter(size: float, eliminations: Counted) -> None:
+    robot, zero = stretched(0.3, size), np.zeros(4)
+    tau = np.array([1.0, size, size, size])  # forces are alike, and moments are like the size
+    found = eurdf.forward_dynamics(robot, zero, zero, tau=tau)
+    assert eliminations.count == 0
+    scale = np.array([size, 1.0, 1.0, 1.0])
+    one = stretched(0.3)
+    one.model.gravity.linear = one.model.gravity.linear / size
+    same = eurdf.forward_dynamics(one, zero, zero, tau=np.ones(4) / size)
+    np.testing.assert_allclose(found.a / scale, same.a, rtol=1e-7, atol=1e-9 * np.abs(same.a).max())
+
+
+@given(seed=seeds, size=st.floats(-4.0, 0.0), change=st.floats(-9.0, 0.0))
+@settings(max_examples=100, deadline=None)
+def test_what_is_kept_changes_no_decision(seed: int, size: float, change: float) -> None:
+    random = np.random.default_rng(seed)
+    K = random.normal(size=(3, 5))
+    K[2] = K[0] + 10.0**size * K[2]
+    after, fresh = Independence(np.ones((3, 5))), Independence(np.ones((3, 5)))
+    after.is_shown(K)
+    near = K + 10.0 ** (change + size) * random.normal(size=(3, 5))
+    assert after.is_shown(near) == fresh.is_shown(near)
+    values = np.linalg.svd(near, compute_uv=False)
+    assert not fresh.is_shown(near) or values[2] ** 2 * INDEPENDENT >= values[0] ** 2
+
+
+def test_open_mechanism_is_eliminated(eliminations: Counted) -> None:
+    robot = eurdf.load("cassie_leg", geometry=False)
+    q, v = state(robot)
+    ajar = pin.integrate(robot.model, q, 1e-8 * np.ones(robot.model.nv))
+    eurdf.forward_dynamics(robot, ajar, v)
+    eurdf.forward_dynamics(robot, q, v + 1e-8)
+    assert eliminations.count == 2
+    eurdf.forward_dynamics(robot, q, v)
+    assert eliminations.count == 2
+
+
+def test_threads_get_same_result() -> None:
+    robot = eurdf.load("digit_leg", geometry=False)
+    states = [state(robot, seed) for seed in range(4)] * 8
+    alone = [eurdf.forward_dynamics(robot, q, v).a for q, v in states]
+    with ThreadPoolExecutor(4) as pool:
+        together = list(pool.map(lambda at: eurdf.forward_dynamics(robot, *at).a, states))
+    np.testing.assert_allclose(together, alone, rtol=1e-9, atol=1e-9)
+
+
+def test_workspaces_are_kept_for_next_call() -> None:
+    robot = eurdf.load("digit_leg", geometry=False)
+    made = []
+
+    def make(robot: Any) -> object:
+        made.append(robot)
+        return object()
+
+    with borrowed(robot, make) as one, borrowed(robot, make) as other:
+        assert one is not other
+    with borrowed(robot, make) as again:
+        assert again in (one, other)
+    with pytest.raises(ZeroDivisionError), borrowed(robot, make) as broken:
+        raise ZeroDivisionError
+    with borrowed(robot, make) as first, borrowed(robot, make) as second:
+        assert broken not in (first, second)
+    assert len(made) == 3
