@@ -58,6 +58,8 @@ CALLS: dict[str, dict[str, Any]] = {
     "residual": {"q": "q"},
     "residual_and_jacobian": {"q": "q"},
     "simulate": {"q": "q", "v": "v", "external": {"coupler": 6}, "duration": 0.002},
+    "spring_energy": {"q": "q"},
+    "spring_force": {"q": "q"},
     "split_configuration": {"q": "q"},
     "split_velocity": {"v": "v"},
     "sweep": {"actuator": "motor_crank", "q0": "q"},
