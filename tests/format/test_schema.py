@@ -75,6 +75,7 @@ WHOLE["2.1"] = {
     "closures": [
         *WHOLE["2"]["closures"],
         {"name": "pin", "type": "hinge", "frames": ["rod", "tip"], "x-play": 1},
+        {"name": "rod", "type": "6d", "frames": ["rod", "tip"], "compliance": {"linear": 0, "angular": 1, "x-own": 2}},
         {"name": "bolt", "type": "hinge", "frames": ["rod", "tip"], "axis": [0, 1, 0.5]},
         {"name": "peg", "type": "hinge", "frames": ["rod", "tip"], "axes": [[0, 1, 0.5], [1, 0, 0]]},
     ],

@@ -7,6 +7,7 @@ import pytest
 from eurdf.diagnostics import Diagnostic, Diagnostics
 from eurdf.format.extension import Extension
 from eurdf.format.read_extension import read_extension, version_of
+from eurdf.mechanism.constraint import Compliance
 from eurdf.reading.source import Source
 from eurdf.reading.yaml_reader import read_yaml
 
@@ -120,9 +121,19 @@ def test_actuator_has_name_and_control_range() -> None:
     assert (actuator.name, actuator.gear_ratio, actuator.control) == ("left", 5, (-3, 4.5))
 
 
+CLOSURE = 'extended_urdf: "2.1"\nclosures:\n  - {name: pin, type: 6d, frames: [a, b], %s}\n'
+
+
+def test_closure_has_compliance() -> None:
+    extension, _ = read(CLOSURE % "compliance: {angular: 1.0e-4}")
+    assert extension is not None
+    assert extension.closures[0].compliance == Compliance(0.0, 1e-4)
+
+
 @pytest.mark.parametrize(
     "text",
     [
+        CLOSURE % "compliance: {linear: 1}",
         JOINT % "stiffness: 3",
         JOINT % "mimic: false",
         JOINT % "type: fixed, mimic: false",
@@ -150,6 +161,10 @@ def test_key_of_version_2_1_in_version_2_0_names_the_line_to_change(text: str) -
         (JOINT % "mimic: 0", "wrong-type", "must be false, not 0"),
         (JOINT % "mimic: no", "wrong-type", "must be false, not 'no'"),
         (JOINT % "stifness: 3", "unknown-key", "'stifness'"),
+        (CLOSURE % "compliance: {}", "missing-key", "at least one of 'linear', 'angular'"),
+        (CLOSURE % "compliance: {linear: -1}", "out-of-range", "at least 0, not -1"),
+        (CLOSURE % "compliance: 1", "wrong-type", "must be a mapping"),
+        (CLOSURE % "compliance: {lineal: 1}", "unknown-key", "'lineal'"),
         (ACTUATOR % "control: [1]", "wrong-length", "must have 2 items"),
         (ACTUATOR % "control: 5", "wrong-type", "must be a list"),
         (ACTUATOR % "name: ''", "wrong-value", "is empty"),

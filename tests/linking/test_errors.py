@@ -132,6 +132,7 @@ ERRORS = [
     ("duplicate-frame", YAML, "name: rocker_top, link", "name: rocker, link", None, None),
     ("duplicate-closure-name", YAML, "joints:\n", "  - {name: pin, type: 3d, frames: [base, hand]}\njoints:\n", "pin, type", "'pin'"),
     ("closure-axis-zero", YAML, HEAD, HEAD.replace("2.0", "2.1").replace("3d", "hinge\n    axis: [0, 0, 0.0]"), "[0, 0, 0.0]", "hinge 'pin'"),
+    ("closure-compliance", YAML, *later("type: 3d", "type: 3d\n    compliance: {linear: 1, angular: 0.5}"), "0.5}", "of type 3d"),
     ("closure-same-frame", YAML, "[rod_tip, rocker_top]", "[rod_tip, rod_tip]", "rod_tip]", "itself"),
     ("closure-same-body", YAML, "[rod_tip, rocker_top]", "[rod_tip, rod]", None, "'rod_tip' and 'rod'"),
     ("closure-duplicate", YAML, "joints:\n", "  - {name: again, type: 6d, frames: [rocker_top, rod_tip]}\njoints:\n", "{name: again", "'pin'"),

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from eurdf.mechanism.constraint import DistanceClosure, HingeClosure
+from eurdf.mechanism.constraint import RIGID, Compliance, DistanceClosure, HingeClosure
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Mechanism
@@ -16,6 +16,7 @@ from eurdf_conformance.level import Version
 from eurdf_conformance.protocol.message import (
     CanonicalActuator,
     CanonicalClosure,
+    CanonicalCompliance,
     CanonicalJoint,
     CanonicalMimic,
     CanonicalRobot,
@@ -50,6 +51,7 @@ def canonical_robot(mechanism: Mechanism) -> CanonicalRobot:
                 b=closure.b.body,
                 axes=[_unit(axis) for axis in closure.axes] if isinstance(closure, HingeClosure) else None,
                 length=closure.length if isinstance(closure, DistanceClosure) else None,
+                compliance=_compliance(closure.compliance),
             )
             for closure in mechanism.closures
         ],
@@ -99,6 +101,10 @@ def _unit(axis: Vector3) -> list[float]:
     largest = max(map(abs, axis))  # of any length, also of one whose square is out of range
     scaled = [number / largest for number in axis]
     return [number / math.hypot(*scaled) for number in scaled]
+
+
+def _compliance(compliance: Compliance) -> CanonicalCompliance | None:
+    return None if compliance == RIGID else CanonicalCompliance(linear=compliance.linear, angular=compliance.angular)
 
 
 def _control(motor: Motor | None) -> list[float] | None:

@@ -15,7 +15,13 @@ from eurdf_conformance.comparison.universal import (
     with_springs,
 )
 from eurdf_conformance.json_pointer import step
-from eurdf_conformance.protocol.message import CanonicalActuator, CanonicalClosure, CanonicalJoint, CanonicalRobot
+from eurdf_conformance.protocol.message import (
+    CanonicalActuator,
+    CanonicalClosure,
+    CanonicalCompliance,
+    CanonicalJoint,
+    CanonicalRobot,
+)
 
 #: The joint by which a floating root moves.
 ROOT_JOINT = "root_joint"
@@ -125,6 +131,8 @@ def _joint(joint: CanonicalJoint, first_link: Mapping[str, str]) -> CanonicalJoi
 
 
 def _closure(closure: CanonicalClosure, first_link: Mapping[str, str]) -> CanonicalClosure:
+    if closure.compliance == CanonicalCompliance():
+        closure = closure.model_copy(update={"compliance": None})
     a, b = first_link.get(closure.a, closure.a), first_link.get(closure.b, closure.b)
     return closure if (a, b) == (closure.a, closure.b) else closure.model_copy(update={"a": a, "b": b})
 

@@ -13,6 +13,7 @@ from eurdf_conformance.oracle.urdf import Urdf
 from eurdf_conformance.protocol.message import (
     CanonicalActuator,
     CanonicalClosure,
+    CanonicalCompliance,
     CanonicalJoint,
     CanonicalMimic,
     CanonicalRobot,
@@ -43,6 +44,7 @@ def canonical(urdf: Urdf, description: Description, tree: Tree) -> CanonicalRobo
                 b=link[tree.refer(closure.b).body],
                 axes=[axis.tolist() for axis in closure.axes] or None,
                 length=closure.length,
+                compliance=CanonicalCompliance(**closure.compliance) if closure.compliance else None,
             )
             for closure in description.closures
         ],

@@ -36,6 +36,8 @@ class Closure:
     axes: tuple[Array, ...] = ()
     #: Of a distance, m.
     length: float | None = None
+    #: linear, m/N, and angular, rad/(N·m), where one of them is stated.
+    compliance: dict[str, float] | None = None
 
 
 @dataclass(frozen=True)

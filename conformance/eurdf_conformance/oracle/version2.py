@@ -74,16 +74,28 @@ def closure(value: Any, version: Version) -> Closure | None:
     if version == "2.1":
         types |= {"hinge": "hinge", "distance": "distance"}
     own: dict[str | None, tuple[str, ...]] = {"hinge": ("axis", "axes"), "distance": ("length",)}
-    members = mapping(value, ("name", "type", "frames", *own.get(types.get(kind), ())))
+    added = ("compliance",) if version == "2.1" else ()
+    members = mapping(value, ("name", "type", "frames", *added, *own.get(types.get(kind), ())))
     if kind.startswith("x-"):
         return None
     if kind not in types or len(sequence(members.get("frames"))) != 2:
         raise NotRead(f"the closure {value!r}")
     a, b = (reference(item) for item in members["frames"])
-    found = Closure(text(members.get("name")), types[kind], a, b)
+    found = Closure(text(members.get("name")), types[kind], a, b, compliance=compliance(members, types[kind]))
     if kind == "hinge":
         return replace(found, axes=hinge_axes(members))
     return replace(found, length=distance_length(members)) if kind == "distance" else found
+
+
+def compliance(members: dict[str, Any], kind: ClosureType) -> dict[str, float] | None:
+    """How much a closure gives way: an angular one only if it holds an orientation, EU-CLO-020."""
+    if "compliance" not in members:
+        return None
+    written = mapping(members["compliance"], ("linear", "angular"))
+    found = {name: number(value) for name, value in written.items()}
+    if not found or min(found.values()) < 0 or (found.get("angular") and kind in ("3d", "distance")):
+        raise NotRead(f"the compliance {found!r}")
+    return {name: found.get(name, 0.0) for name in ("linear", "angular")}
 
 
 def hinge_axes(members: dict[str, Any]) -> tuple[Array, Array]:

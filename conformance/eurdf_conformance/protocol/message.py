@@ -166,10 +166,17 @@ class CanonicalJoint(Value):
     mimic: CanonicalMimic | None = None
 
 
+class CanonicalCompliance(Value):
+    """How much a closure gives way under load."""
+
+    linear: Number = Field(default=0.0, description="m/N")
+    angular: Number = Field(default=0.0, description="rad/(N·m)")
+
+
 class CanonicalClosure(Value):
     """Two frames held together."""
 
-    optional = frozenset({"axes", "length"})
+    optional = frozenset({"axes", "length", "compliance"})
 
     name: str
     type: Literal["3d", "6d", "hinge", "distance"]
@@ -179,6 +186,7 @@ class CanonicalClosure(Value):
         default=None, description="Of a hinge: the unit vectors of its axis in A and of that in B."
     )
     length: Number | None = Field(default=None, description="Of a distance: m.")
+    compliance: CanonicalCompliance | None = Field(default=None, description="Rigid if left out.")
 
 
 class CanonicalActuator(Value):

@@ -63,6 +63,8 @@ class ClosureInfo(_Entry):
     """Links that frame A and frame B are fixed to."""
     residual: float | None
     """Norm of its residual at the analysed configuration, m and rad."""
+    compliance: tuple[float, float]
+    """Linear (m/N) and angular (rad/(N·m)) compliance for simulators with soft constraints; 0 is rigid."""
 
 
 class ActuatorInfo(_Entry):
@@ -265,6 +267,7 @@ def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
                 frames=(closure.a.frame or None, closure.b.frame or None),
                 bodies=(closure.a.body, closure.b.body),
                 residual=_finite(np.linalg.norm(rows[start : start + closure.rows])),
+                compliance=(closure.compliance.linear, closure.compliance.angular),
             )
             for closure, start in zip(mechanism.closures, starts, strict=False)
         ),

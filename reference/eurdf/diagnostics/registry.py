@@ -186,6 +186,7 @@ configuration-joint        EU-CFG-001 error   A configuration names a joint with
 configuration-length       EU-CFG-002 error   A configuration has the wrong number of coordinates for a joint.
 configuration-quaternion   EU-CFG-003 error   A quaternion does not have unit length.
 configuration-limits       EU-CFG-004 error   A coordinate is outside the limits of its joint.
+closure-compliance         EU-CLO-020 error   A closure without orientation has an angular compliance.
 closure-axis-zero          EU-CLO-013 error   An axis of a hinge is zero.
 closure-type-unknown       EU-CLO-007 warning A closure has a user-defined type and is not part of the model.
 """,

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+from eurdf.mechanism.constraint import Compliance
 from eurdf.mechanism.mechanism import Root
 from eurdf.mechanism.pose import Vector3
 from eurdf.reading.yaml_node import Pointer
@@ -51,6 +52,7 @@ class ClosureEntry:
         axes: Of a hinge: the axis in A and the axis in B, as written or z.
         axes_pointer: Where they are.
         length: Of a distance: m.
+        compliance: None where none is written.
     """
 
     pointer: Pointer
@@ -61,6 +63,7 @@ class ClosureEntry:
     axes: tuple[Vector3, Vector3] | None = None
     axes_pointer: Pointer = ()
     length: float | None = None
+    compliance: Compliance | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from eurdf.format import actuator2_1, joint2_1, version2, version2_1
+from eurdf.format import actuator2_1, compliance, joint2_1, version2, version2_1
 from eurdf.format.extension import (
     ActuatorEntry,
     ClosureEntry,
@@ -18,6 +18,7 @@ from eurdf.format.extension import (
 from eurdf.format.field import is_own_key
 from eurdf.format.version1 import Version1
 from eurdf.format.version2 import Version2
+from eurdf.mechanism.constraint import Compliance
 from eurdf.mechanism.pose import Vector3
 from eurdf.reading.yaml_node import Pointer
 from eurdf.reading.yaml_reader import YamlDocument
@@ -105,7 +106,7 @@ def _reference(pointer: Pointer, frame: str | version2.PoseOnLink | version2.Pos
     return FrameReference(pointer, frame.joint, "joint", xyz=xyz, rpy=rpy)
 
 
-def _closure(pointer: Pointer, closure: version2_1.AnyClosure) -> ClosureEntry:
+def _closure(pointer: Pointer, closure: version2.Closure | version2_1.AnyClosure) -> ClosureEntry:
     a, b = closure.frames
     axes: tuple[Vector3, Vector3] | None = None
     axes_pointer: Pointer = ()
@@ -124,7 +125,12 @@ def _closure(pointer: Pointer, closure: version2_1.AnyClosure) -> ClosureEntry:
         axes,
         axes_pointer,
         closure.length if isinstance(closure, version2_1.Distance) else None,
+        _compliance(closure.compliance) if isinstance(closure, compliance.Compliant) else None,
     )
+
+
+def _compliance(written: compliance.Compliance | None) -> Compliance | None:
+    return None if written is None else Compliance(written.linear or 0.0, written.angular or 0.0)
 
 
 def _joint(name: str, joint: version2.Joint) -> JointEntry:

@@ -8,8 +8,9 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field, Tag
 
 from eurdf.format import actuator2_1, joint2_1, version2
-from eurdf.format.field import ByName, StrictMapping, either
-from eurdf.format.version2 import Closure, FrameReference, Name, Vector, Version2
+from eurdf.format.compliance import Compliance, Compliant
+from eurdf.format.field import ByName, either
+from eurdf.format.version2 import FrameReference, Name, Vector, Version2
 
 VERSION: Literal["2.1"] = "2.1"
 
@@ -20,7 +21,11 @@ LEAST_LENGTH = 1e-4
 _KEYS_OF_TYPES = {"axis": "hinge", "axes": "hinge", "length": "distance"}
 
 
-class _AddedClosure(StrictMapping):
+class Closure(version2.Closure, Compliant):
+    """Two frames that are joined."""
+
+
+class _AddedClosure(Compliant):
     """Two frames, related by a closure of a type that version 2.0 does not have."""
 
     name: Name = Field(title="Name", description="Name of the closure, unique in the file.", examples=["knee_pin"])
@@ -147,7 +152,8 @@ def _of_other_types(*kinds: str) -> dict[str, str]:
 #: As in version 2.0, and of the forms that version 2.1 adds.
 KEYS: Mapping[str, tuple[str, ...]] = {
     **version2.KEYS,
-    "plain closure": version2.KEYS["closures"],
+    "plain closure": tuple(Closure.model_fields),
+    "compliance": tuple(Compliance.model_fields),
     "hinge": tuple(Hinge.model_fields),
     "hinge with axes": tuple(HingeAboutTwo.model_fields),
     "distance": tuple(Distance.model_fields),
@@ -168,7 +174,7 @@ CLOSURE_TYPES: Mapping[str, tuple[str, ...]] = {"2.0": ("3d", "6d"), VERSION: ("
 
 #: Keys that version 2.1 adds, by the last field or tag on the way to their mapping.
 ADDED_KEYS: Mapping[str, tuple[str, ...]] = {
-    "closures": tuple(_KEYS_OF_TYPES),
+    "closures": (*_KEYS_OF_TYPES, "compliance"),
     "geared actuator": actuator2_1.ADDED,
     **dict.fromkeys(_JOINT_FORMS, joint2_1.ADDED),
 }

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 
 from eurdf.format.extension import ClosureEntry
 from eurdf.linking.frame_names import FrameNames
-from eurdf.mechanism.constraint import CLOSURES, Closure, DistanceClosure, HingeClosure
+from eurdf.mechanism.constraint import CLOSURES, RIGID, Closure, Compliance, DistanceClosure, HingeClosure
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.pose import Pose, Vector3
 from eurdf.reading.reporter import YamlReporter
@@ -62,13 +62,30 @@ def link_closures(
                 (*entry.pointer, "type"),
             )
             continue
+        compliance = entry.compliance or RIGID
+        if not _fits(compliance, kind, entry, reporter):
+            continue
         if entry.length is not None:
-            closures.append(DistanceClosure(entry.name, a, b, entry.length))
+            closures.append(DistanceClosure(entry.name, a, b, entry.length, compliance=compliance))
         elif entry.axes is None:
-            closures.append(kind(entry.name, a, b))
+            closures.append(kind(entry.name, a, b, compliance=compliance))
         elif _have_directions(entry, entry.axes, reporter):
-            closures.append(HingeClosure(entry.name, a, b, entry.axes))
+            closures.append(HingeClosure(entry.name, a, b, entry.axes, compliance=compliance))
     return tuple(closures)
+
+
+def _fits(compliance: Compliance, kind: type[Closure], entry: ClosureEntry, reporter: YamlReporter) -> bool:
+    """EU-CLO-020, EU-CLO-021: only a closure that holds an orientation has an angular compliance."""
+    pointer = (*entry.pointer, "compliance", "angular")
+    if not compliance.angular or "rad" in kind.units:
+        return True
+    reporter.report(
+        "closure-compliance",
+        f"closure '{entry.name}' of type {kind.type} holds no orientation, and cannot have an angular compliance",
+        pointer,
+        "remove 'angular', or use type 6d or hinge",
+    )
+    return False
 
 
 def _have_directions(entry: ClosureEntry, axes: tuple[Vector3, Vector3], reporter: YamlReporter) -> bool:

@@ -6,7 +6,7 @@ What a kind means, its residual and the derivatives of that, is in `eurdf.kinema
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import ClassVar, Literal, Self
 
 from eurdf.mechanism.frame import Anchor
@@ -51,16 +51,34 @@ class Constraint:
 
 
 @dataclass(frozen=True, slots=True)
+class Compliance:
+    """How much a closure gives way under load: for simulators with soft constraints, without effect on kinematics.
+
+    Attributes:
+        linear: m/N; 0 is rigid.
+        angular: rad/(N·m); 0 is rigid.
+    """
+
+    linear: float = 0.0
+    angular: float = 0.0
+
+
+RIGID = Compliance()
+
+
+@dataclass(frozen=True, slots=True)
 class Closure(Constraint):
     """A loop closure: it joins frame B to frame A.
 
     Attributes:
         a: Frame A.
         b: Frame B.
+        compliance: What soft simulators may use.
     """
 
     a: Anchor
     b: Anchor
+    compliance: Compliance = field(default=RIGID, kw_only=True)
 
     @property
     def anchors(self) -> tuple[Anchor, ...]:

@@ -217,6 +217,12 @@ def mimic_joints_have_no_properties(data: Any, urdf: Any) -> bool:
     return any(name in mimics and "mimic" not in entry for name, entry in joints.items() if isinstance(entry, dict))
 
 
+@describes("EU-CLO-021")
+def closures_are_rigid(robot: Any) -> dict[str, Any]:
+    """A closure has no compliance."""
+    return {"closures": [each.model_copy(update={"compliance": None}) for each in robot.closures]}
+
+
 @describes("EU-ACT-010")
 def actuators_have_no_names(robot: Any) -> dict[str, Any]:
     """An actuator has the name of its joint, whatever the description states."""
