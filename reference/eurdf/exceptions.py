@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from eurdf.diagnostics import Diagnostic
 from eurdf.diagnostics.registry import Severity
+from eurdf.diagnostics.visible import no_command, visible
 
 
 class EurdfError(Exception):
@@ -22,7 +23,10 @@ class InvalidRobot(EurdfError, ValueError):  # noqa: N818 - part of the public i
         self.path = path
         self.diagnostics = diagnostics
         errors_first = sorted(diagnostics, key=lambda found: found.severity is not Severity.ERROR)
-        lines = [reason or f"{path} is not a valid robot", *(f"  {found}" for found in errors_first)]
+        lines = [
+            no_command(visible(reason or f"{path} is not a valid robot")),
+            *(f"  {found}" for found in errors_first),
+        ]
         super().__init__("\n".join(lines))
 
 

@@ -492,7 +492,8 @@ def test_unscaled_mesh_in_millimetres_is_reported(
 def test_unreadable_mesh_has_no_size(tmp_path: Path, file: str, content: bytes) -> None:
     (tmp_path / file).write_bytes(content)
     mesh = f'<visual><geometry><mesh filename="{file}"/></geometry></visual>'
-    assert checked(tmp_path, chain(joint("k", "a", "b")).replace('<link name="b">', f'<link name="b">{mesh}')) == []
+    found = checked(tmp_path, chain(joint("k", "a", "b")).replace('<link name="b">', f'<link name="b">{mesh}'))
+    assert codes(found) == ["urdf-mesh-unreadable"]
 
 
 BALL = "joints:\n  neck: {type: spherical}\nconfigurations:\n  look: {neck: [%s]}\n"

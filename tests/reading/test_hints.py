@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from eurdf import check
 from eurdf.diagnostics import Diagnostic, Diagnostics, FileError
+from eurdf.diagnostics.lines import Lines
 from eurdf.format.read_extension import read_extension
 from eurdf.reading.indentation import first_line_hint, indentation_hint
 from eurdf.reading.source import Source
@@ -208,7 +209,7 @@ def test_too_deep_item_is_recognized_in_its_name(tmp_path: Path) -> None:
 @settings(max_examples=200, deadline=None, derandomize=True)
 @given(st.text(st.sampled_from(" -:a'\"[{|#\n\r"), max_size=60), st.integers(1, 9))
 def test_any_text_is_accepted_without_exception(text: str, line: int) -> None:
-    for hint in (indentation_hint(text, line), first_line_hint(text)):
+    for hint in (indentation_hint(Lines(text), line), first_line_hint(Lines(text))):
         assert hint is None or "\n" not in hint
 
 

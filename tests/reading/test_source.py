@@ -59,10 +59,16 @@ def test_file_of_100_megabytes_is_not_read(tmp_path: Path) -> None:
     assert f"{FILE_LIMIT:,} bytes" in diagnostic.message
 
 
-@pytest.mark.skipif(not os.path.exists("/proc/self/status"), reason="there is no /proc here")
-def test_unknown_size_is_read_up_to_limit() -> None:
-    assert read_source("/proc/self/status").text.startswith("Name:")
-    assert error_of("/proc/self/status", limit=10).diagnostic.code == "file-too-large"
+@pytest.mark.skipif(not os.path.exists("/proc/self/environ"), reason="there is no /proc here")
+@pytest.mark.parametrize("name", ["environ", "status", "cmdline"])
+def test_file_of_the_kernel_is_refused(name: str) -> None:
+    diagnostic = error_of(f"/proc/self/{name}").diagnostic
+    assert diagnostic.code == "file-unreadable"
+    assert "not a regular file" in diagnostic.message
+
+
+def test_empty_file_is_read(tmp_path: Path) -> None:
+    assert read_source(write(tmp_path, b"")).text == ""
 
 
 def test_missing_file_is_reported(tmp_path: Path) -> None:

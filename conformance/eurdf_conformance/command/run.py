@@ -15,7 +15,8 @@ from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.output import is_terminal, write_json, write_lines
 from eurdf.commands.output_file import write_new
 from eurdf.commands.robot_options import ending
-from eurdf.diagnostics.text import Line, visible
+from eurdf.diagnostics.text import Line
+from eurdf.diagnostics.visible import visible
 from eurdf_conformance.certificate.certificate import Certificate, NoCertificate, read_certificate
 from eurdf_conformance.certificate.comparison_page import comparison_page
 from eurdf_conformance.certificate.write import NoRoom, make_room, write_certificate

@@ -13,6 +13,7 @@ from eurdf.checking.loops import closure_diagnostics
 from eurdf.checking.mesh_files import read_mesh_files
 from eurdf.diagnostics.report import Report
 from eurdf.linking.description import Described, Unlinked, describe, find_meshes
+from eurdf.pinocchio.meshes import Mesh
 from eurdf.reading.given import Given
 
 
@@ -22,6 +23,7 @@ def check(
     *,
     package_dirs: Sequence[str | os.PathLike[str]] = (),
     xacro_args: Mapping[str, str] | None = None,
+    confined: bool = False,
 ) -> Report:
     """Check a robot: EU-DIA-001, EU-DIA-003: every error that no other error hides is reported.
 
@@ -34,6 +36,8 @@ def check(
         package_dirs: Folders to look for the packages of meshes in, before ``ROS_PACKAGE_PATH`` and
             ``AMENT_PREFIX_PATH``.
         xacro_args: Values of the arguments of a xacro.
+        confined: Whether it is an error if the description names a URDF outside its own folder, symbolic links
+            followed. The URDF is then not opened. Meshes may be anywhere.
 
     Returns:
         The findings of all phases, in the order of the phases.
@@ -43,13 +47,14 @@ def check(
         CannotExpand: A xacro has an error, or `xacro_args` are given for what is no xacro.
         MissingExtra: A xacro is given, and the extra ``xacro`` is not installed.
     """
-    description = describe(path, urdf, package_dirs=package_dirs, xacro_args=xacro_args)
+    description = describe(path, urdf, package_dirs=package_dirs, xacro_args=xacro_args, confined=confined)
     diagnostics = description.diagnostics
     refused = diagnostics.refused  # without meshes, which the kinematics does not need
-    meshes: dict[str, str] = {}
+    meshes: dict[str, Mesh] = {}
     if description.urdf is not None:
-        meshes, missing = find_meshes(description.urdf, package_dirs)
-        _, unreadable = read_mesh_files(description.urdf, meshes)
+        files, missing = find_meshes(description.urdf, package_dirs)
+        by_path, unreadable = read_mesh_files(description.urdf, files)
+        meshes = {uri: by_path[path] for uri, path in files.items() if path in by_path}
         for found in (*missing, *unreadable):
             diagnostics.add(found)
     if not isinstance(description, Unlinked) and not refused:

@@ -27,6 +27,7 @@ def load(
     strict: bool = False,
     package_dirs: Sequence[str | os.PathLike[str]] = (),
     xacro_args: Mapping[str, str] | None = None,
+    confined: bool = False,
 ) -> Robot:
     """Load a robot.
 
@@ -54,6 +55,8 @@ def load(
         package_dirs: Folders to look for the packages of meshes in, before ``ROS_PACKAGE_PATH`` and
             ``AMENT_PREFIX_PATH``.
         xacro_args: Values of the arguments of a xacro.
+        confined: Whether it is an error if the description names a URDF outside its own folder, symbolic links
+            followed. The URDF is then not opened. Meshes may be anywhere.
 
     Returns:
         The robot: its Pinocchio model, its constraint models in file order, its actuation, its geometry.
@@ -68,7 +71,14 @@ def load(
     if root not in (None, "fixed", "floating"):
         raise ValueError(f"root is {root!r}; it must be 'fixed' or 'floating'")
     description = describe(
-        path, urdf, root, geometry=geometry, mimic=mimic, package_dirs=package_dirs, xacro_args=xacro_args
+        path,
+        urdf,
+        root,
+        geometry=geometry,
+        mimic=mimic,
+        package_dirs=package_dirs,
+        xacro_args=xacro_args,
+        confined=confined,
     )
     diagnostics = description.diagnostics
     if isinstance(description, Unlinked):

@@ -222,7 +222,7 @@ def _widest(assembly: Assembly) -> str:
 def _show(info: AssemblyInfo) -> None:
     from rich.text import Text
 
-    from eurdf.diagnostics.text import visible
+    from eurdf.diagnostics.visible import visible
 
     word, style = ("closed", "green") if info.closes else ("open", "red")
     residual = "" if info.residual is None else f", residual {info.residual:.1e}"

@@ -79,7 +79,7 @@ def run(args: argparse.Namespace) -> int:
     elif reports:
         write_reports(reports, args.strict)
     else:
-        from eurdf.diagnostics.text import visible
+        from eurdf.diagnostics.visible import visible
 
         write_lines([[(f"{visible(path)}: no robot", "")] for path in args.paths], sys.stdout)
     return 0 if all(report.passes(args.strict) for report in reports) else 1

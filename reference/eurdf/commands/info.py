@@ -101,7 +101,7 @@ def _show(info: RobotInfo) -> None:
 def _heading(info: RobotInfo) -> Text:
     from rich.text import Text
 
-    from eurdf.diagnostics.text import visible
+    from eurdf.diagnostics.visible import visible
 
     format_name = f"Extended URDF {info.version}" if info.version else "URDF"
     mass = "" if info.mass is None else f", {info.mass:.6g} kg"

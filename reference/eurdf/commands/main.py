@@ -12,7 +12,7 @@ import os
 import sys
 import traceback
 from collections.abc import Sequence
-from typing import TextIO
+from typing import NoReturn, TextIO
 
 from eurdf import __version__
 from eurdf.commands import assemble, certify, check, generate, info, migrate, robots, schema
@@ -55,7 +55,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return BROKEN_PIPE
     except (CannotRun, CannotExpand, MissingExtra, OSError) as reason:  # OSError: also RobotNotFound
-        from eurdf.diagnostics.text import visible
+        from eurdf.diagnostics.visible import visible
 
         sys.stderr.write(f"eurdf: {visible(str(reason))}\n")
         return 2
@@ -67,10 +67,17 @@ def main(argv: Sequence[str] | None = None) -> int:
     return code
 
 
+class _Parser(argparse.ArgumentParser):
+    """A parser of arguments whose errors cannot control a terminal or a log."""
+
+    def error(self, message: str) -> NoReturn:
+        from eurdf.diagnostics.visible import visible
+
+        super().error(visible(message))
+
+
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="eurdf", description="Robots with closed kinematic chains, from a URDF and one YAML file."
-    )
+    parser = _Parser(prog="eurdf", description="Robots with closed kinematic chains, from a URDF and one YAML file.")
     parser.add_argument("--version", action="version", version=f"eurdf {__version__}", help="show the version and exit")
     subparsers = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
     for command in COMMANDS:

@@ -169,10 +169,10 @@ def show_refusal(path: str, diagnostics: tuple[Any, ...], as_json: bool) -> None
 
 def print_notes(sentences: tuple[str, ...] | list[str]) -> None:
     """Write to the standard error, a line each."""
-    from eurdf.diagnostics.text import visible
+    from eurdf.diagnostics.visible import no_command, visible
 
     for sentence in sentences:
-        sys.stderr.write(f"{visible(sentence)}\n")
+        sys.stderr.write(f"{no_command(visible(sentence))}\n")
 
 
 def _result(

@@ -51,10 +51,12 @@ def write_json(value: dict[str, Any]) -> None:
 
 
 def write_lines(lines: Iterable[Line], stream: TextIO) -> None:
-    """Write styled lines without wrapping."""
+    """Write styled lines without wrapping; none of them is a command of a workflow."""
+    from eurdf.diagnostics.visible import no_command
+
     if not is_terminal(stream):
         for line in lines:
-            stream.write("".join(piece for piece, _ in line).rstrip() + "\n")
+            stream.write(no_command("".join(piece for piece, _ in line).rstrip()) + "\n")
         return
     from rich.text import Text
 
@@ -62,18 +64,20 @@ def write_lines(lines: Iterable[Line], stream: TextIO) -> None:
     with console.capture() as captured:
         for line in lines:
             console.print(Text.assemble(*line), soft_wrap=True)
-    stream.write(captured.get())
+    stream.write("".join(map(no_command, captured.get().splitlines(keepends=True))))
 
 
 def write_rendered(*renderables: RenderableType) -> None:
-    """Write rich renderables to the standard output, separated by empty lines."""
+    """Write rich renderables to the standard output, separated by empty lines; no line is a command of a workflow."""
+    from eurdf.diagnostics.visible import no_command
+
     console = _console(sys.stdout)
     with console.capture() as captured:
         console.print(renderables[0])
         for renderable in renderables[1:]:
             console.print()
             console.print(renderable)
-    sys.stdout.write("".join(line.rstrip() + "\n" for line in captured.get().splitlines()))
+    sys.stdout.write("".join(no_command(line.rstrip()) + "\n" for line in captured.get().splitlines()))
 
 
 def new_table(*headings: str) -> Table:
@@ -97,7 +101,7 @@ def cell(text: str, style: str = "") -> Text:
     """A table cell: text without markup, with control characters made visible."""
     from rich.text import Text
 
-    from eurdf.diagnostics.text import visible
+    from eurdf.diagnostics.visible import visible
 
     return Text(visible(text), style=style)
 

@@ -34,6 +34,11 @@ def add_robot_options(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="the URDF, instead of the one that the description names; - for standard input",
     )
+    parser.add_argument(
+        "--confined",
+        action="store_true",
+        help="refuse a description that names a URDF outside its own folder",
+    )
     add_urdf_options(parser)
 
 
@@ -66,7 +71,7 @@ def robot_options(args: argparse.Namespace) -> dict[str, Any]:
     """
     if args.urdf is not None:
         require_urdf(args.urdf)
-    return {"urdf": args.urdf, **urdf_options(args)}
+    return {"urdf": args.urdf, "confined": args.confined, **urdf_options(args)}
 
 
 def urdf_options(args: argparse.Namespace) -> dict[str, Any]:

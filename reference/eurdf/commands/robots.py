@@ -42,7 +42,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _show(collection: Collection) -> None:
-    from eurdf.diagnostics.text import visible
+    from eurdf.diagnostics.visible import visible
 
     counts = ("nv", "closures", "nc", "mobility", "actuated", "uncontrolled")
     described = not is_terminal(sys.stdout) or columns() >= _WIDE

@@ -13,7 +13,7 @@ from eurdf.commands.cannot_run import CannotRun
 from eurdf.diagnostics import FileError
 from eurdf.exceptions import RobotNotFound
 from eurdf.reading.given import is_stream, is_text
-from eurdf.reading.source import FILE_LIMIT
+from eurdf.reading.source import FILE_LIMIT, begin_of_file
 
 _DESCRIPTIONS = ("robot.yaml", "robot.yml")
 _YAML_SUFFIXES = (".yaml", ".yml")
@@ -100,9 +100,6 @@ def _robots_below(folder: str) -> list[str]:
 
 def _describes_robot(file: Path) -> bool:
     try:
-        if not file.is_file():
-            return False
-        with file.open("rb") as stream:
-            return _FORMAT_KEY.search(stream.read(FILE_LIMIT)) is not None
+        return _FORMAT_KEY.search(begin_of_file(file, FILE_LIMIT)) is not None
     except OSError:
         return False

@@ -9,7 +9,9 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
+from eurdf.diagnostics.lines import Lines
 from eurdf.diagnostics.registry import REFUSED_PHASES, REGISTRY, Phase, Severity
+from eurdf.diagnostics.visible import no_command, visible
 
 #: Maximum number of listed diagnostics of one code; the last one says how many more there are.
 LISTED = 100
@@ -45,7 +47,7 @@ class Place:
         column: Column, from 1, in characters; None if only the line is known.
         end_column: Column after the last character of the place, on the same line; None if unknown.
         pointer: JSON pointer of the value in a YAML file, XPath of the element or attribute in a URDF.
-        text: The whole text that contains the place, if it does not come from a file that can be read again.
+        lines: The text that contains the place, to show its line; None if it must not be shown.
     """
 
     file: str
@@ -53,7 +55,7 @@ class Place:
     column: int | None = None
     end_column: int | None = None
     pointer: str = ""
-    text: str | None = field(default=None, compare=False, repr=False)
+    lines: Lines | None = field(default=None, compare=False, repr=False)
 
 
 class Diagnostic:
@@ -119,7 +121,7 @@ class Diagnostic:
     def __str__(self) -> str:
         where = ":".join(str(part) for part in (self.file, self.line, self.column) if part is not None)
         hint = f" ({self.hint})" if self.hint else ""
-        return f"{where}: {self.severity}: {self.message}{hint} [{self.code}]"
+        return no_command(visible(f"{where}: {self.severity}: {self.message}{hint} [{self.code}]"))
 
     def __repr__(self) -> str:
         return f"<Diagnostic {self}>"

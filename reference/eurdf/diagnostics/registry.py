@@ -219,6 +219,7 @@ x-closes-beyond-limits     The loops close only with joints beyond their limits.
 x-mimic-ignored            A joint with a <mimic> moves freely: it has no actuator, and version 1 ignores <mimic>.
 x-massless-link            A link of a loop has no mass.
 x-xacro-warning            A xacro file was expanded with warnings.
+x-urdf-outside-folder      The URDF that a description names is outside the folder of the description.
 x-loops-not-checked        The loops were not checked in full: too many of them share joints.
 """,
     ),

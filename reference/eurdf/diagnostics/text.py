@@ -5,15 +5,13 @@ The result is lines of styled pieces; the caller decides whether to keep the sty
 
 from __future__ import annotations
 
-import os
-import re
-import stat
 import unicodedata
 from collections.abc import Iterator, Sequence
 
 from eurdf.diagnostics.diagnostic import Diagnostic
 from eurdf.diagnostics.registry import Severity
 from eurdf.diagnostics.report import Report
+from eurdf.diagnostics.visible import visible
 
 #: The pieces of one line, each with a rich style (empty for none).
 Line = list[tuple[str, str]]
@@ -22,9 +20,6 @@ Line = list[tuple[str, str]]
 SOURCE_WIDTH = 96
 
 _LONGEST_MESSAGE = 1000
-# Files are read again to show their lines. Larger files than this are never accepted.
-_LARGEST_FILE = 64 * 2**20
-_BREAK = re.compile("\r\n?|\n")
 _ELLIPSIS = "..."
 _TAB = "    "
 
@@ -39,10 +34,9 @@ def report_lines(report: Report, width: int = SOURCE_WIDTH, bar: str = "|") -> I
         width: Columns for the text of a source line.
         bar: Separator between line numbers and lines.
     """
-    texts: dict[str, list[str]] = {}
     for found in _by_position(report.diagnostics):
         yield _headline(found, report.path)
-        yield from _excerpt_lines(found, texts, width, bar)
+        yield from _excerpt_lines(found, width, bar)
 
 
 def summary_line(report: Report, strict: bool = False) -> Line:
@@ -64,13 +58,6 @@ def total_line(reports: Sequence[Report], strict: bool = False) -> Line:
         (f"{failed} failed", "bold red" if failed else ""),
         (f" ({counts})" if counts else "", ""),
     ]
-
-
-def visible(text: str) -> str:
-    r"""The text with invisible and control characters replaced by escapes (``\x1b``)."""
-    if text.isprintable():
-        return text
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)
 
 
 def cells(text: str) -> int:
@@ -104,18 +91,16 @@ def _headline(found: Diagnostic, path: str) -> Line:
     ]
 
 
-def _excerpt_lines(found: Diagnostic, texts: dict[str, list[str]], width: int, bar: str) -> Iterator[Line]:
+def _excerpt_lines(found: Diagnostic, width: int, bar: str) -> Iterator[Line]:
     place = found.place
     number = ""
-    if place.line is not None:
-        if place.file not in texts:
-            texts[place.file] = _read_lines(place.file) if place.text is None else _BREAK.split(place.text)
-        lines = texts[place.file]
-        if place.line <= len(lines):
+    if place.line is not None and place.lines is not None:
+        text = place.lines.line(place.line)
+        if text is not None:
             number = str(place.line)
             start = None if place.column is None else place.column - 1
             end = None if place.end_column is None else place.end_column - 1
-            shown, offset, length = _clip(lines[place.line - 1], start, end, width)
+            shown, offset, length = _clip(text, start, end, width)
             yield [(f"{number:>5} {bar} ", "blue"), (shown, "")]
             if start is not None:
                 yield [
@@ -164,17 +149,6 @@ def _clip(text: str, start: int | None, end: int | None, width: int) -> tuple[st
     shown = before + "".join(pieces[first:last]) + after
     offset = len(before) + sum(sizes[first:place])
     return shown.rstrip(), offset, max(1, sum(sizes[place : min(end - low, last)]))
-
-
-def _read_lines(file: str) -> list[str]:
-    try:
-        status = os.stat(file)
-        if not stat.S_ISREG(status.st_mode) or status.st_size > _LARGEST_FILE:
-            return []
-        with open(file, encoding="utf-8-sig", errors="replace") as stream:
-            return stream.read(_LARGEST_FILE).split("\n")
-    except (OSError, ValueError):
-        return []
 
 
 def _counts(*reports: Report) -> str:

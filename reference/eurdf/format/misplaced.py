@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 from eurdf.format.version2 import JOINT_TYPES
 from eurdf.format.version2_1 import KEYS
-from eurdf.reading.source import BREAK
 from eurdf.reading.yaml_node import Pointer
 
 if TYPE_CHECKING:
@@ -87,7 +86,7 @@ def key_outside_hint(mapping: Pointer, key: str, document: YamlDocument) -> str 
     item, outside = document.place(mapping), document.place((*mapping[:-2], key), True)
     if item.line is None or item.column is None or outside.line is None or outside.line < item.line:
         return None
-    if BREAK.split(document.source.text)[item.line - 1].startswith("{", item.column - 1):
+    if (document.source.lines.line(item.line) or "").startswith("{", item.column - 1):
         return None
     return f"if '{key}' on line {outside.line} belongs to it, indent it by {item.column - 1} spaces"
 

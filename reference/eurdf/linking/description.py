@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import os
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -97,6 +97,7 @@ def describe(
     mimic: bool = True,
     package_dirs: Sequence[str | os.PathLike[str]] = (),
     xacro_args: Mapping[str, str] | None = None,
+    confined: bool = False,
 ) -> Unlinked | Linked:
     """Read and link the files of a robot, and check its inertias.
 
@@ -111,6 +112,7 @@ def describe(
             reported but leaves a mechanism. With a description of version 1 they are free in any case, and not checked.
         package_dirs: Folders to look for packages in, which a xacro finds files in.
         xacro_args: Values of the arguments of a xacro.
+        confined: Whether a URDF that the description names must be in the folder of the description.
 
     Raises:
         RobotNotFound: Where there are no such files.
@@ -129,21 +131,23 @@ def describe(
         raise CannotExpand(name, _NO_XACRO)
     if files.description is None:
         assert given is not None
-        urdf_path, extension = given, None
+        read, extension = partial(_own_source, given, confined), None
         mimic_errors: _MimicErrors = "refused" if mimic else "kept"
     else:
-        document = _read_yaml(files.description, diagnostics)
+        document = _read_description(files.description, diagnostics, confined)
         extension = None if document is None else read_extension(document, diagnostics)
-        urdf_path = given or _named_urdf(files.description, extension, document)
-        if not isinstance(urdf_path, Source) and given is None and not os.path.lexists(urdf_path):
-            # If the description could not be read, its URDF is a guess, so a second error would be wrong.
-            if extension is not None:
-                _urdf_not_found(urdf_path, extension, diagnostics)
-            return Unlinked(name, diagnostics)
+        if given is not None:
+            read = partial(_own_source, given)
+        else:
+            named = _named_urdf(files.description, extension, document)
+            if not _may_read(named, files.description, extension, diagnostics, confined):
+                return Unlinked(name, diagnostics)
+            # Another file that the description names may be anyone's: no line of it is shown.
+            read = partial(read_source, named, is_quoted=_is_inside(named, _folder(files.description)))
         # Without a version, whether a mimic has an effect is not known.
         version = None if document is None else version_of(document)
         mimic_errors = "ignored" if version in (None, "1") else "refused" if mimic else "kept"
-    tree = _read_urdf(urdf_path, diagnostics, geometry, mimic_errors)
+    tree = _read_urdf(read, diagnostics, geometry, mimic_errors)
     if tree is None:
         return Unlinked(name, diagnostics)
     mechanism = None
@@ -186,7 +190,7 @@ def read_urdf_alone(
     except FileError as error:
         diagnostics.add(error.diagnostic)
         return None
-    return _read_urdf(urdf, diagnostics, geometry=True, mimic_errors="refused")
+    return _read_urdf(partial(_own_source, urdf), diagnostics, geometry=True, mimic_errors="refused")
 
 
 def _expanded(
@@ -207,23 +211,11 @@ def _expanded(
     return urdf
 
 
-def _read_yaml(path: Path | Source, diagnostics: Diagnostics) -> YamlDocument | None:
-    try:
-        return read_yaml(_source(path))
-    except FileError as error:
-        diagnostics.add(error.diagnostic)
-        return None
-
-
-def _source(path: Path | Source) -> Source:
-    return path if isinstance(path, Source) else read_source(path)
-
-
 def _read_urdf(
-    path: Path | Source, diagnostics: Diagnostics, geometry: bool, mimic_errors: _MimicErrors
+    read: Callable[[], Source], diagnostics: Diagnostics, geometry: bool, mimic_errors: _MimicErrors
 ) -> Urdf | None:
     try:
-        document = read_xml(_source(path))
+        document = read_xml(read())
     except FileError as error:
         diagnostics.add(error.diagnostic)
         return None
@@ -241,11 +233,78 @@ def _named_urdf(description: Path | Source, extension: Extension | None, documen
         name = extension.urdf
     elif document is not None and isinstance(document.data, dict) and isinstance(document.data.get("urdf"), str):
         name = document.data["urdf"]
-    folder = description.folder if isinstance(description, Source) else description.parent
     try:
-        return folder / name
+        return _folder(description) / name
     except ValueError:
-        return folder / "robot.urdf"
+        return _folder(description) / "robot.urdf"
+
+
+def _folder(description: Path | Source) -> Path:
+    return description.folder if isinstance(description, Source) else description.parent
+
+
+def _read_description(path: Path | Source, diagnostics: Diagnostics, confined: bool) -> YamlDocument | None:
+    try:
+        return read_yaml(_own_source(path, confined))
+    except FileError as error:
+        diagnostics.add(error.diagnostic)
+        return None
+
+
+def _own_source(path: Path | Source, confined: bool = False) -> Source:
+    """The text of a file of the robot that the caller named, or found in a folder.
+
+    Raises:
+        FileError: It cannot be read; or files are confined to their folder, and it is a link to one elsewhere.
+    """
+    if isinstance(path, Source):
+        return path
+    is_inside = _is_inside(path, path.parent)
+    if confined and not is_inside:
+        message = f"'{path}' is a link to a file in another folder, and files are confined to their folder"
+        raise FileError("file-unreadable", message, Place(os.fspath(path)))
+    return read_source(path, is_quoted=is_inside)
+
+
+def _is_inside(path: Path, folder: Path) -> bool:
+    """Whether a file is in a folder, with every symbolic link followed."""
+    try:
+        return path.resolve().is_relative_to(folder.resolve())
+    except (OSError, ValueError, RuntimeError):  # a path that cannot be one, or a circle of links
+        return True  # which is an error where it is read
+
+
+def _may_read(
+    path: Path, description: Path | Source, extension: Extension | None, diagnostics: Diagnostics, confined: bool
+) -> bool:
+    """Whether the URDF that the description names exists, and is in its folder if files are confined to it.
+
+    If the description could not be read, its URDF is a guess, so a second error would be wrong.
+    """
+    is_inside = _is_inside(path, _folder(description))
+    if confined and not is_inside:
+        if extension is not None:
+            message = f"the URDF '{path}' is outside the folder of the description, and files are confined to it"
+            hint = "move the URDF into the folder, or give it with --urdf (urdf= in Python)"
+            diagnostics.report("file-unreadable", message, extension.document.place(("urdf",)), hint)
+        return False
+    if not os.path.lexists(path):
+        if extension is not None:
+            _urdf_not_found(path, extension, diagnostics)
+        return False
+    # Some installers fill a folder with links into one other folder.
+    if not (is_inside or extension is None or (isinstance(description, Path) and _is_beside(path, description))):
+        diagnostics.report(
+            "x-urdf-outside-folder",
+            f"the URDF '{path}' is outside the folder of the description",
+            extension.document.place(("urdf",)),
+            "keep the URDF in this folder, or below it; --confined refuses others",
+        )
+    return True
+
+
+def _is_beside(path: Path, description: Path) -> bool:
+    return _is_inside(path, description.resolve().parent)
 
 
 def _urdf_not_found(path: Path, extension: Extension, diagnostics: Diagnostics) -> None:

@@ -56,6 +56,11 @@ class Mesh:
         """The largest magnitude of each coordinate, shape (3,)."""
         return np.asarray(np.abs(self.vertices).max(axis=0))
 
+    @property
+    def size(self) -> float:
+        """Length of the longest side of the bounding box."""
+        return float(np.ptp(self.vertices, axis=0).max())
+
 
 @dataclass(frozen=True, slots=True)
 class _File:

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from eurdf.diagnostics import FileError, Place
-from eurdf.reading.source import BOM, FILE_LIMIT, Source, decoded, too_large
+from eurdf.reading.source import BOM, FILE_LIMIT, Source, decoded, open_now, too_large
 
 #: What is given: a path, ``-`` for standard input, or the text itself.
 Given = str | bytes | os.PathLike[str]
@@ -112,9 +112,10 @@ def _read_stdin(limit: int) -> bytes:
 
 def _read_pipe(file: str, limit: int) -> bytes:
     try:
-        # Not blocking, since opening a pipe would wait for someone to write into it.
-        descriptor = os.open(file, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+        descriptor = open_now(file)
         try:
+            if not stat.S_ISFIFO(os.fstat(descriptor).st_mode):  # it was a moment ago
+                raise FileError("file-unreadable", f"'{file}' is not a pipe any more", Place(file))
             first = _first_chunk(descriptor, file)
             os.set_blocking(descriptor, True)
             return first + b"".join(_chunks(descriptor, max(limit - len(first), 0)))

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from itertools import islice
 
-from eurdf.reading.source import BREAK
+from eurdf.diagnostics.lines import Lines
+
+#: Lines at the beginning of a file that a hint takes into account. The longest description of the collection has 200.
+LOOKED_AT = 100_000
 
 _ITEM = re.compile(r"-(?: +|$)")
 _KEY = re.compile(r"""("[^"\n]*"|'[^'\n]*'|[^\s"'#&*!|>%@`{}\[\],:-][^#:]*?|-[^\s#:][^#:]*?)\s*:(?: +|$)""")
@@ -28,7 +32,7 @@ class _Level:
     has_value: bool = False
 
 
-def indentation_hint(text: str, line: int) -> str | None:
+def indentation_hint(text: Lines, line: int) -> str | None:
     """How to indent a line that does not continue what is before it.
 
     Args:
@@ -36,9 +40,12 @@ def indentation_hint(text: str, line: int) -> str | None:
         line: Number of the line, from 1.
 
     Returns:
-        The hint; None if the line does not begin with a key or ``-``, or its indentation is not wrong.
+        The hint; None if the line does not begin with a key or ``-``, its indentation is not wrong, or more than
+        `LOOKED_AT` lines would have to be looked at.
     """
-    lines = BREAK.split(text)
+    if line > LOOKED_AT:
+        return None
+    lines = list(islice(text.from_line(1), line))
     wrong = lines[line - 1] if line <= len(lines) else ""
     column, body = _indent(wrong)
     key = _KEY.match(body)
@@ -62,9 +69,9 @@ def indentation_hint(text: str, line: int) -> str | None:
     return hint
 
 
-def first_line_hint(text: str) -> str | None:
+def first_line_hint(text: Lines) -> str | None:
     """How to indent the first line of a file that is indented deeper than what follows; None where it is not."""
-    for number, line in enumerate(BREAK.split(text), 1):
+    for number, line in enumerate(islice(text.from_line(1), LOOKED_AT), 1):
         column, body = _indent(line)
         if body and not body.startswith("#"):
             key = _KEY.match(body)

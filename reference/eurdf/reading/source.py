@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 import os
-import re
 import stat
-from bisect import bisect_right
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from eurdf.diagnostics import FileError, Place
+from eurdf.diagnostics.lines import Lines
 
 BOM = b"\xef\xbb\xbf"
-
-#: Where a line ends.
-BREAK = re.compile("\r\n?|\n")
 
 #: Bytes that a file may have (EU-FIL-002).
 FILE_LIMIT = 16 << 20
@@ -29,13 +25,18 @@ class Source:
         text: Decoded, without byte order mark, line breaks as they are.
         data: The same as UTF-8 bytes.
         base: Folder that relative paths in a text start from which is not in a file; None for a file.
+        is_quoted: Whether diagnostics show lines of the text.
     """
 
     file: str
     text: str
     data: bytes
     base: Path | None = field(default=None, compare=False)
-    _starts: list[int] = field(default_factory=list, init=False, repr=False, compare=False)
+    is_quoted: bool = True
+    lines: Lines = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "lines", Lines(self.text))
 
     @property
     def is_file(self) -> bool:
@@ -55,11 +56,7 @@ class Source:
         Args:
             index: Index in ``text``; its length means the end of the file.
         """
-        if not self._starts:
-            # str.splitlines would break at form feeds, U+2028 and more as well.
-            self._starts[:] = [0, *(found.end() for found in BREAK.finditer(self.text))]
-        line = bisect_right(self._starts, index)
-        return line, index - self._starts[line - 1] + 1
+        return self.lines.position(index)
 
     def place(self, start: int, end: int | None = None, pointer: str = "") -> Place:
         """Place of the characters from ``start`` to before ``end``; both are indices in ``text``."""
@@ -68,18 +65,18 @@ class Source:
         if end is not None:
             end_line, last = self.position(end)
             end_column = last if end_line == line else None
-        return Place(self.file, line, column, end_column, pointer, self._kept)
+        return Place(self.file, line, column, end_column, pointer, self._quoted)
 
     def place_of_line(self, line: int) -> Place:
         """Place of a line, from 1, as a whole."""
-        return Place(self.file, line, text=self._kept)
+        return Place(self.file, line, lines=self._quoted)
 
     @property
-    def _kept(self) -> str | None:
-        return None if self.is_file else self.text
+    def _quoted(self) -> Lines | None:
+        return self.lines if self.is_quoted else None
 
 
-def read_source(path: str | os.PathLike[str], limit: int = FILE_LIMIT) -> Source:
+def read_source(path: str | os.PathLike[str], limit: int = FILE_LIMIT, *, is_quoted: bool = True) -> Source:
     """Read a text file.
 
     Never reads more than ``limit`` bytes, and nothing that is not a regular file: a pipe or a device could block.
@@ -87,21 +84,23 @@ def read_source(path: str | os.PathLike[str], limit: int = FILE_LIMIT) -> Source
     Args:
         path: Path of the file.
         limit: Largest size accepted, in bytes.
+        is_quoted: Whether diagnostics show lines of the file.
 
     Raises:
         FileError: ``file-unreadable``, ``file-too-large`` or ``file-not-utf8``.
     """
     file = os.fsdecode(path)
-    return decoded(_read_bytes(file, limit), file)
+    return decoded(_read_bytes(file, limit), file, is_quoted=is_quoted)
 
 
-def decoded(data: bytes, file: str, base: Path | None = None) -> Source:
+def decoded(data: bytes, file: str, base: Path | None = None, *, is_quoted: bool = True) -> Source:
     """The text that is in some bytes, EU-FIL-003.
 
     Args:
         data: The bytes.
         file: What diagnostics call the text.
         base: Folder that relative paths start from, for a text that is not in a file.
+        is_quoted: Whether diagnostics show lines of the text.
 
     Raises:
         FileError: ``file-not-utf8``.
@@ -115,17 +114,17 @@ def decoded(data: bytes, file: str, base: Path | None = None) -> Source:
         text = data.decode()
     except UnicodeDecodeError as error:
         before = data[: error.start].decode()
-        place = Source(file, before, b"", base).place(len(before))
+        text = data.decode(errors="replace")
+        place = Source(file, text, b"", base, is_quoted).place(len(before))
         message = f"the byte 0x{data[error.start]:02x} is not valid UTF-8"
         raise FileError("file-not-utf8", message, place, "save it as UTF-8") from None
-    return Source(file, text, data, base)
+    return Source(file, text, data, base, is_quoted)
 
 
 def _read_bytes(file: str, limit: int) -> bytes:
     place = Place(file)
     try:
-        # Not blocking, since opening a pipe would wait for someone to write into it.
-        descriptor = os.open(file, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+        descriptor = open_now(file)
         try:
             status = os.fstat(descriptor)
             if stat.S_ISDIR(status.st_mode):
@@ -134,9 +133,12 @@ def _read_bytes(file: str, limit: int) -> bytes:
                 raise FileError("file-unreadable", f"'{file}' is a pipe or a device, not a file", place)
             size = status.st_size
             chunks = []
-            # The size is only what the file system says: of a file in /proc it says 0, and files grow.
+            # The size is only what the file system says, and files grow.
             room = limit + 1
             while size <= limit and (chunk := os.read(descriptor, min(max(size, 1 << 16) + 1, room))):
+                if status.st_size == 0:  # as of all files in /proc, which tell of the process that reads them
+                    message = f"'{file}' has a size of 0 and yet content: it is not a regular file"
+                    raise FileError("file-unreadable", message, place)
                 chunks.append(chunk)
                 room -= len(chunk)
                 size = max(size, limit + 1 - room)
@@ -150,6 +152,33 @@ def _read_bytes(file: str, limit: int) -> bytes:
     if size > limit:
         raise too_large(file, f"{limit:,} bytes")
     return b"".join(chunks)
+
+
+def open_now(path: str | os.PathLike[str]) -> int:
+    """A descriptor of a file, to read from, without waiting: to open a pipe would wait for someone to write into it.
+
+    Raises:
+        OSError: It cannot be opened.
+        ValueError: The path has a NUL.
+    """
+    return os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC | os.O_NOCTTY)
+
+
+def begin_of_file(path: str | os.PathLike[str], size: int) -> bytes:
+    """The first bytes of a file.
+
+    Args:
+        path: Path of the file.
+        size: How many bytes, at most.
+
+    Raises:
+        OSError: It cannot be read, or is not a regular file.
+        ValueError: The path has a NUL.
+    """
+    with open(open_now(path), "rb") as stream:
+        if not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
+            raise OSError(f"'{os.fsdecode(path)}' is not a regular file")
+        return stream.read(size)
 
 
 def too_large(file: str, most: str) -> FileError:

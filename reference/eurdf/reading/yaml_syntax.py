@@ -119,10 +119,10 @@ def _about_indentation(source: Source, said: str, problem: int) -> str | None:
     """How to indent the line at which libyaml stopped; None if its indentation is not the error."""
     before = _line_before(source, problem)
     if said == "did not find expected <document start>":
-        return None if before.strip() else first_line_hint(source.text)
+        return None if before.strip() else first_line_hint(source.lines)
     key_alone = said == _TOO_DEEP and ": " not in before
     if key_alone or (said in (*_NOT_CONTINUED, _NO_ITEM) and not before.strip(" -")):
-        return indentation_hint(source.text, source.position(problem)[0])
+        return indentation_hint(source.lines, source.position(problem)[0])
     return None
 
 

@@ -8,9 +8,10 @@ from itertools import takewhile
 from typing import Any
 
 from eurdf.diagnostics import FileError
+from eurdf.diagnostics.lines import BREAK
 from eurdf.format.version2 import Version2
 from eurdf.format.yaml_text import Value, flow, lines_of
-from eurdf.reading.source import BREAK, Source
+from eurdf.reading.source import Source
 from eurdf.reading.yaml_node import Collection, Node, Span
 from eurdf.reading.yaml_reader import YamlDocument, read_yaml
 

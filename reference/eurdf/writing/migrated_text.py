@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from eurdf.diagnostics import FileError
+from eurdf.diagnostics.lines import BREAK
 from eurdf.format.extension import Extension, FrameReference, JointEntry
 from eurdf.format.field import is_own_key
 from eurdf.format.schema import FILES
@@ -28,7 +29,7 @@ from eurdf.format.yaml_text import (
     section,
     text_of,
 )
-from eurdf.reading.source import BREAK, Source
+from eurdf.reading.source import Source
 from eurdf.reading.yaml_node import Pointer
 from eurdf.reading.yaml_reader import YamlDocument, read_yaml
 from eurdf.writing.comments import Attached, Comment, attach, comments_of

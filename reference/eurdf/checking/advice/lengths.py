@@ -8,13 +8,13 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from typing import TYPE_CHECKING
 
-from eurdf.checking.advice.mesh_size import mesh_size
 from eurdf.linking.description import Described, Linked, place_of_file
 from eurdf.mechanism.joint_type import JointType
 
 if TYPE_CHECKING:
     from eurdf.diagnostics import Diagnostics, Place
     from eurdf.format.urdf.data import Urdf
+    from eurdf.pinocchio.meshes import Mesh
 
 # A length beyond this, in m, is looked at. In a hundred published robots the longest is 2.9 m.
 _LONG = 10.0
@@ -32,12 +32,12 @@ _HEAVY = 10.0
 _Found = tuple[float, str, Callable[[], "Place"]]
 
 
-def advise_on_lengths(description: Linked, meshes: Mapping[str, str], diagnostics: Diagnostics) -> None:
+def advise_on_lengths(description: Linked, meshes: Mapping[str, Mesh], diagnostics: Diagnostics) -> None:
     """Report lengths that are likely in millimetres: of the whole robot, or else single ones far beyond the others.
 
     Args:
         description: The robot as read.
-        meshes: Path of each mesh file that was found, by its URI.
+        meshes: Each mesh that was read, by its URI.
         diagnostics: Gets what is found.
     """
     urdf = description.urdf
@@ -108,14 +108,14 @@ def _of_extension(description: Linked) -> Iterator[_Found]:
             yield math.hypot(*reference.xyz), "the distance of a frame from its link or joint", place
 
 
-def _of_meshes(urdf: Urdf, meshes: Mapping[str, str]) -> Iterator[_Found]:
-    """The sizes of meshes that are not scaled."""
+def _of_meshes(urdf: Urdf, meshes: Mapping[str, Mesh]) -> Iterator[_Found]:
+    """The sizes of meshes that are not scaled; a format other than STL and OBJ can state its unit."""
     seen: set[str] = set()
     for link in urdf.links.values():
         for shape in (*link.visuals, *link.collisions):
-            if shape.filename in seen or shape.filename not in meshes or shape.size != (1.0, 1.0, 1.0):
-                continue
-            seen.add(shape.filename)
-            size = mesh_size(meshes[shape.filename])
-            if size is not None:
-                yield size, f"the size of mesh '{shape.filename}'", partial(place_of_file, urdf, "mesh", shape.filename)
+            uri = shape.filename
+            if uri in meshes and uri not in seen and shape.size == (1.0, 1.0, 1.0):
+                seen.add(uri)
+                if uri.lower().endswith((".stl", ".obj")):
+                    place = partial(place_of_file, urdf, "mesh", uri)
+                    yield meshes[uri].size, f"the size of mesh '{uri}'", place

@@ -1,0 +1,135 @@
+"""A description can name any file: what is outside its folder is reported, and never shown."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+import eurdf
+from eurdf.commands.main import main
+from eurdf.diagnostics.text import report_lines
+
+YAML = 'extended_urdf: "2.0"\nurdf: {}\n'
+URDF = '<robot name="r"><link name="a"/></robot>'
+SECRET = "PASSWORD=hunter2\n"
+COMMANDS = (["check"], ["info"], ["assemble"], ["migrate", "-o", "new.yaml"])
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder that is given, beside one that is not."""
+    folder = tmp_path / "given"
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "robot.urdf").write_text(URDF, encoding="utf-8")
+    (tmp_path / "other" / "secret").write_text(SECRET, encoding="utf-8")
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    return folder
+
+
+def names(folder: Path, urdf: str) -> Path:
+    (folder / "robot.yaml").write_text(YAML.format(urdf), encoding="utf-8")
+    return folder
+
+
+def codes(report: eurdf.Report) -> list[str]:
+    return [found.code for found in report.diagnostics]
+
+
+def shown(report: eurdf.Report) -> str:
+    return "\n".join("".join(piece for piece, _ in line) for line in report_lines(report))
+
+
+@pytest.mark.parametrize("urdf", ["../other/robot.urdf", "linked.urdf", "linked/robot.urdf", "{0}/other/robot.urdf"])
+def test_urdf_outside_folder_is_warned_or_refused(folder: Path, urdf: str) -> None:
+    (folder / "linked.urdf").symlink_to("../other/robot.urdf")
+    (folder / "linked").symlink_to("../other")
+    names(folder, urdf.format(folder.parent))
+    report = eurdf.check(folder)
+    assert codes(report) == ["x-urdf-outside-folder"]
+    assert (report.diagnostics[0].line, report.diagnostics[0].column) == (2, 7)
+    assert eurdf.load(folder).model.nv == 0
+    report = eurdf.check(folder, confined=True)
+    assert codes(report) == ["file-unreadable"]
+    with pytest.raises(eurdf.InvalidRobot, match="confined"):
+        eurdf.load(folder, confined=True)
+
+
+def test_urdf_inside_folder_is_not_confined(folder: Path) -> None:
+    (folder / "urdf").mkdir()
+    (folder / "urdf" / "a.urdf").write_text(URDF, encoding="utf-8")
+    (folder / "robot.urdf").symlink_to("urdf/a.urdf")
+    for urdf in ("urdf/a.urdf", "robot.urdf", "../given/urdf/a.urdf"):
+        assert codes(eurdf.check(names(folder, urdf), confined=True)) == []
+
+
+def test_urdf_that_caller_gives_may_be_anywhere(folder: Path) -> None:
+    names(folder, "missing.urdf")
+    assert codes(eurdf.check(folder, urdf="../other/robot.urdf", confined=True)) == []
+
+
+def test_folder_of_links_into_one_folder_is_accepted(folder: Path) -> None:
+    names(folder.parent / "other", "robot.urdf")
+    for name in ("robot.yaml", "robot.urdf"):
+        (folder / name).symlink_to(f"../other/{name}")
+    assert codes(eurdf.check(folder)) == []
+
+
+@pytest.mark.parametrize("urdf", ["../other/secret", "secret.urdf", "../other/missing"])
+def test_confined_file_is_not_opened(folder: Path, monkeypatch: pytest.MonkeyPatch, urdf: str) -> None:
+    (folder / "secret.urdf").symlink_to("../other/secret")
+    names(folder, urdf)
+    opened: list[str] = []
+    original = os.open
+
+    def recorded(path: str, *rest: int) -> int:
+        opened.append(str(path))
+        return original(path, *rest)
+
+    monkeypatch.setattr(os, "open", recorded)
+    assert codes(eurdf.check(folder, confined=True)) == ["file-unreadable"]
+    assert [Path(path).name for path in opened] == ["robot.yaml"]
+
+
+@pytest.mark.parametrize("urdf", ["../other/secret", "secret.urdf", "/proc/self/environ"])
+def test_no_line_of_a_file_outside_is_shown(folder: Path, urdf: str) -> None:
+    (folder / "secret.urdf").symlink_to("../other/secret")
+    report = eurdf.check(names(folder, urdf))
+    assert not report.ok
+    assert " | " in shown(report)  # of the description
+    for part in ("PASSWORD", "hunter2", "PATH="):
+        assert part not in shown(report)
+
+
+@pytest.mark.parametrize("name", ["robot.yaml", "robot.urdf"])
+def test_no_line_of_a_linked_file_is_shown(folder: Path, name: str) -> None:
+    (folder / name).symlink_to("../other/secret")
+    report = eurdf.check(folder)
+    assert not report.ok
+    assert "hunter2" not in shown(report)
+    assert codes(eurdf.check(folder, confined=True)) == ["file-unreadable"]
+
+
+@pytest.mark.parametrize("command", COMMANDS, ids=lambda command: command[0])
+def test_every_command_confines(folder: Path, command: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    names(folder, "../other/robot.urdf")
+    name, *options = command
+    assert main([name, "robot.yaml", "--confined", *options]) == 1
+    assert "files are confined to it" in "".join(capsys.readouterr())
+
+
+def test_excerpt_is_that_of_the_text_that_was_read(folder: Path) -> None:
+    names(folder, "robot.urdf\nclosurs: []")
+    (folder / "robot.urdf").write_text(URDF, encoding="utf-8")
+    report = eurdf.check(folder)
+    (folder / "robot.yaml").unlink()
+    os.mkfifo(folder / "robot.yaml")  # to open it would wait for a writer
+    assert "    3 | closurs: []" in shown(report)
+
+
+def test_pipe_that_becomes_a_file_is_an_error(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (folder / "robot.urdf").write_text(URDF, encoding="utf-8")
+    monkeypatch.setattr("eurdf.reading.given._is_pipe", lambda path: True)
+    assert codes(eurdf.check("robot.urdf")) == ["file-unreadable"]
