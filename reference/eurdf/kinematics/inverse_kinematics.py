@@ -40,6 +40,8 @@ _SPREADS = (0.2, 0.5, 1.0, 2.0)
 _FLAT = 0.02
 # A configuration is singular if the smallest singular value of A is below this fraction of its largest value met.
 _SINGULAR = 0.05
+# Singular values of A below this fraction of the largest are zero.
+_ROUNDING = 1e-12
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,9 +266,13 @@ class _Search:
         scale, Z = self.spaces.scale, self._free_motions(q)
         A = E @ Z
         H = A.T @ A
-        np.einsum("ii->i", H)[:] += max(damping, 1e-13 * float(np.trace(H)), 1e-300)
+        damping = max(damping, 1e-13 * float(np.trace(H)), 1e-300)
+        np.einsum("ii->i", H)[:] += damping
         G, h = self._bounds(q, Z)
-        v = Z @ bounded_step(H, A.T @ e, G, h)
+        y = _damped(A, e, damping)
+        if (G @ y > h).any():
+            y = bounded_step(H, A.T @ e, G, h)
+        v = Z @ y
         return np.asarray(v / np.abs(v / scale).max(initial=1.0), dtype=np.float64)
 
     def _free_motions(self, q: Vector) -> Matrix:
@@ -333,6 +339,16 @@ class _Search:
 
     def _reached(self, q: Vector) -> bool:
         return all(max(error.position, error.angle) <= self.tolerance for error in self._errors(q))
+
+
+def _damped(A: Matrix, e: Vector, damping: float) -> Vector:
+    """The y (m,) that minimises |A y + e|² + λ|y|².
+
+    Unlike (AᵀA + λ 1)⁻¹ Aᵀ e, it has no part along motions that change no error, which would be amplified rounding.
+    """
+    left, values, right = np.linalg.svd(A, full_matrices=False)
+    factors = np.where(values > _ROUNDING * values.max(initial=0.0), values / (values**2 + damping), 0.0)
+    return -np.asarray(right.T @ (factors * (left.T @ e)), dtype=np.float64)
 
 
 def _singular_values(A: Matrix) -> Vector:
