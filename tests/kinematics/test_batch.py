@@ -131,6 +131,135 @@ def test_forward_kinematics_of_random_mechanisms_equals_single_one(seed: int, ki
     assert_same_forward_kinematics(robot, motors_near(robot, q0, random, 3, 0.2), q0)
 
 
+@of_every_robot
+def test_projection_equals_single_one(name: str) -> None:
+    robot = robot_called(name)
+    if robot.model.nv > 60:
+        pytest.skip("the single function takes seconds for so many velocities; the leg of this robot is tested")
+    q = moved(robot, eurdf.assemble(robot).q, np.random.default_rng(7), 2, 0.1)
+    q = np.concatenate((q, eurdf.assemble(robot).q[None]))  # one that is closed stays where it is
+    found = eurdf.batch.project_configuration(robot, q)
+    for own, place, residual in zip(found.q, q, found.residual, strict=True):
+        np.testing.assert_allclose(own, eurdf.project_configuration(robot, place), atol=EQUAL)
+        assert residual == pytest.approx(np.linalg.norm(eurdf.residual(robot, own)), abs=EQUAL)
+    assert found.converged.all()
+
+
+def test_projection_in_a_metric_equals_single_one() -> None:
+    robot, random = robot_called("digit_leg_3d"), np.random.default_rng(8)
+    q = moved(robot, eurdf.assemble(robot).q, random, 3, 0.2)
+    weights = eurdf.mass_matrix(robot, q[0]) + 0.1 * np.eye(robot.model.nv)
+    found = eurdf.batch.project_configuration(robot, q, weights)
+    for own, place in zip(found.q, q, strict=True):
+        np.testing.assert_allclose(own, eurdf.project_configuration(robot, place, weights), atol=EQUAL)
+
+
+@of_every_robot
+def test_actuated_jacobian_equals_single_one(name: str) -> None:
+    robot, random = robot_called(name), np.random.default_rng(9)
+    q = eurdf.batch.project_configuration(robot, moved(robot, eurdf.assemble(robot).q, random, 2, 0.01)).q
+    frame = robot.mechanism.bodies[-1].name
+    metrics = (None, random.uniform(0.5, 2.0, robot.model.nv), None)
+    for reference, weights in zip((pin.LOCAL, pin.WORLD, pin.LOCAL_WORLD_ALIGNED), metrics, strict=True):
+        found = eurdf.batch.actuated_jacobian(robot, q, frame, reference, weights)
+        for J, own in zip(found.jacobian, q, strict=True):
+            single = eurdf.actuated_jacobian(robot, own, frame, reference, weights)
+            np.testing.assert_allclose(J, single, atol=EQUAL * np.abs(single).max())
+        assert found.converged.all()
+
+
+def targets_near(robot: Robot, random: np.random.Generator, count: int, spread: float) -> tuple[str, list[Any]]:
+    """Poses that the last link can reach."""
+    link, data = robot.mechanism.bodies[-1].name, robot.model.createData()
+    index = robot.model.getFrameId(link, pin.FrameType.BODY)
+    found = []
+    for q in moved(robot, eurdf.assemble(robot).q, random, count, spread):
+        pin.framesForwardKinematics(robot.model, data, eurdf.assemble(robot, q).q)
+        found.append(pin.SE3(data.oMf[index]))
+    return link, found
+
+
+@of_every_robot
+def test_inverse_kinematics_equals_single_one(name: str) -> None:
+    robot = robot_called(name)
+    link, poses = targets_near(robot, np.random.default_rng(10), 2, 0.1)
+    for targets in (poses, np.array([pose.translation for pose in poses])):
+        found = eurdf.batch.inverse_kinematics(robot, {link: targets}, limits=False)
+        for index, target in enumerate(targets):
+            single = eurdf.inverse_kinematics(robot, {link: target}, limits=False)
+            np.testing.assert_allclose(found.q[index], single.q, atol=EQUAL)
+            assert found.converged[index]
+            assert found.position_error[index, 0] == pytest.approx(single.errors[0].position, abs=EQUAL)
+            assert found.angle_error[index, 0] == pytest.approx(single.errors[0].angle, abs=EQUAL)
+
+
+@pytest.mark.parametrize("name", ["digit_leg", "cassie_leg", "tesla_optimus_ankle", "five_bar", "delta", "talos_leg"])
+def test_inverse_kinematics_out_of_reach_or_limits_gives_reason_of_single_one(name: str) -> None:
+    robot = robot_called(name)
+    link, poses = targets_near(robot, np.random.default_rng(11), 2, 0.4)
+    positions = np.array([pose.translation for pose in poses])
+    positions[1] += 5.0
+    found = eurdf.batch.inverse_kinematics(robot, {link: positions}, restarts=1)
+    singles = [eurdf.inverse_kinematics(robot, {link: position}, restarts=1) for position in positions]
+    assert found.reason == tuple(single.reason for single in singles)
+    assert found.reason[1] is not None
+    np.testing.assert_allclose(found.position_error[:, 0], [each.errors[0].position for each in singles], atol=1e-4)
+
+
+def test_inverse_kinematics_takes_poses_as_matrices_and_several_frames() -> None:
+    robot = robot_called("digit_leg")
+    link, poses = targets_near(robot, np.random.default_rng(12), 2, 0.1)
+    other = robot.mechanism.bodies[5].name
+    index, data, places = robot.model.getFrameId(other, pin.FrameType.BODY), robot.model.createData(), []
+    for q in eurdf.batch.inverse_kinematics(robot, {link: poses}).q:
+        pin.framesForwardKinematics(robot.model, data, q)
+        places.append(np.array(data.oMf[index].translation))
+    matrices = np.array([pose.homogeneous for pose in poses])
+    found = eurdf.batch.inverse_kinematics(robot, {link: matrices, other: np.array(places)})
+    assert found.converged.all()
+    assert found.position_error.shape == (2, 2)
+    assert found.position_error.max() <= 1e-8
+
+
+@pytest.mark.parametrize(
+    ("targets", "complaint"),
+    [
+        ({"foot": np.zeros((2, 4))}, "targets['foot'] has the shape (2, 4); expected (B, 3): one row for each element"),
+        ({"foot": np.zeros((2, 4, 4))}, "targets['foot'][0] is not a pose: its rotation is not orthonormal"),
+        ({"foot": np.full((2, 3), np.inf)}, "targets['foot'][0, 0] is inf, not finite"),
+        (
+            {"foot": np.zeros((2, 3)), "thigh": np.zeros((3, 3))},
+            "targets['thigh'] has 3 elements; the first frame has 2",
+        ),
+        ({"fot": np.zeros((2, 3))}, "the model has no frame 'fot'; did you mean 'foot'?"),
+    ],
+)
+def test_wrong_targets_are_named(targets: Any, complaint: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(complaint)):
+        eurdf.batch.inverse_kinematics(robot_called("digit_leg"), targets)
+
+
+def test_jacobian_of_dependent_actuators_says_so() -> None:
+    robot = four_bar(2.5, 2.5, 2.0, "crank_pin, rocker_pin")
+    q = eurdf.assemble(robot, np.array([1.0, -0.5, 1.7])).q
+    found = eurdf.batch.actuated_jacobian(robot, q[None], "rocker")
+    assert (found.converged.tolist(), found.reason) == ([False], ("dependent actuators",))
+    assert np.isnan(found.jacobian).all()
+    with pytest.raises(eurdf.DependentActuators):
+        eurdf.actuated_jacobian(robot, q, "rocker")
+
+
+def test_numbers_that_overflow_leave_others_alone() -> None:
+    robot = four_bar(2.5, 2.5, 2.0, "crank_pin")
+    q = np.array([[1.0, -0.5, 1.7], [1e300, 1e300, -1e300], [1.1, -0.5, 1.7]])
+    projected = eurdf.batch.project_configuration(robot, q)
+    for index in (0, 2):
+        np.testing.assert_allclose(projected.q[index], eurdf.project_configuration(robot, q[index]), atol=EQUAL)
+    start = projected.q[[0, 0, 2]]
+    moved_by = eurdf.batch.forward_kinematics(robot, [[1.05], [1e300], [1.2]], start)
+    assert moved_by.converged[[0, 2]].all()
+
+
 # --- elements do not affect each other -------------------------------------------------------------------------------
 
 
@@ -146,7 +275,9 @@ def test_element_that_cannot_be_reached_says_why_and_leaves_others_alone() -> No
     np.testing.assert_allclose(np.delete(together.q, 2, axis=0), alone.q, atol=1e-12)
 
 
-def four_bar(ground: float, coupler: float, rocker: float, actuator: str) -> Robot:
+def four_bar(
+    ground: float, coupler: float, rocker: float, actuator: str, assembled: tuple[float, ...] | None = None
+) -> Robot:
     """Planar, with a crank of 1 m; all bars along x at zero."""
     pins = [
         revolute("crank_pin", "base", "crank"),
@@ -155,7 +286,10 @@ def four_bar(ground: float, coupler: float, rocker: float, actuator: str) -> Rob
     ]
     text = urdf(*map(body, ("base", "crank", "coupler", "rocker")), *pins)
     ends = f"{{link: coupler, xyz: [{coupler}, 0, 0]}}, {{link: rocker, xyz: [{rocker}, 0, 0]}}"
-    return load(text, f"actuators: [{actuator}]\nclosures: [{{name: pin, type: 3d, frames: [{ends}]}}]\n")
+    robot = load(text, f"actuators: [{actuator}]\nclosures: [{{name: pin, type: 3d, frames: [{ends}]}}]\n")
+    if assembled is None:
+        return robot
+    return replace(robot, configurations={"assembled": eurdf.assemble(robot, np.array(assembled)).q})
 
 
 def placed(xyz: str) -> str:
@@ -232,9 +366,10 @@ class Eager(Executor):
 
 
 def some_values(count: int) -> tuple[Robot, Any]:
-    robot = robot_called("digit_leg_3d")
-    values = motors_near(robot, eurdf.assemble(robot).q, np.random.default_rng(5), count, 0.2)
-    values[1, 4] += 3.0  # one that does not converge
+    """A robot and values, all but the second of which can be reached."""
+    robot = four_bar(2.5, 2.5, 2.0, "rocker_pin", assembled=(1.0, -0.5, 1.7))
+    values = np.linspace(1.5, 2.0, count)[:, None]
+    values[1] = 0.0
     return robot, values
 
 

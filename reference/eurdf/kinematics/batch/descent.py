@@ -13,6 +13,7 @@ from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.batch import linear
 from eurdf.kinematics.batch.problem import Group, Problem
 from eurdf.kinematics.batch.stack import State
+from eurdf.kinematics.position_limit import PositionLimits
 from eurdf.kinematics.residual import CLOSED
 
 # As in `eurdf.kinematics.assembly` and `eurdf.kinematics.descent`, so that results are the same.
@@ -22,7 +23,12 @@ _SPREADS = (0.1, 0.3, 1.0, 2.0, 3.0)
 
 
 def close(
-    problem: Problem, groups: Sequence[Group], q: Matrix, tolerance: float, restarts: int = 0
+    problem: Problem,
+    groups: Sequence[Group],
+    q: Matrix,
+    tolerance: float,
+    restarts: int = 0,
+    limits: PositionLimits | None = None,
 ) -> tuple[Matrix, Mask]:
     """Bring the residual to zero from q (nq, B), as `eurdf.kinematics.assembly.Assembler` does.
 
@@ -32,14 +38,16 @@ def close(
         q: Where to start (nq, B).
         tolerance: Bound of each row of the residual, m or rad.
         restarts: Maximum number of restarts while a group is open.
+        limits: The position limits to respect, or None.
 
     Returns:
         The configurations (nq, B) with the least residual, and whether all loops are closed there (B,).
     """
+    q = _clipped(q, groups, limits)
     best = np.array(q)
     errors = np.full((len(groups), q.shape[1]), np.inf)
     if problem.at_once and len(groups) > 1:
-        best, squares = descend(problem, groups, q, tolerance)
+        best, squares = descend(problem, groups, q, tolerance, limits)
         errors = np.sqrt(squares)
     for index, group in enumerate(groups):
         random = np.random.default_rng(0)
@@ -53,7 +61,8 @@ def close(
                 v = np.zeros((problem.tree.nv, 1))
                 v[group.stack.velocities, 0] = group.unit * random.uniform(-spread, spread, len(group.unit))
                 place = problem.tree.integrate(place, np.broadcast_to(v, (len(v), len(still_open))))
-            end, squares = descend(problem, [group], place, tolerance)
+                place = _clipped(place, [group], limits)
+            end, squares = descend(problem, [group], place, tolerance, limits)
             better = np.flatnonzero(np.sqrt(squares[0]) < errors[index, still_open])
             errors[index, still_open[better]] = np.sqrt(squares[0, better])
             best[np.ix_(group.coordinates, still_open[better])] = end[np.ix_(group.coordinates, better)]
@@ -68,7 +77,30 @@ def closes(groups: Sequence[Group], q: Matrix, tolerance: float) -> Mask:
     return closed
 
 
-def descend(problem: Problem, groups: Sequence[Group], q: Matrix, tolerance: float) -> tuple[Matrix, Matrix]:
+def _clipped(q: Matrix, groups: Sequence[Group], limits: PositionLimits | None) -> Matrix:
+    if limits is None or not groups:
+        return q
+    return clip(limits, q, np.concatenate([group.stack.velocities for group in groups]))
+
+
+def clip(limits: PositionLimits, q: Matrix, velocities: Indices) -> Matrix:
+    """The configurations (nq, B) with the coordinates that the given velocities drive clipped to their limits."""
+    bounded = velocities[np.isfinite(limits.lower[velocities]) | np.isfinite(limits.upper[velocities])]
+    coordinates, within = limits.coordinates[bounded], np.array(q)
+    within[coordinates] = np.clip(q[coordinates], limits.lower[bounded, None], limits.upper[bounded, None])
+    return within
+
+
+def room(limits: PositionLimits, q: Matrix, velocities: Indices) -> tuple[Matrix, Matrix]:
+    """Distances (n, B) from q to the lower limits (at most 0) and to the upper limits (at least 0), by velocity."""
+    at = q[limits.coordinates[velocities]]
+    lower, upper = limits.lower[velocities, None], limits.upper[velocities, None]
+    return np.minimum(lower - at, 0.0), np.maximum(upper - at, 0.0)
+
+
+def descend(
+    problem: Problem, groups: Sequence[Group], q: Matrix, tolerance: float, limits: PositionLimits | None = None
+) -> tuple[Matrix, Matrix]:
     """Levenberg-Marquardt steps of groups that go together, from q (nq, B).
 
     Returns:
@@ -80,7 +112,7 @@ def descend(problem: Problem, groups: Sequence[Group], q: Matrix, tolerance: flo
         moving = np.flatnonzero((state.errors() > tolerance) & ~state.stuck())
         if not len(moving):
             break
-        steps = state.steps(q, moving)
+        steps = state.steps(q, moving, limits)
         v = np.zeros((problem.tree.nv, len(moving)))
         for group, step in zip(groups, steps, strict=True):
             v[group.stack.velocities] = group.unit[:, None] * step
@@ -116,20 +148,28 @@ class _Descents:
         """Whether further steps are not worthwhile (B,)."""
         return (self._idle > _MOST_IDLE_STEPS) | ~(self._expected > 1e-12 * self._square)
 
-    def steps(self, q: Matrix, moving: Indices) -> list[Matrix]:
+    def steps(self, q: Matrix, moving: Indices, limits: PositionLimits | None) -> list[Matrix]:
         """The next steps (n, k) of each group, for elements by index (k,), of at most 1 rad or length."""
         self._refresh(q, moving)
         everything = len(moving) == q.shape[1]
         A = [each if everything else each[:, :, moving] for each in self._A]
         b = [each if everything else each[:, moving] for each in self._b]
-        grams = [_gram(each) for each in A]
-        trace = sum(np.einsum("iib->b", each) for each in grams)
-        damping = np.maximum(np.maximum(self._damping[moving] * self._square[moving], 1e-13 * trace), 1e-300)
-        steps = [_damped(*each, damping) for each in zip(A, grams, b, strict=True)]
+        damping = self._damping[moving] * self._square[moving]
+        steps = _damped(A, b, damping)
+        rooms: list[tuple[Matrix, Matrix]] = []
+        if limits is not None:
+            rooms = [room(limits, q[:, moving], group.stack.velocities) for group in self._groups]
+            rooms = [
+                (down / group.unit[:, None], up / group.unit[:, None])
+                for group, (down, up) in zip(self._groups, rooms, strict=True)
+            ]
+            _stay_within(A, b, damping, steps, rooms)
         largest = np.ones(len(moving))
         for step in steps:
             largest = np.maximum(largest, np.abs(step).max(axis=0, initial=0.0))
         steps = [step / largest for step in steps]
+        if limits is not None:
+            steps = [np.clip(step, *bounds) for step, bounds in zip(steps, rooms, strict=True)]
         predicted = _sum_of_squares(
             [of_b + linear.times(of_A, step) for of_b, of_A, step in zip(b, A, steps, strict=True)], len(moving)
         )
@@ -187,12 +227,43 @@ def _gram(A: Matrix) -> Matrix:
     return linear.gram(A if m < n else np.swapaxes(A, 0, 1))
 
 
-def _damped(A: Matrix, gram: Matrix, b: Matrix, damping: Vector) -> Matrix:
-    """The δ (n, B) that minimise |A δ + b|² + λ |δ|², from the smaller of A Aᵀ and Aᵀ A."""
-    m, n, _ = A.shape
-    G = np.array(gram)
-    for index in range(len(G)):
-        G[index, index] += damping
-    if m < n:
-        return linear.times_back(A, linear.solve(G, -b)[0])
-    return linear.solve(G, linear.times_back(A, -b))[0]
+def _damped(parts: Sequence[Matrix], residuals: Sequence[Matrix], damping: Vector) -> list[Matrix]:
+    """The δ (n, B) that minimise Σ |A δ + b|² + λ |δ|², from the smaller of A Aᵀ and Aᵀ A of each group."""
+    grams = [_gram(A) for A in parts]
+    trace = sum(np.einsum("iib->b", G) for G in grams)
+    damping = np.maximum(np.maximum(damping, 1e-13 * trace), 1e-300)  # invertible even with redundant rows
+    steps = []
+    for A, gram, b in zip(parts, grams, residuals, strict=True):
+        m, n, _ = A.shape
+        G = np.array(gram)
+        for index in range(len(G)):
+            G[index, index] += damping
+        if m < n:
+            steps.append(linear.times_back(A, linear.solve(G, -b)[0]))
+        else:
+            steps.append(linear.solve(G, linear.times_back(A, -b))[0])
+    return steps
+
+
+def _stay_within(
+    parts: Sequence[Matrix],
+    residuals: Sequence[Matrix],
+    damping: Vector,
+    steps: list[Matrix],
+    rooms: Sequence[tuple[Matrix, Matrix]],
+) -> None:
+    """Change the steps so that joints at a limit stay there if they would exceed it, and the others compensate."""
+    held = [np.zeros(step.shape, dtype=bool) for step in steps]
+    while True:
+        again = np.zeros(len(damping), dtype=bool)
+        for step, (down, up), own in zip(steps, rooms, held, strict=True):
+            blocked = ~own & (((step < 0.0) & (down == 0.0)) | ((step > 0.0) & (up == 0.0)))
+            own |= blocked
+            again |= blocked.any(axis=0)
+        which = np.flatnonzero(again)
+        if not len(which):
+            return
+        moving = [np.where(own[:, which], 0.0, A[:, :, which]) for A, own in zip(parts, held, strict=True)]
+        changed = _damped(moving, [b[:, which] for b in residuals], damping[which])
+        for step, new, own in zip(steps, changed, held, strict=True):
+            step[:, which] = np.where(own[:, which], 0.0, new)

@@ -14,7 +14,7 @@ from eurdf.kinematics.batch.arguments import checked_rows, starts
 from eurdf.kinematics.batch.blocks import Progress, blocks
 from eurdf.kinematics.batch.descent import close
 from eurdf.kinematics.batch.problem import Group, Problem, held_groups, problem
-from eurdf.kinematics.batch.tangent import following
+from eurdf.kinematics.batch.tangent import SURE, following
 from eurdf.pinocchio.arguments import checked_tolerance
 
 if TYPE_CHECKING:
@@ -27,10 +27,6 @@ _SHORTEST_STEP = 2.0**-10
 _LONGEST_MOTION = 0.5
 _FASTEST = 1e6
 _RESTARTS = 20
-
-# If the smallest pivot of K_p K_pᵀ is below this part of its largest diagonal entry, a singular value decomposition
-# decides about the rank of K.
-_SURE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -239,7 +235,7 @@ def _following(driven: Driven, q: Matrix, path: Matrix) -> Matrix:
         A = K[np.ix_(group.rows, group.stack.velocities)] * weights[:, :, None]
         y, pivot = linear.solve(linear.gram(A), -weights * b[group.rows])
         v[group.stack.velocities] = linear.times_back(A, y)
-        doubtful |= ~(pivot > _SURE)
+        doubtful |= ~(pivot > SURE)
     which = np.flatnonzero(doubtful)
     if len(which):
         v[:, which] = following(

@@ -35,15 +35,18 @@ def solve(G: Matrix, b: Matrix) -> tuple[Matrix, Vector]:
 
     Args:
         G: (n, n, B).
-        b: (n, B).
+        b: (n, B), or several columns (n, k, B).
 
     Returns:
-        x (n, B); and (B,) the smallest pivot of G relative to its largest diagonal entry. It is 0, and x is
+        x, as b; and (B,) the smallest pivot of G relative to its largest diagonal entry. It is 0, and x is
         meaningless, where G is not positive definite or not finite.
     """
     n, _, B = G.shape
     if n == 0:
-        return np.zeros((0, B)), np.ones(B)
+        return np.array(b), np.ones(B)
+    if b.ndim == 2:
+        x, ratio = solve(G, b[:, None])
+        return x[:, 0], ratio
     largest = np.einsum("iib->ib", G).max(axis=0)
     fine = np.isfinite(G).all(axis=(0, 1)) & (largest > 0.0)
     if n > _MOST_COLUMNS:
@@ -58,11 +61,11 @@ def solve(G: Matrix, b: Matrix) -> tuple[Matrix, Vector]:
         L[column, column] = root
         L[column + 1 :, column] = below
         x[column] /= root
-        x[column + 1 :] -= below * x[column]
+        x[column + 1 :] -= below[:, None] * x[column]
         for row in range(column + 1, n):
             L[row, column + 1 : row + 1] -= below[row - column - 1] * below[: row - column]
     for column in reversed(range(n)):
-        x[column] -= (L[column + 1 :, column] * x[column + 1 :]).sum(axis=0)
+        x[column] -= (L[column + 1 :, column, None] * x[column + 1 :]).sum(axis=0)
         x[column] /= L[column, column]
     positive = fine & (smallest > 0.0)
     return x, np.where(positive, smallest / np.where(positive, largest, 1.0), 0.0)
@@ -73,14 +76,14 @@ def _solve_each(G: Matrix, b: Matrix, largest: Vector, fine: Vector) -> tuple[Ma
     ratio = np.zeros(len(each))
     try:
         L = np.linalg.cholesky(each)
-        x = np.linalg.solve(each, b.T[:, :, None])[:, :, 0].T
+        x = np.moveaxis(np.linalg.solve(each, np.moveaxis(b, -1, 0)), 0, -1)
         ratio = np.square(np.diagonal(L, axis1=1, axis2=2)).min(axis=1) / np.where(fine, largest, 1.0)
     except np.linalg.LinAlgError:  # some element is not positive definite
         x = np.zeros_like(b)
         for element, own in enumerate(each):
             try:
                 pivots = np.square(np.diagonal(np.linalg.cholesky(own)))
-                x[:, element] = np.linalg.solve(own, b[:, element])
+                x[..., element] = np.linalg.solve(own, b[..., element])
                 ratio[element] = pivots.min() / largest[element] if fine[element] else 0.0
             except np.linalg.LinAlgError:
                 ratio[element] = 0.0

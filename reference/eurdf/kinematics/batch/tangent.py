@@ -3,72 +3,100 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices, Matrix
-from eurdf.kinematics.batch.problem import Problem
+from eurdf.kinematics.array import Indices, Matrix, Vector
+from eurdf.kinematics.batch.problem import Group, Problem
 from eurdf.kinematics.rank import FLOOR, NOTHING
 
+#: If the smallest pivot of K Kᵀ is above this part of its largest diagonal entry, K has full rank beyond doubt; if not,
+#: singular values decide.
+SURE = 1e-6
 
-def numerical_ranks(values: Matrix) -> Indices:
-    """`eurdf.kinematics.rank.numerical_rank` of singular values (B, k), descending, relative to the first of each."""
+
+def numerical_ranks(values: Matrix, reference: Vector | None = None) -> Indices:
+    """`eurdf.kinematics.rank.numerical_rank` of descending singular values (B, k); by default relative to the first."""
     B, k = values.shape
     if k == 0:
         return np.zeros(B, dtype=np.intp)
-    reference = values[:, :1]
+    reference = values[:, :1] if reference is None else reference[:, None]
     nothing = ~(reference[:, 0] > NOTHING)
     relative = np.clip(values / np.where(reference > NOTHING, reference, 1.0), FLOOR, 1.0)
     ladder = np.concatenate((np.ones((B, 1)), relative, np.full((B, 1), FLOOR)), axis=1)
     return np.where(nothing, 0, np.argmax(ladder[:, :-1] / ladder[:, 1:], axis=1))
 
 
-def free_motions(problem: Problem, K: Matrix) -> Iterator[tuple[Indices, Matrix]]:
-    """Orthonormal bases of ker K, as `eurdf.kinematics.tangent_space.TangentSpaces` has them.
+@dataclass(frozen=True, slots=True, eq=False)
+class Tangents:
+    """Tangent spaces of some elements, all of one dimension; see `eurdf.kinematics.tangent_space.TangentSpace`.
 
-    Args:
-        problem: The robot.
-        K: (nc, nv, B), in m and rad.
-
-    Yields:
-        Indices (b,) of elements whose bases have the same number of columns, and the bases (b, nv, nv - rank).
+    Attributes:
+        which: The elements, by index (b,).
+        basis: Z (b, nv, m) with K Z = 0 and Zᵀ Z = 1.
+        inverse: K⁺ (b, nv, nc).
     """
-    B, nv = K.shape[2], K.shape[1]
-    parts: list[tuple[Indices, Matrix, Indices]] = []  # velocities, all right singular vectors and ranks
-    outside = np.ones(nv, dtype=bool)
+
+    which: Indices
+    basis: Matrix
+    inverse: Matrix
+
+
+class _Factors(NamedTuple):
+    """The singular value decompositions of K of one group, and the ranks (B,)."""
+
+    group: Group
+    left: Matrix
+    values: Matrix
+    right: Matrix
+    ranks: Indices
+
+
+def tangents(problem: Problem, K: Matrix) -> Iterator[Tangents]:
+    """The tangent spaces of all elements, for K (nc, nv, B) in m and rad.
+
+    They are those of `eurdf.kinematics.tangent_space.TangentSpaces`, in which the numerical rank decides.
+    """
+    parts = []
     for group in problem.groups:
         velocities = group.stack.velocities
-        if not len(velocities):
-            continue
-        outside[velocities] = False
-        A = np.moveaxis(K[np.ix_(group.rows, velocities)] * group.factors, -1, 0)
-        _, values, right = np.linalg.svd(A)
-        parts.append((velocities, np.swapaxes(right, 1, 2), numerical_ranks(values)))
-    ranks = np.stack([rank for _, _, rank in parts], axis=1) if parts else np.zeros((B, 0), dtype=np.intp)
+        if len(velocities):
+            A = np.moveaxis(K[np.ix_(group.rows, velocities)] * group.factors, -1, 0)
+            A = np.where(np.isfinite(A).all(axis=(1, 2), keepdims=True), A, 0.0)  # what overflows has no rank
+            left, values, right = np.linalg.svd(A)
+            parts.append(_Factors(group, left, values, right, numerical_ranks(values)))
+    ranks = np.zeros((K.shape[2], len(parts)), dtype=np.intp)
+    for index, part in enumerate(parts):
+        ranks[:, index] = part.ranks
     for own in np.unique(ranks, axis=0):
         which = np.flatnonzero((ranks == own).all(axis=1))
-        yield which, _basis(problem, parts, own.tolist(), which, np.flatnonzero(outside))
+        yield _tangents(problem, parts, own.tolist(), which)
 
 
-def _basis(
-    problem: Problem,
-    parts: Sequence[tuple[Indices, Matrix, Indices]],
-    ranks: Sequence[int],
-    which: Indices,
-    outside: Indices,
-) -> Matrix:
-    nv = problem.tree.nv
-    blocks = []
-    for (velocities, right, _), rank in zip(parts, ranks, strict=True):
-        Z, _ = np.linalg.qr(problem.scale[velocities, None] * right[which][:, :, rank:])
-        blocks.append((velocities, Z))
-    blocks.append((outside, np.broadcast_to(np.eye(len(outside)), (len(which), len(outside), len(outside)))))
-    basis = np.zeros((len(which), nv, sum(Z.shape[2] for _, Z in blocks)))
+def _tangents(problem: Problem, parts: Sequence[_Factors], ranks: Sequence[int], which: Indices) -> Tangents:
+    b, nv, nc = len(which), problem.tree.nv, problem.whole.m
+    outside = np.ones(nv, dtype=bool)
+    blocks, inverse = [], np.zeros((b, nv, nc))
+    for part, rank in zip(parts, ranks, strict=True):
+        group = part.group
+        outside[group.stack.velocities] = False
+        right = np.swapaxes(part.right[which], 1, 2)
+        Z, _ = np.linalg.qr(group.unit[:, None] * right[:, :, rank:])
+        blocks.append((group.stack.velocities, Z))
+        scaled = right[:, :, :rank] / part.values[which, None, :rank]
+        pseudoinverse = scaled @ np.swapaxes(part.left[which][:, :, :rank], 1, 2)
+        at = np.ix_(np.arange(b), group.stack.velocities, group.rows)
+        inverse[at] = group.unit[:, None] * pseudoinverse * group.row_scale
+    free = np.flatnonzero(outside)
+    blocks.append((free, np.broadcast_to(np.eye(len(free)), (b, len(free), len(free)))))
+    basis = np.zeros((b, nv, sum(Z.shape[2] for _, Z in blocks)))
     column = 0
     for velocities, Z in blocks:
         basis[:, velocities, column : column + Z.shape[2]] = Z
         column += Z.shape[2]
-    return basis
+    return Tangents(which, basis, inverse)
 
 
 def following(problem: Problem, K: Matrix, given: Indices, v_given: Matrix, fastest: float) -> Matrix:
@@ -82,7 +110,8 @@ def following(problem: Problem, K: Matrix, given: Indices, v_given: Matrix, fast
         fastest: Directions in which other joints would have to move this many times faster do not count.
     """
     v = np.zeros((problem.tree.nv, K.shape[2]))
-    for which, Z in free_motions(problem, K):
-        y = np.linalg.pinv(Z[:, given], rcond=1.0 / fastest) @ v_given.T[which][:, :, None]
-        v[:, which] = (Z @ y)[:, :, 0].T
+    for space in tangents(problem, K):
+        Z = space.basis
+        y = np.linalg.pinv(Z[:, given], rcond=1.0 / fastest) @ v_given.T[space.which][:, :, None]
+        v[:, space.which] = (Z @ y)[:, :, 0].T
     return v

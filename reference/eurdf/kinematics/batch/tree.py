@@ -121,11 +121,17 @@ class BatchTree:
             places[joint.child] = len(self.joints) - 1, joint.offset
         self.sites = {name: Site(joint, *_numbers(pose)) for name, (joint, pose) in places.items()}
         self._leaders = {joint.idx_q: joint.motion for joint in self.joints[1:] if not joint.mimics}
+        # Pinocchio's joints have those that only hold the coordinate of a late leader after the floating root.
+        self._held = range(1 + (mechanism.root == "floating"), 1 + (mechanism.root == "floating") + len(led.late))
         own = [joint for joint in self.joints[1:] if not joint.mimics]
         self._curved = [joint for joint in own if type(joint.motion).integrate is not Motion.integrate]
         flat = [joint for joint in own if type(joint.motion).integrate is Motion.integrate]
         self._flat_q = np.array([joint.idx_q + k for joint in flat for k in range(joint.motion.nq)], dtype=np.intp)
         self._flat_v = np.array([joint.idx_v + k for joint in flat for k in range(joint.motion.nv)], dtype=np.intp)
+
+    def joint_of(self, joint: int) -> int:
+        """The index here of a joint of the robot's model."""
+        return joint if joint < self._held.start else joint - len(self._held)
 
     def site(self, body: str, pose: Pose) -> Site:
         """Where a frame with a pose in a body is."""
