@@ -15,6 +15,7 @@ from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.driven_motion import DrivenMotion
 from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.residual import closure_openings, residual_and_jacobian
+from eurdf.kinematics.spring_equilibrium import spring_equilibrium
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array, checked_tolerance
@@ -48,6 +49,10 @@ def forward_kinematics(
     given joints do not control are minimal in each step and depend on the path. To find a closed configuration on any
     branch, call `assemble` with ``hold``.
 
+    If the joints have springs, they decide the motions that they act on and the given joints do not control: in the
+    result, their energy is at a local minimum. Gravity and other forces are left out. So each spring is at rest where
+    the loops allow it, and the result does not depend on the stiffness there.
+
     Source: `closedLoopForwardKinematics` of the toolbox of Batto, De Matteïs and Mansard, 2025.
 
     Args:
@@ -78,7 +83,10 @@ def forward_kinematics(
     velocities = tuple(given.velocities.tolist())
     with borrowed(robot, Assembler, tuple(given.joints)) as assembler, borrowed(robot, DrivenMotion, velocities) as by:
         assembler.tolerance, assembler.limits = tolerance, None
-        return _follow(robot, given, first, goal, assembler, by)
+        q = _follow(robot, given, first, goal, assembler, by)
+        if not len(robot.tree.springs):
+            return q
+        return spring_equilibrium(robot, q, given.velocities, given.coordinates, assembler)
 
 
 def _closed(assembler: Assembler, q: Vector, tolerance: float) -> Vector:

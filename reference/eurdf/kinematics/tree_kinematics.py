@@ -59,7 +59,22 @@ class PairMemory(Protocol):
 
 
 class Springs(Protocol):
-    """Springs, each on one coordinate."""
+    """Springs, each on one coordinate: n of them."""
+
+    @property
+    def idx_v(self) -> Indices:
+        """Index (n,) in v of the rate of the coordinate of each spring."""
+
+    @property
+    def stiffness(self) -> Vector:
+        """Stiffness (n,), N·m/rad or N/m."""
+
+    @property
+    def ratio(self) -> Vector:
+        """Derivative (n,) of the deflection of each spring by its coordinate."""
+
+    def deflection(self, q: Vector) -> Vector:
+        """Distance (n,) of each spring from rest at q (nq,), rad or m."""
 
     def __len__(self) -> int:
         """Number of springs."""

@@ -9,12 +9,16 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.kinematics.assembly import Assembler
 from eurdf.kinematics.batch import linear
 from eurdf.kinematics.batch.arguments import checked_rows, starts
 from eurdf.kinematics.batch.blocks import Progress, blocks
 from eurdf.kinematics.batch.descent import close
 from eurdf.kinematics.batch.problem import Group, Problem, held_groups, problem
 from eurdf.kinematics.batch.tangent import SURE, following
+from eurdf.kinematics.derived import borrowed
+from eurdf.kinematics.residual import residual as residual_of
+from eurdf.kinematics.spring_equilibrium import spring_equilibrium
 from eurdf.pinocchio.arguments import checked_tolerance
 
 if TYPE_CHECKING:
@@ -91,7 +95,8 @@ def forward_kinematics(
     """The closed configurations at which the actuated joints have the given coordinates; B elements.
 
     Each element equals the result of `eurdf.forward_kinematics` to 1e-9, on the branch of its start. It does not
-    depend on the other elements or on how the batch is divided.
+    depend on the other elements or on how the batch is divided. If joints have springs, each element is moved to their
+    equilibrium afterwards, one after the other.
 
     Args:
         robot: The robot.
@@ -124,7 +129,18 @@ def forward_kinematics(
         first, closed = _close_start(driven, q[:1])
         q, closed = np.broadcast_to(first, q.shape), np.broadcast_to(closed, len(q))
     found, residual, code = work.map(_solved, driven, (values, q) if closed is None else (values, q, closed))
+    if len(robot.tree.springs):
+        _to_equilibrium(robot, driven, found, residual, np.flatnonzero(code == 0))
     return ForwardKinematics(found, code == 0, residual, tuple(_REASONS[each] for each in code.tolist()))
+
+
+def _to_equilibrium(robot: Robot, driven: Driven, q: Matrix, residual: Vector, elements: Indices) -> None:
+    """Move elements (B, nq) to where their springs are in equilibrium, and update the norms (B,) of their residuals."""
+    with borrowed(robot, Assembler, robot.actuation.joints) as assembler:
+        assembler.tolerance, assembler.limits = driven.tolerance, None
+        for each in elements.tolist():
+            q[each] = spring_equilibrium(robot, q[each], driven.velocities, driven.coordinates, assembler)
+            residual[each] = np.linalg.norm(residual_of(robot, q[each]))
 
 
 def _refuse_zero(driven: Driven, values: Matrix) -> None:

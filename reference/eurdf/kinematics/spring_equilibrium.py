@@ -1,0 +1,105 @@
+"""The closed configuration at which the springs of a robot store the least energy."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from eurdf.kinematics.array import Indices, Matrix, Vector
+from eurdf.kinematics.assembly import Assembler
+from eurdf.kinematics.derived import derived
+from eurdf.kinematics.rank import numerical_rank
+from eurdf.kinematics.residual import acceleration_drift, residual_and_jacobian
+from eurdf.kinematics.tangent_space import TangentSpaces
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+# Bound of the motion of each joint in one step (rad, or characteristic lengths), so that it stays on its branch.
+_LONGEST_MOTION = 0.5
+# A step is accepted if closing the loops after it moves the joints by at most this fraction of the step.
+_MOST_CORRECTION = 0.25
+# A Newton step below this (rad, or characteristic lengths) is the last one: its error is about its square.
+_LAST_STEP = 1e-6
+# Energy that a step must save, relative to what its slope promises.
+_SAVED = 1e-4
+# Stiffness along a motion, relative to the largest one, below which no spring acts on it.
+_SLACK = 1e-9
+_SHORTEST_STEP = 2.0**-20
+
+
+def spring_equilibrium(robot: Robot, q: Vector, held: Indices, coordinates: Indices, assembler: Assembler) -> Vector:
+    """A local minimum of the energy of the springs, on the branch of a closed configuration.
+
+    Newton's method in the motions z that keep the loops closed and the held joints still: with K F = 0, the energy has
+    the gradient Fᵀ g and the Hessian Fᵀ k F - λᵀ K̇ F, where g is the gradient by the velocities and Kᵀ λ its part that
+    the loops and the held joints bear. No other force acts, so that a spring is at rest wherever the loops allow it.
+    Motions that no spring acts on are minimal.
+
+    Args:
+        robot: The robot.
+        q: Configuration (nq,), closed.
+        held: Indices in v of the joints that are held.
+        coordinates: Indices in q of these joints.
+        assembler: Closes the loops of the robot with these joints held.
+    """
+    tree, spaces, springs = robot.tree, derived(robot, TangentSpaces), robot.tree.springs
+    root = np.sqrt(springs.stiffness)
+    while True:
+        _, K = residual_and_jacobian(robot, q)
+        F = _motions(spaces.at(K).basis, held, spaces.scale)
+        A = (root * springs.ratio)[:, None] * F[springs.idx_v]
+        gradient = A.T @ (root * springs.deflection(q))
+        stiffness = A.T @ A
+        largest = float(np.diagonal(stiffness).max(initial=0.0))
+        if not largest > 0.0:
+            return q
+        values, axes = np.linalg.eigh(stiffness + _curvature(robot, q, K, held, F, spaces.scale))
+        acting = np.abs(values) > _SLACK * largest
+        # With the absolute values, the step leads downhill also where the energy is not convex.
+        z = -axes[:, acting] @ ((axes[:, acting].T @ gradient) / np.abs(values[acting]))
+        v = F @ z
+        size = float(np.abs(v / spaces.scale).max(initial=0.0))
+        last = size <= _LAST_STEP
+        step = min(1.0, _LONGEST_MOTION / size) if size else 1.0
+        energy, slope = springs.energy(q), float(gradient @ z)
+        while True:
+            expected = tree.integrate(q, step * v)
+            expected[coordinates] = q[coordinates]
+            closed = assembler.closed(expected)
+            if closed is not None:
+                corrected = float(np.linalg.norm(tree.difference(expected, closed) / spaces.scale))
+                near = corrected <= _MOST_CORRECTION * step * float(np.linalg.norm(v / spaces.scale)) or last
+                if near and (last or springs.energy(closed) <= energy + _SAVED * step * slope):
+                    q = closed
+                    break
+            step *= 0.5
+            if step < _SHORTEST_STEP:
+                return q
+        if last:
+            return q
+
+
+def _motions(Z: Matrix, held: Indices, scale: Vector) -> Matrix:
+    """Those of the motions Z (nv, f) that hold the held joints, orthonormal in the units of the velocities."""
+    _, values, right = np.linalg.svd(Z[held] / scale[held, None])
+    rank = numerical_rank(values, values.max(initial=0.0))
+    return np.asarray(scale[:, None] * np.linalg.qr((Z @ right[rank:].T) / scale[:, None])[0])
+
+
+def _curvature(robot: Robot, q: Vector, K: Matrix, held: Indices, F: Matrix, scale: Vector) -> Matrix:
+    """-λᵀ K̇ along pairs of motions: what the bending of the closed configurations adds to the Hessian."""
+    rows = np.vstack([K, np.eye(robot.tree.nv)[held]])
+    lambdas = np.linalg.lstsq((rows * scale).T, -scale * robot.tree.springs.force(q, robot.tree.nv), rcond=None)[0]
+    lambdas = lambdas[: len(K)]
+
+    def along(v: Vector) -> float:
+        return -float(lambdas @ acceleration_drift(robot, q, v))
+
+    own = np.array([along(v) for v in F.T])
+    found = np.diag(own)
+    for i in range(len(own)):
+        for j in range(i):  # the drift is quadratic in the velocity
+            found[i, j] = found[j, i] = 0.5 * (along(F[:, i] + F[:, j]) - own[i] - own[j])
+    return found

@@ -1,0 +1,115 @@
+"""Forward kinematics of robots with springs: the springs are in equilibrium, or at rest where the loops allow it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import pytest
+
+import eurdf
+from eurdf.kinematics.split import split_configuration
+from support.described import load
+from support.linkage import described, n_bar
+
+HEAD = 'extended_urdf: "2.1"\n'
+
+
+def linkage(bars: int, springs: Mapping[str, str], **options: Any) -> Any:
+    """A planar linkage of so many bars, its first joint actuated, with entries of joints."""
+    urdf, yaml = described(n_bar(bars, "3d", **options))
+    entries = "".join(f"  {name}: {{{entry}}}\n" for name, entry in springs.items())
+    return load(urdf, HEAD + yaml + (f"joints:\n{entries}" if entries else ""))
+
+
+def coordinate(robot: Any, q: Any, joint: str) -> float:
+    return float(robot.coordinates(q)[joint][0])
+
+
+def least(function: Callable[[float], float], low: float, high: float) -> float:
+    """Where a function of one minimum is least, by golden sections."""
+    ratio = (np.sqrt(5.0) - 1.0) / 2.0
+    while high - low > 1e-7:
+        one, other = high - ratio * (high - low), low + ratio * (high - low)
+        low, high = (low, other) if function(one) < function(other) else (one, high)
+    return 0.5 * (low + high)
+
+
+def test_spring_on_the_free_motion_is_at_rest() -> None:
+    robot = linkage(5, {"j2": "stiffness: 7, rest: 0.2"})
+    assert eurdf.analyze(robot).mobility == 2
+    q = eurdf.forward_kinematics(robot, [0.3])
+    assert coordinate(robot, q, "j2") == pytest.approx(0.2, abs=1e-10)
+    assert coordinate(robot, q, "j0") == 0.3
+    assert np.abs(eurdf.residual(robot, q)).max() < 1e-10
+
+
+def test_springs_that_cannot_all_rest_are_in_equilibrium() -> None:
+    robot = linkage(5, {"j1": "stiffness: 3, rest: 0.4", "j2": "stiffness: 7, rest: 0.2"})
+    q = eurdf.forward_kinematics(robot, [0.3])
+
+    def energy(angle: float) -> float:
+        at = eurdf.forward_kinematics(rigid, {"j0": 0.3, "j2": angle})
+        one, other = coordinate(rigid, at, "j1") - 0.4, angle - 0.2
+        return 1.5 * one * one + 3.5 * other * other
+
+    rigid = linkage(5, {})
+    angle = least(energy, -0.3, 0.4)
+    assert coordinate(robot, q, "j2") == pytest.approx(angle, abs=1e-6)
+    assert eurdf.spring_energy(robot, q) == pytest.approx(energy(angle), rel=1e-9)
+    assert eurdf.spring_energy(robot, q) > 1e-3
+    # No force of the springs is left along the free motion; the other forces are those of the loop and of the motor.
+    actuated = np.array([1.0, 0.0, 0.0, 0.0])
+    _, K = eurdf.residual_and_jacobian(robot, q)
+    rows = np.vstack([K, actuated])
+    left = np.linalg.lstsq(rows.T, eurdf.spring_force(robot, q), rcond=None)[0]
+    np.testing.assert_allclose(rows.T @ left, eurdf.spring_force(robot, q), atol=1e-8)
+
+
+def test_equilibrium_does_not_depend_on_the_start() -> None:
+    robot = linkage(6, {"j1": "stiffness: 3", "j2": "stiffness: 7, rest: 0.2", "j3": "stiffness: 2, rest: -0.1"})
+    first = eurdf.forward_kinematics(robot, [0.2])
+    other = eurdf.forward_kinematics(robot, {"j0": -0.2, "j1": 0.15, "j2": -0.1})
+    np.testing.assert_allclose(eurdf.forward_kinematics(robot, [0.2], other), first, atol=1e-9)
+
+
+def test_spring_that_the_motor_decides_changes_nothing() -> None:
+    sprung, rigid = linkage(4, {"j2": "stiffness: 7, rest: 2"}), linkage(4, {})
+    for angle in (-0.3, 0.4):
+        np.testing.assert_allclose(
+            eurdf.forward_kinematics(sprung, [angle]), eurdf.forward_kinematics(rigid, [angle]), atol=1e-10
+        )
+
+
+def test_joint_with_a_spring_can_be_given() -> None:
+    robot = linkage(5, {"j2": "stiffness: 7, rest: 0.2"})
+    q = eurdf.forward_kinematics(robot, {"j0": 0.3, "j2": -0.1})
+    assert coordinate(robot, q, "j2") == -0.1
+
+
+def test_motion_without_spring_stays_minimal() -> None:
+    sprung, rigid = linkage(6, {"j3": "stiffness: 7"}), linkage(6, {})
+    q = eurdf.forward_kinematics(sprung, [0.3])
+    assert coordinate(sprung, q, "j3") == pytest.approx(0.0, abs=1e-10)
+    # Without springs, the third of the three freedoms would also be decided by the least motion.
+    assert np.abs(eurdf.forward_kinematics(rigid, [0.3]) - q).max() > 1e-3
+
+
+def test_springs_change_no_count() -> None:
+    counts = [
+        (found.nv, found.nc, found.rank, found.mobility, found.redundant, found.uncontrolled)
+        for found in map(eurdf.analyze, (linkage(5, {"j1": "stiffness: 3, rest: 0.4"}), linkage(5, {})))
+    ]
+    assert counts[0] == counts[1]
+
+
+def test_batch_is_in_the_same_equilibrium() -> None:
+    robot = linkage(5, {"j1": "stiffness: 3, rest: 0.4", "j2": "stiffness: 7, rest: 0.2"})
+    values = np.linspace(-0.3, 0.3, 5)[:, None]
+    found = eurdf.batch.forward_kinematics(robot, values)
+    assert found.converged.all()
+    assert found.residual.max() < 1e-9
+    for value, q in zip(values, found.q, strict=True):
+        np.testing.assert_allclose(eurdf.forward_kinematics(robot, value), q, atol=1e-9)
+        np.testing.assert_array_equal(split_configuration(robot, q)[0], value)
