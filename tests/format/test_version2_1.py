@@ -23,6 +23,14 @@ closures:
 DISTANCE = HINGE.replace("hinge", "distance") + "    length: 0.155\n"
 
 
+COUPLING = """\
+extended_urdf: "2.1"
+couplings:
+  - name: gear
+    joints: {a: 2, b: -1.5}
+"""
+
+
 def read(text: str) -> tuple[Extension | None, list[Diagnostic]]:
     diagnostics = Diagnostics()
     document = read_yaml(Source("robot.yaml", text, text.encode()))
@@ -217,3 +225,58 @@ def test_error_of_a_closure_is_reported_once(text: str, code: str, line: int, sa
     (found,) = diagnostics
     assert (found.code, found.line) == (code, line)
     assert said in found.message
+
+
+@pytest.mark.parametrize(("more", "offset"), [("", 0.0), ("    offset: -0.2\n", -0.2)])
+def test_coupling_has_its_coefficients_and_offset(more: str, offset: float) -> None:
+    extension, diagnostics = read(COUPLING + more)
+    assert extension is not None
+    assert not diagnostics
+    (coupling,) = extension.couplings
+    assert (coupling.name, coupling.joints, coupling.offset) == ("gear", {"a": 2.0, "b": -1.5}, offset)
+
+
+def test_user_data_of_a_coupling_are_not_joints() -> None:
+    extension, _ = read(COUPLING.replace("b: -1.5", "b: -1.5, x-teeth: 12"))
+    assert extension is not None
+    assert extension.couplings[0].joints.keys() == {"a", "b"}
+    assert extension.own_data == {("couplings", 0, "joints", "x-teeth"): 12}
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "line", "said"),
+    [
+        (COUPLING.replace(", b: -1.5", ""), "wrong-length", 4, "'joints' must have at least 2 items, not 1"),
+        (COUPLING.replace("b: -1.5", "x-b: -1.5"), "wrong-length", 4, "'joints' must have at least 2 items, not 1"),
+        (COUPLING.replace("-1.5", "0.0"), "out-of-range", 4, "'b' must not be 0"),
+        (COUPLING.replace("-1.5", "half"), "wrong-type", 4, "'b' must be a number"),
+        (COUPLING.replace("{a: 2, b: -1.5}", "[a, b]"), "wrong-type", 4, "'joints' must be a mapping"),
+        (COUPLING + "    offset: none\n", "wrong-type", 5, "'offset' must be a number"),
+        (COUPLING + "    ratio: 2\n", "unknown-key", 5, "'ratio'"),
+        (COUPLING.replace("couplings", "couplngs"), "unknown-key", 2, "'couplngs'"),
+        (COUPLING.replace("    joints: {a: 2, b: -1.5}\n", ""), "missing-key", 3, "lacks 'joints'"),
+        (COUPLING.replace('extended_urdf: "2.1"\n', ""), "missing-key", 1, "a key of version 2.1"),
+    ],
+)
+def test_error_of_a_coupling_is_reported_once(text: str, code: str, line: int, said: str) -> None:
+    extension, diagnostics = read(text)
+    assert extension is None
+    (found,) = diagnostics
+    assert (found.code, found.line) == (code, line)
+    assert said in found.message
+    assert "do not indent" not in (found.hint or "")
+
+
+def test_couplings_in_version_2_0_name_the_line_to_change() -> None:
+    extension, diagnostics = read(COUPLING.replace("2.1", "2.0"))
+    assert extension is None
+    (found,) = diagnostics
+    assert (found.code, found.line) == ("unknown-key", 2)
+    assert 'write extended_urdf: "2.1" on line 1' in (found.hint or "")
+
+
+def test_keys_listed_for_version_2_0_are_its_own() -> None:
+    _, (found,) = read(COUPLING.replace("2.1", "2.0").replace("couplings", "gearbox"))
+    assert found.hint is not None
+    assert "'closures'" in found.hint
+    assert "'couplings'" not in found.hint

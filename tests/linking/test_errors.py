@@ -42,6 +42,14 @@ def later(old: str, new: str, more: str = "") -> tuple[str, str]:
     )
 
 
+def coupled(name: str, *joints: str) -> str:
+    """The beginning of a description with couplings: one of that name, then others."""
+    items = "".join(
+        f"  - {{name: {name}{i or ''}, joints: {{{each}}}}}\n" for i, each in zip((0, 2), joints, strict=False)
+    )
+    return HEAD.replace("2.0", "2.1").replace("closures:\n", f"couplings:\n{items}closures:\n")
+
+
 # code, file, text to replace, replacement, text at the place that the diagnostic points at, part of message or hint
 # fmt: off
 ERRORS = [
@@ -133,6 +141,14 @@ ERRORS = [
     ("duplicate-closure-name", YAML, "joints:\n", "  - {name: pin, type: 3d, frames: [base, hand]}\njoints:\n", "pin, type", "'pin'"),
     ("closure-axis-zero", YAML, HEAD, HEAD.replace("2.0", "2.1").replace("3d", "hinge\n    axis: [0, 0, 0.0]"), "[0, 0, 0.0]", "hinge 'pin'"),
     ("closure-compliance", YAML, *later("type: 3d", "type: 3d\n    compliance: {linear: 1, angular: 0.5}"), "0.5}", "of type 3d"),
+    ("duplicate-coupling-name", YAML, HEAD, coupled("pin", "motor: 1, pivot: -1"), "pin, joints", "already a closure 'pin'"),
+    ("unknown-coupled-joint", YAML, HEAD, coupled("belt", "motor: 1, pivto: -1"), "pivto", "did you mean 'pivot'?"),
+    ("unknown-coupled-joint", YAML, HEAD, coupled("belt", "motor: 1, rod: -1"), "rod: -1", "is a link"),
+    ("coupling-joint", YAML, HEAD, coupled("belt", "motor: 1, follow: 2"), "follow: 2", "'follow' is "),
+    ("coupling-joint", YAML, HEAD, coupled("belt", "motor: 1, tip: 2"), "tip: 2", "fixed"),
+    ("coupling-joint", YAML, HEAD, coupled("belt", "motor: 1, wrist_x: 2"), "wrist_x: 2", "merged into the spherical joint 'hand_ball'"),
+    ("coupling-joint", YAML, HEAD, coupled("belt", "motor: 1, hand_ball: 2"), "hand_ball: 2", "3 velocities"),
+    ("coupling-duplicate", YAML, HEAD, coupled("belt", "motor: 1, pivot: 2", "motor: 2, pivot: 4"), "{name: belt2", "multiple of coupling 'belt'"),
     ("closure-same-frame", YAML, "[rod_tip, rocker_top]", "[rod_tip, rod_tip]", "rod_tip]", "itself"),
     ("closure-same-body", YAML, "[rod_tip, rocker_top]", "[rod_tip, rod]", None, "'rod_tip' and 'rod'"),
     ("closure-duplicate", YAML, "joints:\n", "  - {name: again, type: 6d, frames: [rocker_top, rod_tip]}\njoints:\n", "{name: again", "'pin'"),

@@ -17,6 +17,7 @@ from eurdf_conformance.protocol.message import (
     CanonicalActuator,
     CanonicalClosure,
     CanonicalCompliance,
+    CanonicalCoupling,
     CanonicalJoint,
     CanonicalMimic,
     CanonicalRobot,
@@ -69,6 +70,10 @@ def canonical_robot(mechanism: Mechanism) -> CanonicalRobot:
             name: {joint: list(coordinates) for joint, coordinates in configuration.items()}
             for name, configuration in mechanism.configurations.items()
         },
+        couplings=[
+            CanonicalCoupling(name=coupling.name, joints=dict(coupling.coefficients), offset=coupling.offset)
+            for coupling in mechanism.couplings
+        ],
         own=dict(mechanism.own_data),
     )
 

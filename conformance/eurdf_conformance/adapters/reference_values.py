@@ -68,12 +68,12 @@ class Quantities:
         return found
 
     def residuals(self) -> dict[str, list[float]]:
-        """Of each closure, seen from A, m and rad."""
-        return {name: rows.tolist() for name, rows in self._by_closure(self._residual_and_jacobian[0]).items()}
+        """Of each closure, seen from A, m and rad; of each coupling."""
+        return {name: rows.tolist() for name, rows in self._by_constraint(self._residual_and_jacobian[0]).items()}
 
     def jacobian(self) -> Jacobian:
         """EU-PRO-007: the constraint Jacobian, a column for each velocity."""
-        rows = {name: rows.tolist() for name, rows in self._by_closure(self._residual_and_jacobian[1]).items()}
+        rows = {name: rows.tolist() for name, rows in self._by_constraint(self._residual_and_jacobian[1]).items()}
         return Jacobian(columns=_columns(self.robot), rows=rows)
 
     def mass_matrix(self) -> MassMatrix:
@@ -111,11 +111,11 @@ class Quantities:
         frame = self.robot.model.frames[self._bodies[name]]
         return self.robot.data.oMi[frame.parentJoint] * frame.placement
 
-    def _by_closure(self, rows: Matrix) -> dict[str, Matrix]:
+    def _by_constraint(self, rows: Matrix) -> dict[str, Matrix]:
         found, first = {}, 0
-        for closure in self.robot.mechanism.closures:
-            found[closure.name] = rows[first : first + closure.rows]
-            first += closure.rows
+        for constraint in self.robot.constraints:
+            found[constraint.name] = rows[first : first + constraint.rows]
+            first += constraint.rows
         return found
 
 

@@ -38,6 +38,7 @@ def canonical_differences(
         *other.repeated,
         *_part_differences(one.joints, other.joints, "/joints", "joint"),
         *_part_differences(one.closures, other.closures, "/closures", "closure"),
+        *_part_differences(one.couplings, other.couplings, "/couplings", "coupling"),
         *_part_differences(one.actuators, other.actuators, "/actuators", "actuator of joint"),
         *_configuration_differences(one, other, expected.root),
         *value_differences(expected.own, given.own, "/own", "user data"),

@@ -19,6 +19,7 @@ from eurdf_conformance.protocol.message import (
     CanonicalActuator,
     CanonicalClosure,
     CanonicalCompliance,
+    CanonicalCoupling,
     CanonicalJoint,
     CanonicalRobot,
 )
@@ -26,7 +27,7 @@ from eurdf_conformance.protocol.message import (
 #: The joint by which a floating root moves.
 ROOT_JOINT = "root_joint"
 
-Part = TypeVar("Part", CanonicalJoint, CanonicalClosure, CanonicalActuator)
+Part = TypeVar("Part", CanonicalJoint, CanonicalClosure, CanonicalCoupling, CanonicalActuator)
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +52,7 @@ class PlainRobot:
         frames: Names of the frames that the description adds.
         joints: By name.
         closures: By name.
+        couplings: By name.
         actuators: By joint.
         configurations: By name; for each joint its coordinates.
         repeated: What occurs twice in a list that is a set.
@@ -60,6 +62,7 @@ class PlainRobot:
     frames: frozenset[str]
     joints: Mapping[str, Placed[CanonicalJoint]]
     closures: Mapping[str, Placed[CanonicalClosure]]
+    couplings: Mapping[str, Placed[CanonicalCoupling]]
     actuators: Mapping[str, Placed[CanonicalActuator]]
     configurations: Mapping[str, Mapping[str, Sequence[float]]]
     repeated: Sequence[Difference]
@@ -86,6 +89,7 @@ def plain_robot(robot: CanonicalRobot, bodies: Iterable[Iterable[str]], links: I
     joints = _by_name([with_springs(joint) for joint in robot.joints], "/joints", lambda joint: joint.name, repeated)
     actuators = _by_name(robot.actuators, "/actuators", lambda actuator: actuator.joint, repeated)
     closures = _by_name(robot.closures, "/closures", lambda closure: closure.name, repeated)
+    couplings = _by_name(robot.couplings, "/couplings", lambda coupling: coupling.name, repeated)
     configurations: dict[str, dict[str, Sequence[float]]] = {
         name: dict(coordinates) for name, coordinates in robot.configurations.items()
     }
@@ -114,6 +118,7 @@ def plain_robot(robot: CanonicalRobot, bodies: Iterable[Iterable[str]], links: I
         frozenset(robot.frames),
         {name: Placed(_joint(placed.part, first_link), placed.pointer) for name, placed in joints.items()},
         {name: Placed(_closure(placed.part, first_link), placed.pointer) for name, placed in closures.items()},
+        couplings,
         {
             name: Placed(with_defaults(placed.part, _velocities(name, joints)), placed.pointer)
             for name, placed in actuators.items()

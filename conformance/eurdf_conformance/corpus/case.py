@@ -21,6 +21,7 @@ TOPICS = (
     "joints",
     "merging",
     "closures",
+    "couplings",
     "actuation",
     "configurations",
     "inertia",

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any, cast
 
 from eurdf_conformance.oracle.configuration import stated
-from eurdf_conformance.oracle.description import Actuator, Description
+from eurdf_conformance.oracle.coupling import require_coupled
+from eurdf_conformance.oracle.description import Actuator, Coupling, Description
 from eurdf_conformance.oracle.joint_property import properties
 from eurdf_conformance.oracle.not_read import NotRead
 from eurdf_conformance.oracle.tree import Joint, Tree
@@ -14,6 +15,7 @@ from eurdf_conformance.protocol.message import (
     CanonicalActuator,
     CanonicalClosure,
     CanonicalCompliance,
+    CanonicalCoupling,
     CanonicalJoint,
     CanonicalMimic,
     CanonicalRobot,
@@ -53,8 +55,15 @@ def canonical(urdf: Urdf, description: Description, tree: Tree) -> CanonicalRobo
             name: {joint: q.tolist() for joint, q in stated(tree, configuration).items()}
             for name, configuration in description.configurations.items()
         },
+        couplings=[canonical_coupling(coupling, tree) for coupling in description.couplings],
         own=description.own,
     )
+
+
+def canonical_coupling(coupling: Coupling, tree: Tree) -> CanonicalCoupling:
+    """As written; its joints have one coordinate each, EU-CPL-003."""
+    require_coupled(tree, coupling)
+    return CanonicalCoupling(name=coupling.name, joints=coupling.coefficients, offset=coupling.offset)
 
 
 def links_of_bodies(tree: Tree) -> list[str]:

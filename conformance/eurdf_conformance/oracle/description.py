@@ -41,6 +41,16 @@ class Closure:
 
 
 @dataclass(frozen=True)
+class Coupling:
+    """Σ coefficient · coordinate = offset."""
+
+    name: str
+    #: By joint, none of them 0.
+    coefficients: dict[str, float]
+    offset: float
+
+
+@dataclass(frozen=True)
 class Change:
     """What a joint becomes, and what is stated of it; what is not stated stays the URDF's."""
 
@@ -79,6 +89,7 @@ class Description:
     version: Version = "2"
     root: Literal["fixed", "floating"] = "fixed"
     closures: tuple[Closure, ...] = ()
+    couplings: tuple[Coupling, ...] = ()
     #: By name; with `merges` that of the joint made, which need be none of the URDF's.
     changes: dict[str, Change] = field(default_factory=dict)
     actuators: tuple[Actuator, ...] = ()

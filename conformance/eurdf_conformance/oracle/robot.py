@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from eurdf_conformance.oracle import canonical, configuration, distance, hinge, mass_matrix
+from eurdf_conformance.oracle import canonical, configuration, coupling, distance, hinge, mass_matrix
 from eurdf_conformance.oracle.closing import closed
 from eurdf_conformance.oracle.configuration import Configuration
 from eurdf_conformance.oracle.description import Description
@@ -59,10 +59,19 @@ class OracleRobot:
             closure.name: (closure.type, refer(closure.a), refer(closure.b)) for closure in self.description.closures
         }
 
-    @property
-    def rows(self) -> dict[str, str]:
-        """By the name of a closure, for each of its rows whether it is an angle, `a`, or a length, `l`."""
-        return {name: ROWS[kind] for name, (kind, _, _) in self.closures.items()}
+    def row_sizes(self, L: float) -> dict[str, list[float]]:
+        """By the name of a closure or coupling, what each of its rows is divided by to be free of units.
+
+        Args:
+            L: A length, m, that counts as much as a radian.
+        """
+        sizes = {
+            name: [L if unit == "l" else 1.0 for unit in ROWS[kind]] for name, (kind, _, _) in self.closures.items()
+        }
+        for each in self.description.couplings:
+            largest, unit = coupling.unit(self.tree, each)
+            sizes[each.name] = [largest * (L if unit == "l" else 1.0)]
+        return sizes
 
     @cached_property
     def masses(self) -> list[tuple[Inertia, Placed]]:
@@ -92,7 +101,7 @@ class OracleRobot:
         return list(found.values())
 
     def residuals(self, q: Configuration) -> dict[str, Array]:
-        """The rows of r of each closure; m, rad."""
+        """The rows of r of each closure and coupling; m, rad."""
         at = self.kinematics(q)
         found = {}
         for closure, (kind, a, b) in zip(self.description.closures, self.closures.values(), strict=True):
@@ -102,15 +111,16 @@ class OracleRobot:
                 found[closure.name] = hinge.residual(at, a, b, closure.axes)
             else:
                 found[closure.name] = residual(at, kind, a, b)
-        return found
+        return found | {each.name: coupling.residual(self.tree, q, each) for each in self.description.couplings}
 
     def jacobians(self, q: Configuration) -> dict[str, Array]:
-        """The rows of K of each closure."""
+        """The rows of K of each closure and coupling."""
         at = self.kinematics(q)
-        return {
+        found = {
             closure.name: jacobian(at, self._sharing, *placed, *([closure.axes] if closure.axes else []))
             for closure, placed in zip(self.description.closures, self.closures.values(), strict=True)
         }
+        return found | {each.name: coupling.jacobian(self.velocities, each) for each in self.description.couplings}
 
     def residual(self, q: Configuration) -> Array:
         """The rows of r of all closures, in their order."""
@@ -139,7 +149,7 @@ class OracleRobot:
     def dimensions(self, q: Configuration) -> Dimensions:
         """Rank, mobility and the other words of dimension, which are meant at a closed configuration."""
         L = self.size(q) or 1.0
-        rows = np.array([L if kind == "l" else 1.0 for kinds in self.rows.values() for kind in kinds])
+        rows = np.array([size for sizes in self.row_sizes(L).values() for size in sizes])
         columns = np.array([L if kind == "l" else 1.0 for kind in configuration.kinds(self.tree)])
         driven = {actuator.joint for actuator in self.description.actuators}
         S = np.eye(len(columns))[[name in driven for name, _ in self.velocities]]

@@ -8,7 +8,15 @@ from typing import Any, Literal
 import numpy as np
 
 from eurdf_conformance.level import Version
-from eurdf_conformance.oracle.description import Actuator, Change, Closure, ClosureType, Description, FrameReference
+from eurdf_conformance.oracle.description import (
+    Actuator,
+    Change,
+    Closure,
+    ClosureType,
+    Coupling,
+    Description,
+    FrameReference,
+)
 from eurdf_conformance.oracle.not_read import NotRead
 from eurdf_conformance.oracle.own import own_data
 from eurdf_conformance.oracle.plain_value import mapping, number, numbers, sequence, text, vector
@@ -25,6 +33,8 @@ KEYS = (
     "configurations",
     "metadata",
 )
+#: Keys that version 2.1 adds.
+ADDED = ("couplings",)
 PROPERTIES = ("limits", "damping", "friction", "armature")
 LIMITS = ("lower", "upper", "velocity", "effort")
 #: Since version 2.1.
@@ -36,11 +46,11 @@ CHANGES = {"spherical": ("merges",), "universal": ("axes",), "cylindrical": (), 
 
 def version2(document: dict[str, Any]) -> Description:
     """Read a description whose `extended_urdf` is "2.0" or "2.1"."""
-    members = mapping(document, KEYS)
     versions: dict[str, Version] = {"2.0": "2", "2.1": "2.1"}
-    if members["extended_urdf"] not in versions:
-        raise NotRead(f"version {members['extended_urdf']!r}")
-    version = versions[members["extended_urdf"]]
+    if document["extended_urdf"] not in versions:
+        raise NotRead(f"version {document['extended_urdf']!r}")
+    version = versions[document["extended_urdf"]]
+    members = mapping(document, (*KEYS, *(ADDED if version == "2.1" else ())))
     roots: dict[str, Literal["fixed", "floating"]] = {"fixed": "fixed", "floating": "floating"}
     root = text(members.get("root", "fixed"))
     if root not in roots:
@@ -55,6 +65,7 @@ def version2(document: dict[str, Any]) -> Description:
         version=version,
         root=roots[root],
         closures=tuple(found for found in closures if found is not None),
+        couplings=tuple(coupling(value) for value in sequence(members.get("couplings", []))),
         changes={name: change(value, version) for name, value in mapping(members.get("joints", {})).items()},
         actuators=tuple(actuator(value, version) for value in sequence(members.get("actuators", []))),
         frames=dict(frames),
@@ -117,6 +128,15 @@ def distance_length(members: dict[str, Any]) -> float:
     if length < 1e-4:
         raise NotRead(f"the length {length!r}")
     return length
+
+
+def coupling(value: Any) -> Coupling:
+    """A linear relation of two or more joints."""
+    members = mapping(value, ("name", "joints", "offset"))
+    joints = {name: number(coefficient) for name, coefficient in mapping(members.get("joints")).items()}
+    if len(joints) < 2 or not all(joints.values()):
+        raise NotRead(f"the coupling {value!r}")
+    return Coupling(text(members.get("name")), joints, number(members.get("offset", 0)))
 
 
 def reference(value: Any) -> FrameReference:

@@ -55,7 +55,7 @@ def selection(robot: OracleRobot) -> Matrix:
 def scaled(K: Matrix, robot: OracleRobot, q: Configuration) -> Matrix:
     """K free of units: a row in metres is divided by the robot's size, a column of what slides multiplied by it."""
     L = robot.size(q) or 1.0
-    rows = [L if kind == "l" else 1.0 for kinds in robot.rows.values() for kind in kinds]
+    rows = [size for sizes in robot.row_sizes(L).values() for size in sizes]
     factors = [L if is_length(robot, column) else 1.0 for column in robot.velocities]
     return np.asarray(K / np.array(rows).reshape(-1, 1) * np.array(factors).reshape(1, -1))
 

@@ -69,7 +69,7 @@ def _differences(
             yield Difference(f"/{quantity}", quantity, ABSENT, f"{quantity} was requested but is missing")
     if values.poses is not None:
         yield from name_differences(dict.fromkeys(frames, "a pose"), values.poses, "/poses", "frame")
-    rows = {name: len(kinds) for name, kinds in robot.rows.items()}
+    rows = {name: len(sizes) for name, sizes in robot.row_sizes(1.0).items()}
     if values.residuals is not None:
         yield from _row_differences(rows, values.residuals, "/residuals")
     if values.jacobian is not None:

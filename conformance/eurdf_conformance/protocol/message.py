@@ -189,6 +189,14 @@ class CanonicalClosure(Value):
     compliance: CanonicalCompliance | None = Field(default=None, description="Rigid if left out.")
 
 
+class CanonicalCoupling(Value):
+    """A linear relation of joint coordinates: Σ coefficient · coordinate = offset."""
+
+    name: str
+    joints: dict[str, Number] = Field(description="By joint, its coefficient.")
+    offset: Number
+
+
 class CanonicalActuator(Value):
     """A joint with a motor; ratio and inertia one a velocity."""
 
@@ -215,7 +223,13 @@ class CanonicalRobot(Value):
     closures: list[CanonicalClosure]
     actuators: list[CanonicalActuator]
     configurations: dict[str, dict[str, Numbers]]
+    couplings: list[CanonicalCoupling] = Field(default=[], description="Left out where there are none.")
     own: dict[str, Any] = Field(description="User data, by the JSON pointer of their key.")
+
+    @model_serializer(mode="wrap")
+    def _of_its_version(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Without `couplings` where there are none: version 2.0 does not have them."""
+        return {name: value for name, value in handler(self).items() if value or name != "couplings"}
 
 
 class Accepted(Answer):
@@ -244,7 +258,7 @@ class Jacobian(Value):
     """The constraint Jacobian K."""
 
     columns: list[tuple[str, int]] = Field(description="For each column a joint and which of its velocities, from 0.")
-    rows: dict[str, list[Numbers]] = Field(description="For each closure its rows.")
+    rows: dict[str, list[Numbers]] = Field(description="For each closure and coupling its rows.")
 
 
 class MassMatrix(Value):

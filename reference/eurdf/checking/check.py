@@ -59,7 +59,7 @@ def check(
             diagnostics.add(found)
     if not isinstance(description, Unlinked) and not refused:
         if isinstance(description, Described):
-            if description.mechanism.closures:
+            if description.mechanism.constraints:
                 _check_loops(description)
             else:
                 advise_on_quaternions(description, None, diagnostics)

@@ -12,6 +12,7 @@ from eurdf.linking.description import Described, Linked
 if TYPE_CHECKING:
     from eurdf.kinematics.assembly import Assembly
     from eurdf.kinematics.residual import Opening
+    from eurdf.mechanism.mechanism import Mechanism
     from eurdf.pinocchio.robot import Robot
 
 #: Loops that are open by no more than this, in rad and of the length of the longest loop, may be so because numbers in
@@ -29,7 +30,7 @@ def closure_diagnostics(description: Linked, robot: Robot, assembly: Assembly | 
     """
     diagnostics = Diagnostics()
     mechanism = description.mechanism
-    if not isinstance(description, Described) or not mechanism.closures:
+    if not isinstance(description, Described) or not mechanism.constraints:
         return diagnostics
     # Only now: a description without closures is checked without a simulator.
     from eurdf.kinematics.assembly import assemble
@@ -39,24 +40,29 @@ def closure_diagnostics(description: Linked, robot: Robot, assembly: Assembly | 
     assembly = assemble(robot) if assembly is None else assembly
     if not assembly.closes:
         worst = max(assembly.open, key=_width)
-        closure = next(closure for closure in mechanism.closures if closure.name == worst.name)
         if assembly.reason == "given up":
             diagnostics.report(
                 "x-loops-not-checked",
                 "the loops were not checked: too many closures share joints",
-                description.place_of_closure(closure),
+                description.place_of_constraint(worst.name),
                 "state a configuration 'assembled' (version 2): then the loops are checked there",
             )
             return diagnostics
         diagnostics.report(
             "closure-cannot-close",
             f"no configuration was found that closes the loops; least open: {_told(assembly.open)}",
-            description.place_of_closure(closure),
+            description.place_of_constraint(worst.name),
             f"{_closed_to(assembly.open)}: write the numbers of the files with more digits"
             if _is_rounding(robot, assembly.open)
-            else "check where the frames of the closure are, and that enough joints can move",
+            else _hint_for_open(mechanism, worst.name),
         )
     return diagnostics
+
+
+def _hint_for_open(mechanism: Mechanism, name: str) -> str:
+    if any(coupling.name == name for coupling in mechanism.couplings):
+        return "check the coefficients and offsets of the couplings, and that enough joints can move"
+    return "check where the frames of the closure are, and that enough joints can move"
 
 
 def assembled_diagnostics(description: Described, robot: Robot) -> Diagnostics:

@@ -76,7 +76,7 @@ class AssemblyInfo(_Entry):
     closes: bool
     """Whether each closure is open by at most 1e-6 (m, rad)."""
     residual: float | None
-    """Norm of the residual of all closures, m and rad."""
+    """Norm of the residual of all closures and couplings, m and rad."""
     iterations: Annotated[int, Field(ge=0)]
     """Number of evaluations of the residual."""
     within_limits: bool
@@ -84,7 +84,7 @@ class AssemblyInfo(_Entry):
     joints: tuple[JointPosition, ...]
     """The configuration found; the least open one if the loops do not close."""
     closures: tuple[OpeningInfo, ...]
-    """The closures, in file order."""
+    """The closures, then the couplings, each in file order."""
     file: str | None
     """The description, if --write is given; else null."""
     written: bool

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from rich.table import Table
     from rich.text import Text
 
-    from eurdf.commands.robot_info import RobotInfo
+    from eurdf.commands.robot_info import CouplingInfo, RobotInfo
 
 # Maximum number of motions that are named.
 _MOST_MOTIONS = 12
@@ -83,6 +83,8 @@ def _show(info: RobotInfo) -> None:
         shown.append(cell(info.left_out, "yellow"))
     if info.closure_list:
         shown.append(_closures(info))
+    if info.coupling_list:
+        shown.append(_couplings(info))
     if len(info.loop_list) > 1:
         shown.append(_loops(info))
     if info.motion_list and info.actuated:  # without actuators, all motions are uncontrolled
@@ -112,7 +114,7 @@ def _dimensions(info: RobotInfo) -> Table:
     table = new_table("", "", "")
     table.show_header = False
     table.columns[1].justify = "right"
-    if not info.closures:
+    if not (info.closures or info.couplings):
         verdict = ("loops", "none", "a tree")
     elif info.closes:
         stated = any(configuration.name == "assembled" for configuration in info.configuration_list)
@@ -130,6 +132,7 @@ def _dimensions(info: RobotInfo) -> Table:
         ("nq", info.nq, "coordinates"),
         ("nv", info.nv, "velocities of the spanning tree"),
         ("closures", info.closures, kinds),
+        *([("couplings", info.couplings, "linear relations of joint coordinates")] if info.couplings else []),
         verdict,
         ("nc", info.nc, "constraint rows"),
         ("rank", info.rank, "of the constraint Jacobian"),
@@ -181,6 +184,24 @@ def _closures(info: RobotInfo) -> Table:
         ]
         table.add_row(cell(closure.name, "bold"), closure.type, *frames, _number(closure.residual))
     return table
+
+
+def _couplings(info: RobotInfo) -> Table:
+    table = new_table("coupling", "relation", "residual")
+    table.columns[2].justify = "right"
+    for coupling in info.coupling_list:
+        table.add_row(cell(coupling.name, "bold"), cell(_relation(coupling)), _number(coupling.residual))
+    return table
+
+
+def _relation(coupling: CouplingInfo) -> str:
+    """As an equation: 0.5 motor_1 + 0.5 motor_2 - knee = 0."""
+    terms = []
+    for name, coefficient in coupling.joints.items():
+        sign = "-" if coefficient < 0.0 else "+"
+        size = "" if abs(coefficient) == 1.0 else f"{abs(coefficient):g} "
+        terms.append(f"{sign} {size}{name}")
+    return f"{' '.join(terms).removeprefix('+ ')} = {coupling.offset:g}"
 
 
 def _loops(info: RobotInfo) -> Table:

@@ -67,6 +67,19 @@ class ClosureInfo(_Entry):
     """Linear (m/N) and angular (rad/(N·m)) compliance for simulators with soft constraints; 0 is rigid."""
 
 
+class CouplingInfo(_Entry):
+    """A coupling of joints."""
+
+    name: str
+    """Name of the coupling."""
+    joints: dict[str, float]
+    """Coefficients by the name of the joint."""
+    offset: float
+    """What the coordinates times the coefficients add up to."""
+    residual: float | None
+    """Size of its residual at the analysed configuration."""
+
+
 class ActuatorInfo(_Entry):
     """An actuated joint."""
 
@@ -97,14 +110,14 @@ class ConfigurationInfo(_Entry):
     name: str
     """Name of the configuration."""
     residual: float | None
-    """Norm of the residual of all closures at the configuration, m and rad."""
+    """Norm of the residual of all closures and couplings at the configuration, m and rad."""
 
 
 class LoopInfo(_Entry):
     """An independent group of loops: they share joints with one another and with no other loop."""
 
     closures: tuple[str, ...]
-    """Names of its closures."""
+    """Names of its closures and couplings."""
     joints: tuple[str, ...]
     """Names of its joints, in the model's order."""
     nv: Count
@@ -163,8 +176,10 @@ class RobotInfo(_Entry):
     """Number of moving joints, including that of a floating root."""
     closures: Count
     """Number of loop closures."""
+    couplings: Count
+    """Number of couplings."""
     nc: Count
-    """Number of constraint rows of all closures."""
+    """Number of constraint rows of all closures and couplings."""
     rank: Count | None
     """Rank of the constraint Jacobian at a closed configuration; null if the loops do not close."""
     mobility: Count | None
@@ -194,7 +209,7 @@ class RobotInfo(_Entry):
     mass: float | None
     """Mass of all links, including the root, kg."""
     residual: float | None
-    """Norm of the residual of all closures at the configuration found, m and rad."""
+    """Norm of the residual of all closures and couplings at the configuration found, m and rad."""
     closes: bool
     """Whether a configuration was found at which every loop is closed."""
     left_out: str | None
@@ -203,6 +218,8 @@ class RobotInfo(_Entry):
     """The moving joints, depth first."""
     closure_list: tuple[ClosureInfo, ...]
     """The closures, in file order."""
+    coupling_list: tuple[CouplingInfo, ...]
+    """The couplings, in file order."""
     loop_list: tuple[LoopInfo, ...]
     """The independent groups of loops; empty if the loops do not close."""
     motion_list: tuple[MotionInfo, ...]
@@ -229,7 +246,11 @@ def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
     mechanism, model = robot.mechanism, robot.model
     moving = tuple(_joint_infos(robot))
     rows = residual(robot, analysis.q)
-    starts = np.cumsum([0, *(closure.rows for closure in mechanism.closures)])
+    starts = np.cumsum([0, *(constraint.rows for constraint in mechanism.constraints)])
+    sizes = {
+        constraint.name: _finite(np.linalg.norm(rows[start : start + constraint.rows]))
+        for constraint, start in zip(mechanism.constraints, starts, strict=False)
+    }
     joints = {joint.name: joint for joint in mechanism.joints}
     controls = {joint: motor.control for joint, motor in mechanism.motors.items()}
     return RobotInfo(
@@ -240,6 +261,7 @@ def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
         nv=model.nv,
         joints=len(moving),
         closures=len(mechanism.closures),
+        couplings=len(mechanism.couplings),
         nc=mechanism.nc,
         rank=analysis.rank,
         mobility=analysis.mobility,
@@ -266,10 +288,19 @@ def robot_info(robot: Robot, analysis: Analysis) -> RobotInfo:
                 rows=closure.rows,
                 frames=(closure.a.frame or None, closure.b.frame or None),
                 bodies=(closure.a.body, closure.b.body),
-                residual=_finite(np.linalg.norm(rows[start : start + closure.rows])),
+                residual=sizes[closure.name],
                 compliance=(closure.compliance.linear, closure.compliance.angular),
             )
-            for closure, start in zip(mechanism.closures, starts, strict=False)
+            for closure in mechanism.closures
+        ),
+        coupling_list=tuple(
+            CouplingInfo(
+                name=coupling.name,
+                joints=dict(coupling.coefficients),
+                offset=coupling.offset,
+                residual=sizes[coupling.name],
+            )
+            for coupling in mechanism.couplings
         ),
         loop_list=tuple(
             LoopInfo(

@@ -152,6 +152,8 @@ duplicate-closure-name     EU-CLO-001 error   Two closures have the same name.
 closure-same-frame         EU-CLO-002 error   A closure connects a frame with itself.
 closure-same-body          EU-CLO-003 error   A closure connects two frames that cannot move relative to each other.
 closure-duplicate          EU-CLO-004 error   Two closures connect the same two frames.
+duplicate-coupling-name    EU-CPL-001 error   A coupling has the name of a closure or of another coupling.
+unknown-coupled-joint      EU-CPL-002 error   A coupling names a joint that does not exist.
 unknown-joint              EU-JNT-001 error   A name is not a joint of the robot.
 unknown-actuator           EU-ACT-001 error   An actuator names a joint that does not exist.
 own-key-is-joint           EU-EXT-003 warning A user-defined key is the name of a joint, but has no effect on it.
@@ -188,6 +190,8 @@ configuration-quaternion   EU-CFG-003 error   A quaternion does not have unit le
 configuration-limits       EU-CFG-004 error   A coordinate is outside the limits of its joint.
 closure-compliance         EU-CLO-020 error   A closure without orientation has an angular compliance.
 closure-axis-zero          EU-CLO-013 error   An axis of a hinge is zero.
+coupling-joint             EU-CPL-003 error   A coupled joint does not have exactly one coordinate of its own.
+coupling-duplicate         EU-CPL-004 error   A coupling is a multiple of another one.
 closure-type-unknown       EU-CLO-007 warning A closure has a user-defined type and is not part of the model.
 """,
     ),

@@ -67,6 +67,23 @@ class ClosureEntry:
 
 
 @dataclass(frozen=True, slots=True)
+class CouplingEntry:
+    """A linear relation of joint coordinates as written.
+
+    Attributes:
+        pointer: Where it is.
+        name: Unique among closures and couplings.
+        joints: Coefficients by the name of the joint, none of them 0.
+        offset: What the products add up to.
+    """
+
+    pointer: Pointer
+    name: str
+    joints: Mapping[str, float]
+    offset: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class JointEntry:
     """The entry of one joint in the description.
 
@@ -168,6 +185,7 @@ class Extension:
     urdf: str = "robot.urdf"
     root: Root = "fixed"
     closures: tuple[ClosureEntry, ...] = ()
+    couplings: tuple[CouplingEntry, ...] = ()
     joints: tuple[JointEntry, ...] = ()
     actuators: tuple[ActuatorEntry, ...] = ()
     frames: tuple[FrameEntry, ...] = ()
@@ -186,6 +204,7 @@ __all__ = [
     "ActuatorEntry",
     "ClosureEntry",
     "ConfigurationEntry",
+    "CouplingEntry",
     "Extension",
     "FrameEntry",
     "FrameReference",

@@ -101,6 +101,9 @@ MayLack = Annotated[_T | None, _NotNull()]
 #: A mapping from names to values, which can also contain user-defined keys.
 ByName = Annotated[dict[Annotated[str, Field(min_length=1)], _T], _OwnKeysApart()]
 
+#: The same with two names at least.
+AtLeastTwoByName = Annotated[dict[Annotated[str, Field(min_length=1)], _T], Field(min_length=2), _OwnKeysApart()]
+
 
 # Each named type has a definition of its own in the schema; the names of one robot are inserted there.
 LinkName = TypeAliasType(

@@ -58,7 +58,7 @@ class Indentation:
 
 def key_of_the_file_hint(pointer: Pointer) -> str | None:
     """For a key inside another entry that belongs at the top of the file."""
-    if len(pointer) < 2 or pointer[-1] not in KEYS[""]:
+    if len(pointer) < 2 or pointer[-1] not in KEYS[""] or pointer[::2] == ("couplings", "joints"):
         return None
     return f"'{pointer[-1]}' is a key of the whole file: do not indent it"
 

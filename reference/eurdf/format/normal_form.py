@@ -10,6 +10,7 @@ from eurdf.format.extension import (
     ActuatorEntry,
     ClosureEntry,
     ConfigurationEntry,
+    CouplingEntry,
     Extension,
     FrameEntry,
     FrameReference,
@@ -78,6 +79,7 @@ def from_version2(model: Version2, document: YamlDocument) -> Extension:
         urdf=model.urdf,
         root=model.root,
         closures=tuple(_closure(("closures", index), closure) for index, closure in enumerate(model.closures)),
+        couplings=tuple(_couplings(model)),
         joints=tuple(_joint(name, joint) for name, joint in model.joints.items()),
         actuators=tuple(_actuator(("actuators", index), actuator) for index, actuator in enumerate(model.actuators)),
         frames=tuple(
@@ -131,6 +133,11 @@ def _closure(pointer: Pointer, closure: version2.Closure | version2_1.AnyClosure
 
 def _compliance(written: compliance.Compliance | None) -> Compliance | None:
     return None if written is None else Compliance(written.linear or 0.0, written.angular or 0.0)
+
+
+def _couplings(model: Version2) -> Iterator[CouplingEntry]:
+    for index, coupling in enumerate(model.couplings if isinstance(model, version2_1.Version2_1) else ()):
+        yield CouplingEntry(("couplings", index), coupling.name, coupling.joints, coupling.offset)
 
 
 def _joint(name: str, joint: version2.Joint) -> JointEntry:

@@ -25,8 +25,8 @@ VERSION_KEY = "extended_urdf"
 
 _VERSION1_KEYS = tuple(Version1.model_fields)
 
-#: Keys of version 2.0; ``metadata`` is likely a user-defined key in a file of version 1.
-_VERSION2_KEYS = tuple(key for key in Version2.model_fields if key not in (VERSION_KEY, "metadata"))
+#: Keys of version 2; ``metadata`` is likely a user-defined key in a file of version 1.
+_VERSION2_KEYS = tuple(key for key in Version2_1.model_fields if key not in (VERSION_KEY, "metadata"))
 
 
 def read_extension(document: YamlDocument, diagnostics: Diagnostics) -> Extension | None:
@@ -84,15 +84,21 @@ def _version(reporter: YamlReporter) -> Literal["1", "2.0", "2.1"] | None:
         return None
     version2_key = next((key for key in data if key in (*_VERSION2_KEYS, "metadata")), None)
     if version2_key is not None:
+        version = _first_version_with(version2_key)
         reporter.report(
             "missing-key",
-            f"the file has '{version2_key}', a key of version {VERSION}, but lacks '{VERSION_KEY}'",
+            f"the file has '{version2_key}', a key of version {version}, but lacks '{VERSION_KEY}'",
             (version2_key,),
-            f'begin the file with {VERSION_KEY}: "{VERSION}"',
+            f'begin the file with {VERSION_KEY}: "{version}"',
             key=True,
         )
         return None
     return "1"
+
+
+def _first_version_with(key: str) -> str:
+    """The first version that has a key of the whole file."""
+    return VERSION if key in Version2.model_fields else VERSION2_1
 
 
 def _written_version(reporter: YamlReporter) -> Literal["2.0", "2.1"] | None:
@@ -129,8 +135,9 @@ def _warn_of_near_misses(reporter: YamlReporter) -> None:
         if key in _VERSION1_KEYS or is_own_key(key):
             continue
         if key in _VERSION2_KEYS:
-            message = f"'{key}' is a key of version {VERSION}; in this file of version 1 it is your own data"
-            hint = f'a file of version {VERSION} begins with {VERSION_KEY}: "{VERSION}" and has no key of version 1'
+            version = _first_version_with(key)
+            message = f"'{key}' is a key of version {version}; in this file of version 1 it is your own data"
+            hint = f'a file of version {version} begins with {VERSION_KEY}: "{version}" and has no key of version 1'
         elif meant := near(key, (*_VERSION1_KEYS, VERSION_KEY)):
             message = f"{quoted(key)} is similar to '{meant}', but is read as your own data"
             hint = f"did you mean '{meant}'?"

@@ -119,6 +119,10 @@ def _put_joint_keys(schema: Schema, names: Names) -> None:
     joints = schema["properties"]["joints"]
     joints["properties"] = {name: joint for name in names.joints if not is_own_key(name)}
     joints["additionalProperties"] = {"allOf": [joint, {"type": "object", "required": ["merges"]}]}
+    if "Coupling" in schema["$defs"]:
+        coupled = schema["$defs"]["Coupling"]["properties"]["joints"]
+        coefficient = coupled["additionalProperties"]
+        coupled["properties"] = {name: coefficient for name in names.movable_joints if not is_own_key(name)}
     configuration = schema["properties"]["configurations"]["additionalProperties"]
     coordinates = configuration["additionalProperties"]
     configuration["properties"] = {name: coordinates for name in names.movable_joints if not is_own_key(name)}

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field, Tag
+from pydantic import AfterValidator, ConfigDict, Field, Tag
 
 from eurdf.format import actuator2_1, joint2_1, version2
 from eurdf.format.compliance import Compliance, Compliant
-from eurdf.format.field import ByName, either
+from eurdf.format.field import AtLeastTwoByName, ByName, StrictMapping, either, refuse_zero
 from eurdf.format.version2 import FrameReference, Name, Vector, Version2
 
 VERSION: Literal["2.1"] = "2.1"
@@ -110,6 +110,31 @@ AnyClosure = Annotated[
 ]
 
 
+_Coefficient = Annotated[float, AfterValidator(refuse_zero), Field(json_schema_extra={"not": {"const": 0}})]
+
+
+class Coupling(StrictMapping):
+    """A linear relation of joint coordinates."""
+
+    model_config = ConfigDict(title="Coupling")
+
+    name: Name = Field(
+        title="Name", description="Name of the coupling, unique among closures and couplings.", examples=["knee_gear"]
+    )
+    joints: AtLeastTwoByName[_Coefficient] = Field(
+        title="Joints",
+        description="By joint, its coefficient, not 0: the coordinates (rad, m) times the coefficients add up to"
+        " 'offset'. Two or more revolute, continuous, prismatic or helical joints.",
+        examples=[{"motor_1": 0.5, "motor_2": 0.5, "knee": -1}],
+    )
+    offset: float = Field(
+        default=0.0,
+        title="Offset",
+        description="What the coordinates times the coefficients add up to, in the unit of these products.",
+        examples=[0.2],
+    )
+
+
 class Version2_1(Version2):  # noqa: N801 - the version has a point
     """A robot's loop closures, actuators, joints, frames and configurations beside its URDF."""
 
@@ -136,6 +161,12 @@ class Version2_1(Version2):  # noqa: N801 - the version has a point
         description="The joints that have a motor: names, or mappings with name, gear and control range.",
         examples=[["motor_hip_x", {"joint": "motor_knee", "gear_ratio": 50, "control": [-80, 80]}]],
     )
+    couplings: list[Coupling] = Field(
+        default=[],
+        title="Couplings",
+        description="Linear relations of joint coordinates, as gears, belts and differentials make them.",
+        examples=[[{"name": "knee_gear", "joints": {"motor_1": 0.5, "motor_2": 0.5, "knee": -1}}]],
+    )
 
 
 #: Forms of the entry of a joint that are mappings.
@@ -152,6 +183,8 @@ def _of_other_types(*kinds: str) -> dict[str, str]:
 #: As in version 2.0, and of the forms that version 2.1 adds.
 KEYS: Mapping[str, tuple[str, ...]] = {
     **version2.KEYS,
+    "": tuple(Version2_1.model_fields),
+    "couplings": tuple(Coupling.model_fields),
     "plain closure": tuple(Closure.model_fields),
     "compliance": tuple(Compliance.model_fields),
     "hinge": tuple(Hinge.model_fields),
@@ -174,6 +207,7 @@ CLOSURE_TYPES: Mapping[str, tuple[str, ...]] = {"2.0": ("3d", "6d"), VERSION: ("
 
 #: Keys that version 2.1 adds, by the last field or tag on the way to their mapping.
 ADDED_KEYS: Mapping[str, tuple[str, ...]] = {
+    "": ("couplings",),
     "closures": (*_KEYS_OF_TYPES, "compliance"),
     "geared actuator": actuator2_1.ADDED,
     **dict.fromkeys(_JOINT_FORMS, joint2_1.ADDED),

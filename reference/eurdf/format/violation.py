@@ -254,7 +254,7 @@ def _diagnostic(
         case "too_short" | "too_long":
             least, most = context.get("min_length"), context.get("max_length")
             bound = f"at least {least}" if most is None else f"at most {most}"
-            if (least or most) in _EXACT_LENGTHS:
+            if (least or most) in _EXACT_LENGTHS and not isinstance(value, dict):
                 bound = str(least or most)
             items = "item" if bound.endswith(" 1") else "items"
             message = f"{name} must have {bound} {items}, not {context['actual_length']}"

@@ -14,14 +14,13 @@ from typing import Literal
 from eurdf.collection import find_robot
 from eurdf.diagnostics import Diagnostics, FileError, Place, quoted
 from eurdf.exceptions import CannotExpand
-from eurdf.format.extension import Extension
+from eurdf.format.extension import ClosureEntry, CouplingEntry, Extension
 from eurdf.format.read_extension import read_extension, version_of
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.urdf.read import read_urdf
 from eurdf.format.yaml_text import scalar
 from eurdf.linking.inertia import check_inertias, check_leaves
 from eurdf.linking.link import link
-from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.mechanism import Mechanism, Root
 from eurdf.reading.given import Given, shown, source_of
 from eurdf.reading.resource import HINT, resolve
@@ -78,10 +77,10 @@ class Described(Linked):
 
     extension: Extension
 
-    def place_of_closure(self, closure: Closure) -> Place:
-        """Where a closure is stated."""
-        entry = next(entry for entry in self.extension.closures if entry.name == closure.name)
-        return self.extension.document.place(entry.pointer)
+    def place_of_constraint(self, name: str) -> Place:
+        """Where a closure or a coupling is stated."""
+        entries: tuple[ClosureEntry | CouplingEntry, ...] = (*self.extension.closures, *self.extension.couplings)
+        return self.extension.document.place(next(entry for entry in entries if entry.name == name).pointer)
 
     def place_of_configuration(self, name: str) -> Place:
         """Where a configuration is stated."""

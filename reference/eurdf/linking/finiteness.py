@@ -80,6 +80,16 @@ def _not_finite(mechanism: Mechanism, urdf: Urdf, extension: Extension | None) -
             if not all(_is_finite(pose_of[anchor.body] * anchor.pose) for anchor in closure.anchors):
                 what = f"the pose of a frame of closure '{closure.name}' at zero"
                 yield what, extension.document.place(pointers[closure.name])
+        yield from _couplings_not_finite(mechanism, extension)
+
+
+def _couplings_not_finite(mechanism: Mechanism, extension: Extension) -> Iterator[tuple[str, Place]]:
+    pointers = {entry.name: entry.pointer for entry in extension.couplings}
+    for coupling in mechanism.couplings:
+        sizes = [abs(coefficient) for _, coefficient in coupling.coefficients]
+        if not (math.isfinite(sum(sizes)) and math.isfinite(coupling.offset / max(sizes))):
+            what = f"the sum of the coefficients of coupling '{coupling.name}', or its offset divided by the largest,"
+            yield what, extension.document.place(pointers[coupling.name])
 
 
 def _not_finite_at_leaders(mechanism: Mechanism) -> Iterator[tuple[str, str]]:

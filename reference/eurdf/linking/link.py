@@ -12,6 +12,7 @@ from eurdf.format.urdf.data import Urdf
 from eurdf.linking.actuators import link_actuators, with_motor
 from eurdf.linking.closures import link_closures
 from eurdf.linking.configurations import link_configurations
+from eurdf.linking.couplings import link_couplings
 from eurdf.linking.finiteness import check_finite
 from eurdf.linking.frame_names import FrameNames
 from eurdf.linking.freeing import freed_joints
@@ -34,7 +35,7 @@ JOINT_LIMIT = 10_000
 #: Velocities that the joints of a robot may have. The memory of a model grows with the square of their number.
 VELOCITY_LIMIT = 4_000
 
-#: Constraint rows that the closures of a robot may have. A model of a closure takes memory for each velocity.
+#: Constraint rows that closures and couplings of a robot may have: K takes memory for each velocity.
 ROW_LIMIT = 20_000
 
 
@@ -93,8 +94,9 @@ def _refuse_too_large(mechanism: Mechanism, urdf: Urdf, extension: Extension | N
         message = f"the joints of the robot have {velocities:,} velocities; the maximum is {VELOCITY_LIMIT:,}"
         diagnostics.report("file-too-large", message, urdf.document.place(urdf.document.root))
     elif mechanism.nc > ROW_LIMIT and extension is not None:
-        message = f"the closures of the robot have {mechanism.nc:,} constraint rows; the maximum is {ROW_LIMIT:,}"
-        key = "closed_loop" if mechanism.version == "1" else "closures"
+        largest = "closures" if mechanism.closures else "couplings"
+        message = f"the {largest} of the robot have {mechanism.nc:,} constraint rows; the maximum is {ROW_LIMIT:,}"
+        key = "closed_loop" if mechanism.version == "1" else largest
         diagnostics.report("file-too-large", message, extension.document.place((key,)))
 
 
@@ -122,6 +124,8 @@ def _described(urdf: Urdf, extension: Extension, reporter: YamlReporter, root: R
     order = depth_first(urdf.root, joints.by_name.values())
     rigid = rigid_roots(urdf.root, order)
     closures = link_closures(extension.closures, names, rigid, reporter)
+    stated = [entry.name for entry in extension.closures]
+    couplings = link_couplings(extension.couplings, stated, urdf, joints.by_name, joints.merged, faulty, reporter)
     # Errors about a joint whose own entry is invalid would only repeat that error.
     entries = [entry for entry in extension.actuators if entry.joint not in faulty]
     actuators = link_actuators(entries, urdf, joints.by_name, joints.merged, joints.split, reporter)
@@ -151,6 +155,7 @@ def _described(urdf: Urdf, extension: Extension, reporter: YamlReporter, root: R
         MappingProxyType({name: MappingProxyType(of) for name, of in configurations.items()}),
         MappingProxyType(dict(extension.metadata)),
         MappingProxyType({json_pointer(pointer): value for pointer, value in extension.own_data.items()}),
+        couplings,
         motors=MappingProxyType(
             {
                 entry.joint: Motor(entry.name or entry.joint, entry.control)
@@ -184,7 +189,8 @@ def _own_keys(extension: Extension, urdf: Urdf, reporter: YamlReporter) -> None:
     """EU-EXT-003: where joints are named, a key that begins with ``x-`` does not name one."""
     for pointer in extension.own_data:
         among_joints = (pointer[0], len(pointer)) in (("joints", 2), ("configurations", 3))
-        if among_joints and pointer[-1] in urdf.joints:
+        coupled = len(pointer) == 4 and pointer[::2] == ("couplings", "joints")
+        if (among_joints or coupled) and pointer[-1] in urdf.joints:
             reporter.report(
                 "own-key-is-joint",
                 f"'{pointer[-1]}' is a joint, but keys that begin with 'x-' are your own data and have no effect",

@@ -44,6 +44,7 @@ def following(mechanism: Mechanism) -> Following:
 
 
 def _unwrapped(mechanism: Mechanism, resolved: Mapping[str, Mimic]) -> frozenset[str]:
+    """EU-CPL-006: the continuous joints whose whole turns matter."""
     continuous = {joint.name for joint in mechanism.joints if joint.type is JointType.CONTINUOUS}
     # With an integer multiplier, a turn of the leader is a whole number of turns of the mimic joint.
     whole = {name for name, mimic in resolved.items() if mimic.multiplier.is_integer()}

@@ -9,6 +9,7 @@ parser reads other files than it is given (`reads_…`), gives them another mean
 from support.mutants import (  # noqa: F401  each adds its own
     answering,
     closures,
+    couplings,
     frames,
     inertias,
     joint_properties,

@@ -45,11 +45,12 @@ def advise_on_actuation(description: Described, robot: Robot, q: Vector, diagnos
     if any(found.code in _REASONS for found in description.diagnostics):
         return
     if not mechanism.actuators:
-        count = len(mechanism.closures)
+        key = _closures_key(mechanism)
+        count, noun = len(mechanism.constraints), "coupling" if key == "couplings" else "closure"
         diagnostics.report(
             "x-no-actuator",
-            f"the robot has {count} {'closure' if count == 1 else 'closures'} and no actuator",
-            _place_of_key(description, _closures_key(mechanism)),
+            f"the robot has {count} {noun if count == 1 else noun + 's'} and no actuator",
+            _place_of_key(description, key),
             f"list the joints that its motors drive under '{_actuators_key(mechanism)}'",
         )
         return
@@ -75,10 +76,10 @@ def _report_dependent(
     locked = one_each and len(dependent) == len(loop.dependent_actuators)
     message = (
         f"{_counted('actuator', dependent)} cannot move{'' if locked else ' independently'}: "
-        f"{'locked' if locked else 'coupled'} by {_counted('closure', loop.closures)}"
+        f"{'locked' if locked else 'coupled'} by {_constraints(robot.mechanism, loop)}"
     )
     if locking:
-        place = description.place_of_closure(next(each for each in robot.mechanism.closures if each.name == locking[0]))
+        place = description.place_of_constraint(locking[0])
         hint = (
             f"type 3d for {_counted('closure', locking)} frees the actuators; use it for a ball joint, or for a pin "
             "of a planar loop"
@@ -150,7 +151,9 @@ def _report_uncontrolled(description: Described, robot: Robot, analysis: Analysi
 
 
 def _closures_key(mechanism: Mechanism) -> str:
-    return "closed_loop" if mechanism.version == "1" else "closures"
+    if mechanism.version == "1":
+        return "closed_loop"
+    return "closures" if mechanism.closures else "couplings"
 
 
 def _actuators_key(mechanism: Mechanism) -> str:
@@ -165,6 +168,15 @@ def _place_of_last_actuator(description: Described, joints: Sequence[str]) -> Pl
     """Of several actuators the one that is listed last, as what was added most likely."""
     entry = next(entry for entry in reversed(description.extension.actuators) if entry.joint in joints)
     return description.extension.document.place(entry.pointer)
+
+
+def _constraints(mechanism: Mechanism, loop: LoopAnalysis) -> str:
+    """The closures and the couplings of a group of loops."""
+    couplings = {coupling.name for coupling in mechanism.couplings}
+    closures = [name for name in loop.closures if name not in couplings]
+    coupled = [name for name in loop.closures if name in couplings]
+    parts = [_counted(noun, names) for noun, names in (("closure", closures), ("coupling", coupled)) if names]
+    return " and ".join(parts)
 
 
 def _counted(noun: str, names: Sequence[str]) -> str:

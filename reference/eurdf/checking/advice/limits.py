@@ -52,7 +52,7 @@ def advise_on_limits(description: Described, robot: Robot, q: Vector, diagnostic
     diagnostics.report(
         "x-closes-beyond-limits",
         f"no configuration was found that closes the loops within the limits of their joints; least open: {widest}",
-        description.place_of_closure(next(each for each in robot.mechanism.closures if each.name == widest.name)),
+        description.place_of_constraint(widest.name),
         f"they close with {listed}: correct these limits, or the frames of the closure",
     )
 

@@ -44,7 +44,11 @@ def advise_on_massless_links(description: Described, robot: Robot, q: Vector, di
     """
     model = robot.model
     looped = set(joints_of_loops(robot))
-    massless = {joint for joint in range(1, model.njoints) if _is_massless(model.inertias[joint])}
+    child_of = {ROOT_JOINT: robot.mechanism.bodies[0].name}
+    child_of |= {joint.name: joint.child for joint in robot.mechanism.joints}
+    # The coordinate of a leader that comes after its mimic joints is a joint without a link.
+    with_link = [joint for joint in range(1, model.njoints) if model.names[joint] in child_of]
+    massless = {joint for joint in with_link if _is_massless(model.inertias[joint])}
     if massless.isdisjoint(looped):
         return
     random, length = np.random.default_rng(0), characteristic_length(robot)
@@ -56,8 +60,6 @@ def advise_on_massless_links(description: Described, robot: Robot, q: Vector, di
     for constraint in robot.constraints:
         for joint, placement in map(robot.tree.site, constraint.anchors):
             anchors.setdefault(joint, []).append(placement)
-    child_of = {ROOT_JOINT: robot.mechanism.bodies[0].name}
-    child_of |= {joint.name: joint.child for joint in robot.mechanism.joints}
     for top in sorted(massless):
         if model.parents[top] in massless:
             continue

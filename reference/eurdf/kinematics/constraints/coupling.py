@@ -14,7 +14,7 @@ from eurdf.mechanism.constraint import Coupling
 
 
 class Couplings(Kind[Coupling]):
-    """r = Σ cᵢ qᵢ - offset, in the unit of cᵢ qᵢ."""
+    """EU-CPL-005: r = Σ cᵢ qᵢ - offset, in the unit of cᵢ qᵢ."""
 
     data = Coupling
 

@@ -1,0 +1,121 @@
+"""The couplings: each of joints with one coordinate of their own, and none the multiple of another."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from functools import partial
+
+from eurdf.diagnostics import did_you_mean
+from eurdf.format.extension import CouplingEntry
+from eurdf.format.urdf.data import Urdf
+from eurdf.mechanism.constraint import Coupling
+from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mimic import drivers
+from eurdf.reading.reporter import YamlReporter
+from eurdf.reading.yaml_node import Pointer
+
+_COUPLED_TYPES = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC, JointType.HELICAL})
+
+#: Coefficients relative to the largest one are equal if they differ by no more.
+_EQUAL = 1e-9
+
+
+def link_couplings(
+    entries: Iterable[CouplingEntry],
+    closures: Collection[str],
+    urdf: Urdf,
+    joints: Mapping[str, Joint],
+    merged: Mapping[str, str],
+    faulty: Collection[str],
+    reporter: YamlReporter,
+) -> tuple[Coupling, ...]:
+    """Look the joints of every coupling up, and check that no coupling states what another one does.
+
+    Args:
+        entries: As written.
+        closures: Names of the closures.
+        urdf: The URDF.
+        joints: Joints of the mechanism.
+        merged: For each joint that was merged away, the joint it became part of.
+        faulty: Joints whose own entry is invalid: an error about them would repeat that error.
+        reporter: Gets what is found.
+    """
+    couplings: list[Coupling] = []
+    taken: dict[str, str] = dict.fromkeys(closures, "closure")
+    for entry in entries:
+        if entry.name in taken:
+            reporter.report(
+                "duplicate-coupling-name",
+                f"there is already a {taken[entry.name]} '{entry.name}'",
+                (*entry.pointer, "name"),
+                "give every closure and coupling a unique name",
+            )
+            continue
+        taken[entry.name] = "coupling"
+        checked = [
+            name in faulty or _can_be_coupled(name, pointer, urdf, joints, merged, reporter)
+            for name, pointer in ((name, (*entry.pointer, "joints", name)) for name in entry.joints)
+        ]
+        if not all(checked):
+            continue
+        twin = next((each for each in couplings if _proportional(dict(each.coefficients), entry.joints)), None)
+        if twin is not None:
+            reporter.report(
+                "coupling-duplicate",
+                f"coupling '{entry.name}' is a multiple of coupling '{twin.name}'",
+                entry.pointer,
+                "remove one of them",
+            )
+            continue
+        couplings.append(Coupling(entry.name, tuple(entry.joints.items()), entry.offset))
+    return tuple(couplings)
+
+
+def _can_be_coupled(
+    name: str,
+    pointer: Pointer,
+    urdf: Urdf,
+    joints: Mapping[str, Joint],
+    merged: Mapping[str, str],
+    reporter: YamlReporter,
+) -> bool:
+    """EU-CPL-002, EU-CPL-003: a joint exists, and has one coordinate, which is its own."""
+    joint = joints.get(name)
+    if joint is None and name not in merged:
+        hint = f"'{name}' is a link; name the joint that moves it" if name in urdf.links else None
+        candidates = [other.name for other in joints.values() if other.type in _COUPLED_TYPES and other.mimic is None]
+        reporter.report(
+            "unknown-coupled-joint",
+            f"'{name}' is not a joint of the robot",
+            pointer,
+            hint or partial(did_you_mean, name, candidates),
+            key=True,
+        )
+        return False
+    if joint is None or name in merged:
+        why, hint = f"it was merged into the spherical joint '{merged[name]}'", "couple joints that are not merged"
+    elif joint.mimic is not None:
+        leader = drivers({each.name: each.mimic for each in joints.values() if each.mimic is not None}).get(
+            name, joint.mimic
+        )
+        why = f"it mimics '{leader.joint}'"
+        hint = f"couple '{leader.joint}': '{name}' is {leader.multiplier:g} · '{leader.joint}'"
+        hint += f" {'-' if leader.offset < 0.0 else '+'} {abs(leader.offset):g}" if leader.offset else ""
+    elif joint.type is JointType.FIXED:
+        why, hint = "it is fixed", "leave it out; if it is locked at an angle, add what it contributes to the offset"
+    elif joint.type not in _COUPLED_TYPES:
+        why = f"it is {joint.type} and has {joint.coordinates.nv} velocities"
+        hint = "couple revolute, continuous, prismatic or helical joints"
+    else:
+        return True
+    reporter.report("coupling-joint", f"joint '{name}' cannot be coupled: {why}", pointer, hint, key=True)
+    return False
+
+
+def _proportional(one: Mapping[str, float], other: Mapping[str, float]) -> bool:
+    """EU-CPL-004: whether the coefficients of two couplings have one ratio."""
+    if one.keys() != other.keys():
+        return False
+    a, b = ({name: value / max(map(abs, each.values())) for name, value in each.items()} for each in (one, other))
+    return any(all(abs(a[name] - sign * b[name]) <= _EQUAL for name in a) for sign in (1.0, -1.0))

@@ -1,0 +1,191 @@
+"""Couplings of descriptions: in every function of the kinematics, and against the same robot with a mimic joint."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+import eurdf
+from eurdf.commands.main import main
+from eurdf.mechanism.constraint import Coupling
+from eurdf.pinocchio.constraint import NoConstraintModel
+from support.described import body
+from support.plain_urdf import joint_element
+from support.plain_urdf import robot as urdf
+
+HEAD = 'extended_urdf: "2.1"\n'
+BELT = HEAD + "couplings: [{name: belt, joints: {j1: 2, j0: -1}, offset: 0.4}]\nactuators: [j0]\n"
+
+
+def arm(content: str = "", kind: str = "continuous") -> str:
+    """Two links in a row; j1 may have more content."""
+    limit = '<limit lower="-9" upper="9" effort="9" velocity="9"/>' if kind == "revolute" else ""
+    first = joint_element("j0", kind, "base", "upper", f'<axis xyz="0 0.6 0.8"/>{limit}')
+    second = joint_element(
+        "j1", kind, "upper", "lower", f'<axis xyz="0 1 0"/>{limit}{content}', '<origin xyz="0.5 0 0.1" rpy="0 0 0"/>'
+    )
+    return urdf(body("base"), body("upper"), body("lower"), first, second)
+
+
+def written(folder: Path, yaml: str = BELT, text: str | None = None) -> Path:
+    folder.mkdir(exist_ok=True)
+    (folder / "robot.urdf").write_text(text or arm(), encoding="utf-8")
+    (folder / "robot.yaml").write_text(yaml, encoding="utf-8")
+    return folder
+
+
+def at(robot: eurdf.Robot, angle: float) -> Any:
+    return eurdf.forward_kinematics(robot, {"j0": angle})
+
+
+@pytest.fixture
+def belt(tmp_path: Path) -> eurdf.Robot:
+    return eurdf.load(written(tmp_path))
+
+
+@pytest.fixture
+def mimic(tmp_path: Path) -> eurdf.Robot:
+    text = arm('<mimic joint="j0" multiplier="0.5" offset="0.2"/>')
+    return eurdf.load(written(tmp_path / "mimic", 'extended_urdf: "2.0"\nactuators: [j0]\n', text))
+
+
+def test_coupling_is_read_as_written(belt: eurdf.Robot) -> None:
+    assert belt.constraints == (Coupling("belt", (("j1", 2.0), ("j0", -1.0)), 0.4),)
+
+
+def test_coupling_removes_one_freedom(belt: eurdf.Robot) -> None:
+    found = eurdf.analyze(belt)
+    assert (found.nv, found.nc, found.rank, found.mobility, found.uncontrolled) == (2, 1, 1, 1, 0)
+    assert [loop.joints for loop in found.loops] == [("j0", "j1")]
+
+
+@pytest.mark.parametrize("angle", [0.3, 9.0, -20.0])
+def test_whole_turns_of_a_coupled_joint_count(belt: eurdf.Robot, angle: float) -> None:
+    q = at(belt, angle)
+    np.testing.assert_allclose(q, [angle, 0.5 * angle + 0.2], atol=1e-9)
+    assert np.abs(eurdf.residual(belt, q)).max() < 1e-9
+
+
+def test_coupled_dynamics_are_those_of_a_mimic_joint(belt: eurdf.Robot, mimic: eurdf.Robot) -> None:
+    v = np.array([1.5, 0.75])
+    one = eurdf.forward_dynamics(belt, at(belt, 0.7), v, np.array([0.3]))
+    other = eurdf.forward_dynamics(mimic, np.array([0.7]), v[:1], np.array([0.3]))
+    np.testing.assert_allclose(one.a, [other.a[0], 0.5 * other.a[0]], atol=1e-9)
+
+
+def test_coupled_energy_is_kept(belt: eurdf.Robot) -> None:
+    found = eurdf.simulate(belt, at(belt, 0.7), duration=0.2)
+    assert np.abs(eurdf.residual(belt, found.q[-1])).max() < 1e-8
+    assert abs(found.q[-1][0] - 0.7) > 1e-3
+
+
+def test_locked_joint_moves_into_the_offset(belt: eurdf.Robot) -> None:
+    locked = eurdf.lock(belt, ["j0"], at(belt, 0.7))
+    assert (locked.dropped_closures, locked.model.nv) == ((), 1)
+    assert locked.constraints == (Coupling("belt", (("j1", 2.0),), 1.1),)
+
+
+def test_coupled_branches_are_one_group_of_loops(tmp_path: Path) -> None:
+    joints = [
+        joint_element(name, "continuous", "base", child, '<axis xyz="0 0 1"/>') for name, child in ("ab", "cd", "ef")
+    ]
+    text = urdf(body("base"), body("b"), body("d"), body("f"), *joints)
+    yaml = HEAD + "couplings: [{name: gear, joints: {a: 1, e: 3}}]\nactuators: [a, c]\n"
+    found = eurdf.analyze(eurdf.load(written(tmp_path, yaml, text)))
+    assert [(loop.closures, loop.joints) for loop in found.loops] == [(("gear",), ("a", "e"))]
+    assert (found.mobility, found.uncontrolled) == (2, 0)
+
+
+def test_leader_of_an_earlier_mimic_joint_can_be_coupled(tmp_path: Path) -> None:
+    """Its coordinate is a joint of the model without a link, of which the checks take no notice."""
+    prismatic = '<axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="9" velocity="9"/>'
+    joints = [
+        joint_element("a", "prismatic", "base", "thumb", f'{prismatic}<mimic joint="b" multiplier="-1"/>'),
+        joint_element("b", "prismatic", "base", "finger", prismatic),
+        joint_element("motor", "continuous", "base", "rotor", '<axis xyz="1 0 0"/>'),
+    ]
+    text = urdf(body("base"), body("thumb"), body("finger"), body("rotor"), *joints)
+    folder = written(
+        tmp_path, HEAD + "couplings: [{name: rack, joints: {b: 10, motor: -1}}]\nactuators: [motor]\n", text
+    )
+    assert eurdf.check(folder).diagnostics == ()
+    robot = eurdf.load(folder)
+    q = eurdf.forward_kinematics(robot, {"motor": 2.0})
+    pin.framesForwardKinematics(robot.model, robot.data, q)
+    heights = [robot.data.oMf[robot.model.getFrameId(name)].translation[2] for name in ("finger", "thumb")]
+    np.testing.assert_allclose(heights, [0.2, -0.2], atol=1e-9)
+
+
+def test_coupling_has_no_constraint_model_of_pinocchio(belt: eurdf.Robot) -> None:
+    with pytest.raises(NoConstraintModel, match="coupling"):
+        _ = belt.constraint_models
+
+
+def test_check_reports_contradicting_couplings(tmp_path: Path) -> None:
+    joints = ["{j0: 1, j1: 1}", "{j0: 1, j1: -1}", "{j0: 3, j1: 1}, offset: 0.5"]
+    items = "".join(f"  - {{name: c{index}, joints: {each}}}\n" for index, each in enumerate(joints))
+    (found,) = eurdf.check(written(tmp_path, f"{HEAD}couplings:\n{items}actuators: [j0]\n")).diagnostics
+    assert found.code == "closure-cannot-close"
+    assert found.hint is not None
+    assert "check the coefficients and offsets of the couplings" in found.hint
+
+
+def test_check_reports_a_coupling_that_is_open_when_assembled(tmp_path: Path) -> None:
+    yaml = BELT + "configurations: {assembled: {j0: 0.4, j1: 0.39}}\n"
+    (found,) = eurdf.check(written(tmp_path, yaml)).diagnostics
+    assert (found.code, found.line) == ("assembled-open", 4)
+    assert "'belt' by 0.573 degrees" in found.message
+
+
+def test_check_reports_dependent_actuators_of_a_coupling(tmp_path: Path) -> None:
+    found = eurdf.check(written(tmp_path, BELT.replace("[j0]", "[j0, j1]"))).diagnostics
+    assert [each.code for each in found] == ["x-dependent-actuators"]
+    assert "coupled by coupling 'belt'" in found[0].message
+
+
+def test_check_reports_a_coupling_without_actuator(tmp_path: Path) -> None:
+    found = eurdf.check(written(tmp_path, BELT.replace("actuators: [j0]\n", ""))).diagnostics
+    assert [(each.code, each.line) for each in found] == [("x-no-actuator", 2)]
+    assert "1 coupling and no actuator" in found[0].message
+
+
+def test_own_key_in_a_coupling_that_is_a_joint_is_reported(tmp_path: Path) -> None:
+    text = arm().replace('"j1"', '"x-j1"')
+    yaml = HEAD + "couplings: [{name: belt, joints: {j0: 1, j2: 1, x-j1: 2}}]\n"
+    codes = [found.code for found in eurdf.check(written(tmp_path, yaml, text)).diagnostics]
+    assert codes == ["own-key-is-joint", "unknown-coupled-joint"]
+
+
+def test_info_shows_couplings_as_equations(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = str(written(tmp_path))
+    assert main(["info", path, "--json"]) == 0
+    info = json.loads(capsys.readouterr().out)
+    (coupling,) = info["coupling_list"]
+    assert (info["couplings"], info["nc"], coupling["joints"], coupling["offset"]) == (
+        1,
+        1,
+        {"j1": 2.0, "j0": -1.0},
+        0.4,
+    )
+    assert main(["info", path]) == 0
+    assert "2 j1 - j0 = 0.4" in capsys.readouterr().out
+
+
+def test_assemble_writes_a_configuration_that_satisfies_the_coupling(tmp_path: Path) -> None:
+    folder = written(tmp_path)
+    assert main(["assemble", str(folder), "--write"]) == 0
+    assert eurdf.check(folder).diagnostics == ()
+    q = eurdf.load(folder).configurations["assembled"]
+    assert abs(2.0 * q[1] - q[0] - 0.4) < 1e-12
+
+
+def test_schema_of_a_robot_completes_coupled_joints(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = written(tmp_path)
+    assert main(["schema", "--version", "2.1", "--for", str(folder / "robot.urdf")]) == 0
+    schema = json.loads(capsys.readouterr().out)
+    assert list(schema["$defs"]["Coupling"]["properties"]["joints"]["properties"]) == ["j0", "j1"]
