@@ -41,7 +41,7 @@ def pose(robot: Any, q: Any, frame: str) -> Any:
 
 
 def outside_limits(robot: Any, q: Any) -> float:
-    clipped = position_limits(robot.tree).clip(q, np.arange(robot.model.nv))
+    clipped = position_limits(robot).clip(q, np.arange(robot.model.nv))
     return float(np.abs(clipped - q).max())
 
 

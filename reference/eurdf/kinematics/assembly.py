@@ -19,7 +19,7 @@ from eurdf.kinematics.array import Vector
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.descent import Descent
 from eurdf.kinematics.evaluation import Evaluation, evaluations
-from eurdf.kinematics.loop import LoopGroup, find_loops, independent_groups, merged
+from eurdf.kinematics.loop import find_loops, independent_groups, merged
 from eurdf.kinematics.position_limit import JointAtLimit, Limits, PositionLimits, chosen_limits
 from eurdf.kinematics.residual import CLOSED, Opening
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
@@ -39,12 +39,9 @@ _MOST_STEPS = 60
 # end before all restarts; a group with a single step above this bound is not tried.
 _MOST_WORK = 1e10
 
-# A residual with rows below this, in m and rad and in shares of the characteristic length, is of closed loops for
+# A residual below this, in m and rad and in shares of the characteristic length, is of closed loops for
 # certain: how far a closure is open differs from its rows by a factor below 10.
 _WELL_CLOSED = 0.1 * CLOSED
-
-# Cost of the residual and Jacobian of one closure, in multiplications.
-_WORK_OF_A_CLOSURE = 3e5
 
 # Distance of the restarts from the first start (rad, or characteristic lengths); the last one is repeated.
 _SPREADS = (0.1, 0.3, 1.0, 2.0, 3.0)
@@ -134,7 +131,7 @@ def assemble(
     q = start(robot, q0)
     with borrowed(robot, Assembler, several(hold)) as assembler:
         assembler.tolerance = checked_tolerance(tolerance)
-        assembler.limits = chosen_limits(robot.tree, limits)
+        assembler.limits = chosen_limits(robot, limits)
         return assembler.assemble(q, checked_count("restarts", restarts, 0))
 
 
@@ -191,7 +188,7 @@ class Assembler:
         self._work = 0.0  # of the current assembly, in multiplications
         self._gave_up = False  # whether the last assembly gave up
         self.tolerance = checked_tolerance(tolerance)
-        self.limits = chosen_limits(tree, limits)
+        self.limits = chosen_limits(robot, limits)
 
     def assemble(self, q: Vector, restarts: int = 20) -> Assembly:
         """Close the loops from q (nq,), then at most ``restarts`` times from configurations around it."""
@@ -219,14 +216,13 @@ class Assembler:
             at_limits=at_limits,
         )
 
+    @np.errstate(over="ignore", invalid="ignore")
     def closed(self, q: Vector) -> Vector | None:
         """The configuration that one descent from q (nq,) leads to; None if that leaves a loop open, or close to it."""
+        self._work = 0.0
         end, descents, _ = self._descend(self._within_limits(q, self.evaluations), self._whole)
-        for descent in descents:
-            r, b = descent.r, descent.evaluation.row_scale * descent.r * self._length
-            if not max(np.abs(r).max(initial=0.0), np.abs(b).max(initial=0.0)) <= _WELL_CLOSED:
-                return None
-        return end
+        errors = [size for each in descents for size in (each.error, self._length * each.scaled_error)]
+        return end if all(error <= _WELL_CLOSED for error in errors) else None
 
     def _why_open(self, at_limits: Sequence[JointAtLimit]) -> AssemblyReason:
         if self._gave_up:
@@ -290,7 +286,7 @@ class Assembler:
         for _ in range(_MOST_STEPS):
             moving = [descent for descent in descents if descent.error > self.tolerance and not descent.stuck]
             feasible = [descent for descent in moving if _feasible(descent.evaluation)]
-            self._work += sum(work_of_step(descent.evaluation.group) for descent in feasible)
+            self._work += sum(descent.evaluation.work for descent in feasible)
             if not feasible or self._work > _MOST_WORK:
                 break
             steps = [descent.step(self._room(q, descent.evaluation)) for descent in feasible]
@@ -328,13 +324,7 @@ class Assembler:
 
 
 def _feasible(evaluation: Evaluation) -> bool:
-    return work_of_step(evaluation.group) <= _MOST_WORK
-
-
-def work_of_step(group: LoopGroup) -> float:
-    """Multiplications for the smaller of A Aᵀ and Aᵀ A, and for the evaluation of A."""
-    m, n = len(group.rows), len(group.velocities)
-    return float(m) * n * min(m, n) + _WORK_OF_A_CLOSURE * len(group.closures)
+    return evaluation.work <= _MOST_WORK
 
 
 def _held_velocities(tree: TreeKinematics, names: str | Iterable[str]) -> list[int]:

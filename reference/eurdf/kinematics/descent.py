@@ -43,6 +43,11 @@ class Descent:
         """Whether further steps are not worthwhile."""
         return self._idle > _MOST_IDLE_STEPS or not self._expected > 1e-12 * self._square
 
+    @property
+    def scaled_error(self) -> float:
+        """Norm of the dimensionless residual."""
+        return math.sqrt(self._square)
+
     def step(self, room: tuple[Vector, Vector] | None = None) -> Vector:
         """The next step (n,), of at most 1 rad or characteristic length.
 

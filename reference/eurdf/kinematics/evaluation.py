@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 
+# Cost of the residual and Jacobian of one closure, in multiplications.
+_WORK_OF_A_CLOSURE = 3e5
+
+
 class Evaluation:
     """The residual of a group of constraints and its derivative, at one configuration after the other.
 
@@ -25,6 +29,7 @@ class Evaluation:
         group: The group.
         row_scale: Factors (m,) that make the rows of its residual dimensionless.
         unit: Unit (n,) of each of its velocities.
+        work: Multiplications for the smaller of A Aᵀ and Aᵀ A, and for the evaluation of A.
     """
 
     def __init__(self, robot: Robot, group: LoopGroup, row_scale: Vector, velocity_scale: Vector) -> None:
@@ -41,6 +46,8 @@ class Evaluation:
         self.unit = velocity_scale[group.velocities]
         self._stack = ConstraintStack(robot.tree, [robot.constraints[i] for i in group.closures], group.velocities)
         self._memory = self._stack.memory()
+        m, n = len(group.rows), len(group.velocities)
+        self.work = float(m) * n * min(m, n) + _WORK_OF_A_CLOSURE * len(group.closures)
         self._at: State | None = None
         self._held: Vector | None = None
 

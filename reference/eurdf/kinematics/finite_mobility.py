@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 
 from eurdf.kinematics.array import Matrix, Vector
-from eurdf.kinematics.assembly import Assembler, work_of_step
+from eurdf.kinematics.assembly import Assembler
 from eurdf.kinematics.descent import Descent
 from eurdf.kinematics.evaluation import Evaluation
 from eurdf.kinematics.quadratic_forms import common_roots
@@ -281,7 +281,7 @@ class MobilityTest:
         return q, float(np.linalg.norm(evaluation.row_scale * descent.r))
 
     def _moved(self, evaluation: Evaluation, q: Vector, step: Vector) -> Vector:
-        self._work += work_of_step(evaluation.group) + 10.0 * len(q)
+        self._work += evaluation.work + 10.0 * len(q)
         if self._work > _MOST_WORK:
             raise _OutOfWork
         return self._assembler.moved(q, [evaluation], [step])

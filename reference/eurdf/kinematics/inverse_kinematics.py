@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -11,14 +11,17 @@ import numpy as np
 from pinocchio import SE3
 
 from eurdf.kinematics.array import Matrix, Vector
-from eurdf.kinematics.assembly import Assembler, start
+from eurdf.kinematics.assembly import Assembler, Assembly, start
 from eurdf.kinematics.bounded_step import bounded_step
+from eurdf.kinematics.constraint_stack import all_constraints
 from eurdf.kinematics.constraints.vector import origins, velocity_of_origin
-from eurdf.kinematics.metric import orthonormal
+from eurdf.kinematics.derived import borrowed, derived
+from eurdf.kinematics.least_solution import certain_inverse
 from eurdf.kinematics.position_limit import BEYOND, JointAtLimit, Limits, chosen_limits
 from eurdf.kinematics.rank import numerical_rank
-from eurdf.kinematics.residual import Opening, closure_openings, residual_and_jacobian
+from eurdf.kinematics.residual import Opening, closure_openings
 from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.kinematics.tree_kinematics import PairMemory
 from eurdf.pinocchio.arguments import checked_array, checked_count, checked_tolerance
 from eurdf.pinocchio.logarithm import log3, log3_derivative
 
@@ -26,6 +29,8 @@ if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 _MOST_STEPS = 60
+# Bound of each row of the residual for closed loops, m or rad.
+_CLOSED = 1e-10
 # A descent gives up after this many consecutive idle steps. A step is idle if it reduces the squared error by less than
 # this fraction; the last descent, after which the target is out of reach, uses a smaller fraction.
 _MOST_IDLE_STEPS = 6
@@ -152,70 +157,98 @@ def inverse_kinematics(
         ValueError: ``q0`` is not a configuration; a frame is unknown or ambiguous; a target is neither a pose nor a
             finite position.
     """
-    search = _Search(robot, targets, limits, checked_tolerance(tolerance))
-    return search.run(start(robot, q0), checked_count("restarts", restarts, 0))
+    checked = {name: _target(name, target) for name, target in targets.items()}
+    chosen, tolerance = chosen_limits(robot, limits), checked_tolerance(tolerance)
+    q, restarts = start(robot, q0), checked_count("restarts", restarts, 0)
+    with borrowed(robot, Assembler) as assembler, borrowed(robot, _memory, *checked) as memory:
+        assembler.limits, assembler.tolerance = chosen, _CLOSED
+        return _Search(robot, checked, assembler, memory, tolerance).run(q, restarts)
+
+
+def _memory(robot: Robot, *frames: str) -> tuple[PairMemory, PairMemory]:
+    """Memory for frames, and for all constraints."""
+    return robot.tree.frames(frames).memory(), all_constraints(robot).memory()
 
 
 class _Search:
     """The descents for one set of targets."""
 
-    def __init__(self, robot: Robot, targets: Mapping[str, Any], limits: Limits, tolerance: float) -> None:
-        self.robot = robot
+    def __init__(
+        self,
+        robot: Robot,
+        targets: Mapping[str, Any],
+        assembler: Assembler,
+        memory: tuple[PairMemory, PairMemory],
+        tolerance: float,
+    ) -> None:
+        self.robot, self.targets = robot, targets
+        self.assembler, (self.frames, self.closures) = assembler, memory
+        self.constraints = all_constraints(robot)
+        self.spaces = derived(robot, TangentSpaces)
         self.nv = robot.tree.nv
-        self.frames = robot.tree.frames(list(targets)).memory()
-        self.targets = [(name, _target(name, target)) for name, target in targets.items()]
-        self.assembler = Assembler(robot, limits=limits)
-        self.spaces = TangentSpaces(robot)
         self.tolerance = tolerance
         self.iterations = 0
-        self.limits = chosen_limits(robot.tree, limits)
+        self.limits = assembler.limits
         self.velocities = np.arange(self.nv)
+        self._oMf: Sequence[Any] = ()
+        self._begun: list[Vector] = []  # where descents began
         # Of E Z, at the configuration farthest from singular.
         self.motions, self.rank, self.smallest = self.nv, 0, 0.0
 
     def run(self, q: Vector, restarts: int) -> InverseKinematics:
-        openings = closure_openings(self.robot, q)
-        if not any(found.is_open for found in openings) and np.array_equal(self._clipped(q), q) and self._reached(q):
-            return InverseKinematics(q, True, self._errors(q), openings, 0)
-        assembly = self.assembler.assemble(self._clipped(q))
-        q = best = assembly.q
-        if assembly.closes:
-            best, cost = self._descend(q)
+        if np.array_equal(self._clipped(q), q) and self._reached(self._error(q)):
+            openings = closure_openings(self.robot, q)
+            if not any(found.is_open for found in openings):
+                return InverseKinematics(q, True, self._errors(q), openings, 0)
+        q, opened = self._closed(self._clipped(q), 20)
+        best, error = q, self._error(q)
+        if opened is None:
+            best, error = self._descend(q)
             random = np.random.default_rng(0)
             for attempt in range(restarts):
-                if self._reached(best):
+                if self._reached(error):
                     break
                 spread = _SPREADS[min(attempt, len(_SPREADS) - 1)]
                 place = self._moved(q, self.spaces.scale * random.uniform(-spread, spread, self.nv))
-                beginning = self.assembler.assemble(place, restarts=0)
-                if not beginning.closes:
+                beginning, still_open = self._closed(place)
+                if still_open is not None:
                     continue
-                end, reached = self._descend(beginning.q)
-                if reached < cost:
-                    best, cost = end, reached
-            best, _ = self._descend(best, _IDLE_AT_LAST)
-        closed = self.assembler.assemble(best, restarts=0)
+                end, reached = self._descend(beginning)
+                if reached @ reached < error @ error:
+                    best, error = end, reached
+            best, error = self._descend(best, _IDLE_AT_LAST)
         reason: InverseKinematicsReason | None = None
         at_limits: tuple[JointAtLimit, ...] = ()
-        if not assembly.closes:
-            reason, at_limits = "closures open", assembly.at_limits
-        elif not self._reached(best):
+        if opened is not None:
+            reason, at_limits = "closures open", opened.at_limits
+        elif not self._reached(error):
             reason, at_limits = self._why_off_target(best)
         return InverseKinematics(
             q=best,
             converged=reason is None,
             errors=self._errors(best),
-            open=closed.open,
+            open=closure_openings(self.robot, best),
             iterations=self.iterations,
             reason=reason,
             at_limits=at_limits,
         )
 
+    def _closed(self, q: Vector, restarts: int = 0) -> tuple[Vector, Assembly | None]:
+        """The closed configuration near q; or the least open one, and the assembly that found no closed one."""
+        closed = self.assembler.closed(q)
+        if closed is not None:
+            return closed, None
+        assembly = self.assembler.assemble(q, restarts)
+        return assembly.q, None if assembly.closes else assembly
+
     def _why_off_target(self, q: Vector) -> tuple[InverseKinematicsReason, tuple[JointAtLimit, ...]]:
         """Why no descent continues from a closed configuration at which frames are off their targets."""
-        e, E = self._error_and_jacobian(q)
+        e = self._error(q)
         Z = self._free_motions(q)
-        A = E @ Z
+        A = self._jacobian() @ Z
+        for begun in self._begun:
+            self._error(begun)
+            self._look_at_rank(self._jacobian() @ self._free_motions(begun))
         self._look_at_rank(A)
         slope, values = A.T @ e, _singular_values(A)
         size = max(values.max(initial=0.0), self.smallest) * np.linalg.norm(e)
@@ -231,54 +264,88 @@ class _Search:
                 return "joint limits", at_limits
         return "steps", at_limits
 
-    def _descend(self, q: Vector, least: float = _IDLE) -> tuple[Vector, float]:
-        """The configuration after a descent from a closed configuration, and the squared error there.
+    def _descend(self, q: Vector, least: float = _IDLE) -> tuple[Vector, Vector]:
+        """The configuration after a descent from a closed configuration, and the error there.
 
         Args:
             q: Where to start (nq,).
             least: A step that reduces the squared error by less than this fraction is idle.
         """
-        e, E = self._error_and_jacobian(q)
-        self._look_at_rank(E @ self._free_motions(q))
+        e = self._error(q)
+        if self._reached(e):
+            return q, e
+        self._begun.append(q)
+        E = self._jacobian()
         cost, damping, idle = float(e @ e), 1e-3, 0
         for _ in range(_MOST_STEPS):
-            if idle > _MOST_IDLE_STEPS or self._reached(q):
+            if idle > _MOST_IDLE_STEPS:
                 break
             v = self._step(q, e, E, damping * cost)
-            expected = cost - float(np.sum(np.square(e + E @ v)))
+            left = e + E @ v
+            expected = cost - float(left @ left)
             if not expected > _LEAST_GAIN * cost:
                 break
             self.iterations += 1
-            trial = self.assembler.assemble(self._moved(q, v), restarts=0)
-            e_trial, E_trial = self._error_and_jacobian(trial.q)
+            trial, opened = self._closed(self._moved(q, v))
+            e_trial = self._error(trial)
             reached = float(e_trial @ e_trial)
-            gain = (cost - reached) / expected if trial.closes else 0.0
-            idle = 0 if trial.closes and reached < (1.0 - least) * cost else idle + 1
+            gain = (cost - reached) / expected if opened is None else 0.0
+            idle = 0 if opened is None and reached < (1.0 - least) * cost else idle + 1
             if not gain > 0.01:
                 damping *= 8.0
                 continue
             damping = max(damping * (0.1 if gain > 0.75 else 1.0 if gain > 0.25 else 4.0), 1e-8)
-            q, e, E, cost = trial.q, e_trial, E_trial, reached
-        return q, cost
+            q, e, cost = trial, e_trial, reached
+            if self._reached(e):
+                break
+            E = self._jacobian()
+        return q, e
 
     def _step(self, q: Vector, e: Vector, E: Matrix, damping: float) -> Vector:
         """The v (nv,) with K v = 0 that minimises |E v + e|² + λ|v|² within the limits; at most 1 rad or length."""
-        scale, Z = self.spaces.scale, self._free_motions(q)
-        A = E @ Z
-        H = A.T @ A
-        damping = max(damping, 1e-13 * float(np.trace(H)), 1e-300)
-        np.einsum("ii->i", H)[:] += damping
-        G, h = self._bounds(q, Z)
-        y = _damped(A, e, damping)
-        if (G @ y > h).any():
-            y = bounded_step(H, A.T @ e, G, h)
-        v = Z @ y
-        return np.asarray(v / np.abs(v / scale).max(initial=1.0), dtype=np.float64)
+        v = self._step_in_the_open(q, e, E, damping)
+        if v is None:
+            Z = self._free_motions(q)
+            A = E @ Z
+            H = A.T @ A
+            damping = _damping(damping, float(np.trace(H)))
+            np.einsum("ii->i", H)[:] += damping
+            G, h = self._bounds(q, Z)
+            y = _damped(A, e, damping)
+            if (G @ y > h).any():
+                y = bounded_step(H, A.T @ e, G, h)
+            v = Z @ y
+        return np.asarray(v / np.abs(v / self.spaces.scale).max(initial=1.0), dtype=np.float64)
+
+    def _step_in_the_open(self, q: Vector, e: Vector, E: Matrix, damping: float) -> Vector | None:
+        """The same step where the rows of K are independent for certain and no limit bounds it; else None.
+
+        With A the dimensionless K, P = 1 - Aᵀ (A Aᵀ)⁻¹ A projects on the free motions, and B = E P takes the place of
+        the derivative.
+        """
+        scale = self.spaces.scale
+        A = self._constraint_jacobian(q) * self.spaces.dimensionless
+        B = E * scale
+        if len(A):
+            inverse = certain_inverse(A @ A.T, math.sqrt(float(np.vdot(A, A))))
+            if inverse is None:
+                return None
+            B -= ((B @ A.T) @ inverse) @ A
+            B -= ((B @ A.T) @ inverse) @ A  # what rounding left
+        v = scale * _damped(B, e, _damping(damping, float(np.vdot(B, B))))
+        if self.limits is not None:
+            down, up = self.limits.room(q, self.velocities)
+            if (((v > up) & (up <= scale)) | ((v < down) & (-down <= scale))).any():
+                return None
+        return np.asarray(v)
 
     def _free_motions(self, q: Vector) -> Matrix:
         """Basis Z (nv, m) of the motions that keep the loops closed, orthonormal in the units of the velocities."""
-        _, K = residual_and_jacobian(self.robot, q)
-        return orthonormal(self.spaces.at(K).basis, np.diag(self.spaces.scale**-2.0))
+        return self.spaces.at(self._constraint_jacobian(q)).free
+
+    def _constraint_jacobian(self, q: Vector) -> Matrix:
+        """K (nc, nv)."""
+        return self.constraints.jacobian(self.constraints.at(q, self.closures))
 
     def _look_at_rank(self, A: Matrix) -> None:
         """Keep the largest rank of A = E Z met so far, and with it the largest of its smallest singular values.
@@ -309,27 +376,46 @@ class _Search:
     def _clipped(self, q: Vector) -> Vector:
         return q if self.limits is None else self.limits.clip(q, self.velocities)
 
-    def _error_and_jacobian(self, q: Vector) -> tuple[Vector, Matrix]:
-        """Stacked errors of all frames, in characteristic lengths and rad, and their derivative with respect to v."""
-        placements = self.frames.placements(q)
+    def _error(self, q: Vector) -> Vector:
+        """Stacked errors of all frames at q, in characteristic lengths and rad."""
+        self._oMf, parts = self.frames.placements(q), [np.empty(0)]
+        for target, oMf in zip(self.targets.values(), self._oMf, strict=True):
+            position = target.translation if isinstance(target, SE3) else target
+            parts.append((oMf.translation - position) / self.spaces.length)
+            if isinstance(target, SE3):
+                parts.append(log3(target.rotation.T @ oMf.rotation))
+        return np.concatenate(parts)
+
+    def _jacobian(self) -> Matrix:
+        """Derivative of the errors by v, where they were last computed."""
+        placements = self._oMf
         rows = np.zeros((len(placements), 6, 6))
         rows[:, :3] = velocity_of_origin(origins(placements))
         rows[:, 3:, 3:] = np.eye(3)
-        jacobians_in_world = self.frames.jacobian(rows, range(len(placements))).reshape(len(placements), 6, self.nv)
-        errors, jacobians = [np.empty(0)], [np.empty((0, self.nv))]
-        for (_, target), oMf, J in zip(self.targets, placements, jacobians_in_world, strict=True):
-            position = target.translation if isinstance(target, SE3) else target
-            errors.append((oMf.translation - position) / self.spaces.length)
-            jacobians.append(J[:3] / self.spaces.length)
+        in_world = self.frames.jacobian(rows, range(len(placements))).reshape(len(placements), 6, self.nv)
+        parts = [np.empty((0, self.nv))]
+        for target, oMf, J in zip(self.targets.values(), placements, in_world, strict=True):
+            parts.append(J[:3] / self.spaces.length)
             if isinstance(target, SE3):
-                turn = target.rotation.T @ oMf.rotation
-                errors.append(log3(turn))
-                jacobians.append(log3_derivative(turn) @ oMf.rotation.T @ J[3:])
-        return np.concatenate(errors), np.vstack(jacobians)
+                parts.append(log3_derivative(target.rotation.T @ oMf.rotation) @ oMf.rotation.T @ J[3:])
+        return np.concatenate(parts)
+
+    def _reached(self, e: Vector) -> bool:
+        """Whether every frame is at its target within the tolerance, m and rad."""
+        first = 0
+        for target in self.targets.values():
+            if not self.spaces.length * math.hypot(*e[first : first + 3]) <= self.tolerance:
+                return False
+            first += 3
+            if isinstance(target, SE3):
+                if not math.hypot(*e[first : first + 3]) <= self.tolerance:
+                    return False
+                first += 3
+        return True
 
     def _errors(self, q: Vector) -> tuple[FrameError, ...]:
         errors = []
-        for (name, target), oMf in zip(self.targets, self.frames.placements(q), strict=True):
+        for (name, target), oMf in zip(self.targets.items(), self.frames.placements(q), strict=True):
             if isinstance(target, SE3):
                 angle = math.hypot(*log3(target.rotation.T @ oMf.rotation))
                 errors.append(FrameError(name, math.dist(oMf.translation, target.translation), angle))
@@ -337,8 +423,10 @@ class _Search:
                 errors.append(FrameError(name, math.dist(oMf.translation, target), 0.0))
         return tuple(errors)
 
-    def _reached(self, q: Vector) -> bool:
-        return all(max(error.position, error.angle) <= self.tolerance for error in self._errors(q))
+
+def _damping(given: float, trace: float) -> float:
+    """λ, at least so large that what it is added to can be inverted."""
+    return max(given, 1e-13 * trace, 1e-300)
 
 
 def _damped(A: Matrix, e: Vector, damping: float) -> Vector:

@@ -33,16 +33,11 @@ def least_solution(A: Matrix, b: Matrix, norm: float) -> Matrix | None:
     rows, columns = A.shape
     if rows <= columns:
         gram = A @ A.T
-        try:
-            inverse = np.linalg.inv(gram)
-        except np.linalg.LinAlgError:  # singular to the last digit
-            inverse = None
+        inverse = certain_inverse(gram, norm)
         if inverse is not None:
-            trace = float(np.trace(inverse))
-            if trace > 0.0 and CERTAIN * CERTAIN * norm * norm * trace < 1.0:
-                y = inverse @ b
-                y += inverse @ (b - gram @ y)
-                return np.asarray(A.T @ y)
+            y = inverse @ b
+            y += inverse @ (b - gram @ y)
+            return np.asarray(A.T @ y)
     if not np.isfinite(A).all():
         return None
     left, values, right = np.linalg.svd(A, full_matrices=False)
@@ -52,3 +47,18 @@ def least_solution(A: Matrix, b: Matrix, norm: float) -> Matrix | None:
     x = right[:rank].T @ ((left[:, :rank].T @ b).T / values[:rank]).T
     missed = np.abs(A @ x - b).max(initial=0.0)
     return np.asarray(x) if missed <= _MISSED * np.abs(b).max(initial=0.0) else None
+
+
+def certain_inverse(gram: Matrix, norm: float) -> Matrix | None:
+    """The inverse of A Aᵀ (m, m); None if it is in doubt that the rows of A are independent.
+
+    Args:
+        gram: A Aᵀ.
+        norm: As in `least_solution`.
+    """
+    try:
+        inverse = np.asarray(np.linalg.inv(gram), dtype=np.float64)
+    except np.linalg.LinAlgError:  # singular to the last digit
+        return None
+    trace = float(inverse.trace())
+    return inverse if trace > 0.0 and CERTAIN * CERTAIN * norm * norm * trace < 1.0 else None

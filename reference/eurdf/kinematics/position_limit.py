@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from eurdf.kinematics.array import Indices, Vector
-from eurdf.kinematics.tree_kinematics import TreeKinematics
+from eurdf.kinematics.derived import derived
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
 
 #: Which position limits to respect: all except ranges of zero width (True), none (False), or all (``"strict"``).
 Limits = bool | Literal["strict"]
@@ -79,32 +82,39 @@ class PositionLimits:
         return JointAtLimit(self.joints[velocity], float(limit), side)
 
 
-def position_limits(tree: TreeKinematics, *, strict: bool = False) -> PositionLimits:
-    """Position limits of a tree.
+def position_limits(robot: Robot, *, strict: bool = False) -> PositionLimits:
+    """Position limits of a robot, as its model has them now.
 
     If a URDF gives no range, lower and upper limit are both zero (`urdf-no-range`). Such a coordinate is unlimited,
     unless ``strict``.
     """
-    coordinates = np.zeros(tree.nv, dtype=np.intp)
-    driven = np.zeros(tree.nv, dtype=bool)
-    for q, v in zip(tree.own_coordinates, tree.own_velocities, strict=True):
-        if len(v) and len(q) == len(v):
-            coordinates[v.start : v.stop], driven[v.start : v.stop] = q, True
-    lowest, highest = tree.position_limits
-    lower, upper = np.full(tree.nv, -np.inf), np.full(tree.nv, np.inf)
+    driven, coordinates = derived(robot, _driven_coordinates)
+    lowest, highest = robot.tree.position_limits
+    lower, upper = np.full(robot.tree.nv, -np.inf), np.full(robot.tree.nv, np.inf)
     lower[driven], upper[driven] = lowest[coordinates[driven]], highest[coordinates[driven]]
     if not strict:
         left_out = (lower == 0.0) & (upper == 0.0)
         lower[left_out], upper[left_out] = -np.inf, np.inf
-    return PositionLimits(tuple(tree.velocity_names), coordinates, lower, upper)
+    return PositionLimits(tuple(robot.tree.velocity_names), coordinates, lower, upper)
 
 
-def chosen_limits(tree: TreeKinematics, limits: Limits) -> PositionLimits | None:
-    """The position limits of a tree to respect, or None.
+def chosen_limits(robot: Robot, limits: Limits) -> PositionLimits | None:
+    """The position limits of a robot to respect, or None.
 
     Raises:
         ValueError: ``limits`` is not True, False or ``"strict"``.
     """
     if isinstance(limits, str) and limits != "strict":
         raise ValueError(f"limits is {limits!r}; use True, False or 'strict'")
-    return position_limits(tree, strict=limits == "strict") if limits else None
+    return position_limits(robot, strict=limits == "strict") if limits else None
+
+
+def _driven_coordinates(robot: Robot) -> tuple[Indices, Indices]:
+    """The velocities that drive one coordinate each, and for each velocity (nv,) that coordinate; 0 if it has none."""
+    coordinates = np.zeros(robot.tree.nv, dtype=np.intp)
+    driven: list[int] = []
+    for q, v in zip(robot.tree.own_coordinates, robot.tree.own_velocities, strict=True):
+        if len(q) == len(v):
+            coordinates[v.start : v.stop] = q
+            driven.extend(v)
+    return np.array(driven, dtype=np.intp), coordinates

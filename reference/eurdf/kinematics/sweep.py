@@ -112,7 +112,7 @@ def sweep(
         ValueError: ``actuator`` is not actuated, or has several coordinates; ``q0`` is not a configuration;
             ``steps`` is less than 1.
     """
-    steps, kept = checked_count("steps", steps, 1), chosen_limits(robot.tree, limits)
+    steps, kept = checked_count("steps", steps, 1), chosen_limits(robot, limits)
     first = assemble(robot, q0, tolerance=_TOLERANCE)
     if not first.closes:
         raise NotClosable("no closed configuration was found near the start", first.open, first.q)

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eurdf.kinematics.array import Matrix
+from eurdf.kinematics.array import Indices, Matrix, Vector
 from eurdf.kinematics.finite import finite
-from eurdf.kinematics.loop import independent_groups
+from eurdf.kinematics.least_solution import CERTAIN
+from eurdf.kinematics.loop import LoopGroup, independent_groups
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
 
@@ -17,18 +20,63 @@ if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class TangentSpace:
-    """The null space of K, and its pseudoinverse.
+@dataclass(frozen=True, eq=False)
+class _Block:
+    """The part of a tangent space in one group of loops.
 
     Attributes:
-        basis: Z (nv, nv - rank) with K Z = 0 and Zᵀ Z = 1.
-        inverse: K⁺ (nv, nc): v = K⁺ b is the least-squares solution of K v = b with the least norm, in units of the
-            characteristic length.
+        velocities: Indices in v of the velocities of the group.
+        rows: Its rows.
+        free: Orthonormal basis (n, f) of its free motions, dimensionless.
+        inverse: Pseudoinverse (n, m) of its block of K, dimensionless.
     """
 
-    basis: Matrix
+    velocities: Indices
+    rows: Indices
+    free: Matrix
     inverse: Matrix
+
+
+class TangentSpace:
+    """The null space of K, and its pseudoinverse; each basis is computed when first asked for."""
+
+    def __init__(self, blocks: Sequence[_Block], scale: Vector, row_scale: Vector, outside: Indices) -> None:
+        self._blocks, self._outside = blocks, outside
+        self._scale, self._row_scale = scale, row_scale
+
+    @cached_property
+    def basis(self) -> Matrix:
+        """Z (nv, nv - rank) with K Z = 0 and Zᵀ Z = 1."""
+        found = []
+        for block in self._blocks:
+            scale = self._scale[block.velocities]
+            found.append(block.free if (scale == 1.0).all() else np.linalg.qr(scale[:, None] * block.free)[0])
+        return self._whole(found)
+
+    @cached_property
+    def free(self) -> Matrix:
+        """Z (nv, nv - rank) with K Z = 0 that is orthonormal in units of the characteristic length."""
+        return self._whole([self._scale[block.velocities, None] * block.free for block in self._blocks])
+
+    @cached_property
+    def inverse(self) -> Matrix:
+        """K⁺ (nv, nc): v = K⁺ b is the least-squares solution of K v = b with the least norm, dimensionless."""
+        inverse = np.zeros((len(self._scale), len(self._row_scale)))
+        for block in self._blocks:
+            own = self._scale[block.velocities, None] * block.inverse * self._row_scale[block.rows]
+            inverse[block.velocities[:, None], block.rows] = own
+        return inverse
+
+    def _whole(self, bases: Sequence[Matrix]) -> Matrix:
+        """Bases of the groups, and the unit motions of the velocities outside of them, as columns (nv, …)."""
+        count = sum(basis.shape[1] for basis in bases)
+        whole = np.zeros((len(self._scale), count + len(self._outside)))
+        column = 0
+        for block, basis in zip(self._blocks, bases, strict=True):
+            whole[block.velocities, column : column + basis.shape[1]] = basis
+            column += basis.shape[1]
+        whole[self._outside, np.arange(count, whole.shape[1])] = 1.0
+        return whole
 
 
 class TangentSpaces:
@@ -45,7 +93,11 @@ class TangentSpaces:
         self.scale = velocity_scale(robot, self.length)
         self._row_scale = row_scale(robot, self.length)
         self.dimensionless = self._row_scale[:, None] * self.scale
-        self._groups = independent_groups(robot)
+        self._groups = [group for group in independent_groups(robot) if len(group.velocities)]
+        outside = np.ones(robot.tree.nv, dtype=bool)
+        for group in self._groups:
+            outside[group.velocities] = False
+        self._outside = np.flatnonzero(outside)
 
     def at(self, K: Matrix) -> TangentSpace:
         """The tangent space for the constraint Jacobian K (nc, nv).
@@ -53,27 +105,24 @@ class TangentSpaces:
         The rank is computed as in `eurdf.kinematics.analysis.analyze`: `numerical_rank` of the dimensionless K of each
         group of loops. At a singular configuration the space is larger than around it.
         """
-        nc, nv = K.shape
-        blocks, inverse = [], np.zeros((nv, nc))
-        outside = np.ones(nv, dtype=bool)
-        for group in self._groups:
-            rows, velocities = group.rows, group.velocities
-            if not len(velocities):
-                continue
-            outside[velocities] = False
-            scale = self.scale[velocities]
-            A = self._row_scale[rows, None] * K[np.ix_(rows, velocities)] * scale
-            finite("the constraint Jacobian", A)
-            left, values, right = np.linalg.svd(A)
-            rank = numerical_rank(values, values.max(initial=0.0))
-            Z, _ = np.linalg.qr(scale[:, None] * right[rank:].T)
-            blocks.append((velocities, Z))
-            pseudoinverse = (right[:rank].T / values[:rank]) @ left[:, :rank].T
-            inverse[np.ix_(velocities, rows)] = scale[:, None] * pseudoinverse * self._row_scale[rows]
-        blocks.append((np.flatnonzero(outside), np.eye(int(outside.sum()))))
-        basis = np.zeros((nv, sum(Z.shape[1] for _, Z in blocks)))
-        column = 0
-        for velocities, Z in blocks:
-            basis[velocities, column : column + Z.shape[1]] = Z
-            column += Z.shape[1]
-        return TangentSpace(basis, inverse)
+        A = K * self.dimensionless
+        finite("the constraint Jacobian", A)
+        blocks = [self._block(group, A[group.rows[:, None], group.velocities]) for group in self._groups]
+        return TangentSpace(blocks, self.scale, self._row_scale, self._outside)
+
+    def _block(self, group: LoopGroup, A: Matrix) -> _Block:
+        """The part of a group; the singular values decide on its rank where that is in doubt."""
+        m, n = A.shape
+        if m <= n:
+            Q, R = np.linalg.qr(A.T, mode="complete")
+            try:
+                inverse = np.linalg.inv(R[:m])
+            except np.linalg.LinAlgError:  # singular to the last digit
+                inverse = np.full((m, m), np.inf)
+            # 1/|R⁻¹| bounds the smallest singular value of A from below.
+            if CERTAIN * np.linalg.norm(A) * np.linalg.norm(inverse) < 1.0:
+                return _Block(group.velocities, group.rows, Q[:, m:], Q[:, :m] @ inverse.T)
+        left, values, right = np.linalg.svd(A)
+        rank = numerical_rank(values, values.max(initial=0.0))
+        pseudoinverse = (right[:rank].T / values[:rank]) @ left[:, :rank].T
+        return _Block(group.velocities, group.rows, right[rank:].T, pseudoinverse)

@@ -114,8 +114,9 @@ class FramePairs:
         wanted = range(model.nv) if self.velocities is None else self.velocities.tolist()
         column = {velocity: at for at, velocity in enumerate(wanted)}
         own = [at for at, velocity in enumerate(velocities.tolist()) if velocity in column]
+        own.sort(key=lambda at: column[int(velocities[at])])
         columns = np.array([column[velocity] for velocity in velocities[own].tolist()], np.intp)
-        small_velocities = None if len(own) == small.nv else np.array(own, np.intp)
+        small_velocities = None if own == list(range(small.nv)) else np.array(own, np.intp)
         return Part(which, FramePairs(small, pairs, small_velocities), coordinates, velocities, columns)
 
     @property
@@ -202,7 +203,7 @@ class Part:
         pairs: The same in a model of the joints between them; or in the whole model, to be followed joint by joint.
         coordinates: Indices in q of the coordinates of that model; None for the whole model.
         velocities: Indices in v of its velocities.
-        columns: Columns of the Jacobian that its own columns are.
+        columns: Columns of the Jacobian that its own columns are, ascending.
     """
 
     which: list[int]
@@ -215,6 +216,14 @@ class Part:
     def position(self) -> dict[int, int]:
         """Of each pair its index among those of the part."""
         return {pair: index for index, pair in enumerate(self.which)}
+
+    @cached_property
+    def adjacent(self) -> slice | None:
+        """The columns, if they are next to one another."""
+        if self.columns is None or not len(self.columns):
+            return None
+        first, last = int(self.columns[0]), int(self.columns[-1])
+        return slice(first, last + 1) if last + 1 - first == len(self.columns) else None
 
     def memory(self) -> DataMemory | PathMemory:
         """Memory to evaluate them in."""
@@ -250,9 +259,12 @@ class PartMemories:
             selections = self._selections[key] = [_selection(part, key) for part, _ in self._parts]
         if len(self._parts) == 1:
             ((part, memory),) = self._parts
-            K = memory.jacobian(rows, selections[0][1])
-            if part.columns is None or _identity(part.columns, self._size):
-                return K
+            block = memory.jacobian(rows, selections[0][1])
+            if part.columns is None or len(part.columns) == self._size:
+                return block
+            K = np.zeros((k * r, self._size))
+            K[:, part.columns if part.adjacent is None else part.adjacent] = block
+            return K
         K = np.zeros((k, r, self._size))
         for (part, memory), (of_rows, of_part) in zip(self._parts, selections, strict=True):
             if of_part:
@@ -278,10 +290,6 @@ def _selection(part: Part, which: Sequence[int]) -> tuple[list[int], list[int]]:
     """Those of the pairs asked for that are in a part: their indices among these, and in the part."""
     chosen = [(row, part.position[pair]) for row, pair in enumerate(which) if pair in part.position]
     return [row for row, _ in chosen], [index for _, index in chosen]
-
-
-def _identity(columns: Indices, size: int) -> bool:
-    return len(columns) == size and bool((columns == np.arange(size)).all())
 
 
 class DataMemory:

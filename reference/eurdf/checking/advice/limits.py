@@ -67,7 +67,7 @@ def _beyond(robot: Robot, q: Vector) -> list[BeyondLimit]:
 
 def _middle(robot: Robot, q: Vector) -> Vector:
     """The configuration with each coordinate that has a range in the middle of it."""
-    limits = position_limits(robot.tree)
+    limits = position_limits(robot)
     ranged = np.isfinite(limits.lower) & np.isfinite(limits.upper)
     middle = np.array(q)
     middle[limits.coordinates[ranged]] = 0.5 * limits.lower[ranged] + 0.5 * limits.upper[ranged]

@@ -130,7 +130,7 @@ def inverse_kinematics(
         model,
         frames,
         tuple(goal.rotation is not None for goal in goals),
-        chosen_limits(robot.tree, limits),
+        chosen_limits(robot, limits),
         checked_tolerance(tolerance),
         checked_count("restarts", restarts, 0),
     )

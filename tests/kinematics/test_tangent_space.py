@@ -1,0 +1,74 @@
+"""The tangent space far from singularities and at them: null space, pseudoinverse and rank of the dimensionless K."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import eurdf
+from eurdf.collection import collection_names
+from eurdf.kinematics.rank import numerical_rank
+from eurdf.kinematics.residual import residual_and_jacobian
+from eurdf.kinematics.tangent_space import TangentSpaces
+from support.linkage import flat_sarrus, n_bar, sarrus, slider_crank, stewart, three_rrr
+
+
+def check(robot: Any, q: Any) -> int:
+    """Compare with a decomposition of all of K; return its rank."""
+    spaces, (_, K) = TangentSpaces(robot), residual_and_jacobian(robot, q)
+    space, A = spaces.at(K), K * spaces.dimensionless
+    values = np.linalg.svd(A, compute_uv=False)
+    rank = numerical_rank(values, values.max(initial=0.0))
+    f, one = K.shape[1] - rank, np.eye(K.shape[1] - rank)
+    assert space.basis.shape == space.free.shape == (K.shape[1], f)
+    np.testing.assert_allclose(space.basis.T @ space.basis, one, rtol=0.0, atol=1e-12)
+    free = space.free / spaces.scale[:, None]
+    np.testing.assert_allclose(free.T @ free, one, rtol=0.0, atol=1e-12)
+    for basis in (space.basis, space.free):
+        np.testing.assert_allclose(A @ (basis / spaces.scale[:, None]), 0.0, atol=1e-10 * values[0])
+    row_scale = spaces.dimensionless[:, 0] / spaces.scale[0]
+    expected = spaces.scale[:, None] * np.linalg.pinv(A, rcond=0.5 * values[rank - 1] / values[0]) * row_scale
+    np.testing.assert_allclose(space.inverse, expected, rtol=0.0, atol=1e-9 * np.abs(expected).max())
+    return rank
+
+
+@pytest.mark.parametrize("name", [name for name in collection_names() if eurdf.load(name, geometry=False).constraints])
+def test_robot_has_a_tangent_space(name: str) -> None:
+    robot = eurdf.load(name, geometry=False)
+    q = eurdf.assemble(robot).q
+    away = np.random.default_rng(0).uniform(-0.05, 0.05, robot.tree.nv)
+    check(robot, q)
+    check(robot, eurdf.assemble(robot, robot.tree.integrate(q, away)).q)
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize("build", [lambda size: n_bar(5, size=size), lambda size: slider_crank(size=size)])
+def test_redundant_rows_at_any_size(build: Any, size: float) -> None:
+    robot = build(size)
+    assert check(robot, robot.tree.neutral()) == 3
+
+
+def test_rank_falls_at_a_singular_configuration() -> None:
+    regular, flat = sarrus(), flat_sarrus()
+    assert check(regular, np.zeros(6)) == 5
+    assert check(flat, np.zeros(6)) < 5
+
+
+@pytest.mark.parametrize(("build", "rank"), [(stewart, 30), (three_rrr, 6)])
+def test_parallel_robot_has_a_tangent_space(build: Any, rank: int) -> None:
+    robot = build()
+    assert check(robot, robot.tree.neutral()) == rank
+
+
+def test_rank_in_doubt_is_that_of_the_singular_values() -> None:
+    """Rows that are nearly dependent: both sides of what is certain."""
+    robot = stewart()
+    spaces, (_, K) = TangentSpaces(robot), residual_and_jacobian(robot, robot.tree.neutral())
+    for apart in (1e-12, 1e-7, 1e-5, 1e-3, 1e-1):
+        near = np.array(K)
+        near[-1] = near[0] + apart * near[-1]
+        values = np.linalg.svd(near * spaces.dimensionless, compute_uv=False)
+        free = K.shape[1] - numerical_rank(values, values[0])
+        assert spaces.at(near).basis.shape[1] == free
