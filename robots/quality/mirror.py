@@ -95,7 +95,7 @@ def _signs(robot: eurdf.Robot, joints: list[tuple[Slot, Slot]]) -> list[Vector]:
 
 
 def _limits(left: Slot, right: Slot, sign: Vector) -> Iterator[str]:
-    """Limits, damping and friction that differ."""
+    """Limits, damping, friction and springs that differ."""
     one, other = left.joint, right.joint
     limits = list(zip(one.properties.lower, one.properties.upper, strict=True))
     if len(limits) == len(sign):  # only joints with one coordinate per velocity have limits
@@ -103,6 +103,9 @@ def _limits(left: Slot, right: Slot, sign: Vector) -> Iterator[str]:
         limits = [(low, high) if same else (-high, -low) for (low, high), same in kept]
     if limits != list(zip(other.properties.lower, other.properties.upper, strict=True)):
         yield f"'{one.name}' and '{other.name}' have different position limits"
+    rest = tuple(at if same else -at for at, same in zip(one.properties.rest, (sign > 0.0).tolist(), strict=False))
+    if (one.properties.stiffness, rest) != (other.properties.stiffness, other.properties.rest):
+        yield f"'{one.name}' and '{other.name}' have different springs"
     if _drive(one) != _drive(other):
         yield f"'{one.name}' and '{other.name}' differ in velocity limit, effort limit, damping, friction or armature"
 

@@ -127,6 +127,64 @@ def test_properties_of_both_halves_belong_to_the_universal_joint() -> None:
     ]
 
 
+def test_no_springs_are_springs_without_stiffness() -> None:
+    none = robot([joint("j")])
+    for springs in ({"stiffness": [0.0]}, {"stiffness": [0.0], "rest": [0.5]}, {"stiffness": [], "rest": []}):
+        other = robot([joint("j", **springs)])
+        assert canonical_differences(none, other, BODIES) == canonical_differences(other, none, BODIES) == []
+
+
+@pytest.mark.parametrize(
+    ("given", "pointer"),
+    [
+        ({}, "/joints/0/stiffness"),
+        ({"stiffness": [4.0], "rest": [0.5]}, "/joints/0/stiffness/0"),
+        ({"stiffness": [3.0], "rest": [0.4]}, "/joints/0/rest/0"),
+        ({"stiffness": [3.0]}, "/joints/0/rest/0"),
+        ({"stiffness": [3.0, 3.0], "rest": [0.5, 0.5]}, "/joints/0/stiffness"),
+    ],
+)
+def test_other_springs_are_a_difference(given: dict[str, Any], pointer: str) -> None:
+    expected = robot([joint("j", stiffness=[3.0], rest=[0.5])])
+    assert canonical_differences(expected, expected, BODIES) == []
+    assert canonical_differences(expected, robot([joint("j", **given)]), BODIES)[0].pointer == pointer
+
+
+def test_springs_of_two_revolutes_belong_to_the_universal_joint() -> None:
+    lists = {key: [0.0, 0.0] for key in ("velocity", "effort", "damping", "friction", "armature")}
+    limits = {"lower": [-1.0, -1.0], "upper": [1.0, 1.0]}
+    universal = joint("j", "universal", **limits, **lists, stiffness=[0.0, 3.0], rest=[7.0, 0.5])
+    pair = [
+        joint("j_X", child="between"),
+        joint("j_Y", parent="between", child="c", stiffness=[3.0], rest=[0.5]),
+    ]
+    assert canonical_differences(robot([universal]), robot(pair), BODIES) == []
+
+
+def test_actuator_without_name_has_that_of_its_joint() -> None:
+    one = robot([joint("j")], actuators=[{"joint": "j"}])
+    named = robot([joint("j")], actuators=[{"joint": "j", "name": "j"}])
+    assert canonical_differences(one, named, BODIES) == canonical_differences(named, one, BODIES) == []
+    other = robot([joint("j")], actuators=[{"joint": "j", "name": "k"}])
+    assert [found.pointer for found in canonical_differences(one, other, BODIES)] == ["/actuators/0/name"]
+
+
+def test_another_control_range_is_a_difference() -> None:
+    one = robot([joint("j")], actuators=[{"joint": "j", "control": [-1.0, 2.0]}])
+    for control in ([-1.0, 3.0], None):
+        other = robot([joint("j")], actuators=[{"joint": "j", "control": control}])
+        assert [found.pointer[:20] for found in canonical_differences(one, other, BODIES)] == ["/actuators/0/control"]
+
+
+def test_closure_without_compliance_is_rigid() -> None:
+    closure = {"name": "c", "type": "6d", "a": "a", "b": "b"}
+    one = robot([joint("j")], closures=[closure])
+    rigid = robot([joint("j")], closures=[closure | {"compliance": {"linear": 0.0}}])
+    assert canonical_differences(one, rigid, BODIES) == canonical_differences(rigid, one, BODIES) == []
+    soft = robot([joint("j")], closures=[closure | {"compliance": {"angular": 0.1}}])
+    assert [found.pointer for found in canonical_differences(one, soft, BODIES)] == ["/closures/0/compliance"]
+
+
 def test_senseless_joints_are_differences() -> None:
     ring = robot([joint("j_1", child="x", parent="x"), joint("j_2", parent="x", child="x")])
     chain = robot([joint("j", child="x"), joint("k", parent="x", child="y"), joint("l", parent="y", child="x")])

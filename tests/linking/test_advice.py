@@ -335,7 +335,7 @@ def chain(*joints: str, links: str = "", names: str = "abcd") -> str:
 def checked(folder: Path, urdf: str, yaml: str = "") -> list[Diagnostic]:
     (folder / "robot.urdf").write_text(urdf, encoding="utf-8")
     if yaml:
-        (folder / "robot.yaml").write_text(f'extended_urdf: "2.0"\n{yaml}', encoding="utf-8")
+        (folder / "robot.yaml").write_text(f'extended_urdf: "2.1"\n{yaml}', encoding="utf-8")
     return list(eurdf.check(folder / ("robot.yaml" if yaml else "robot.urdf")).diagnostics)
 
 
@@ -403,6 +403,9 @@ def test_first_angle_in_degrees_is_named(tmp_path: Path, limits: str, message: s
         ("frames:\n  - {name: tip, link: b, rpy: [90, 0, 0]}\n", "/frames/0/rpy/0"),
         ("joints:\n  knee: {limits: {lower: -90, upper: 90}}\n", "/joints/knee/limits/lower"),
         ("configurations:\n  bent: {wheel: 45}\n", "/configurations/bent/wheel"),
+        ("joints:\n  knee: {stiffness: 2, rest: 45}\n", "/joints/knee/rest"),
+        ("joints:\n  knee: {type: universal, axes: xy, stiffness: 2, rest: [0, 45]}\n", "/joints/knee/rest"),
+        ("joints:\n  slide: {stiffness: 2, rest: 45}\n", None),
         ("configurations:\n  wound: {wheel: 12.75}\n  bent: {wheel: 25.12}\n", None),
         ("configurations:\n  out: {slide: 45}\n", None),
         ("frames:\n  - {name: tip, link: b, xyz: [0, 0, 9]}\n", None),

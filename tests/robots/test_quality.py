@@ -315,6 +315,21 @@ def test_unmirrored_legs_are_reported_by_difference(walker, xpath, attributes, e
     assert error in found["mirrored"][0]
 
 
+@pytest.mark.parametrize(
+    ("right", "are_mirrored"),
+    [("stiffness: 3, rest: 0.2", True), ("stiffness: 3, rest: -0.2", False), ("stiffness: 2, rest: 0.2", False)],
+)
+def test_springs_are_mirrored(walker, right, are_mirrored):
+    path = walker / "robot.yaml"
+    text = path.read_text().replace('"2.0"', '"2.1"')
+    springs = f"  left_hip: {{stiffness: 3, rest: 0.2}}\n  right_hip: {{{right}}}\n"
+    assert text.count("\njoints:\n") == 1
+    path.write_text(text.replace("\njoints:\n", "\njoints:\n" + springs))
+    restate(walker)
+    expected = [] if are_mirrored else ["'left_hip' and 'right_hip' have different springs"]
+    assert errors(walker).get("mirrored", []) == expected
+
+
 # --- the command -----------------------------------------------------------------------------------------------------
 
 

@@ -114,6 +114,11 @@ def _in_extension(extension: Extension, mechanism: Mechanism) -> Iterator[_Found
             for value in given if isinstance(given, tuple) else () if given is None else (given,):
                 if angles.get(entry.name) and _position_in_degrees(value):
                     yield found(value, f"limit '{side}' of joint '{entry.name}'", (*entry.pointer, "limits", side))
+        for index in angles.get(entry.name, ()):
+            rest = entry.rest[index] if isinstance(entry.rest, tuple) else entry.rest
+            if rest is not None and _position_in_degrees(rest):
+                yield found(rest, f"'rest' of joint '{entry.name}'", (*entry.pointer, "rest"))
+                break
     for configuration in extension.configurations:
         for name, values in configuration.joints.items():
             for index in angles.get(name, ()):
