@@ -36,7 +36,7 @@ def test_line_is_that_in_list_of_lines(text: str) -> None:
     expected = re.split("\r\n?|\n", text)
     found = Lines(text)
     assert [found.line(number) for number in range(1, len(expected) + 2)] == [*expected, None]
-    assert list(found.from_line(1)) == expected
+    assert [found.first(count) for count in (1, 2, 50)] == [expected[:1], expected[:2], expected]
 
 
 def test_few_numbers_are_kept_for_millions_of_lines(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from eurdf.reading.resource import resolve
+from eurdf.reading.resource import FileFinder
 
 
 @pytest.fixture(autouse=True)
@@ -22,7 +24,7 @@ def _file(path: Path) -> Path:
 
 
 def _found(uri: str, folder: Path, package_dirs: tuple[Path, ...] = ()) -> Path | None:
-    found = resolve(uri, folder, package_dirs)
+    found = FileFinder(folder, package_dirs).find(uri)
     return None if found is None else Path(found).resolve()
 
 
@@ -104,10 +106,24 @@ def test_given_folder_can_be_the_package(tmp_path: Path) -> None:
     ],
 )
 def test_non_file_is_not_found(tmp_path: Path, uri: str) -> None:
-    assert resolve(uri, tmp_path) is None
+    assert FileFinder(tmp_path).find(uri) is None
 
 
 def test_folder_is_not_a_mesh(tmp_path: Path) -> None:
     (tmp_path / "arm" / "meshes").mkdir(parents=True)
-    assert resolve("arm", tmp_path) is None
-    assert resolve("package://arm/meshes", tmp_path) is None
+    assert FileFinder(tmp_path).find("arm") is None
+    assert FileFinder(tmp_path).find("package://arm/meshes") is None
+
+
+def test_package_that_is_not_there_is_looked_for_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    looked: list[object] = []
+    stat = os.stat
+
+    def counted(path: str, **options: Any) -> os.stat_result:
+        looked.append(path)
+        return stat(path, **options)
+
+    finder = FileFinder(tmp_path)
+    monkeypatch.setattr(os, "stat", counted)
+    assert [finder.find(f"package://lost/{index}.stl") for index in range(1_000)] == [None] * 1_000
+    assert len(looked) <= 2 * len(tmp_path.parts)

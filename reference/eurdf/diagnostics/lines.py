@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left
-from collections.abc import Iterator
 from itertools import accumulate, islice
 
 #: Where a line ends, as in YAML 1.2, XML and most editors; other Unicode breaks are text.
@@ -33,24 +32,31 @@ class Lines:
         line = self._counts()[step] + self._ends(step * _STEP, index) + 1
         return line, index - self._start(index) + 1
 
-    def line(self, number: int) -> str | None:
-        """A line by its number, from 1, without its end; None where the text has fewer."""
-        return next(self.from_line(number), None)
-
-    def from_line(self, number: int) -> Iterator[str]:
-        """The lines from one on."""
+    def span(self, number: int) -> tuple[int, int] | None:
+        """Where a line begins, by its number, from 1, and where it ends; None where the text has fewer."""
         counts = self._counts()
         step = max(bisect_left(counts, number - 1) - 1, 0)
-        start = step * _STEP
+        start = 0
         if number > 1:
-            found = next(islice(BREAK.finditer(self.text, start), number - 2 - counts[step], None), None)
+            ends = BREAK.finditer(self.text, step * _STEP)
+            found = next(islice(ends, number - 2 - counts[step], None), None)
             if found is None:
-                return
+                return None
             start = found.end()
-        for found in BREAK.finditer(self.text, start):
-            yield self.text[start : found.start()]
-            start = found.end()
-        yield self.text[start:]
+        end = self.text.find("\n", start)
+        end = len(self.text) if end < 0 else end
+        other = self.text.find("\r", start, end)
+        return start, end if other < 0 else other
+
+    def line(self, number: int) -> str | None:
+        """A line by its number, from 1, without its end; None where the text has fewer."""
+        span = self.span(number)
+        return None if span is None else self.text[slice(*span)]
+
+    def first(self, count: int) -> list[str]:
+        """The first lines, without their ends, so many at most."""
+        span = self.span(count)
+        return BREAK.split(self.text if span is None else self.text[: span[1]])
 
     def _counts(self) -> list[int]:
         if not self._before:

@@ -95,12 +95,12 @@ def _excerpt_lines(found: Diagnostic, width: int, bar: str) -> Iterator[Line]:
     place = found.place
     number = ""
     if place.line is not None and place.lines is not None:
-        text = place.lines.line(place.line)
-        if text is not None:
+        span = place.lines.span(place.line)
+        if span is not None:
             number = str(place.line)
             start = None if place.column is None else place.column - 1
             end = None if place.end_column is None else place.end_column - 1
-            shown, offset, length = _clip(text, start, end, width)
+            shown, offset, length = _clip(place.lines.text, span, start, end, width)
             yield [(f"{number:>5} {bar} ", "blue"), (shown, "")]
             if start is not None:
                 yield [
@@ -113,11 +113,12 @@ def _excerpt_lines(found: Diagnostic, width: int, bar: str) -> Iterator[Line]:
         yield [(f"{'':>5} = ", "blue"), ("hint", "bold cyan"), (f": {hint}", "")]
 
 
-def _clip(text: str, start: int | None, end: int | None, width: int) -> tuple[str, int, int]:
+def _clip(text: str, span: tuple[int, int], start: int | None, end: int | None, width: int) -> tuple[str, int, int]:
     """The part of a line to show.
 
     Args:
-        text: The line.
+        text: The text that contains the line.
+        span: Where the line begins and ends in it.
         start: Index of the first character of the place; None for the whole line.
         end: Index after its last character; None if only the first is known.
         width: Available columns.
@@ -125,15 +126,16 @@ def _clip(text: str, start: int | None, end: int | None, width: int) -> tuple[st
     Returns:
         The text to show, the column in it at which the place starts (from 0), and the width of the place in columns.
     """
-    start = min(max(start or 0, 0), len(text))
-    end = min(max(end or 0, start + 1), len(text))
+    begin, length = span[0], span[1] - span[0]
+    start = min(max(start or 0, 0), length)
+    end = min(max(end or 0, start + 1), length)
     # Each visible character except combining marks takes at least one column, so the rest of a huge line is ignored.
-    low, high = max(0, start - width), min(len(text), start + width)
-    pieces = [_TAB if c == "\t" else visible(c) for c in text[low:high]]
+    low, high = max(0, start - width), min(length, start + width)
+    pieces = [_TAB if c == "\t" else visible(c) for c in text[begin + low : begin + high]]
     sizes = [cells(piece) for piece in pieces]
     place = start - low
     first, last = 0, len(pieces)
-    if low or high < len(text) or sum(sizes) > width:
+    if low or high < length or sum(sizes) > width:
         width -= 2 * len(_ELLIPSIS)
         if low or sum(sizes[:place]) > width * 2 // 3:
             first, room = place, width // 3
@@ -145,7 +147,7 @@ def _clip(text: str, start: int | None, end: int | None, width: int) -> tuple[st
             room -= sizes[last]
             last += 1
     before = _ELLIPSIS if low + first else ""
-    after = _ELLIPSIS if low + last < len(text) else ""
+    after = _ELLIPSIS if low + last < length else ""
     shown = before + "".join(pieces[first:last]) + after
     offset = len(before) + sum(sizes[first:place])
     return shown.rstrip(), offset, max(1, sum(sizes[place : min(end - low, last)]))

@@ -23,7 +23,7 @@ from eurdf.linking.inertia import check_inertias, check_leaves
 from eurdf.linking.link import link
 from eurdf.mechanism.mechanism import Mechanism, Root
 from eurdf.reading.given import Given, shown, source_of
-from eurdf.reading.resource import HINT, resolve
+from eurdf.reading.resource import HINT, FileFinder
 from eurdf.reading.source import Source, read_source
 from eurdf.reading.xacro import expand, is_xacro
 from eurdf.reading.xml_reader import read_xml
@@ -361,6 +361,7 @@ def find_meshes(urdf: Urdf, package_dirs: Sequence[str | os.PathLike[str]] = ())
         The path of each file found, by URI; and one diagnostic for all meshes, one for all textures that were not.
     """
     shapes = [shape for link_ in urdf.links.values() for shape in (*link_.visuals, *link_.collisions)]
+    finder = FileFinder(urdf.document.source.folder, package_dirs)
     found: dict[str, str] = {}
     diagnostics = Diagnostics()
     for tag, uris in (
@@ -369,7 +370,7 @@ def find_meshes(urdf: Urdf, package_dirs: Sequence[str | os.PathLike[str]] = ())
     ):
         missing = []
         for uri in uris:
-            path = resolve(uri, urdf.document.source.folder, package_dirs)
+            path = finder.find(uri)
             if path is None:
                 missing.append(uri)
             else:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from itertools import islice
 
 from eurdf.diagnostics.lines import Lines
 
@@ -45,7 +44,7 @@ def indentation_hint(text: Lines, line: int) -> str | None:
     """
     if line > LOOKED_AT:
         return None
-    lines = list(islice(text.from_line(1), line))
+    lines = text.first(line)
     wrong = lines[line - 1] if line <= len(lines) else ""
     column, body = _indent(wrong)
     key = _KEY.match(body)
@@ -71,7 +70,7 @@ def indentation_hint(text: Lines, line: int) -> str | None:
 
 def first_line_hint(text: Lines) -> str | None:
     """How to indent the first line of a file that is indented deeper than what follows; None where it is not."""
-    for number, line in enumerate(islice(text.from_line(1), LOOKED_AT), 1):
+    for number, line in enumerate(text.first(LOOKED_AT), 1):
         column, body = _indent(line)
         if body and not body.startswith("#"):
             key = _KEY.match(body)

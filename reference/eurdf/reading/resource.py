@@ -14,37 +14,51 @@ HINT = (
 )
 
 
-def resolve(uri: str, folder: Path, package_dirs: Sequence[str | os.PathLike[str]] = ()) -> str | None:
-    """The file that a mesh URI of a URDF means, on this machine (EU-SEC-003).
+class FileFinder:
+    """Finds the files that mesh URIs of one URDF mean, on this machine (EU-SEC-003).
 
     ``package://name/rest`` is looked for in the package ``name``, in the folders of `package_homes`. A path is relative
     to the folder of the URDF.
-
-    Args:
-        uri: As the URDF writes it.
-        folder: Folder of the URDF.
-        package_dirs: Folders that hold packages.
-
-    Returns:
-        A path, or None where there is no such file.
     """
-    scheme, separator, rest = uri.partition("://")
-    if not separator:
-        return _file(folder / uri)
-    if scheme == "file":
-        return _file(folder / unquote(rest))
-    if scheme not in ("package", "model"):
-        return None
-    package, _, rest = rest.partition("/")
-    rest = rest.lstrip("/")
-    for home in package_homes(folder, package_dirs):
-        candidates = [home / package / rest]
-        if home.name == package:
-            candidates.append(home / rest)
-        for candidate in candidates:
-            if found := _file(candidate):
-                return found
-    return None
+
+    def __init__(self, folder: Path, package_dirs: Sequence[str | os.PathLike[str]] = ()) -> None:
+        """Look in some folders.
+
+        Args:
+            folder: Folder of the URDF.
+            package_dirs: Folders that hold packages.
+        """
+        self._folder = folder
+        self._homes = package_homes(folder, package_dirs)
+        self._packages: dict[str, list[str]] = {}
+
+    def find(self, uri: str) -> str | None:
+        """The path of a file, or None where there is no such file.
+
+        Args:
+            uri: As the URDF writes it.
+        """
+        scheme, separator, rest = uri.partition("://")
+        if not separator:
+            return _file(self._folder, uri)
+        if scheme == "file":
+            return _file(self._folder, unquote(rest))
+        if scheme not in ("package", "model"):
+            return None
+        package, _, rest = rest.partition("/")
+        found = (_file(folder, rest.lstrip("/")) for folder in self._folders_of(package))
+        return next((path for path in found if path is not None), None)
+
+    def _folders_of(self, package: str) -> list[str]:
+        """The folders that may be a package."""
+        if package not in self._packages:
+            self._packages[package] = [
+                candidate
+                for home in self._homes
+                for candidate in (os.path.join(home, package), *([str(home)] if home.name == package else []))
+                if os.path.isdir(candidate)
+            ]
+        return self._packages[package]
 
 
 def package_homes(folder: Path, package_dirs: Sequence[str | os.PathLike[str]] = ()) -> list[Path]:
@@ -65,6 +79,7 @@ def package_homes(folder: Path, package_dirs: Sequence[str | os.PathLike[str]] =
     return [*homes, absolute, *absolute.parents]
 
 
-def _file(path: Path) -> str | None:
+def _file(folder: str | Path, name: str) -> str | None:
     """The path if there is such a file, else None, also for a text that cannot be a path."""
-    return str(path) if os.path.isfile(path) else None
+    path = os.path.join(folder, name)
+    return str(Path(path)) if os.path.isfile(path) else None

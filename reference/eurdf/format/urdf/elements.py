@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 from eurdf.diagnostics import Hint, did_you_mean
 from eurdf.format.near import near
@@ -74,6 +75,11 @@ def named(element: Element) -> str:
         return f"{tag} '{name}'"
     owner = next((above for above in element.iterancestors("link", "joint") if above.get("name")), None)
     return f"<{tag}>" + ("" if owner is None else f" of {owner.tag!s} '{owner.get('name')}'")
+
+
+def _misspelt_attribute(element: Element, attribute: str) -> str | None:
+    near = did_you_mean(attribute, [str(key) for key in element.keys()])  # noqa: SIM118 - an lxml element
+    return near.replace("did you mean", "rename").replace("?", "") if near else None
 
 
 def cycle_of(names: Sequence[str]) -> str:
@@ -182,9 +188,8 @@ class UrdfReader:
 
     def missing_attribute(self, element: Element, attribute: str) -> None:
         """EU-URD-005: report that an element lacks a required attribute."""
-        near = did_you_mean(attribute, [str(key) for key in element.keys()])  # noqa: SIM118 - an lxml element
-        hint = near.replace("did you mean", "rename").replace("?", "") if near else None
-        self.report("urdf-missing-attribute", f"{named(element)} has no attribute '{attribute}'", element, None, hint)
+        message = f"{named(element)} has no attribute '{attribute}'"
+        self.report("urdf-missing-attribute", message, element, None, partial(_misspelt_attribute, element, attribute))
 
     def name(self, element: Element, attribute: str = "name") -> str | None:
         """EU-URD-005, EU-URD-008: the name of an element that requires one; it is not empty."""

@@ -41,9 +41,13 @@ def _leader(reader: UrdfReader, joint: UrdfJoint, mimic: Mimic, joints: _Joints,
             f"joint '{joint.name}' mimics '{mimic.joint}', which does not exist",
             element,
             "joint",
-            partial(did_you_mean, mimic.joint, joints.keys() - {joint.name}, joint.name),
+            partial(_near, joint.name, mimic.joint, joints),
         )
     return leader
+
+
+def _near(name: str, unknown: str, joints: _Joints) -> str | None:
+    return did_you_mean(unknown, joints.keys() - {name}, name)
 
 
 def _can_mimic(reader: UrdfReader, joint: UrdfJoint, leader: UrdfJoint, element: Element) -> bool:
