@@ -13,6 +13,7 @@ import pytest
 import eurdf
 from eurdf.commands.robot_info import robot_info
 from eurdf.kinematics.ancestry import Ancestry
+from eurdf.kinematics.assembly import Assembler, work_of_step
 from eurdf.kinematics.loop import Loop, find_loops, independent_groups, joints_of_loops
 from eurdf.linking.link import JOINT_LIMIT, ROW_LIMIT, VELOCITY_LIMIT
 from support.hostile import VERSION2, chain, four_bars, joint, numbered, robot, shared, star
@@ -124,7 +125,7 @@ def test_skipped_check_is_no_error(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     path = write(tmp_path, *four_bars(2, in_series=True))
     assert [found.code for found in eurdf.check(path).diagnostics] == ["x-loops-not-checked"]
     loaded = eurdf.load(path, geometry=False)
-    assert eurdf.assemble(loaded).reason == "given up"
+    assert eurdf.assemble(loaded).reason == "not decided"
     assert eurdf.analyze(loaded).left_out.startswith("it was not computed whether the loops can be closed")
 
 
@@ -138,7 +139,7 @@ def test_large_group_does_not_keep_others_open(tmp_path: Path, monkeypatch: pyte
     loaded = eurdf.load(write(tmp_path, description + around, urdf), geometry=False)
     monkeypatch.setattr("eurdf.kinematics.assembly._feasible", lambda evaluation: len(evaluation.group.rows) < 6)
     assembly = eurdf.assemble(loaded)
-    assert assembly.reason == "given up"
+    assert assembly.reason == "not decided"
     assert [opening.name for opening in assembly.open if not opening.is_open] == ["loop3", "loop4"]
 
 
@@ -209,3 +210,16 @@ def test_loop_groups_are_connected_by_shared_joints(tmp_path: Path, seed: int) -
             reached |= more
         assert reached == members
     assert joints_of_loops(loaded) == sorted(set().union(*on_paths))
+
+
+def test_search_that_is_cut_short_decides_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    loaded = eurdf.load(write(tmp_path, *four_bars(3, in_series=True, ground=4.0)), geometry=False)
+    whole = eurdf.assemble(loaded)
+    assert whole.reason == "not closed"
+    # Enough for the first descents, but not for all restarts.
+    work = sum(work_of_step(each.group) for each in Assembler(loaded).evaluations)
+    monkeypatch.setattr("eurdf.kinematics.assembly._MOST_WORK", 65 * work)
+    cut = eurdf.assemble(loaded)
+    assert 10 < cut.iterations < whole.iterations
+    assert cut.reason == "not decided"
+    assert [found.code for found in eurdf.check(tmp_path).diagnostics] == ["x-loops-not-checked"]

@@ -83,7 +83,7 @@ def _check_loops(description: Described) -> None:
     assembly = None if "assembled" in robot.configurations else assemble(robot)
     for found in closure_diagnostics(description, robot, assembly):
         diagnostics.add(found)
-    given_up = assembly is not None and assembly.reason == "given up"
+    given_up = assembly is not None and assembly.reason == "not decided"
     if not given_up and not diagnostics.error_count:
         q = robot.configurations["assembled"] if assembly is None else assembly.q
         advise_on_quaternions(description, robot, diagnostics)

@@ -40,10 +40,10 @@ def closure_diagnostics(description: Linked, robot: Robot, assembly: Assembly | 
     assembly = assemble(robot) if assembly is None else assembly
     if not assembly.closes:
         worst = max(assembly.open, key=_width)
-        if assembly.reason == "given up":
+        if assembly.reason == "not decided":
             diagnostics.report(
                 "x-loops-not-checked",
-                "the loops were not checked: too many closures share joints",
+                "it is not decided whether the loops close: the search reached its limit of 1e10 multiplications",
                 description.place_of_constraint(worst.name),
                 "state a configuration 'assembled' (version 2): then the loops are checked there",
             )

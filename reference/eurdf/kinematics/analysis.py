@@ -255,7 +255,7 @@ def _sum_of_finite(others: int, loops: Sequence[LoopAnalysis]) -> int | Literal[
 
 def _left_out(assembler: Assembler, assembly: Assembly) -> str:
     """Why no ranks are computed, if that would take too long; else empty."""
-    given_up, groups = assembly.reason == "given up", [each.group for each in assembler.evaluations]
+    given_up, groups = assembly.reason == "not decided", [each.group for each in assembler.evaluations]
     if not given_up and not (assembly.closes and sum(map(_work, groups)) > _MOST_WORK):
         return ""
     group = max(groups, key=_work)

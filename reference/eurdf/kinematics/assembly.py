@@ -48,9 +48,9 @@ _SPREADS = (0.1, 0.3, 1.0, 2.0, 3.0)
 
 
 #: Why an assembly did not converge: joints at their limits keep the loops open; the loops stay open though no limit
-#: prevents closing; the loops share so many joints that no descent finished, and it is unknown whether they can close;
+#: prevents closing; the search reached its limit of work, so that it is not decided whether the loops can close;
 #: or the loops close, but rounded numbers in the files make redundant rows contradict each other.
-AssemblyReason = Literal["joint limits", "not closed", "given up", "rounding"]
+AssemblyReason = Literal["joint limits", "not closed", "not decided", "rounding"]
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -85,8 +85,8 @@ class Assembly:
         parts = [f"open: {is_open}" if is_open else "closed", f"residual {self.residual:.3g}"]
         if self.reason == "rounding":
             parts.append("not converged: rounding makes redundant rows contradict each other")
-        if self.reason == "given up":
-            parts.append("gave up: the loops share too many joints")
+        if self.reason == "not decided":
+            parts.append("not decided: the search reached its limit of work")
         if self.at_limits:
             parts.append(f"at their limits: {', '.join(map(str, self.at_limits))}")
         return f"<Assembly: {'; '.join(parts)}; {self.iterations} iterations>"
@@ -106,8 +106,9 @@ def assemble(
     Each step x solves (KᵀK + μ 1) x = -Kᵀ r, and q becomes q ⊕ x (Levenberg, *A method for the solution of certain
     non-linear problems in least squares*, 1944; Marquardt, 1963), with the residual r and the K of EU-CLO-008 to -010.
 
-    Only joints of the loops move. The result is deterministic. The time is bounded even if the loops cannot be closed:
-    at most ``restarts`` + 2 descents of at most 60 steps.
+    Only joints of the loops move. The result is deterministic. The work is bounded even if the loops cannot be closed:
+    at most ``restarts`` + 2 descents of at most 60 steps, and 1e10 multiplications, about five seconds. If loops are
+    still open at this limit, `Assembly.reason` is ``"not decided"``.
 
     The structure of the robot is analysed once and kept with it.
 
@@ -186,7 +187,7 @@ class Assembler:
         self._whole = made[len(groups) :] if whole else self.evaluations
         self.iterations = 0
         self._work = 0.0  # of the current assembly, in multiplications
-        self._gave_up = False  # whether the last assembly gave up
+        self._is_decided = True  # whether the last assembly closed the loops or ended all descents
         self.tolerance = checked_tolerance(tolerance)
         self.limits = chosen_limits(robot, limits)
 
@@ -225,8 +226,8 @@ class Assembler:
         return end if all(error <= _WELL_CLOSED for error in errors) else None
 
     def _why_open(self, at_limits: Sequence[JointAtLimit]) -> AssemblyReason:
-        if self._gave_up:
-            return "given up"
+        if not self._is_decided:
+            return "not decided"
         return "joint limits" if at_limits else "not closed"
 
     @np.errstate(over="ignore", invalid="ignore")  # lengths such as 1e200 m overflow and never close
@@ -266,7 +267,8 @@ class Assembler:
                     coordinates = self.evaluations[index].group.coordinates
                     best[coordinates] = end[coordinates]
         still_open = [index for index, error in enumerate(errors) if not error <= CLOSED]
-        self._gave_up = bool(still_open) and not any(tried[index] for index in still_open)
+        stopped = self._work > _MOST_WORK or not any(tried[index] for index in still_open)
+        self._is_decided = not (still_open and stopped)
         return best, errors
 
     def moved(self, q: Vector, going: Sequence[Evaluation], steps: Sequence[Vector]) -> Vector:

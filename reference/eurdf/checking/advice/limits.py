@@ -39,7 +39,7 @@ def advise_on_limits(description: Described, robot: Robot, q: Vector, diagnostic
     tried = []
     for q0 in (None, q, _middle(robot, q)):
         tried.append(assemble(robot, q0, limits=True))
-        if tried[-1].closes or tried[-1].reason == "given up":
+        if tried[-1].closes or tried[-1].reason == "not decided":
             return
     within = min(tried, key=lambda found: found.residual)
     near = assemble(robot, within.q)
