@@ -6,7 +6,17 @@ import argparse
 import sys
 from collections.abc import Callable
 
-from benchmarks import assembly, check, conformance, growth, load, loops
+from benchmarks import (
+    assembly,
+    check,
+    conformance,
+    derivatives,
+    forward_kinematics,
+    growth,
+    inverse_kinematics,
+    load,
+    loops,
+)
 
 MEASUREMENTS: dict[str, Callable[[], None]] = {
     "load": load.main,
@@ -14,6 +24,9 @@ MEASUREMENTS: dict[str, Callable[[], None]] = {
     "check": check.main,
     "assembly": assembly.main,
     "loops": loops.main,
+    "forward_kinematics": forward_kinematics.main,
+    "inverse_kinematics": inverse_kinematics.main,
+    "derivatives": derivatives.main,
     "conformance": conformance.main,
 }
 
@@ -28,7 +41,7 @@ def main() -> int:
         prog="python -m benchmarks",
         description="Measure, as ratios to a named peer in the same run.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog="\n".join(f"{name:12}{_first_line(run)}" for name, run in MEASUREMENTS.items()),
+        epilog="\n".join(f"{name:20}{_first_line(run)}" for name, run in MEASUREMENTS.items()),
     )
     parser.add_argument("names", nargs="*", choices=[*MEASUREMENTS, []], help="which to run; all by default")
     for name in parser.parse_args().names or MEASUREMENTS:

@@ -93,16 +93,18 @@ class Descent:
 
 def _within(A: Matrix, b: Vector, damping: float, down: Vector, up: Vector) -> Vector:
     """A damped step within the limits: joints that would exceed a limit stay at it, and the others compensate."""
-    step = np.zeros(len(down))
+    step = _damped(A, b, damping)
+    if ((step >= np.maximum(down, -1.0)) & (step <= np.minimum(up, 1.0))).all():
+        return step
     free = np.ones(len(down), dtype=bool)
     while True:
-        step[free] = _damped(A[:, free], b, damping)
         blocked = free & (((step < 0.0) & (down == 0.0)) | ((step > 0.0) & (up == 0.0)))
         if not blocked.any():
             break
         step[blocked] = 0.0
         free &= ~blocked
-    return np.clip(step / float(np.abs(step).max(initial=1.0)), down, up)
+        step[free] = _damped(A[:, free], b, damping)
+    return np.minimum(np.maximum(step / float(np.abs(step).max(initial=1.0)), down), up)
 
 
 def _damped(A: Matrix, b: Vector, damping: float) -> Vector:

@@ -191,6 +191,9 @@ class _Search:
         self.limits = assembler.limits
         self.velocities = np.arange(self.nv)
         self._oMf: Sequence[Any] = ()
+        poses = [isinstance(target, SE3) for target in targets.values()]
+        self._all_poses = all(poses)
+        self._used = np.repeat([[True, pose] for pose in poses], 3) if poses else np.empty(0, bool)
         self._begun: list[Vector] = []  # where descents began
         # Of E Z, at the configuration farthest from singular.
         self.motions, self.rank, self.smallest = self.nv, 0, 0.0
@@ -201,8 +204,9 @@ class _Search:
             if not any(found.is_open for found in openings):
                 return InverseKinematics(q, True, self._errors(q), openings, 0)
         q, opened = self._closed(self._clipped(q), 20)
-        best, error = q, self._error(q)
-        if opened is None:
+        if opened is not None:
+            best, error = q, self._error(q)
+        else:
             best, error = self._descend(q)
             random = np.random.default_rng(0)
             for attempt in range(restarts):
@@ -216,7 +220,8 @@ class _Search:
                 end, reached = self._descend(beginning)
                 if reached @ reached < error @ error:
                     best, error = end, reached
-            best, error = self._descend(best, _IDLE_AT_LAST)
+            if not self._reached(error):
+                best, error = self._descend(best, _IDLE_AT_LAST)
         reason: InverseKinematicsReason | None = None
         at_limits: tuple[JointAtLimit, ...] = ()
         if opened is not None:
@@ -389,16 +394,15 @@ class _Search:
     def _jacobian(self) -> Matrix:
         """Derivative of the errors by v, where they were last computed."""
         placements = self._oMf
-        rows = np.zeros((len(placements), 6, 6))
-        rows[:, :3] = velocity_of_origin(origins(placements))
-        rows[:, 3:, 3:] = np.eye(3)
-        in_world = self.frames.jacobian(rows, range(len(placements))).reshape(len(placements), 6, self.nv)
-        parts = [np.empty((0, self.nv))]
-        for target, oMf, J in zip(self.targets.values(), placements, in_world, strict=True):
-            parts.append(J[:3] / self.spaces.length)
+        k = len(placements)
+        rows = np.zeros((k, 6, 6))
+        rows[:, :3] = velocity_of_origin(origins(placements)) / self.spaces.length
+        for row, target, oMf in zip(rows, self.targets.values(), placements, strict=True):
             if isinstance(target, SE3):
-                parts.append(log3_derivative(target.rotation.T @ oMf.rotation) @ oMf.rotation.T @ J[3:])
-        return np.concatenate(parts)
+                R = oMf.rotation
+                row[3:, 3:] = log3_derivative(target.rotation.T @ R) @ R.T
+        J = self.frames.jacobian(rows, range(k))
+        return J if self._all_poses else J[self._used]
 
     def _reached(self, e: Vector) -> bool:
         """Whether every frame is at its target within the tolerance, m and rad."""

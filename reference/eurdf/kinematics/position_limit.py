@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from eurdf.kinematics.array import Indices, Vector
+from eurdf.kinematics.array import Indices, Mask, Vector
 from eurdf.kinematics.derived import derived
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ class JointAtLimit:
         return f"'{self.joint}' ({self.side} limit {self.limit:.6g})"
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class PositionLimits:
     """Limits of the coordinates that are angles or lengths, by the velocity that drives them.
 
@@ -56,12 +57,17 @@ class PositionLimits:
     lower: Vector
     upper: Vector
 
+    @cached_property
+    def _bounded(self) -> Mask:
+        """Which velocities (nv,) have a limit."""
+        return np.isfinite(self.lower) | np.isfinite(self.upper)
+
     def clip(self, q: Vector, velocities: Indices) -> Vector:
         """The configuration with the coordinates that the given velocities drive clipped to their limits."""
         within = np.array(q)
-        bounded = velocities[np.isfinite(self.lower[velocities]) | np.isfinite(self.upper[velocities])]
+        bounded = velocities[self._bounded[velocities]]
         coordinates = self.coordinates[bounded]
-        within[coordinates] = np.clip(q[coordinates], self.lower[bounded], self.upper[bounded])
+        within[coordinates] = np.minimum(np.maximum(q[coordinates], self.lower[bounded]), self.upper[bounded])
         return within
 
     def room(self, q: Vector, velocities: Indices) -> tuple[Vector, Vector]:
