@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import zip_longest
 from typing import TYPE_CHECKING
 
+from eurdf.checking.advice.hinges import LikelyHinge, likely_hinge
 from eurdf.checking.advice.passive import PassiveMotions
 from eurdf.diagnostics import quoted
 from eurdf.kinematics.analysis import Analysis, LoopAnalysis, analyze
@@ -62,12 +63,18 @@ def advise_on_actuation(description: Described, robot: Robot, q: Vector, diagnos
     dependent = [loop for loop in analysis.loops if loop.dependent_actuators]
     if dependent:
         for loop, locking in zip(dependent, _locking(robot, analysis.q, dependent), strict=True):
-            _report_dependent(description, robot, loop, locking, diagnostics)
+            hinge = None if locking else likely_hinge(robot, analysis.q, loop, _frees(robot, loop))
+            _report_dependent(description, robot, loop, locking, hinge, diagnostics)
     _report_uncontrolled(description, robot, analysis, diagnostics)
 
 
 def _report_dependent(
-    description: Described, robot: Robot, loop: LoopAnalysis, locking: Sequence[str], diagnostics: Diagnostics
+    description: Described,
+    robot: Robot,
+    loop: LoopAnalysis,
+    locking: Sequence[str],
+    hinge: LikelyHinge | None,
+    diagnostics: Diagnostics,
 ) -> None:
     """Report the dependent actuators of a group of loops, and the closures whose orientation locks them, if found."""
     dependent = [name for together in loop.dependent_actuators for name in together]
@@ -84,6 +91,9 @@ def _report_dependent(
             f"type 3d for {_counted('closure', locking)} frees the actuators; use it for a ball joint, or for a pin "
             "of a planar loop"
         )
+    elif hinge is not None:
+        place = description.place_of_constraint(hinge.closure)
+        hint = f"if closure '{hinge.closure}' is a pin, {hinge} frees the actuators"
     else:
         place = _place_of_last_actuator(description, dependent)
         hint = f"list only actuators that can move{'' if locked else ' independently'}, or correct the closures"
@@ -124,6 +134,26 @@ def _locking(robot: Robot, q: Vector, loops: Sequence[LoopAnalysis]) -> list[tup
     return found
 
 
+def _frees(robot: Robot, loop: LoopAnalysis) -> Callable[[Robot, LoopAnalysis], bool]:
+    """Whether a group with another closure has independent actuators, and no more motions without one."""
+    most = len(PassiveMotions(robot).without_spins(loop))
+
+    def frees(trial: Robot, found: LoopAnalysis) -> bool:
+        return not found.dependent_actuators and len(PassiveMotions(trial).without_spins(found)) <= most
+
+    return frees
+
+
+def _controls(robot: Robot, loop: LoopAnalysis) -> Callable[[Robot, LoopAnalysis], bool]:
+    """Whether a group with another closure has the same controlled motions, and fewer without an actuator."""
+    least = len(PassiveMotions(robot).without_spins(loop))
+
+    def controls(trial: Robot, found: LoopAnalysis) -> bool:
+        return found.controlled == loop.controlled and len(PassiveMotions(trial).without_spins(found)) < least
+
+    return controls
+
+
 def _trials(names: Sequence[str]) -> list[tuple[str, ...]]:
     """Each name alone, where they are not many, then all together."""
     alone: list[tuple[str, ...]] = [(name,) for name in names] if len(names) <= _MOST_TRIED else []
@@ -141,12 +171,19 @@ def _report_uncontrolled(description: Described, robot: Robot, analysis: Analysi
     if motions:
         count = len(motions)
         moved = list(dict.fromkeys(quoted(motion.joints, _NAMES_LISTED) for motion in motions))
+        hint = (
+            "actuate a joint of each motion, add the missing closure, or use type 6d if it also fixes the orientation"
+        )
+        loose = (loop for loop in analysis.loops if loop.actuated and passive.without_spins(loop))
+        hinges = (likely_hinge(robot, analysis.q, loop, _controls(robot, loop)) for loop in loose)
+        if (hinge := next(filter(None, hinges), None)) is not None:
+            hint = f"if closure '{hinge.closure}' is a pin, {hinge} leaves fewer; else {hint}"
         shown = "; ".join(moved[:_MOTIONS_LISTED]) + ("; ..." if len(moved) > _MOTIONS_LISTED else "")
         diagnostics.report(
             "x-uncontrolled-motion",
             f"{count} {'motion remains' if count == 1 else 'motions remain'} when every actuator is held: {shown}",
             _place_of_key(description, _actuators_key(robot.mechanism)),
-            "actuate a joint of each motion, add the missing closure, or use type 6d if it also fixes the orientation",
+            hint,
         )
 
 
