@@ -16,7 +16,9 @@ Document = dict[str, Any]
 
 def document(mechanism: Mechanism, version: Version) -> Document:
     """The description. One of version 1 is of a mechanism that version 1 can say."""
-    return version1(mechanism) if version == "1" else version2(mechanism)
+    if version == "1":
+        return version1(mechanism)
+    return version2(mechanism) | ({"extended_urdf": "2.1"} if version == "2.1" else {})
 
 
 def version2(mechanism: Mechanism) -> Document:
@@ -66,7 +68,7 @@ def names1(mechanism: Mechanism, joint: str) -> list[str]:
 
 def configuration(mechanism: Mechanism, stated: Configuration, version: Version) -> Configuration:
     """A configuration of the mechanism, in the joints of a version."""
-    if version == "2":
+    if version != "1":
         return stated
     found: Configuration = {}
     for joint, q in stated.items():

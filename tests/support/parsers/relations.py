@@ -184,6 +184,12 @@ class Where(WrongParser):
         return off(values) if re.search(self.words, self.description + self.urdf) else values
 
 
+class OffWhereSprung(Where):
+    """Lets springs change where things are, and their inertia."""
+
+    words = "stiffness"
+
+
 class OffWhereLocked(Where):
     """Does not lock, quite."""
 
