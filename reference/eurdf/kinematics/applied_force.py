@@ -68,7 +68,11 @@ class AppliedForce:
 
     def total(self, q: Vector, v: Vector, u: Vector | None = None, tau: Vector | None = None) -> Vector:
         """The same with that of the springs."""
-        force, springs = self.at(q, v, u, tau), self._tree.springs
+        return self.with_springs(q, self.at(q, v, u, tau))
+
+    def with_springs(self, q: Vector, force: Vector) -> Vector:
+        """A generalized force (nv,) plus that of the springs at q (nq,)."""
+        springs = self._tree.springs
         return force + springs.force(q, len(force)) if len(springs) else force
 
     def _at_frames(self, frames: FramePairs, forces: Matrix, q: Vector) -> Vector:

@@ -1,4 +1,4 @@
-"""The acceleration of the closed mechanism: by the tree's own solver where it is beyond doubt, else by elimination."""
+"""The acceleration of the closed mechanism: by the tree's own solver if that is beyond doubt, else by elimination."""
 
 from __future__ import annotations
 
@@ -6,12 +6,13 @@ import math
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from eurdf.kinematics.array import Vector
+from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.equation_of_motion import Acceleration, EquationOfMotion
 from eurdf.kinematics.finite import finite
 from eurdf.kinematics.independence import Independence, norm
 from eurdf.kinematics.loop import find_loops
+from eurdf.kinematics.residual import residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.kinematics.tree_kinematics import ConstrainedDynamics, ConstrainedMotion
 from eurdf.pinocchio.constrained_dynamics import StatedGains, build_constrained_dynamics
@@ -41,7 +42,8 @@ class ForwardSolver:
         self._solver: ConstrainedDynamics | None = build_constrained_dynamics(robot)
         self.gains = StatedGains(robot)
         self.rows = tuple(loop.rows for loop in find_loops(robot))
-        self._independence = Independence(derived(robot, TangentSpaces).dimensionless)
+        spaces = derived(robot, TangentSpaces)
+        self._independence = Independence(spaces.row_scale, spaces.scale)
 
     @cached_property
     def data(self) -> Any:
@@ -78,28 +80,38 @@ class ForwardSolver:
         data = self.data if data is None else data
         if self._solver is not None:
             found = self._solver.solve(q, v, force, gains, data)
-            if self._is_beyond_doubt(found, q, v, force, data, nearly_closed):
-                return Acceleration(found.a, -found.on_a)
+            on_a = self._forces_beyond_doubt(found, q, v, force, data, nearly_closed)
+            if on_a is not None:
+                return Acceleration(found.a, -on_a)
         solution = EquationOfMotion(robot, q, v, data).eliminate(force, gains)
         finite("the acceleration", *solution)
         return solution
 
-    def _is_beyond_doubt(
+    def closures(self, robot: Robot, q: Vector) -> tuple[Vector, Matrix]:
+        """The residual (nc,) at q (nq,), and K (nc, nv), which is its derivative where the closures are closed."""
+        if self._solver is not None:
+            return self._solver.closures(q, self.data)
+        return residual_and_jacobian(robot, q)
+
+    def _forces_beyond_doubt(
         self, found: ConstrainedMotion, q: Vector, v: Vector, force: Vector, data: Any, nearly_closed: bool
-    ) -> bool:
-        """Whether the constraints hold, their rows are independent, and the solution satisfies both equations."""
+    ) -> Vector | None:
+        """The forces on bodies A (nc,) with the least norm.
+
+        They are None unless the constraints hold, the rank of K is certain, and the solution satisfies both equations.
+        """
         a, J, on_a = found.a, found.J, found.on_a
         if not (nearly_closed or found.closed_to(CLOSED, CLOSED * (1.0 + norm(v)))):
-            return False
-        if not self._independence.is_shown(J):
-            return False
+            return None
         missed = norm(J @ a - found.target)
         if not (_is_small(missed, norm(found.target)) or _is_small(missed, norm(J.ravel()) * norm(a))):
-            return False
+            return None
         carried = on_a @ J
         wrong = norm(self._tree.inverse_dynamics(q, v, a, data) - force - carried)
         # The bias last: it is rarely needed.
-        return _is_small(wrong, norm(carried) + norm(force)) or _is_small(wrong, norm(found.bias))
+        if not (_is_small(wrong, norm(carried) + norm(force)) or _is_small(wrong, norm(found.bias))):
+            return None
+        return self._independence.least_forces(J, on_a)
 
 
 def _is_small(error: float, terms: float) -> bool:

@@ -1,4 +1,4 @@
-"""Whether the rows of K are independent beyond doubt, without a singular value decomposition."""
+"""Which rows of K are independent beyond doubt."""
 
 from __future__ import annotations
 
@@ -7,12 +7,16 @@ from typing import Any
 
 import numpy as np
 
-from eurdf.kinematics.array import Matrix
+from eurdf.kinematics.array import Matrix, Vector
 
 #: Up to this condition number of the dimensionless K Kᵀ, in Frobenius' norm, the rows of K are independent beyond
 #: doubt. The smallest singular value of K is then at least 1e-3 of the largest one, and
 #: `eurdf.kinematics.rank.numerical_rank` counts all values if none is below 3e-5 of it.
 INDEPENDENT = 1e6
+
+#: Singular values of the dimensionless K below this, relative to the largest one, are zero beyond doubt, as those of
+#: redundant rows are. If each is zero or at least 1e-3 of the largest one, `numerical_rank` counts the latter.
+_ZERO = 1e-12
 
 
 class Independence:
@@ -23,9 +27,10 @@ class Independence:
     is found does not depend on what is kept.
     """
 
-    def __init__(self, scale: Matrix) -> None:
-        """``scale`` (nc, nv) makes K dimensionless."""
-        self._scale = scale
+    def __init__(self, row_scale: Vector, velocity_scale: Vector) -> None:
+        """Take the factors (nc,) of the rows and (nv,) of the columns that make K dimensionless."""
+        self._row_scale = row_scale
+        scale = self._scale = row_scale[:, None] * velocity_scale
         self._largest_scale = float(scale.max(initial=0.0))
         # A matrix K, the norm of its dimensionless A, and a bound of the smallest singular value of A from below.
         self._kept: tuple[Matrix, float, float] | None = None
@@ -48,6 +53,24 @@ class Independence:
             return False
         self._kept = np.array(K), norm(A.ravel()), 1.0 / math.sqrt(inverse)
         return True
+
+    def least_forces(self, K: Matrix, lambdas: Vector) -> Vector | None:
+        """The λ (nc,) of least norm, in units of the characteristic length, with the same Kᵀ λ.
+
+        They are None if the rank of K (nc, nv) is in doubt.
+        """
+        if len(K) <= K.shape[1] and self.is_shown(K):
+            return lambdas
+        try:
+            left, values, _ = np.linalg.svd(K * self._scale, full_matrices=False)
+        except np.linalg.LinAlgError:
+            return None
+        largest = float(values.max(initial=0.0))
+        rank = int(np.count_nonzero(values > _ZERO * largest))
+        if not 0.0 < largest < math.inf or values[rank - 1] ** 2 * INDEPENDENT < largest**2:
+            return None
+        basis = left[:, :rank]
+        return np.asarray(self._row_scale * (basis @ (basis.T @ (lambdas / self._row_scale))))
 
 
 def norm(values: Any) -> float:

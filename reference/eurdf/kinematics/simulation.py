@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import math
 import warnings
-from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from eurdf.kinematics.applied_force import AppliedForce, External
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import assemble, start
-from eurdf.kinematics.dynamics import forward_dynamics
-from eurdf.kinematics.exceptions import NotClosable, SimulationDiverged, StepTooLongWarning
+from eurdf.kinematics.derived import borrowed, derived
+from eurdf.kinematics.exceptions import NotClosable, NumericalOverflow, SimulationDiverged, StepTooLongWarning
 from eurdf.kinematics.finite import overflow_refused
-from eurdf.kinematics.residual import residual_and_jacobian
+from eurdf.kinematics.forward_solver import ForwardSolver
+from eurdf.kinematics.independence import norm
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.pinocchio.arguments import checked_array
 
@@ -30,6 +32,9 @@ _FASTEST = 1e9
 
 # Energy error, relative to the energy exchanged, above which the step is too long, and that of the step suggested.
 _TOO_LONG, _SHORT_ENOUGH = 1e-2, 1e-3
+
+# A residual of at most this, m and rad, is rounding.
+_CLOSED = 1e-14
 
 # Errors below this, relative to the largest energy, are rounding.
 _ROUNDING = 1e-9
@@ -108,8 +113,7 @@ def simulate(
     """
     if not (step > 0.0 and duration >= 0.0 and np.isfinite(duration / step)):
         raise ValueError("duration must be at least 0 s, and step above 0 s")
-    tree, data, spaces = robot.tree, robot.tree.memory(), TangentSpaces(robot)
-    applied = AppliedForce(robot, external, dissipation)
+    tree = robot.tree
     count = round(duration / step)
     times: Vector = np.linspace(0.0, count * step, count + 1)
     qs, vs = np.empty((count + 1, tree.nq)), np.empty((count + 1, tree.nv))
@@ -117,50 +121,94 @@ def simulate(
     assembly = assemble(robot, start(robot, q, "q"))
     if not assembly.closes:
         raise NotClosable("the simulation cannot start from an open configuration", assembly.open, assembly.q)
-
-    def rates(t: float, begin: Vector, x: Vector, v: Vector) -> tuple[Vector, Vector, float]:
-        q = tree.integrate(begin, x)
-        if not (np.abs(v).max(initial=0.0) < _FASTEST and np.isfinite(q).all()):
-            raise SimulationDiverged(t, step)
-        u = None if control is None else control(t, q, v)
-        a = forward_dynamics(robot, q, v, u, external=external, dissipation=dissipation, data=data).a
-        power = float(applied.at(q, v, u) @ v)
-        return np.asarray(np.linalg.solve(tree.integrate_derivative(begin, x), v), dtype=np.float64), a, power
-
-    @overflow_refused("the configuration")
-    def closed(t: float, q: Vector, v: Vector, newton_steps: int) -> tuple[Vector, Vector]:
-        for _ in range(newton_steps):
-            r, K = residual_and_jacobian(robot, q)
-            q = tree.normalized(tree.integrate(q, -spaces.at(K).inverse @ r))
-            if not np.isfinite(q).all():
-                raise SimulationDiverged(t, step)
-        _, K = residual_and_jacobian(robot, q)
-        return q, v - spaces.at(K).inverse @ (K @ v)
-
-    def energies(q: Vector, v: Vector) -> tuple[float, float]:
-        with np.errstate(over="ignore", invalid="ignore"):  # energies beyond all numbers are not warned of
-            momentum = tree.mass_times(q, v[:, None], data)[:, 0]
-            return 0.5 * float(v @ momentum), tree.potential_energy(q, data)
-
-    initial = checked_array("v", np.zeros(tree.nv) if v is None else v, (tree.nv,))
-    qs[0], vs[0] = closed(0.0, assembly.q, initial, 0)
-    kinetic[0], potential[0] = energies(qs[0], vs[0])
-    for n in range(count):
-        t, q, v, still = float(times[n]), qs[n], vs[n], np.zeros(tree.nv)
-        x1, v1, p1 = rates(t, q, still, v)
-        x2, v2, p2 = rates(t + step / 2.0, q, step / 2.0 * x1, v + step / 2.0 * v1)
-        x3, v3, p3 = rates(t + step / 2.0, q, step / 2.0 * x2, v + step / 2.0 * v2)
-        x4, v4, p4 = rates(t + step, q, step * x3, v + step * v3)
-        end = tree.integrate(q, step / 6.0 * (x1 + 2.0 * x2 + 2.0 * x3 + x4))
-        v = v + step / 6.0 * (v1 + 2.0 * v2 + 2.0 * v3 + v4)
-        if not (np.isfinite(end).all() and np.isfinite(v).all()):
-            raise SimulationDiverged(float(times[n + 1]), step)
-        qs[n + 1], vs[n + 1] = closed(float(times[n + 1]), np.asarray(end), v, 2)
-        kinetic[n + 1], potential[n + 1] = energies(qs[n + 1], vs[n + 1])
-        work[n + 1] = work[n] + step / 6.0 * (p1 + 2.0 * p2 + 2.0 * p3 + p4)
+    callers = np.geterr()
+    with borrowed(robot, ForwardSolver) as solver, np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        motion = _Motion(robot, solver, _heeding(control, callers), AppliedForce(robot, external, dissipation), step)
+        initial = checked_array("v", np.zeros(tree.nv) if v is None else v, (tree.nv,))
+        qs[0], vs[0] = motion.closed(0.0, assembly.q, initial, 0)
+        kinetic[0], potential[0] = motion.energies(qs[0], vs[0])
+        for n in range(count):
+            qs[n + 1], vs[n + 1], gained = motion.advanced(float(times[n]), qs[n], vs[n])
+            work[n + 1] = work[n] + gained
+            kinetic[n + 1], potential[n + 1] = motion.energies(qs[n + 1], vs[n + 1])
     simulation = Simulation(times, qs, vs, kinetic, potential, work)
     _warn_of_long_step(simulation, step)
     return simulation
+
+
+class _Motion:
+    """The motion of a robot, step by step."""
+
+    def __init__(
+        self, robot: Robot, solver: ForwardSolver, control: Control | None, applied: AppliedForce, step: float
+    ) -> None:
+        self._robot, self._tree, self._solver = robot, robot.tree, solver
+        self._control, self._applied, self._step = control, applied, step
+        self._gains = solver.gains.now()
+        self._spaces = derived(robot, TangentSpaces)
+
+    def advanced(self, t: float, q: Vector, v: Vector) -> tuple[Vector, Vector, float]:
+        """Configuration and velocity after a step from time t, and the work done meanwhile."""
+        step, tree = self._step, self._tree
+        x1, a1, p1 = self._rates(t, q, q, v, False)
+        v2 = v + step / 2.0 * a1
+        x2, a2, p2 = self._rates(t + step / 2.0, q, tree.integrate(q, step / 2.0 * x1), v2, True)
+        v3 = v + step / 2.0 * a2
+        x3, a3, p3 = self._rates(t + step / 2.0, q, tree.integrate(q, step / 2.0 * x2), v3, True)
+        v4 = v + step * a3
+        x4, a4, p4 = self._rates(t + step, q, tree.integrate(q, step * x3), v4, True)
+        end = tree.integrate(q, step / 6.0 * (x1 + 2.0 * (x2 + x3) + x4))
+        v = v + step / 6.0 * (a1 + 2.0 * (a2 + a3) + a4)
+        if not (norm(end) < math.inf and norm(v) < math.inf):
+            raise SimulationDiverged(t + step, step)
+        return *self.closed(t + step, end, v, 2), step / 6.0 * (p1 + 2.0 * (p2 + p3) + p4)
+
+    def _rates(self, t: float, begin: Vector, q: Vector, v: Vector, moved: bool) -> tuple[Vector, Vector, float]:
+        """Rates of x and v at q = begin ⊕ x, and the power of what is applied; x is 0 unless ``moved``."""
+        if not (norm(v) < _FASTEST and norm(q) < math.inf):
+            raise SimulationDiverged(t, self._step)
+        u = None if self._control is None else self._control(t, q, v)
+        applied = self._applied.at(q, v, u)
+        force = self._applied.with_springs(q, applied)
+        try:
+            # Between the steps, any smooth drift will do that equals K̇ v where the loops are closed.
+            a, _ = self._solver.solve(self._robot, q, v, force, self._gains, nearly_closed=True)
+        except np.linalg.LinAlgError:
+            raise NumericalOverflow("the acceleration") from None
+        # The derivative of x = q ⊖ begin is the inverse of that of begin ⊕ x.
+        rate = self._tree.difference_derivative(begin, q) @ v if moved else v
+        return rate, a, float(applied @ v)
+
+    @overflow_refused("the configuration")
+    def closed(self, t: float, q: Vector, v: Vector, newton_steps: int) -> tuple[Vector, Vector]:
+        """The nearest closed q after at most so many Newton steps, and the nearest v that keeps it closed."""
+        tree = self._tree
+        r, K = self._solver.closures(self._robot, q)
+        for _ in range(newton_steps):
+            if norm(r) <= _CLOSED:
+                break
+            q = tree.normalized(tree.integrate(q, -self._spaces.least(K, r)))
+            if not norm(q) < math.inf:
+                raise SimulationDiverged(t, self._step)
+            r, K = self._solver.closures(self._robot, q)
+        return q, v - self._spaces.least(K, K @ v)
+
+    def energies(self, q: Vector, v: Vector) -> tuple[float, float]:
+        """Kinetic and potential energy, J."""
+        data = self._solver.data
+        return self._tree.kinetic_energy(q, v, data), self._tree.potential_energy(q, data)
+
+
+def _heeding(control: Control | None, errors: Mapping[str, Any]) -> Control | None:
+    """The control, with the caller's treatment of NumPy's floating-point errors."""
+    if control is None:
+        return None
+
+    def heeding(t: float, q: Vector, v: Vector) -> Vector:
+        with np.errstate(**errors):
+            return control(t, q, v)
+
+    return heeding
 
 
 def _warn_of_long_step(simulation: Simulation, step: float) -> None:

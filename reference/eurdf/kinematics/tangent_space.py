@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,7 +12,7 @@ import numpy as np
 
 from eurdf.kinematics.array import Indices, Matrix, Vector
 from eurdf.kinematics.finite import finite
-from eurdf.kinematics.least_solution import CERTAIN
+from eurdf.kinematics.least_solution import CERTAIN, least_solution
 from eurdf.kinematics.loop import LoopGroup, independent_groups
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
@@ -85,19 +86,30 @@ class TangentSpaces:
     Attributes:
         scale: Unit (nv,) of each velocity: the characteristic length for one of a loop that only translates, else 1.
         length: Characteristic length, m.
+        row_scale: Factors (nc,) that make the rows of K dimensionless.
         dimensionless: Factors (nc, nv) that make K dimensionless.
     """
 
     def __init__(self, robot: Robot) -> None:
         self.length = characteristic_length(robot)
         self.scale = velocity_scale(robot, self.length)
-        self._row_scale = row_scale(robot, self.length)
-        self.dimensionless = self._row_scale[:, None] * self.scale
+        self.row_scale = row_scale(robot, self.length)
+        self.dimensionless = self.row_scale[:, None] * self.scale
         self._groups = [group for group in independent_groups(robot) if len(group.velocities)]
         outside = np.ones(robot.tree.nv, dtype=bool)
         for group in self._groups:
             outside[group.velocities] = False
         self._outside = np.flatnonzero(outside)
+
+    def least(self, K: Matrix, b: Vector) -> Vector:
+        """K⁺ b (nv,), as `at` has it, but without a decomposition where the rows of K (nc, nv) are independent."""
+        A = K * self.dimensionless
+        norm = math.sqrt(float(np.vdot(A, A)))
+        if math.isfinite(norm):
+            solution = least_solution(A, self.row_scale * b, norm)
+            if solution is not None:
+                return self.scale * solution
+        return self.at(K).inverse @ b
 
     def at(self, K: Matrix) -> TangentSpace:
         """The tangent space for the constraint Jacobian K (nc, nv).
@@ -108,7 +120,7 @@ class TangentSpaces:
         A = K * self.dimensionless
         finite("the constraint Jacobian", A)
         blocks = [self._block(group, A[group.rows[:, None], group.velocities]) for group in self._groups]
-        return TangentSpace(blocks, self.scale, self._row_scale, self._outside)
+        return TangentSpace(blocks, self.scale, self.row_scale, self._outside)
 
     def _block(self, group: LoopGroup, A: Matrix) -> _Block:
         """The part of a group; the singular values decide on its rank where that is in doubt."""

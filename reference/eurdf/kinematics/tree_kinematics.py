@@ -220,6 +220,9 @@ class TreeKinematics(Protocol):
     def mass_times(self, q: Vector, motions: Matrix, data: Any) -> Matrix:
         """The mass matrix at q (nq,), the armature included, times the columns (nv, n) of accelerations."""
 
+    def kinetic_energy(self, q: Vector, v: Vector, data: Any) -> float:
+        """The kinetic energy at q (nq,) and v (nv,), J, that of the armature included."""
+
     def potential_energy(self, q: Vector, data: Any) -> float:
         """The potential energy of gravity and springs at q (nq,), J."""
 
@@ -273,3 +276,6 @@ class ConstrainedDynamics(Protocol):
             gains: Baumgarte gains of each constraint: kp, 1/s², and kd, 1/s.
             data: Memory of the whole tree.
         """
+
+    def closures(self, q: Vector, data: Any) -> tuple[Vector, Matrix]:
+        """The residual (nc,) at q (nq,), and K (nc, nv), which is its derivative where the closures are closed."""

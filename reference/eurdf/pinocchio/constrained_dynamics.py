@@ -66,6 +66,10 @@ class ConstrainedDynamics:
             self._models.append(constraint_model)
             self._datas.append(constraint_model.createData())
         self._each = list(self._datas)
+        self._pairs = [
+            (constraint_model, data, constraint_model.type == pin.ContactType.CONTACT_3D)
+            for constraint_model, data in zip(self._models, self._datas, strict=True)
+        ]
         self._settings = pin.ProximalSettings(_ACCURACY, _ACCURACY, _MU, _MOST_STEPS)
         self._gains: list[Gains] = []
 
@@ -83,6 +87,17 @@ class ConstrainedDynamics:
         if model.nv == 1:
             J = J.reshape(-1, 1)
         return ConstrainedMotion(a, data.lambda_c, J, data.primal_rhs_contact, data, self._each)
+
+    def closures(self, q: Vector, data: pin.Data) -> tuple[Vector, Matrix]:
+        """See `eurdf.kinematics.tree_kinematics.ConstrainedDynamics`."""
+        model = self._model
+        pin.computeJointJacobians(model, data, q)
+        parts = []
+        for constraint_model, found, is_point in self._pairs:
+            constraint_model.calc(model, data, found)
+            parts.append(found.c1Mc2.translation if is_point else pin.log6(found.c1Mc2).vector)
+        J = pin.getConstraintsJacobian(model, data, self._models, self._datas)
+        return np.concatenate(parts), -J.reshape(-1, model.nv)
 
 
 def build_constrained_dynamics(robot: Robot) -> ConstrainedDynamics | None:

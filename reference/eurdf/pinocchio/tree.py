@@ -231,6 +231,15 @@ class PinocchioTree:
         columns = [self.inverse_dynamics(q, still, a, data) - gravity for a in motions.T]
         return np.array(columns).reshape(motions.T.shape).T
 
+    def kinetic_energy(self, q: Vector, v: Vector, data: pin.Data) -> float:
+        """The kinetic energy at q (nq,) and v (nv,), J, that of the armature included.
+
+        `pin.computeKineticEnergy` leaves out the armature of some joints, up to Pinocchio 4.1.
+        """
+        still = np.zeros(self.nv)
+        momentum = self.inverse_dynamics(q, still, v, data) - self.inverse_dynamics(q, still, still, data)
+        return 0.5 * float(v @ momentum)
+
     def potential_energy(self, q: Vector, data: pin.Data) -> float:
         """The potential energy of gravity and springs at q (nq,), J."""
         return float(pin.computePotentialEnergy(self.model, data, q)) + self.springs.energy(q)
