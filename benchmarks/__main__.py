@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 from benchmarks import (
     assembly,
+    batch,
     check,
     conformance,
     derivatives,
@@ -27,6 +28,7 @@ MEASUREMENTS: dict[str, Callable[[], None]] = {
     "forward_kinematics": forward_kinematics.main,
     "inverse_kinematics": inverse_kinematics.main,
     "derivatives": derivatives.main,
+    "batch": batch.main,
     "conformance": conformance.main,
 }
 

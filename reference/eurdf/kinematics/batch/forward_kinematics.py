@@ -14,7 +14,8 @@ from eurdf.kinematics.batch import linear
 from eurdf.kinematics.batch.arguments import checked_rows, starts
 from eurdf.kinematics.batch.blocks import Progress, blocks
 from eurdf.kinematics.batch.descent import close
-from eurdf.kinematics.batch.problem import Group, Problem, held_groups, problem
+from eurdf.kinematics.batch.problem import Group, Problem, driving_stack, held_groups, problem
+from eurdf.kinematics.batch.stack import BatchStack
 from eurdf.kinematics.batch.tangent import SURE, following
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.residual import residual as residual_of
@@ -32,6 +33,9 @@ _LONGEST_MOTION = 0.5
 _FASTEST = 1e6
 _RESTARTS = 20
 
+# Numbers of the arrays in which singular values are computed.
+_MOST_NUMBERS = 2**22
+
 
 @dataclass(frozen=True, eq=False)
 class Driven:
@@ -40,6 +44,7 @@ class Driven:
     Attributes:
         problem: The robot.
         groups: Its loops, with the given joints held.
+        driving: The constraints of each of these groups, by the given velocities that move their joints.
         coordinates: Indices in q of the given coordinates.
         velocities: Indices in v of the given velocities.
         tolerance: Bound of each row of the residual for closed loops, m or rad.
@@ -47,6 +52,7 @@ class Driven:
 
     problem: Problem
     groups: tuple[Group, ...]
+    driving: tuple[BatchStack, ...]
     coordinates: Indices
     velocities: Indices
     tolerance: float
@@ -121,7 +127,8 @@ def forward_kinematics(
     values = checked_rows("values", values, len(actuation.idx_q))
     q, common = starts(robot, q0, len(values))
     held = held_groups(robot, actuation.idx_v.tolist())
-    driven = Driven(model, held, actuation.idx_q, actuation.idx_v, checked_tolerance(tolerance))
+    driving = tuple(driving_stack(robot, group, actuation.idx_v) for group in held)
+    driven = Driven(model, held, driving, actuation.idx_q, actuation.idx_v, checked_tolerance(tolerance))
     _refuse_zero(driven, values)
     work = blocks(_numbers(driven), block, threads, executor, progress)
     closed = None
@@ -156,7 +163,10 @@ def _refuse_zero(driven: Driven, values: Matrix) -> None:
 
 def _numbers(driven: Driven) -> int:
     model = driven.problem
-    return model.whole.numbers + sum(group.stack.numbers for group in driven.groups) + 10 * model.tree.nq
+    groups = [group.stack.numbers for group in model.groups]
+    held = [group.stack.numbers + driving.numbers for group, driving in zip(driven.groups, driven.driving, strict=True)]
+    together = sum if model.at_once else max  # else one group after the other
+    return together([*groups, *held, 0]) + 20 * model.tree.nq
 
 
 def _close_start(driven: Driven, q: Matrix) -> tuple[Matrix, Mask]:
@@ -240,21 +250,20 @@ def _following(driven: Driven, q: Matrix, path: Matrix) -> Matrix:
 
     With the other joints p, v_p = -K_pᵀ (K_p K_pᵀ)⁻¹ K_g v_g, if K_p has full rank beyond doubt.
     """
-    at = driven.problem.whole.at(q)
-    K = driven.problem.whole.jacobian(at)
     v = np.zeros((driven.problem.tree.nv, q.shape[1]))
     v[driven.velocities] = path[driven.velocities]
-    b = linear.times(K[:, driven.velocities], path[driven.velocities])
     doubtful = np.zeros(q.shape[1], dtype=bool)
-    for group in driven.groups:
-        weights = group.row_scale[:, None]
-        A = K[np.ix_(group.rows, group.stack.velocities)] * weights[:, :, None]
-        y, pivot = linear.solve(linear.gram(A), -weights * b[group.rows])
+    for group, driving in zip(driven.groups, driven.driving, strict=True):
+        at, weights = group.stack.at(q), group.row_scale[:, None]
+        A = group.stack.jacobian(at) * weights[:, :, None]
+        b = linear.times(driving.jacobian(at), v[driving.velocities])
+        y, pivot = linear.solve(linear.gram(A), -weights * b)
         v[group.stack.velocities] = linear.times_back(A, y)
         doubtful |= ~(pivot > SURE)
     which = np.flatnonzero(doubtful)
-    if len(which):
-        v[:, which] = following(
-            driven.problem, K[:, :, which], driven.velocities, path[np.ix_(driven.velocities, which)], _FASTEST
-        )
+    part = max(1, _MOST_NUMBERS // driven.problem.whole.numbers)
+    for own in (which[first : first + part] for first in range(0, len(which), part)):
+        K = driven.problem.whole.jacobian(driven.problem.whole.at(q[:, own]))
+        given = driven.velocities
+        v[:, own] = following(driven.problem, K, given, path[np.ix_(given, own)], _FASTEST)
     return v

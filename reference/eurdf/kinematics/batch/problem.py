@@ -29,6 +29,7 @@ class Group:
     """Loops that share joints, and the velocities that close them.
 
     Attributes:
+        constraints: Indices of their constraints.
         stack: Their constraints.
         rows: Their rows in the residual of the whole robot.
         row_scale: Factors (m,) that make their rows dimensionless.
@@ -36,6 +37,7 @@ class Group:
         coordinates: Indices in q of the joints that move.
     """
 
+    constraints: tuple[int, ...]
     stack: BatchStack
     rows: Indices
     row_scale: Vector
@@ -103,6 +105,7 @@ def held_groups(robot: Robot, held: Iterable[int]) -> tuple[Group, ...]:
 def _groups(robot: Robot, tree: BatchTree, held: Iterable[int], rows: Vector, scale: Vector) -> tuple[Group, ...]:
     return tuple(
         Group(
+            group.closures,
             _stack(robot, tree, group.closures, group.velocities),
             group.rows,
             rows[group.rows],
@@ -111,6 +114,12 @@ def _groups(robot: Robot, tree: BatchTree, held: Iterable[int], rows: Vector, sc
         )
         for group in independent_groups(robot, held)
     )
+
+
+def driving_stack(robot: Robot, group: Group, given: Indices) -> BatchStack:
+    """The constraints of a group, with columns for those of the given velocities that move its joints."""
+    moving = np.intersect1d(given, group.stack.moving)
+    return _stack(robot, problem(robot).tree, group.constraints, moving)
 
 
 def _stack(robot: Robot, tree: BatchTree, constraints: Sequence[int], velocities: Indices) -> BatchStack:

@@ -134,6 +134,7 @@ class BatchStack:
         for index, constraint in enumerate(constraints):
             members.setdefault(type(constraint), []).append((index, constraint, self.m))
             self.m += constraint.rows
+        self._related = [at.idx_v for at in coordinates.values()]
         self._coupled: tuple[_Couplings, list[int], Indices] | None = None
         paired: list[tuple[ClosureKind[Any], list[int], Indices, list[tuple[Site, Site]]]] = []
         for data, found in members.items():
@@ -160,6 +161,13 @@ class BatchStack:
             _Closures(*kind, [_columns(each, moved_by, column) for each in found])
             for kind, found in zip(paired, signs, strict=True)
         ]
+
+    @property
+    def moving(self) -> Indices:
+        """Indices in v of all velocities that move joints of the constraints, also of those without a column in K."""
+        joints = [self._tree.joints[joint] for joint in self._joints]
+        own = [range(joint.idx_v, joint.idx_v + joint.motion.nv) for joint in joints]
+        return np.unique(np.array([velocity for each in own for velocity in each] + self._related, dtype=np.intp))
 
     @property
     def numbers(self) -> int:
