@@ -408,7 +408,7 @@ def with_known(verdict: Verdict, *known: tuple[str, Verdict], **options: Any) ->
             results=(of_case,),
             known_failures=KnownFailures(tuple(failures)),
             explore=given.explore,
-            explore_seed=given.explore_seed,
+            seed=given.seed,
         )
     )
 
@@ -419,7 +419,7 @@ SOUND = [
     with_known(Verdict.FAILED, (REAL.id, Verdict.CRASHED)),
     with_known(Verdict.PASSED, (REAL.id, Verdict.CRASHED)),
     with_known(Verdict.FAILED, ("closures/nobody", Verdict.FAILED), (f"{REAL.id}/accept", Verdict.FAILED)),
-    with_known(Verdict.FAILED, suite=PACKAGE, timeout=2.5, explore=3, explore_seed=9),
+    with_known(Verdict.FAILED, suite=PACKAGE, timeout=2.5, explore=3, seed=9),
     with_known(Verdict.TIMED_OUT, start_timeout=1e-05),
     issue(run(claims=ALL, results=())),
 ]

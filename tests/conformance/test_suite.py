@@ -419,7 +419,7 @@ def suite(
 ) -> tuple[int, str]:
     """Run the suite, in one process: exit code, and what it writes."""
     parser = [f"--parser=case_parser:{parser}"] if parser else []
-    argv = [*command, "-n0", "-p", "no:cacheprovider", *parser, *arguments]
+    argv = [*command, "-n0", "-p", "no:cacheprovider", "--seed=0", *parser, *arguments]
     environment = os.environ | {"PYTHONPATH": str(ROOT / "tests" / "support" / "parsers"), "COLUMNS": "200"}
     done = run_module("pytest", argv, cwd=cwd, environment=environment)
     assert "INTERNALERROR" not in done.stdout + done.stderr

@@ -1,7 +1,7 @@
 """The certificate: what a parser has come to, as one JSON value, which has a JSON Schema.
 
-Two runs of one suite on one parser give the same bytes: it holds no time but the date, and that only where it is given.
-This is so however a run is spread over processes.
+Two runs of one suite on one parser with one seed give the same bytes: it holds no time but the date, and that only
+where it is given. This is so however a run is spread over processes.
 """
 
 from __future__ import annotations
@@ -53,8 +53,8 @@ class Scope(_Part):
     """Whether it was three cases only, which certify nothing."""
     explore: Count
     """Number of further random mechanisms for each property."""
-    explore_seed: int
-    """The seed of these mechanisms; 0 if there are none."""
+    seed: int
+    """The seed of the order of the items, of the fresh cases and of further mechanisms."""
 
 
 class ClauseResult(_Part):

@@ -55,7 +55,7 @@ def issue(run: Run) -> Certificate:
             versions=run.versions,
             smoke=run.smoke,
             explore=run.explore,
-            explore_seed=run.explore_seed,
+            seed=run.seed,
         ),
         date=_date(os.environ.get("SOURCE_DATE_EPOCH")),
         certified=is_certified(run),

@@ -32,7 +32,7 @@ def show(certificate: Certificate) -> None:
     if more > 0:
         lines.append([(f"{more} more failures; --certificate DIR writes a page that shows all", "dim")])
     if certificate.scope.explore and any(failure.id.startswith("properties/") for failure in certificate.failures):
-        seed = certificate.scope.explore_seed
+        seed = certificate.scope.seed
         lines.append([(f"exploring from seed {seed} writes each failing mechanism as a case into {EXPLORED}/", "dim")])
     lines += [[("differs from the known failures: ", "red"), (visible(each), "")] for each in certificate.unexpected]
     if lines:

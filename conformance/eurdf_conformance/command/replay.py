@@ -104,7 +104,7 @@ def _otherwise(file: Path) -> str:
 def _commands(certificate: Certificate) -> Iterator[str]:
     """Command lines that people may copy, and that do not run the item."""
     scope = certificate.scope
-    setting = Setting(certificate.parser_option, explore=scope.explore, explore_seed=scope.explore_seed)
+    setting = Setting(certificate.parser_option, explore=scope.explore, seed=scope.seed)
     for failure in certificate.failures:
         if failure.verdict == Verdict.NOT_RUN and not failure.reproduce:
             continue

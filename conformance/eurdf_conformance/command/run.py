@@ -46,7 +46,7 @@ _EPILOG = ending(
 )
 
 # Options that say what a run is of; those that say how it is done.
-_OF_A_RUN = ("level", "format_version", "known_failures", "certificate", "date", "explore", "explore_seed")
+_OF_A_RUN = ("level", "format_version", "known_failures", "certificate", "date", "explore", "seed")
 _OF_ANY_RUN = ("jobs", "parser_timeout", "parser_start_timeout", "json")
 
 
@@ -75,7 +75,10 @@ def _parser() -> argparse.ArgumentParser:
         "--explore", metavar="N", type=_count, default=0, help="try N more random mechanisms for each property"
     )
     parser.add_argument(
-        "--explore-seed", metavar="SEED", type=_count, help="seed of these mechanisms (default: a new one)"
+        "--seed",
+        metavar="SEED",
+        type=_count,
+        help="seed of the order, the fresh cases and --explore (default: a new one)",
     )
     parser.add_argument("--jobs", metavar="N", type=_count, help="number of parallel processes (default: one per core)")
     parser.add_argument("--parser-timeout", metavar="S", type=_seconds, help="time limit of an answer (default: 10 s)")
@@ -104,7 +107,7 @@ def certify(argv: Sequence[str]) -> int:
             return _verify(args)
         _refuse("--parser", args, "output")
         if args.smoke:
-            _refuse("--smoke", args, "known_failures", "explore", "explore_seed")
+            _refuse("--smoke", args, "known_failures", "explore", "seed")
         if args.force and args.certificate is None:
             raise CannotRun("--force goes with --certificate, or with --compare and -o")
         if args.parser is None:
@@ -175,7 +178,7 @@ def _suite_run(args: argparse.Namespace, parser: str, certificate: Certificate |
         known_failures=args.known_failures,
         smoke=scope.smoke if scope else args.smoke,
         explore=scope.explore if scope else args.explore,
-        explore_seed=scope.explore_seed if scope else args.explore_seed,
+        seed=scope.seed if scope else args.seed,
         date=args.date,
         jobs=args.jobs,
     )

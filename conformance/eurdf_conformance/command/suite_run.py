@@ -57,8 +57,8 @@ class SuiteRun:
     known_failures: Path | None = None
     smoke: bool = False
     explore: int = 0
-    #: What is drawn by exploring; None for another seed each time.
-    explore_seed: int | None = None
+    #: What the order, the fresh cases and further mechanisms are drawn from; None for another seed each time.
+    seed: int | None = None
     #: The day that the certificate shows; None for that of SOURCE_DATE_EPOCH, or none.
     date: date | None = None
     #: Number of processes; None for as many as there are cores. Where pytest-xdist is missing there is one.
@@ -78,6 +78,9 @@ def run_suite(run: SuiteRun, progress: Progress | None = None) -> Certificate:
     """
     import pytest
 
+    from eurdf_conformance.suite.untouched import snapshot, void_text
+
+    before = snapshot()
     _greet(run)
     with tempfile.TemporaryDirectory(prefix="eurdf-certify-") as scratch:
         written = io.StringIO()
@@ -85,6 +88,8 @@ def run_suite(run: SuiteRun, progress: Progress | None = None) -> Certificate:
             code = pytest.main(_arguments(run, scratch), plugins=[_Listener(progress)] if progress else [])
         if code == pytest.ExitCode.INTERRUPTED and "KeyboardInterrupt" in written.getvalue():
             raise KeyboardInterrupt
+        if (void := void_text(before)) is not None:
+            raise CannotRunSuite(void)
         if code == pytest.ExitCode.NO_TESTS_COLLECTED:
             raise CannotRunSuite("the suite has no tests at that level for that version")
         if code not in (pytest.ExitCode.OK, pytest.ExitCode.TESTS_FAILED):
@@ -124,7 +129,7 @@ def _options(run: SuiteRun) -> Iterator[tuple[str, Any]]:
     yield "parser-start-timeout", run.start_timeout
     yield "known-failures", run.known_failures
     yield "explore", run.explore or None
-    yield "explore-seed", run.explore_seed
+    yield "seed", run.seed
 
 
 @contextlib.contextmanager

@@ -8,6 +8,7 @@ from typing import Protocol
 
 from eurdf_conformance.corpus.case import ValidCase
 from eurdf_conformance.corpus.read import CorpusCase
+from eurdf_conformance.judging.handout import Handout
 from eurdf_conformance.protocol.message import Accepted, Quantity
 from eurdf_conformance.runner.outcome import Answered, Outcome
 
@@ -32,18 +33,20 @@ class Conversation:
 
     Attributes:
         parser: The parser.
+        handout: The files that it receives.
     """
 
     def __init__(self, parser: Parser) -> None:
         self.parser = parser
-        self._files: tuple[Path, Path] | None = None
+        self.handout = Handout()
+        self._case: CorpusCase | None = None
         self._loaded: Outcome | None = None
 
     def load(self, case: CorpusCase) -> Outcome:
         """The outcome of loading a case. The parser is asked once for consecutive calls with the same case."""
-        if self._loaded is None or self._files != (case.description, case.urdf):
-            self._files = case.description, case.urdf
-            self._loaded = self.parser.load(*self._files)
+        if self._loaded is None or self._case is not case:
+            self._case = case
+            self._loaded = self.parser.load(*self.handout.files(case))
         return self._loaded
 
     def forget(self) -> None:

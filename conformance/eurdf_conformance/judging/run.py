@@ -30,8 +30,8 @@ class Run:
     smoke: bool = False
     #: Further random mechanisms tried for each property.
     explore: int = 0
-    #: The seed of these mechanisms.
-    explore_seed: int = 0
+    #: The seed of the order of the items, of the fresh cases and of further mechanisms.
+    seed: int = 0
     known_failures: KnownFailures = field(default=NONE_KNOWN)
 
     def claims(self, version: Version, level: Level) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import secrets
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -41,7 +42,6 @@ class Harness:
         self.folder = folder
         self.queries: list[tuple[Query, tuple[Path, Path]]] = []
         self._parser = parser
-        self._written = 0
         self._files: tuple[Files, tuple[Path, Path]] | None = None
         self._accepted: Accepted | None = None
 
@@ -95,7 +95,6 @@ class Harness:
 
     def _write(self, files: Files) -> tuple[Path, Path]:
         """Into a folder of their own: no parser can take one file for the one that was there before."""
-        self._written += 1
-        folder = self.folder / str(self._written)
+        folder = self.folder / secrets.token_hex(8)
         folder.mkdir()
         return files.write(folder)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 import time
 import traceback
 from collections.abc import Callable, Collection
+from pathlib import Path
 
 import pytest
 
@@ -58,6 +60,7 @@ class ItemRunner:
         ask: Callable[[], Judgement],
         case: CorpusCase | None = None,
         rather: Collection[Level] = (),
+        folder: Path | None = None,
     ) -> None:
         """Run an item, keep its result, and fail the running test unless the item passed.
 
@@ -68,6 +71,7 @@ class ItemRunner:
             ask: Runs it and returns the judgement.
             case: Its case, if any.
             rather: Levels that replace this one; if the parser claims one of them, the item is skipped.
+            folder: The folder of files for the parser other than those of a case.
         """
         started = self._started()
         claimed = tuple(Level) if started is None else started.claims.get(item.version, ())
@@ -86,6 +90,9 @@ class ItemRunner:
         seconds, in_parser = time.perf_counter() - begin, self._session.seconds_in_parser - before
         reproduce = self.options.reproduce(item)
         texts = tuple(filter(None, (judgement.reason, *map(str, judgement.differences[:_KEPT]))))
+        for given in filter(None, (self.conversation.handout.folder, folder)):
+            # Its name differs from run to run.
+            texts = tuple(re.sub(re.escape(str(given)) + "(/[0-9a-f]{16})?", item.id, text) for text in texts)
         result = Result(item, judgement.verdict, texts, reproduce, seconds, in_parser)
         self._keep(RESULT, result.to_json())
         self._tell(result, judgement, case)

@@ -43,7 +43,7 @@ class Options:
         known: Failures that are known.
         certificate: Folder to write a certificate into.
         explore: Further random mechanisms to try for each property.
-        explore_seed: The seed of these mechanisms.
+        seed: The seed of the order of the items, of the fresh cases and of further mechanisms.
         smoke: Whether to try three cases only.
     """
 
@@ -56,7 +56,7 @@ class Options:
     known: KnownFailures = NONE_KNOWN
     certificate: Path | None = None
     explore: int = 0
-    explore_seed: int = 0
+    seed: int = 0
     smoke: bool = False
 
     def wants(self, item: Item) -> bool:
@@ -65,7 +65,7 @@ class Options:
 
     def reproduce(self, item: Item) -> str:
         """The command line that runs one item alone."""
-        setting = Setting(self.parser, self.suite, self.timeout, self.start_timeout, self.explore, self.explore_seed)
+        setting = Setting(self.parser, self.suite, self.timeout, self.start_timeout, self.explore, self.seed)
         return command_line(setting, item.id, item.level)
 
 
@@ -94,7 +94,12 @@ def add_options(parser: pytest.Parser) -> None:
     group.addoption("--known-failures", type=Path, metavar="FILE", help="YAML list of {id, level, verdict, reason}")
     group.addoption("--certificate", type=named_folder, metavar="DIR", help="write a certificate into this folder")
     group.addoption("--explore", type=int, default=0, metavar="N", help="try N more random mechanisms per property")
-    group.addoption("--explore-seed", type=int, metavar="SEED", help="seed of these mechanisms (default: a new one)")
+    group.addoption(
+        "--seed",
+        type=int,
+        metavar="SEED",
+        help="seed of the order of the cases, of the fresh cases and of --explore (default: a new one)",
+    )
     # For a program that has seen already that the parser starts.
     group.addoption("--parser-starts", action="store_true", help=argparse.SUPPRESS)
     group.addoption("--smoke", action="store_true", help="test three cases per version, to check the adapter")
@@ -123,9 +128,9 @@ def read_options(config: pytest.Config) -> Options:
     explore = said("--explore", 0)
     if explore < 0:
         raise pytest.UsageError("--explore must not be negative")
-    if explore and said("--explore-seed") is None:
+    if said("--seed") is None:
         # Set in the configuration so that all workers use the same seed.
-        config.option.explore_seed = random.SystemRandom().randrange(10**9)
+        config.option.seed = random.SystemRandom().randrange(10**9)
     if said("--smoke", False) and (known is not None or explore):
         raise pytest.UsageError("--smoke cannot be combined with --known-failures or --explore")
     version = said("--format-version")
@@ -142,7 +147,7 @@ def read_options(config: pytest.Config) -> Options:
         known=failures,
         certificate=said("--certificate"),
         explore=explore,
-        explore_seed=said("--explore-seed", 0),
+        seed=said("--seed", 0),
         smoke=said("--smoke", False),
     )
 

@@ -20,12 +20,14 @@ from eurdf_conformance.corpus.read import all_cases, keep_files_in
 from eurdf_conformance.judging.level_result import unclaimed
 from eurdf_conformance.judging.result import RESULT, Result
 from eurdf_conformance.judging.run import Run
+from eurdf_conformance.properties.chance import Chance
 from eurdf_conformance.protocol.message import Started
 from eurdf_conformance.runner.session import NotStarted, Session
 from eurdf_conformance.suite.item import planned_items
 from eurdf_conformance.suite.item_runner import STARTED, ItemRunner, new_session
 from eurdf_conformance.suite.options import OPTIONS, add_options, options_of, read_options
 from eurdf_conformance.suite.summary import summary_lines
+from eurdf_conformance.suite.untouched import snapshot, void_text
 from eurdf_conformance.visible import visible
 
 #: The session whose parser has started before anything is asked of it.
@@ -72,10 +74,16 @@ def group_of(nodeid: str) -> str:
     return nodeid.rpartition("/")[0] if name.startswith("test_case[") else nodeid
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put the protocol rules first; deselect everything if no item is left to run."""
-    asked = [item for item in items if not item.name.endswith("[NOTSET]")]
-    items[:] = sorted(asked, key=lambda item: item.nodeid.partition("::")[0].endswith("test_protocol.py"), reverse=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Put the protocol rules first, then all else in an order that the seed decides; levels of a case stay together."""
+    options = options_of(config)
+    groups: dict[str, list[pytest.Item]] = {}
+    for item in items:
+        if not item.name.endswith("[NOTSET]"):
+            groups.setdefault(group_of(item.nodeid), []).append(item)
+    names = list(groups) if options.smoke else Chance(options.seed).shuffled(groups)
+    names.sort(key=lambda name: not name.endswith("test_protocol.py"))
+    items[:] = [item for name in names for item in groups[name]]
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:
@@ -135,6 +143,8 @@ class Collector:
         self._started: Started | None = None
         self._results: list[Result] = []
         self._unexpected: list[str] = []
+        self._before = snapshot()
+        self._void: str | None = None
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Take a result out of a report."""
@@ -149,6 +159,9 @@ class Collector:
     def pytest_sessionfinish(self, session: pytest.Session, exitstatus: int) -> None:
         """Write the certificate; fail the run if the results differ from the known failures."""
         if not self._results and self._started is None:
+            return
+        if (void := void_text(self._before)) is not None:
+            self._void, session.exitstatus = void, pytest.ExitCode.TESTS_FAILED
             return
         run = self.run()
         self._unexpected = run.known_failures.unexpected(run.results, run.planned)
@@ -165,6 +178,9 @@ class Collector:
         if not self._results and self._started is None:
             return
         terminalreporter.section("conformance to Extended URDF")
+        if self._void is not None:
+            terminalreporter.line(visible(self._void, kept=""))
+            return
         for line in summary_lines(self.run(), self._unexpected, options_of(self._config).certificate):
             terminalreporter.line(line)
 
@@ -180,6 +196,6 @@ class Collector:
             versions=options.versions,
             smoke=options.smoke,
             explore=options.explore,
-            explore_seed=options.explore_seed,
+            seed=options.seed,
             known_failures=options.known,
         )

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from eurdf_conformance.comparison.canonical import canonical_differences
 from eurdf_conformance.comparison.difference import Difference
 from eurdf_conformance.corpus.protocol_rule import GOES_ON, QUIET, START, STOP, ProtocolRule
 from eurdf_conformance.corpus.read import CorpusCase
+from eurdf_conformance.judging.handout import Handout
 from eurdf_conformance.judging.judge import PASSED, Judgement, judge_outcome
 from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.protocol.message import Accepted, Rejected, Started
@@ -26,16 +27,18 @@ class Setup:
         another: Opens a further session with it.
         valid: A case that the parser should accept.
         invalid: A case that it should reject.
+        handout: The files that it receives.
     """
 
     session: Session
     another: Callable[[], Session]
     valid: CorpusCase
     invalid: CorpusCase
+    handout: Handout = field(default_factory=Handout)
 
     def load(self, case: CorpusCase) -> Outcome:
         """The outcome of loading a case."""
-        return self.session.load(case.description, case.urdf)
+        return self.session.load(*self.handout.files(case))
 
 
 def check(rule: ProtocolRule, setup: Setup) -> Judgement:

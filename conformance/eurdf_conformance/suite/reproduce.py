@@ -10,6 +10,9 @@ from itertools import product
 #: Default time limits, s: for an answer, and for a start.
 TIMEOUT, START_TIMEOUT = 10.0, 30.0
 
+#: Topic of the cases that are drawn for one run.
+FRESH = "fresh"
+
 #: What pytest runs: in a checkout a folder, elsewhere a package, with its plug-in.
 FOLDER = ("conformance/",)
 PACKAGE = ("--pyargs", "eurdf_conformance.suite", "-p", "eurdf_conformance.suite.plugin")
@@ -27,7 +30,7 @@ class Setting:
         timeout: Time allowed for an answer, s.
         start_timeout: Time allowed for a start, s.
         explore: Further random mechanisms to try for each property.
-        explore_seed: The seed of these mechanisms.
+        seed: The seed of the fresh cases and of further mechanisms.
     """
 
     parser: str
@@ -35,7 +38,7 @@ class Setting:
     timeout: float = TIMEOUT
     start_timeout: float = START_TIMEOUT
     explore: int = 0
-    explore_seed: int = 0
+    seed: int = 0
 
 
 def command_line(setting: Setting, item_id: str, level: str) -> str:
@@ -49,8 +52,9 @@ def command_line(setting: Setting, item_id: str, level: str) -> str:
     settings = [f"--parser={setting.parser}"]
     settings += [f"--parser-timeout={setting.timeout:g}"] * (setting.timeout != TIMEOUT)
     settings += [f"--parser-start-timeout={setting.start_timeout:g}"] * (setting.start_timeout != START_TIMEOUT)
-    if setting.explore and item_id.startswith("properties/"):
-        settings += [f"--explore={setting.explore}", f"--explore-seed={setting.explore_seed}"]
+    explores = setting.explore and item_id.startswith("properties/")
+    settings += [f"--explore={setting.explore}"] if explores else []
+    settings += [f"--seed={setting.seed}"] if explores or item_id.startswith(f"{FRESH}/") else []
     return shlex.join(["pytest", *setting.suite, *settings, "-k", f"{item_id}/{level}"])
 
 

@@ -40,6 +40,8 @@ def _lines(run: Run, unexpected: Sequence[str], certificate: Path | None) -> Ite
         if run.started is not None:
             yield from _others("not claimed", [result for result in asked if not result.claimed])
     yield from (f"known failures: {line}" for line in unexpected)
+    if not run.smoke:
+        yield f"seed: {run.seed}"
     yield _times(run)
     if certificate is not None:
         yield f"certificate: {certificate}"

@@ -22,9 +22,12 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     )
 
 
-def test_property(property_item: PropertyItem, item_runner: ItemRunner, tmp_path: Path) -> None:
+def test_property(
+    property_item: PropertyItem, item_runner: ItemRunner, tmp_path_factory: pytest.TempPathFactory
+) -> None:
     """The parser satisfies the property."""
-    item_runner.run(property_item.item, lambda: try_item(property_item, item_runner, tmp_path))
+    folder = tmp_path_factory.mktemp("files")  # its name says nothing of the property
+    item_runner.run(property_item.item, lambda: try_item(property_item, item_runner, folder), folder=folder)
 
 
 def try_item(item: PropertyItem, item_runner: ItemRunner, folder: Path) -> Judgement:
@@ -34,7 +37,7 @@ def try_item(item: PropertyItem, item_runner: ItemRunner, folder: Path) -> Judge
         return try_property(item.property, level, Trial(item_runner.session, version, 0, folder))
     # Shrinking repeats requests that crash the parser, so it uses a session of its own.
     with item_runner.new_session() as session:
-        trial = Trial(session, version, count, folder, item_runner.options.explore_seed)
+        trial = Trial(session, version, count, folder, item_runner.options.seed)
         judgement = try_property(item.property, level, trial)
     item_runner.session.seconds_in_parser += session.seconds_in_parser
     return judgement

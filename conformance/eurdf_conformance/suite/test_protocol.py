@@ -25,5 +25,5 @@ def test_protocol(protocol_item: ProtocolItem, item_runner: ItemRunner) -> None:
     """The parser follows the rule."""
     item, three = protocol_item.item, SMOKE[protocol_item.item.version]
     valid, invalid = (smoke_case(all_cases(), case_id) for case_id in (three.valid, three.invalid))
-    setup = Setup(item_runner.session, item_runner.new_session, valid, invalid)
+    setup = Setup(item_runner.session, item_runner.new_session, valid, invalid, item_runner.conversation.handout)
     item_runner.run(item, lambda: check(protocol_item.rule, setup))

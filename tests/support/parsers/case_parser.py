@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from functools import cache
 from pathlib import Path
 
 from eurdf_conformance.corpus.case import CasePlace, ValidCase
-from eurdf_conformance.corpus.read import CASES, CorpusCase, collection_folder, read_case, read_cases
+from eurdf_conformance.corpus.read import CorpusCase, read_cases
 from eurdf_conformance.level import VERSIONS, Level, Version
 from eurdf_conformance.protocol.message import Accepted, Issue, Quantity, Rejected, Skipped, Unsupported, Values
 from eurdf_conformance.protocol.reply import accepted, rejected, skipped, unsupported
@@ -16,17 +17,28 @@ from eurdf_conformance.protocol.reply import accepted, rejected, skipped, unsupp
 VALID, INVALID = "closures/parallelogram-3d-closure", "frames/closure-at-unknown-frame"
 
 
-class Cases(dict[tuple[Path, Path], CorpusCase]):
-    """The cases by their files, of which only those that are asked for are read."""
+#: All files of a case, by their paths from its folder.
+Content = frozenset[tuple[str, bytes]]
 
-    def __missing__(self, files: tuple[Path, Path]) -> CorpusCase:
-        folder = files[0].parent
-        if folder.parent == collection_folder():
-            robots = [case for case in read_cases() if isinstance(case.case, ValidCase) and case.case.robot is not None]
-            self.update({(case.description, case.urdf): case for case in robots})
-        else:  # the last two names of the folder are those of the case
-            self[files] = read_case(CASES / folder.parent.name / f"{folder.name}.yaml")
-        return dict(self)[files]
+
+@cache
+def index() -> dict[Content, list[CorpusCase]]:
+    """The cases by their files; two of them may have the same."""
+    found: dict[Content, list[CorpusCase]] = {}
+    for case in read_cases():
+        found.setdefault(frozenset(case.files.items()), []).append(case)
+    return found
+
+
+def content(description: Path) -> Content:
+    """All files of the folder that a parser was given."""
+    folder = description.parent
+    return frozenset((str(path.relative_to(folder)), path.read_bytes()) for path in folder.rglob("*") if path.is_file())
+
+
+def case_of(description: Path) -> CorpusCase:
+    """The case with these files."""
+    return index()[content(description)][0]
 
 
 class Right:
@@ -38,13 +50,14 @@ class Right:
     claims: Mapping[Version, Sequence[Level]] = dict.fromkeys(VERSIONS, tuple(Level))
 
     def __init__(self) -> None:
-        self.cases = Cases()
         self.case: CorpusCase | None = None
+        self.files: Content = frozenset()
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported | Skipped:
-        case = self.cases[description, urdf]
+        case = case_of(description)
         if isinstance(case.case, ValidCase):
             self.case = case
+            self.files = content(description)
             warnings = [issue(each.code, each.place, "warning") for each in case.case.warnings]
             return accepted(case.expected.robot, warnings)
         return rejected(issue(case.case.code, case.case.place, "error"))
@@ -55,8 +68,8 @@ class Right:
         frames: Sequence[str],
         quantities: Sequence[Quantity],
     ) -> list[Values] | Unsupported | Skipped:
-        assert self.case is not None
-        return self.case.expected.values
+        alike = (case for case in index()[self.files] if isinstance(case.case, ValidCase))
+        return next(case.expected.values for case in alike if case.case.configurations == list(configurations))
 
 
 def issue(code: str, place: CasePlace, severity: str) -> Issue:
@@ -68,7 +81,7 @@ class Lenient(Right):
     """Accepts one thing that is wrong."""
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported | Skipped:
-        if self.cases[description, urdf].name == INVALID:
+        if case_of(description).name == INVALID:
             return accepted(None, ["this looks odd"])
         return super().load(description, urdf)
 
@@ -78,10 +91,10 @@ class Misread(Right):
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported | Skipped:
         reply = super().load(description, urdf)
-        if self.cases[description, urdf].name == INVALID and isinstance(reply, Rejected):
+        if case_of(description).name == INVALID and isinstance(reply, Rejected):
             (found,) = reply.issues
             return rejected(found.model_copy(update={"column": (found.column or 0) + 1}))
-        if self.cases[description, urdf].name == VALID and isinstance(reply, Accepted) and reply.robot is not None:
+        if case_of(description).name == VALID and isinstance(reply, Accepted) and reply.robot is not None:
             joints = [reply.robot.joints[0].model_copy(update={"upper": [9.0]}), *reply.robot.joints[1:]]
             return accepted(reply.robot.model_copy(update={"joints": joints}))
         return reply
@@ -106,7 +119,7 @@ class Crashing(Right):
     """Is gone when it meets one case."""
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported | Skipped:
-        if self.cases[description, urdf].name == VALID:
+        if case_of(description).name == VALID:
             os._exit(3)
         return super().load(description, urdf)
 
@@ -139,8 +152,8 @@ class Shy(Right):
     """Does not answer all that it claims."""
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported | Skipped:
-        if self.cases[description, urdf].name == VALID:
+        if case_of(description).name == VALID:
             return unsupported("closures", "not written yet")
-        if self.cases[description, urdf].name == INVALID:
+        if case_of(description).name == INVALID:
             return skipped("it is Sunday")
         return super().load(description, urdf)
