@@ -5,6 +5,9 @@ from __future__ import annotations
 import re
 import unicodedata
 
+#: Characters that are kept of a text of a parser; and of its name.
+LONGEST, LONGEST_NAME = 2000, 200
+
 # They join letters, or part them, as some scripts and many pictures need it.
 _JOINERS = "\u200c\u200d"
 
@@ -26,6 +29,11 @@ def visible(text: str, kept: str = "\n\t") -> str:
     if text.isprintable():
         return text
     return "".join(c if c in kept or _is_plain(c) else c.encode("unicode_escape").decode("ascii") for c in text)
+
+
+def cut(text: str, most: int = LONGEST) -> str:
+    """The text, or its beginning where it is long: what a parser writes fills no log."""
+    return text if len(text) <= most else f"{text[:most]}… ({len(text):,} characters)"
 
 
 def _is_plain(character: str) -> bool:

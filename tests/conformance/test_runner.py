@@ -413,6 +413,32 @@ def test_child_processes_end_with_their_parser() -> None:
     assert has_ended(child)
 
 
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only Linux has sub-reapers")
+@pytest.mark.parametrize("way", ["has_a_daemon", "dies_before_its_daemon"])
+def test_daemons_end_with_their_parser_and_are_reported(way: str) -> None:
+    with Session(fake(way)) as session:
+        outcome = load(session, "fault")
+        daemon = int(outcome.log if isinstance(outcome, Crashed) else outcome.answer.issues[0].message)  # type: ignore[union-attr]
+        assert accepts(load(session, "next"), "next")
+    assert has_ended(daemon)
+    assert session.left == ["sleep"]
+
+
+def test_a_parser_without_daemons_leaves_nothing() -> None:
+    with Session(fake("has_a_child")) as session:
+        load(session, "fault")
+    assert session.left == []
+
+
+def test_a_parser_does_not_see_which_test_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PYTEST_CURRENT_TEST", "urdf/gantry")
+    pipes = Pipes([sys.executable, "-c", "import os; print(sorted(n for n in os.environ if n.startswith('PYTEST')))"])
+    try:
+        assert pipes.line(time.monotonic() + 60.0) == b"[]"
+    finally:
+        pipes.close()
+
+
 def test_a_child_of_a_dead_parser_blocks_nothing() -> None:
     with Session(fake("dies_before_its_child"), timeout=300.0) as session:
         outcome = load(session, "trigger")
@@ -459,9 +485,11 @@ def test_a_killed_runner_ends_its_parser(end: signal.Signals, tmp_path: Path) ->
             if pids.exists():
                 break
             time.sleep(0.05)
-        parser, child = map(int, pids.read_text().split())
+        parser, child, daemon = map(int, pids.read_text().split())
         assert runs(parser)
         assert runs(child)
+        assert runs(daemon)
         os.killpg(runner.pid, end)  # as Ctrl-C does, all of the group
     assert has_ended(parser)
     assert has_ended(child)
+    assert has_ended(daemon) or not sys.platform.startswith("linux")

@@ -535,7 +535,10 @@ def test_impossible_requests_of_the_user_are_reported(tmp_path: Path) -> None:
         (["--certificate="], "the folder name is empty"),
         (["--level=everything"], "invalid choice"),
         (["--parser="], "--parser is empty"),
-        (["--parser=cmd:no-such-program-anywhere"], "'cmd:no-such-program-anywhere' could not be started: "),
+        (
+            ["--parser=cmd:no-such-program-anywhere"],
+            "'cmd:no-such-program-anywhere' could not be started: program 'no-such-program-anywhere' is not in PATH",
+        ),
     ):
         code, out = suite(*arguments, parser="Right")
         assert code == pytest.ExitCode.USAGE_ERROR
@@ -554,7 +557,7 @@ def test_smoke_distinguishes_wrong_adapter_from_wrong_parser() -> None:
     assert "your parser fails:\n  protocol/goes-on-2/accept: failed: the parser accepts an invalid description" in out
     code, out = suite("--smoke", "--parser=cmd:no-such-program-anywhere")
     assert code == 1
-    assert "cmd:no-such-program-anywhere could not be started" in out
+    assert "cmd:no-such-program-anywhere could not be started: program 'no-such-program-anywhere' is not in PATH" in out
     assert "your adapter fails:\n  protocol/start-1/accept: " in out
     assert "your parser was not tested: fix the adapter first" in out
 

@@ -6,9 +6,12 @@ import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
+from itertools import islice
 from typing import Any, Final
 
 from pydantic import BaseModel
+
+from eurdf_conformance.visible import cut
 
 #: Longest text of a value that is shown in one line.
 _WIDTH = 200
@@ -40,8 +43,8 @@ class Difference:
     why: str
 
     def __str__(self) -> str:
-        where = self.pointer or "(the answer)"
-        return f"{where}: {self.why}: expected {shown(self.expected)}, got {shown(self.given)}"
+        where = cut(self.pointer, _WIDTH) or "(the answer)"
+        return f"{where}: {cut(self.why, _WIDTH)}: expected {shown(self.expected)}, got {shown(self.given)}"
 
     def within(self, pointer: str) -> Difference:
         """The same difference, of an answer that holds this one at a pointer."""
@@ -52,8 +55,17 @@ def shown(value: Any) -> str:
     """A value in one line, cut where it is long."""
     if value is ABSENT:
         return "nothing"
-    text = json.dumps(plain(value), ensure_ascii=False)
+    text = json.dumps(_beginning(plain(value)), ensure_ascii=False)
     return text if len(text) <= _WIDTH else text[: _WIDTH - 4] + " ..."
+
+
+def _beginning(value: Any) -> Any:
+    """A JSON value without what is not shown of it: the rest of long texts, and of long lists and mappings."""
+    if isinstance(value, str):
+        return value[: _WIDTH + 1]
+    if isinstance(value, dict):
+        return {_beginning(key): _beginning(each) for key, each in islice(value.items(), _WIDTH)}
+    return [_beginning(each) for each in value[:_WIDTH]] if isinstance(value, list) else value
 
 
 def plain(value: Any) -> Any:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import TypeVar
 
-from eurdf_conformance.comparison.difference import Difference
 from eurdf_conformance.corpus.case import CasePlace, InvalidCase, ValidCase
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.lines import lines_of
@@ -18,7 +18,9 @@ from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level
 from eurdf_conformance.level_spec import LEVELS, Compared
 from eurdf_conformance.protocol.message import Issue
-from eurdf_conformance.visible import visible
+from eurdf_conformance.visible import cut, visible
+
+_Found = TypeVar("_Found")
 
 #: Number of differences, and of issues, shown for one item.
 _MOST = 12
@@ -41,7 +43,7 @@ def failure_text(item: Item, judgement: Judgement, reproduce: str, case: CorpusC
         reproduce: The command line that runs it alone.
         case: Its case; None for a property or a protocol rule.
     """
-    return visible("\n".join(_lines(item, judgement, reproduce, case)))
+    return visible("\n".join(map(cut, _lines(item, judgement, reproduce, case))))
 
 
 def _lines(item: Item, judgement: Judgement, reproduce: str, case: CorpusCase | None) -> Iterator[str]:
@@ -57,21 +59,17 @@ def _lines(item: Item, judgement: Judgement, reproduce: str, case: CorpusCase | 
     saying = (name for name in _saying(judgement) if item.version in clauses[name].versions)
     for name in dict.fromkeys((*saying, *item.clauses)):
         yield f"  {name}: {clauses[name].text}" if name in clauses else f"  {name}"
-    yield from _cut([_difference(each) for each in judgement.differences], "differences")
+    yield from _first(judgement.differences, lambda difference: f"  {difference}", "differences")
     if case is not None and isinstance(case.case, ValidCase):
         yield from where_it_stood(judgement, case.case.configurations)
     if judgement.issues:
         yield "  reported issues:"
-        yield from _cut([_issue(issue) for issue in judgement.issues], "issues")
+        yield from _first(judgement.issues, _issue, "issues")
     if case is not None:
         yield from _files(case, item.level, judgement)
         if isinstance(case.case, InvalidCase):
             yield f"  fix: {case.case.fix}"
     yield from (f"  {line}" for line in judgement.log.splitlines())
-
-
-def _difference(difference: Difference) -> str:
-    return f"  {difference}"
 
 
 def _saying(judgement: Judgement) -> Iterator[str]:
@@ -94,10 +92,10 @@ def _issue(issue: Issue) -> str:
     return f"    {issue.severity} {issue.code or ''} {place}: {issue.message}"
 
 
-def _cut(lines: Sequence[str], what: str) -> Iterator[str]:
-    yield from lines[:_MOST]
-    if len(lines) > _MOST:
-        yield f"    ... and {len(lines) - _MOST} more {what}"
+def _first(found: Sequence[_Found], text: Callable[[_Found], str], what: str) -> Iterator[str]:
+    yield from map(text, found[:_MOST])
+    if len(found) > _MOST:
+        yield f"    ... and {len(found) - _MOST} more {what}"
 
 
 def _files(case: CorpusCase, level: Level, judgement: Judgement) -> Iterator[str]:
@@ -108,7 +106,7 @@ def _files(case: CorpusCase, level: Level, judgement: Judgement) -> Iterator[str
     elif isinstance(case.case, ValidCase) and LEVELS[level].compared is Compared.ISSUES:
         places += [(warning.place, "expected") for warning in case.case.warnings]
     if judgement.verdict == Verdict.FAILED:
-        places += [(issue, "given") for issue in judgement.issues]
+        places += [(issue, "given") for issue in judgement.issues[:_MOST]]
     for path in (case.description, case.urdf):
         here: dict[tuple[int, int | None], list[str]] = {}
         for place, whose in places:

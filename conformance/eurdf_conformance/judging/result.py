@@ -10,6 +10,7 @@ from pydantic import TypeAdapter
 
 from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level, Version
+from eurdf_conformance.visible import cut
 
 #: Name of a result among the user properties of a pytest report.
 RESULT = "eurdf_conformance.result"
@@ -55,7 +56,7 @@ class Result:
 
     def __post_init__(self) -> None:
         # A line of a broken parser may contain a lone surrogate, which no encoding can represent.
-        texts = tuple(text.encode("utf-8", "backslashreplace").decode("utf-8") for text in self.differences)
+        texts = tuple(cut(text).encode("utf-8", "backslashreplace").decode("utf-8") for text in self.differences)
         object.__setattr__(self, "differences", texts)
 
     def to_json(self) -> dict[str, Any]:

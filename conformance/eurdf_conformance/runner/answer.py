@@ -3,17 +3,35 @@
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
 from eurdf_conformance.protocol.error_text import error_text
 from eurdf_conformance.protocol.json_text import Doubled, may_have_errors, read_json
-from eurdf_conformance.protocol.message import ANSWER, NO_ANSWER, AnyAnswer, AnyRequest, Evaluate, Evaluated, Stop
+from eurdf_conformance.protocol.message import (
+    ANSWER,
+    NO_ANSWER,
+    Accepted,
+    AnyAnswer,
+    AnyRequest,
+    Errored,
+    Evaluate,
+    Evaluated,
+    Rejected,
+    Skipped,
+    Started,
+    Stop,
+    Unsupported,
+    Value,
+)
 from eurdf_conformance.runner.outcome import Malformed, Misplaced
+from eurdf_conformance.visible import LONGEST, LONGEST_NAME, cut
 
 #: Number of characters kept of a line that is not an answer.
 SHOWN = 2000
+
+_Value = TypeVar("_Value", bound=Value)
 
 _ANY_TIME = ("unsupported", "skipped", "errored")
 
@@ -42,6 +60,30 @@ def shown(line: bytes) -> str:
     return text if len(text) <= SHOWN and len(line) <= 4 * SHOWN else f"{text[:SHOWN]}… ({len(line):,} bytes)"
 
 
+def _bounded(answer: AnyAnswer) -> AnyAnswer:
+    """The answer with its texts for people cut where they are long."""
+    match answer:
+        case Accepted(issues=issues) | Rejected(issues=issues):
+            return answer.model_copy(update={"issues": [_cut(issue, "message") for issue in issues]})
+        case Errored():
+            return _cut(answer, "message")
+        case Skipped():
+            return _cut(answer, "reason")
+        case Unsupported():
+            return _cut(answer, "feature", "reason")
+        case Started(parser=parser):
+            names = {name: cut(text, LONGEST_NAME) for name, text in parser.model_dump().items()}
+            return answer.model_copy(update={"parser": parser.model_copy(update=names)})
+    return answer
+
+
+def _cut(value: _Value, *members: str) -> _Value:
+    """A part of a message with some of its texts cut where they are long."""
+    if all(len(getattr(value, name)) <= LONGEST for name in members):
+        return value
+    return value.model_copy(update={name: cut(getattr(value, name)) for name in members})
+
+
 def _placed(answer: AnyAnswer, line: bytes, request: AnyRequest) -> AnyAnswer | Malformed | Misplaced:
     """The answer, if its kind and size fit the request."""
     if answer.id != request.id:
@@ -53,7 +95,7 @@ def _placed(answer: AnyAnswer, line: bytes, request: AnyRequest) -> AnyAnswer | 
         given, asked = len(answer.values), len(request.configurations)
         if given != asked:
             return Malformed(shown(line), f"values at {given} configurations, expected {asked}", placed=True)
-    return answer
+    return _bounded(answer)
 
 
 def _unfit(line: bytes, request: AnyRequest, error: ValidationError) -> AnyAnswer | Malformed | Misplaced:

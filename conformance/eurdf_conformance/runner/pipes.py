@@ -1,23 +1,25 @@
 """A process and its three pipes: whole lines out of its standard output, with a deadline and a bound on memory.
 
 One selector waits for all of them, and for the end of the process, so that a parser that fills one pipe while another
-is waited for can neither hang nor hang up. The process leads a group of its own, which ends with it, and with this
-process (`guard`).
+is waited for can neither hang nor hang up. A `keeper` starts the process. What the process has started ends with it,
+and with this process.
 """
 
 from __future__ import annotations
 
 import contextlib
+import json
 import os
 import selectors
-import signal
+import socket
 import subprocess
-import threading
+import sys
 import time
 from collections.abc import Callable, Sequence
 from enum import Enum, auto
+from pathlib import Path
 
-from eurdf_conformance.runner import guard
+_KEEPER = Path(__file__).with_name("keeper.py")
 
 #: Bytes that a line may have. The mass matrix of a robot of 1000 velocities takes 20 MB.
 LINE_LIMIT = 64 * 2**20
@@ -27,9 +29,11 @@ LOG_LIMIT = 2**14
 
 _CHUNK = 2**16
 
-# How long a process that has closed its standard output may take to end, s; and one that was killed.
+# How long a process that has closed its standard output may take to end, s; the keeper to start; and all that was
+# killed to end.
 _LAST_BREATH = 1.0
-_DEATH = 5.0
+_BIRTH = 60.0
+_DEATH = 10.0
 
 
 class Silence(Enum):
@@ -46,6 +50,7 @@ class Pipes:
     Attributes:
         exit_code: Of the process as `subprocess` has it, negative for a signal; None while it runs, and where it was
             ended from here.
+        left: Once it is closed, the names of the processes that had left its group, and were ended with it.
     """
 
     def __init__(self, command: Sequence[str], line_limit: int = LINE_LIMIT) -> None:
@@ -59,6 +64,7 @@ class Pipes:
             OSError: It cannot be started.
         """
         self.exit_code: int | None = None
+        self.left: tuple[str, ...] = ()
         self._line_limit = line_limit
         self._received = bytearray()
         self._searched = 0  # so many of the bytes received hold no line feed
@@ -67,29 +73,33 @@ class Pipes:
         self._unsent = bytearray()
         self._output_closed: float | None = None  # when
         self._log_open, self._ended, self._closed = True, False, False
-        self._process = subprocess.Popen(
-            command,
-            bufsize=0,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            start_new_session=True,
-        )
-        guard.begins(self._process.pid)
+        self._control, control = socket.socketpair()
+        self._told = b""
+        with control:
+            self._process = subprocess.Popen(
+                [sys.executable, "-I", "-S", str(_KEEPER), str(control.fileno()), *command],
+                bufsize=0,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                pass_fds=[control.fileno()],
+                start_new_session=True,
+                # PYTEST_CURRENT_TEST says which case is next.
+                env={name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")},
+            )
+        self._await_start(command[0])
         streams = self._process.stdin, self._process.stdout, self._process.stderr
         self._stdin, self._stdout, self._stderr = (stream.fileno() for stream in streams if stream is not None)
-        self._exit_seen, self._exit_told = os.pipe()
         self._selector = selectors.DefaultSelector()
         for fd, handle in (
             (self._stdout, self._receive),
             (self._stderr, self._take_log),
-            (self._exit_seen, self._notice_exit),
+            (self._control.fileno(), self._hear),
         ):
             os.set_blocking(fd, False)
             self._selector.register(fd, selectors.EVENT_READ, handle)
         os.set_blocking(self._stdin, False)
-        self._watcher = threading.Thread(target=self._watch, name=f"wait for {command[0]}", daemon=True)
-        self._watcher.start()
+        self._listen()  # it may have ended already
 
     @property
     def log(self) -> str:
@@ -149,34 +159,71 @@ class Pipes:
         return self._ended
 
     def close(self) -> None:
-        """End the process and its group, whatever they do, and free what they took."""
+        """End the process and all that it started, whatever they do, and free what they took."""
         if self._closed:
             return
         self._closed = True
-        # Its leader is dead or alive, but not reaped: the id of the group is still its own.
-        with contextlib.suppress(ProcessLookupError, PermissionError):
-            os.killpg(self._process.pid, signal.SIGKILL)
-        guard.ends(self._process.pid)
-        self._watcher.join(_DEATH)
-        if not self._watcher.is_alive():
-            code = self._process.wait()
-            self.exit_code = code if self._ended else None
-            os.close(self._exit_told)
         self._selector.close()
-        os.close(self._exit_seen)
+        self._end_keeper()
         for stream in (self._process.stdin, self._process.stdout, self._process.stderr):
             assert stream is not None
             stream.close()
 
-    def _watch(self) -> None:
-        """Tell when the process ends. A child that it leaves behind may hold its pipes open, so they do not tell."""
-        with contextlib.suppress(ChildProcessError):
-            if hasattr(os, "waitid"):
-                os.waitid(os.P_PID, self._process.pid, os.WEXITED | os.WNOWAIT)
-            else:  # macOS before Python 3.13
-                self._process.wait()
+    def _await_start(self, program: str) -> None:
+        """Wait for the word of the keeper.
+
+        Raises:
+            OSError: The program cannot be started.
+        """
+        self._control.settimeout(_BIRTH)
+        with contextlib.suppress(TimeoutError):
+            while not self._told.endswith(b"\n") and (chunk := self._control.recv(_CHUNK)):
+                self._told += chunk
+        first, self._told = self._told.partition(b"\n")[::2]
+        if first == b"started":
+            return
+        self._closed = True
+        self._end_keeper()
+        for stream in (self._process.stdin, self._process.stdout, self._process.stderr):
+            assert stream is not None
+            stream.close()
+        if first.startswith(b"failed "):
+            errno = int(first.removeprefix(b"failed "))
+            raise OSError(errno, os.strerror(errno), program)
+        raise OSError(f"the process that starts '{program}' does not answer")
+
+    def _end_keeper(self) -> None:
+        """Let the keeper end the process and itself, and read its last words."""
         with contextlib.suppress(OSError):
-            os.write(self._exit_told, b".")
+            self._control.shutdown(socket.SHUT_WR)
+            self._control.settimeout(_DEATH)
+            while chunk := self._control.recv(_CHUNK):
+                self._told += chunk
+        self._control.close()
+        self._listen()
+        try:
+            self._process.wait(_DEATH)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+
+    def _hear(self) -> None:
+        """Read what the keeper says. Without it nothing is known of the process any more."""
+        chunk = _read(self._control.fileno())
+        self._told += chunk or b""
+        self._listen()
+        if chunk == b"" and not self._ended:
+            self._notice_exit()
+
+    def _listen(self) -> None:
+        *lines, self._told = self._told.split(b"\n")
+        for line in lines:
+            word, _, value = line.partition(b" ")
+            if word == b"ended" and not self._closed:
+                self.exit_code = int(value)
+                self._notice_exit()
+            elif word == b"left":
+                self.left = tuple(json.loads(value))
 
     def _handle(self, deadline: float) -> None:
         """Wait for something to happen, and do what is to be done then."""
@@ -225,7 +272,7 @@ class Pipes:
 
     def _notice_exit(self) -> None:
         """The process has ended: what it wrote last is in the pipes, and what more comes is of others."""
-        self._selector.unregister(self._exit_seen)
+        self._selector.unregister(self._control)
         _empty(self._receive, self._line_limit)
         _empty(self._take_log, self._line_limit)
         self._ended = True

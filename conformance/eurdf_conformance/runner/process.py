@@ -57,6 +57,11 @@ class ParserProcess:
         self.end()
         return outcome
 
+    @property
+    def left(self) -> tuple[str, ...]:
+        """Names of the processes that it left behind outside its group; known, and ended, with it."""
+        return self._pipes.left
+
     def end(self) -> None:
         """End the process and all that it started."""
         self.alive = False

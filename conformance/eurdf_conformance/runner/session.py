@@ -22,6 +22,7 @@ from eurdf_conformance.runner.command import command_of, why_not
 from eurdf_conformance.runner.outcome import Answered, CannotStart, Outcome
 from eurdf_conformance.runner.pipes import LINE_LIMIT
 from eurdf_conformance.runner.process import ParserProcess
+from eurdf_conformance.visible import cut
 
 
 class NotStarted(Exception):  # noqa: N818 - it says what the parser is
@@ -33,7 +34,7 @@ class NotStarted(Exception):  # noqa: N818 - it says what the parser is
 
     def __init__(self, outcome: Outcome) -> None:
         self.outcome = outcome
-        super().__init__(str(outcome))
+        super().__init__(cut(_why(outcome)))
 
 
 class Session:
@@ -49,6 +50,7 @@ class Session:
     Attributes:
         seconds_in_parser: Time spent waiting for the parser, its starts included, s.
         restarts: How often it was started again.
+        left: Names of the processes that it left behind outside the group of its own, and that were ended.
         ended: What came of `stop`, once the session is over; None where there was no process to stop.
     """
 
@@ -75,10 +77,12 @@ class Session:
         self.parser = parser
         self.seconds_in_parser = 0.0
         self.restarts = 0
+        self.left: list[str] = []
         self.ended: Outcome | None = None
         self._timeout, self._start_timeout, self._stop_timeout = timeout, start_timeout, stop_timeout
         self._most_failed_starts, self._line_limit = failed_starts, line_limit
         self._process: ParserProcess | None = None
+        self._accounted: ParserProcess | None = None  # the last one of which `left` is known
         self._asked = 0
         self._first: Outcome | None = None  # what came of the first start
         self._failed_starts = 0  # in a row
@@ -96,6 +100,7 @@ class Session:
             self.stop()
         elif self._process is not None:
             self._process.end()
+            self._account()
 
     @property
     def started(self) -> Started:
@@ -173,13 +178,20 @@ class Session:
         process = self._process
         if process is not None and process.alive:
             self.ended = process.stop(Stop(id=self._next_id()), self._stop_timeout)
+        self._account()
         return self.ended
+
+    def _account(self) -> None:
+        """Keep what a process that has ended left behind, once."""
+        if self._process is not None and not self._process.alive and self._process is not self._accounted:
+            self._accounted = self._process
+            self.left += self._process.left
 
     def _ready(self, request: AnyRequest) -> CannotStart | None:
         """See to it that there is a process to ask; why there is none."""
         first = self.start()
         if not _is_started(first):
-            return CannotStart(f"given up because it did not start: {first}")
+            return CannotStart(_why(first))
         if self._process is not None and self._process.alive:
             return None
         if self._failed_starts >= self._most_failed_starts:
@@ -187,8 +199,8 @@ class Session:
         self.restarts += 1
         again = self._begin()
         if not _is_started(again):
-            self._failed_starts, self._last = self._failed_starts + 1, str(again)
-            return CannotStart(f"it did not restart: {again}")
+            self._failed_starts, self._last = self._failed_starts + 1, _why(again)
+            return CannotStart(f"it did not restart: {_why(again)}")
         self._failed_starts = 0
         if isinstance(request, Evaluate) and self._accepted is not None:
             loaded = self._put(self._accepted, self._timeout)
@@ -202,6 +214,7 @@ class Session:
             command = command_of(self.parser)
         except ValueError as why:
             return CannotStart(str(why))
+        self._account()
         try:
             self._process = ParserProcess(command, self._line_limit)
         except (OSError, ValueError) as why:
@@ -223,6 +236,11 @@ class Session:
     def _next_id(self) -> int:
         self._asked += 1
         return self._asked
+
+
+def _why(outcome: Outcome) -> str:
+    """What became of a start, for those who know that it failed."""
+    return outcome.why if isinstance(outcome, CannotStart) else str(outcome)
 
 
 def _is_started(outcome: Outcome) -> bool:

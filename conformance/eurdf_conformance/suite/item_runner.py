@@ -25,6 +25,9 @@ from eurdf_conformance.visible import visible
 #: Name of the user property of a pytest report that holds what the parser reported about itself.
 STARTED = "eurdf_conformance.started"
 
+#: Name of the user property of a pytest report that holds what processes the parser left behind.
+LEFT = "eurdf_conformance.left"
+
 #: Number of differences of one item kept for the certificate.
 _KEPT = 20
 
@@ -95,7 +98,14 @@ class ItemRunner:
             texts = tuple(re.sub(re.escape(str(given)) + "(/[0-9a-f]{16})?", item.id, text) for text in texts)
         result = Result(item, judgement.verdict, texts, reproduce, seconds, in_parser)
         self._keep(RESULT, result.to_json())
+        self.keep_left()
         self._tell(result, judgement, case)
+
+    def keep_left(self) -> None:
+        """Keep with the test that runs, or ran last, what processes the parser has left behind since."""
+        if self._session.left and self.node is not None:
+            self._keep(LEFT, self._session.left)
+            self._session.left = []
 
     def _tell(self, result: Result, judgement: Judgement, case: CorpusCase | None) -> None:
         known = self.options.known.of(result.item)

@@ -24,7 +24,7 @@ from eurdf_conformance.properties.chance import Chance
 from eurdf_conformance.protocol.message import Started
 from eurdf_conformance.runner.session import NotStarted, Session
 from eurdf_conformance.suite.item import planned_items
-from eurdf_conformance.suite.item_runner import STARTED, ItemRunner, new_session
+from eurdf_conformance.suite.item_runner import LEFT, STARTED, ItemRunner, new_session
 from eurdf_conformance.suite.options import OPTIONS, add_options, options_of, read_options
 from eurdf_conformance.suite.summary import summary_lines
 from eurdf_conformance.suite.untouched import snapshot, void_text
@@ -119,7 +119,8 @@ def _session_item_runner(pytestconfig: pytest.Config, tmp_path_factory: pytest.T
     # pytest keeps the files of its last runs there, so that the files of a failed case can be opened.
     keep_files_in(tmp_path_factory.mktemp("cases", numbered=False))
     with pytestconfig.stash.get(GREETED, None) or new_session(options) as session:
-        yield ItemRunner(options, session)
+        yield (item_runner := ItemRunner(options, session))
+    item_runner.keep_left()
 
 
 def pytest_unconfigure(config: pytest.Config) -> None:
@@ -143,11 +144,17 @@ class Collector:
         self._started: Started | None = None
         self._results: list[Result] = []
         self._unexpected: list[str] = []
+        self._left: list[str] = []
         self._before = snapshot()
         self._void: str | None = None
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Take a result out of a report."""
+        # The parser of a worker ends after its last item.
+        for name, value in report.user_properties if report.when == "teardown" else ():
+            if name == LEFT:
+                assert isinstance(value, list)
+                self._left += value
         for name, value in report.user_properties if report.when == "call" else ():
             if name == RESULT:
                 assert isinstance(value, dict)
@@ -198,4 +205,5 @@ class Collector:
             explore=options.explore,
             seed=options.seed,
             known_failures=options.known,
+            left=tuple(self._left),
         )

@@ -101,6 +101,7 @@ def _stop(setup: Setup) -> Judgement:
         outcome = session.stop()
         stopping = time.perf_counter() - begin
     setup.session.seconds_in_parser += session.seconds_in_parser + stopping
+    setup.session.left += session.left
     if outcome is None:
         return judge_outcome(first, "started")
     return PASSED if isinstance(outcome, Answered) else judge_outcome(outcome)

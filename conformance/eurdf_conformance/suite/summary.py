@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -10,6 +11,9 @@ from eurdf_conformance.judging.run import Run
 from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.suite.smoke import smoke_lines
 from eurdf_conformance.visible import visible
+
+#: So many names of processes are listed.
+_NAMED = 10
 
 
 def summary_lines(run: Run, unexpected: Sequence[str], certificate: Path | None) -> Iterator[str]:
@@ -40,6 +44,9 @@ def _lines(run: Run, unexpected: Sequence[str], certificate: Path | None) -> Ite
         if run.started is not None:
             yield from _others("not claimed", [result for result in asked if not result.claimed])
     yield from (f"known failures: {line}" for line in unexpected)
+    if run.left:
+        names = ", ".join(f"{name} ({count})" for name, count in sorted(Counter(run.left).items())[:_NAMED])
+        yield f"the parser left {len(run.left)} processes running outside its process group, which were ended: {names}"
     if not run.smoke:
         yield f"seed: {run.seed}"
     yield _times(run)

@@ -40,4 +40,5 @@ def try_item(item: PropertyItem, item_runner: ItemRunner, folder: Path) -> Judge
         trial = Trial(session, version, count, folder, item_runner.options.seed)
         judgement = try_property(item.property, level, trial)
     item_runner.session.seconds_in_parser += session.seconds_in_parser
+    item_runner.session.left += session.left
     return judgement

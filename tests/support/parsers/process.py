@@ -274,6 +274,31 @@ def has_a_child(request):
     say({**accepted(request), "issues": [{"message": str(child())}]})
 
 
+def daemon():
+    """The id of a process in a session of its own, whose parent has ended, with the pipes of this one."""
+    told, tell = os.pipe()
+    if (parent := os.fork()) == 0:
+        os.setsid()
+        if os.fork() == 0:
+            os.write(tell, str(os.getpid()).encode())
+            os.environ.clear()
+            os.execv("/bin/sleep", ["sleep", "60"])
+        os._exit(0)
+    os.waitpid(parent, 0)
+    return int(os.read(told, 20))
+
+
+def has_a_daemon(request):
+    """Leaves a daemon behind, and answers with its process id."""
+    say({**accepted(request), "issues": [{"message": str(daemon())}]})
+
+
+def dies_before_its_daemon(request):
+    """Ends, and leaves a daemon."""
+    os.write(2, str(daemon()).encode())
+    os._exit(5)
+
+
 def dies_before_its_child(request):
     """Ends, and leaves a child that has its pipes."""
     os.write(2, str(child()).encode())
@@ -281,9 +306,9 @@ def dies_before_its_child(request):
 
 
 def spins(request):
-    """For ever, as its child; their ids go where the environment says."""
+    """For ever, as its child and a daemon; their ids go where the environment says."""
     written = Path(os.environ["FAKE_PIDS"])
-    written.with_suffix(".new").write_text(f"{os.getpid()} {child()}")
+    written.with_suffix(".new").write_text(f"{os.getpid()} {child()} {daemon()}")
     written.with_suffix(".new").rename(written)
     while True:
         pass
