@@ -417,7 +417,7 @@ def test_child_processes_end_with_their_parser() -> None:
 @pytest.mark.parametrize("way", ["has_a_daemon", "dies_before_its_daemon"])
 def test_daemons_end_with_their_parser_and_are_reported(way: str) -> None:
     with Session(fake(way)) as session:
-        outcome = load(session, "fault")
+        outcome = load(session, "trigger")
         daemon = int(outcome.log if isinstance(outcome, Crashed) else outcome.answer.issues[0].message)  # type: ignore[union-attr]
         assert accepts(load(session, "next"), "next")
     assert has_ended(daemon)
@@ -426,7 +426,7 @@ def test_daemons_end_with_their_parser_and_are_reported(way: str) -> None:
 
 def test_a_parser_without_daemons_leaves_nothing() -> None:
     with Session(fake("has_a_child")) as session:
-        load(session, "fault")
+        load(session, "trigger")
     assert session.left == []
 
 

@@ -55,6 +55,8 @@ class Scope(_Part):
     """Number of further random mechanisms for each property."""
     seed: int
     """The seed of the order of the items, of the fresh cases and of further mechanisms."""
+    fresh: Hash | None
+    """Hash of the fresh cases, which are drawn from the seed; null if there were none."""
 
 
 class ClauseResult(_Part):

@@ -56,6 +56,7 @@ def issue(run: Run) -> Certificate:
             smoke=run.smoke,
             explore=run.explore,
             seed=run.seed,
+            fresh=run.fresh,
         ),
         date=_date(os.environ.get("SOURCE_DATE_EPOCH")),
         certified=is_certified(run),

@@ -156,6 +156,7 @@ def _run(certificate: Certificate) -> Iterator[Element]:
             ("versions requested", ", ".join(scope.versions)),
             *([("further mechanisms", f"{scope.explore} for each property")] if scope.explore else []),
             ("seed", f"{scope.seed}"),
+            *([("fresh cases", scope.fresh)] if scope.fresh else []),
             ("suite", suite.version),
             ("protocol", suite.protocol),
             ("clauses", suite.clauses),

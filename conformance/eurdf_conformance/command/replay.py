@@ -63,10 +63,15 @@ def replay_differences(certificate: Certificate, again: Certificate) -> list[str
     nor the last digits of numbers that a parser has computed: all else that a certificate says is to be the same.
     """
     found = [*_parser_info(certificate, again), *_levels(certificate, again), *_failures(certificate, again)]
-    found = found or list(_clauses(certificate, again))
+    found = [*_fresh(certificate, again), *(found or _clauses(certificate, again))]
     if found or _essence(certificate) == _essence(again):
         return found
     return ["the certificate contradicts the results of its cases"]
+
+
+def _fresh(before: Certificate, now: Certificate) -> Iterator[str]:
+    if before.scope.fresh != now.scope.fresh:
+        yield "fresh cases: the seed gives others here; another version of Hypothesis draws others"
 
 
 def own_errors(certificate: Certificate) -> list[str]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, get_args
 
 from pydantic import ValidationError
@@ -19,7 +19,7 @@ from eurdf_conformance.comparison.values import values_differences
 from eurdf_conformance.corpus.case import ValidCase
 from eurdf_conformance.corpus.expected import Expected, expected_text
 from eurdf_conformance.corpus.read import CorpusCase, read_cases
-from eurdf_conformance.oracle import NotRead, read
+from eurdf_conformance.oracle import NotRead, OracleRobot, read
 from eurdf_conformance.protocol.message import Quantity, Values
 
 #: Digits kept of a number, relative to the largest of its kind: those below depend on the processor.
@@ -34,15 +34,24 @@ def expect(case: CorpusCase) -> Expected:
     """
     assert isinstance(case.case, ValidCase)
     robot = read(case.description, case.urdf, case.case.version)
-    configurations = case.case.configurations
+    return expected_of(robot, case.case.configurations, case.case.frames)
+
+
+def expected_of(
+    robot: OracleRobot, configurations: Sequence[Mapping[str, Sequence[float]]], frames: Sequence[str]
+) -> Expected:
+    """What is expected of a parser that reads a robot.
+
+    Args:
+        robot: The robot as the oracle reads it.
+        configurations: Where it is evaluated.
+        frames: Names of the frames whose poses are asked for.
+    """
     return Expected(
         bodies=sorted(sorted(body, key=str.encode) for body in robot.bodies),
         robot=robot.canonical(),
-        values=[
-            _rounded(robot.evaluate(configuration, case.case.frames, get_args(Quantity)))
-            for configuration in configurations
-        ],
-        sizes=[_round(robot.size(configuration)) for configuration in configurations],
+        values=[_rounded(robot.evaluate(q, frames, get_args(Quantity))) for q in configurations],
+        sizes=[_round(robot.size(q)) for q in configurations],
     )
 
 

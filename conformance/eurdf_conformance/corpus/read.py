@@ -212,19 +212,20 @@ def read_cases(root: Path = CASES) -> list[CorpusCase]:
 
 
 @cache
-def _suite() -> Cases:
+def suite_cases() -> Cases:
+    """The cases of the suite by name, each read when it is asked for."""
     return Cases(CASES)
 
 
 @cache
 def all_cases() -> tuple[CorpusCase, ...]:
     """The cases of the suite, read once a process."""
-    return tuple(_suite()[name] for name in case_names())
+    return tuple(suite_cases()[name] for name in case_names())
 
 
 def keep_files_in(folder: Path) -> None:
     """Write the files of the cases of the suite into a folder, where they stay when the process ends."""
-    _suite().made = folder
+    suite_cases().made = folder
 
 
 def case_names(root: Path = CASES) -> Iterator[str]:

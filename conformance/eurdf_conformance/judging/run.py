@@ -32,6 +32,8 @@ class Run:
     explore: int = 0
     #: The seed of the order of the items, of the fresh cases and of further mechanisms.
     seed: int = 0
+    #: Hash of the fresh cases; None if there were none.
+    fresh: str | None = None
     #: Names of the processes that the parser left behind, outside its group, and that the suite has ended.
     left: tuple[str, ...] = ()
     known_failures: KnownFailures = field(default=NONE_KNOWN)

@@ -10,10 +10,12 @@ from eurdf_conformance.corpus.case import InvalidCase
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.protocol_rule import RULES, ProtocolRule
 from eurdf_conformance.corpus.read import CorpusCase
+from eurdf_conformance.fresh.case import COUNT, fresh_levels, fresh_name, fresh_title
 from eurdf_conformance.judging.result import Item
 from eurdf_conformance.level import VERSIONS, Level, Version
 from eurdf_conformance.level_spec import LEVELS
 from eurdf_conformance.properties import PROPERTIES
+from eurdf_conformance.properties.example import DRAWN_VERSIONS
 from eurdf_conformance.properties.property import Property
 
 
@@ -67,11 +69,28 @@ def _general(case: CorpusCase, level: Level) -> str:
     return LEVELS[level].clause
 
 
+@dataclass(frozen=True)
+class FreshItem:
+    """A fresh case at one of its levels; it is drawn when it is asked for."""
+
+    item: Item
+
+
+def fresh_items() -> Iterator[FreshItem]:
+    """The items on fresh cases: whatever is drawn, their ids, levels and clauses are the same."""
+    for version, valid in product(DRAWN_VERSIONS, (True, False)):
+        for number, level in product(range(1, COUNT + 1), fresh_levels(valid)):
+            general = LEVELS[level].clause if valid or level is not Level.ACCEPT else "EU-CNF-001"
+            name = fresh_name(version, valid, number)
+            yield FreshItem(Item(name, level, version, (general,), fresh_title(valid)))
+
+
 def planned_items(cases: Iterable[CorpusCase]) -> Iterator[Item]:
     """Every item of the suite."""
     yield from (found.item for found in protocol_items())
     yield from (found.item for found in case_items(cases))
     yield from (found.item for found in property_items())
+    yield from (found.item for found in fresh_items())
 
 
 def protocol_items() -> Iterator[ProtocolItem]:

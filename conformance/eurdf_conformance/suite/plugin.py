@@ -9,6 +9,7 @@ from __future__ import annotations
 import gc
 import os
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ import pytest
 from eurdf_conformance.certificate.issue import issue
 from eurdf_conformance.certificate.write import NoRoom, make_room, write_certificate
 from eurdf_conformance.corpus.read import all_cases, keep_files_in
+from eurdf_conformance.fresh.case import drawn_hash, drawn_text, keep_drawn
 from eurdf_conformance.judging.level_result import unclaimed
 from eurdf_conformance.judging.result import RESULT, Result
 from eurdf_conformance.judging.run import Run
@@ -30,6 +32,9 @@ from eurdf_conformance.suite.summary import summary_lines
 from eurdf_conformance.suite.untouched import snapshot, void_text
 from eurdf_conformance.visible import visible
 
+#: Key of the fresh cases in the input of a worker.
+_FRESH = "eurdf_conformance.fresh"
+
 #: The session whose parser has started before anything is asked of it.
 GREETED: pytest.StashKey[Session] = pytest.StashKey()
 
@@ -42,8 +47,19 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     """Read the options; in the main process, collect the results."""
     config.stash[OPTIONS] = read_options(config)
-    if not hasattr(config, "workerinput"):
+    worker = getattr(config, "workerinput", None)
+    if worker is not None and _FRESH in worker:
+        keep_drawn(config.stash[OPTIONS].seed, worker[_FRESH])
+    if worker is None:
         config.pluginmanager.register(Collector(config), "eurdf_conformance.collector")
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_configure_node(node: Any) -> None:
+    """Let all workers of pytest-xdist use the same fresh cases, drawn once."""
+    options = options_of(node.config)
+    if not options.smoke:
+        node.workerinput[_FRESH] = drawn_text(options.seed)
 
 
 @pytest.hookimpl(optionalhook=True)
@@ -71,7 +87,7 @@ def group_of(nodeid: str) -> str:
     file, _, name = nodeid.partition("::")
     if file.endswith("test_protocol.py"):
         return file
-    return nodeid.rpartition("/")[0] if name.startswith("test_case[") else nodeid
+    return nodeid.rpartition("/")[0] if name.startswith(("test_case[", "test_fresh[")) else nodeid
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -178,7 +194,9 @@ class Collector:
         # An interrupted run writes no certificate and leaves an existing one alone.
         broke_off = exitstatus in (pytest.ExitCode.INTERRUPTED, pytest.ExitCode.INTERNAL_ERROR)
         if (run_folder := options_of(self._config).certificate) and not broke_off:
-            write_certificate(run_folder, issue(run))
+            options = options_of(self._config)
+            fresh = None if options.smoke else drawn_hash(options.seed)
+            write_certificate(run_folder, issue(replace(run, fresh=fresh)))
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
         """Print the summary."""

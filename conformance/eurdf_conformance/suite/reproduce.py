@@ -7,11 +7,10 @@ import shlex
 from dataclasses import dataclass, replace
 from itertools import product
 
+from eurdf_conformance.fresh.case import FRESH
+
 #: Default time limits, s: for an answer, and for a start.
 TIMEOUT, START_TIMEOUT = 10.0, 30.0
-
-#: Topic of the cases that are drawn for one run.
-FRESH = "fresh"
 
 #: What pytest runs: in a checkout a folder, elsewhere a package, with its plug-in.
 FOLDER = ("conformance/",)
