@@ -86,7 +86,7 @@ class FreshCase(CorpusCase):
     drawn: Drawn
 
     @property
-    def files(self) -> dict[str, bytes]:  # type: ignore[override]
+    def files(self) -> dict[str, bytes]:
         """The contents of its files, by name."""
         return {name: text.encode() for name, text in self.drawn.files.items()}
 
