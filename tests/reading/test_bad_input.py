@@ -16,10 +16,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import eurdf
+from benchmarks.fuzz.robots import case_of, seeds
 from eurdf.diagnostics import Diagnostics, Place, did_you_mean
 from eurdf.diagnostics.diagnostic import LISTED, LONGEST
 from support.hostile import HOSTILE, MEMORY
-from support.mutation import case_of, seeds
 from support.plain_urdf import Root, trees
 
 TESTS = Path(__file__).parents[1]
@@ -53,7 +53,8 @@ def run(*command: str, seconds: float = 300.0) -> tuple[list[dict[str, Any]], in
     """The JSON lines that a Python process writes, how it ended, and what else it wrote; ended when it hangs."""
     # One thread, so that processor time is time, also beside other tests.
     threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-    paths = os.pathsep.join(filter(None, (str(Path(eurdf.__file__).parents[1]), os.environ.get("PYTHONPATH"))))
+    own = str(Path(eurdf.__file__).parents[1]), str(TESTS.parent)
+    paths = os.pathsep.join(filter(None, (*own, os.environ.get("PYTHONPATH"))))
     with subprocess.Popen(
         [sys.executable, *command],
         stdout=subprocess.PIPE,
