@@ -1,4 +1,4 @@
-"""Run measurements by name: ``python -m benchmarks load growth check``."""
+"""Run measurements by name: ``python -m benchmarks load growth check``; or the mutation campaign: ``… fuzz``."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from benchmarks import (
     load,
     loops,
 )
+from benchmarks.fuzz import campaign
 
 MEASUREMENTS: dict[str, Callable[[], None]] = {
     "load": load.main,
@@ -38,12 +39,15 @@ def _first_line(run: Callable[[], None]) -> str:
 
 
 def main() -> int:
-    """Run the measurements named on the command line; all of them where none is named."""
+    """Run the measurements named on the command line, all of them where none is named; or the mutation campaign."""
+    if sys.argv[1:2] == ["fuzz"]:
+        return campaign.main(sys.argv[2:])
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks",
         description="Measure, as ratios to a named peer in the same run.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog="\n".join(f"{name:20}{_first_line(run)}" for name, run in MEASUREMENTS.items()),
+        epilog="\n".join(f"{name:20}{_first_line(run)}" for name, run in MEASUREMENTS.items())
+        + f"\n{'fuzz':20}{(campaign.__doc__ or '').splitlines()[0]} See `fuzz --help`.",
     )
     parser.add_argument("names", nargs="*", choices=[*MEASUREMENTS, []], help="which to run; all by default")
     for name in parser.parse_args().names or MEASUREMENTS:
