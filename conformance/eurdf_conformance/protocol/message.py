@@ -23,11 +23,15 @@ Numbers = list[Number]
 Row3 = Annotated[Numbers, Field(min_length=3, max_length=3)]
 
 
-class Value(BaseModel):
-    """A part of a message."""
+class Plain(BaseModel):
+    """A part of a message with the same members in all versions of the format."""
 
     # Unknown members of an answer are an error: a misspelt one would be a part that nobody reads.
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
+
+
+class Value(Plain):
+    """A part of a message."""
 
     #: Members that a message does not have where they are None: those that version 2.1 adds.
     optional: ClassVar[frozenset[str]] = frozenset()
@@ -99,7 +103,7 @@ class Answer(Value):
     id: int = Field(description="That of the request.")
 
 
-class ParserInfo(Value):
+class ParserInfo(Plain):
     """Who answers."""
 
     name: Annotated[str, Field(min_length=1)]
