@@ -12,7 +12,9 @@ from pathlib import Path
 
 import eurdf
 from eurdf.linking.description import Unlinked, describe
+from eurdf.mechanism.constraint import RIGID, Closure, FrameClosure, PointClosure
 from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.pose import Pose
 from eurdf.mechanism.same_model import differences, with_universal_joints
 from eurdf_conformance.comparison.text import same_text
 from robots.quality.candidate import Candidate
@@ -24,6 +26,17 @@ _LONGEST_BUILD = 60.0  # s
 # Numbers are written with 14 decimals or 12 digits; the last few depend on the processor, because positions are sums of
 # about a dozen products of lengths of a metre, each rounded to 1e-16.
 _RELATIVE, _ABSOLUTE = 1e-9, 1e-12
+#: What version 1 cannot say, and what is left out where it is compared with version 2. A closure of version 1 between
+#: the frames of a hinge or of a distance is left out too.
+NOT_IN_VERSION_1 = (
+    "names of closures",
+    "hinges, distances and compliances",
+    "couplings",
+    "properties of joints: limits, damping, friction, armature, springs, gear ratios, rotor inertias",
+    "names and control ranges of actuators",
+    "frames",
+    "configurations",
+)
 _PNG = b"\x89PNG\r\n\x1a\n"
 
 
@@ -80,7 +93,7 @@ def is_pictured(candidate: Candidate) -> list[str]:
 
 
 def is_the_same_in_version_1(candidate: Candidate) -> list[str] | None:
-    """robot.v1.yaml is valid and describes the same mechanism; None if there is no such file."""
+    """robot.v1.yaml is valid and the same mechanism, except for `NOT_IN_VERSION_1`; None if there is no such file."""
     file = candidate.folder / "robot.v1.yaml"
     if not file.is_file() or file == candidate.path:
         return None
@@ -90,17 +103,39 @@ def is_the_same_in_version_1(candidate: Candidate) -> list[str] | None:
     errors = [error for error in map(str, old.diagnostics) if error not in shared]
     if isinstance(old, Unlinked) or errors:
         return errors
-    return [f"robot.v1.yaml: {found}" for found in differences(_as_named(old.mechanism, new), new)]
+    one, other = _comparable(old.mechanism, new)
+    return [f"robot.v1.yaml: {found}" for found in differences(one, other)]
 
 
-def _as_named(old: Mechanism, new: Mechanism) -> Mechanism:
-    """A mechanism of version 1, with the names of closures and the configurations that version 1 cannot state."""
-    names = [closure.name for closure in new.closures]
+def _comparable(old: Mechanism, new: Mechanism) -> tuple[Mechanism, Mechanism]:
+    """The mechanisms of version 1 and of version 2, both without what is in `NOT_IN_VERSION_1`."""
+    sayable = [closure for closure in new.closures if isinstance(closure, PointClosure | FrameClosure)]
+    left_out = {_cut(closure) for closure in new.closures if closure not in sayable}
     joined = with_universal_joints(old)
-    closures = joined.closures
-    if len(names) == len(closures):
-        closures = tuple(replace(closure, name=name) for closure, name in zip(closures, names, strict=True))
-    return replace(joined, closures=closures, configurations=new.configurations)
+    stated = [closure for closure in joined.closures if _cut(closure) not in left_out]
+    names = [closure.name for closure in sayable]
+    if len(names) == len(stated):
+        stated = [replace(closure, name=name) for closure, name in zip(stated, names, strict=True)]
+    properties = {joint.name: joint.properties for joint in joined.joints}
+    added = {frame.name for frame in new.frames} - {frame.name for frame in joined.frames}
+    return (
+        replace(joined, closures=tuple(stated), configurations=new.configurations),
+        replace(
+            new,
+            closures=tuple(replace(closure, compliance=RIGID) for closure in sayable),
+            couplings=(),
+            motors={},
+            frames=tuple(frame for frame in new.frames if frame.name not in added),
+            joints=tuple(
+                replace(joint, properties=properties.get(joint.name, joint.properties)) for joint in new.joints
+            ),
+        ),
+    )
+
+
+def _cut(closure: Closure) -> frozenset[tuple[str, Pose]]:
+    """Where a closure is, whichever of its frames is A."""
+    return frozenset((anchor.body, anchor.pose) for anchor in closure.anchors)
 
 
 def _bytes(file: Path) -> bytes | None:

@@ -16,6 +16,7 @@ import eurdf
 from robots.builder import Cylinder, Drawing, Motor, ball, prismatic, revolute, universal, write
 from robots.quality.__main__ import main
 from robots.quality.candidate import Candidate
+from robots.quality.files import is_the_same_in_version_1
 from robots.quality.readme import dimension_table
 from robots.quality.verdict import RULES, judge
 
@@ -209,6 +210,28 @@ def test_different_version_1_is_reported(copy, old, new, error):
     folder = copy("four_bar")
     replace(folder / "robot.v1.yaml", old, new)
     assert error in only_error(folder, "version 1")
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("type: 3d", "type: hinge\n    axis: [0, 1, 0]"),
+        ("type: 3d", "type: distance\n    length: 0.1"),
+        ("type: 3d", "type: 3d\n    compliance: {linear: 1.0e-6}"),
+        ("actuators:", "couplings:\n  - {name: gear, joints: {motor_crank: 1, free_rocker: 1}}\nactuators:"),
+        ("actuators:", "joints: {free_rocker: {stiffness: 2.0, damping: 0.1}}\nactuators:"),
+        (
+            "[motor_crank]",
+            "[{joint: motor_crank, gear_ratio: 9, rotor_inertia: 1e-6, name: m, control: [-1, 1]}]",
+        ),
+        ("actuators:", "frames: [{name: imu, link: rocker, xyz: [0, 0, 0.1]}]\nactuators:"),
+    ],
+)
+def test_what_version_1_cannot_say_is_not_compared(copy, old, new):
+    folder = copy("four_bar")
+    replace(folder / "robot.yaml", '"2.0"', '"2.1"')
+    replace(folder / "robot.yaml", old, new)
+    assert is_the_same_in_version_1(Candidate.find(folder)) == []
 
 
 def test_invalid_version_1_is_reported(copy):
