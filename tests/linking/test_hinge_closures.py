@@ -21,7 +21,7 @@ def hinged(folder: Path, name: str, closure: str) -> Path:
     source = ROBOTS / name
     text = (source / "robot.yaml").read_text(encoding="utf-8")
     assert text.count(f"type: {closure}") == 1
-    text = text.replace('"2.0"', '"2.1"').replace("urdf: robot.urdf", f"urdf: {source / 'robot.urdf'}")
+    text = text.replace('"2.0"', '"2.1"')
     path = folder / "robot.yaml"
     path.write_text(text.replace(f"type: {closure}", "type: hinge\n    axis: [0, 1, 0]"), encoding="utf-8")
     (folder / "robot.urdf").write_bytes((source / "robot.urdf").read_bytes())
