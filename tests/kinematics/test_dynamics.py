@@ -409,6 +409,8 @@ def test_loop_with_mimic_joint_is_solved() -> None:
     found = forward_dynamics(robot, q, v, np.array([2.0]))
     np.testing.assert_allclose(found.a, expected[:3], rtol=1e-7)
     np.testing.assert_allclose(found.forces[0], [expected[3], 0.0, expected[4]], rtol=1e-7, atol=1e-9)
+    motion = simulate(robot, q, v, duration=0.1)
+    assert motion.energy_error < 1e-6 * motion.energy_exchanged
 
 
 def test_inertia_is_needed_only_for_free_motions() -> None:

@@ -27,7 +27,8 @@ def mass_matrix(robot: Robot, q: Vector, *, data: Any = None) -> Matrix:
     Args:
         robot: The robot.
         q: Configuration (nq,), closed or open.
-        data: A `pin.Data` of the model to compute in; by default a new one is created.
+        data: A `pin.Data` of the model to compute in; by default a new one is created, or none for more than 130
+            velocities.
 
     Returns:
         M (nv, nv), symmetric, in kg between two velocities in m/s, kg·m between m/s and rad/s, kg·m² between two in

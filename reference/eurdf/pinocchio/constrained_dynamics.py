@@ -13,6 +13,7 @@ import numpy.typing as npt
 import pinocchio as pin
 
 from eurdf.pinocchio.constraint import has_constraint_models
+from eurdf.pinocchio.tree import MOST_VELOCITIES_WITH_DATA
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -101,8 +102,10 @@ class ConstrainedDynamics:
 
 
 def build_constrained_dynamics(robot: Robot) -> ConstrainedDynamics | None:
-    """The solver for a robot; None if Pinocchio has none, for its kinds of constraint or for mimic joints."""
+    """The solver for a robot; None if it is large, has mimic joints, or kinds of constraint that Pinocchio lacks."""
     model = robot.tree.model
+    if model.nv > MOST_VELOCITIES_WITH_DATA:
+        return None
     if not robot.constraints or len(model.mimicking_joints) or not has_constraint_models(robot.constraints):
         return None
     return ConstrainedDynamics(model, robot.constraint_models)

@@ -21,6 +21,10 @@ from eurdf.pinocchio.frame_pairs import FramePairs, Indices, Matrix, Site, Vecto
 from eurdf.pinocchio.frames import body_frame_ids
 from eurdf.pinocchio.placement import placement_of
 from eurdf.pinocchio.springs import NO_SPRINGS, Springs, build_springs
+from eurdf.pinocchio.tree_recursion import TreeRecursion
+
+#: The dynamics of trees with more velocities do without a `pin.Data`, which would take more than 140 MB.
+MOST_VELOCITIES_WITH_DATA = 130
 
 
 class Coordinate(NamedTuple):
@@ -214,15 +218,19 @@ class PinocchioTree:
         """Whether they are of unit length, to 1e-9."""
         return bool(pin.isNormalized(self.model, q, 1e-9))
 
-    def inverse_dynamics(self, q: Vector, v: Vector, a: Vector, data: pin.Data) -> Vector:
+    def inverse_dynamics(self, q: Vector, v: Vector, a: Vector, data: pin.Data | TreeRecursion) -> Vector:
         """The generalized force (nv,) M a + h that the acceleration a (nv,) takes; with a = 0 the bias h."""
+        if isinstance(data, TreeRecursion):
+            return data.inverse_dynamics(q, v, a)
         return np.array(pin.rnea(self.model, data, q, v, a))
 
-    def mass_times(self, q: Vector, motions: Matrix, data: pin.Data) -> Matrix:
+    def mass_times(self, q: Vector, motions: Matrix, data: pin.Data | TreeRecursion) -> Matrix:
         """The mass matrix at q (nq,), the armature included, times the columns (nv, n) of accelerations.
 
         Up to Pinocchio 4.1, `pin.crba` has wrong entries if a mimic joint carries several branches.
         """
+        if isinstance(data, TreeRecursion):
+            return data.mass_matrix(q) @ motions
         if not len(self.model.mimicking_joints):
             M = np.triu(pin.crba(self.model, data, q))
             return np.asarray((M + np.triu(M, 1).T) @ motions)
@@ -231,7 +239,7 @@ class PinocchioTree:
         columns = [self.inverse_dynamics(q, still, a, data) - gravity for a in motions.T]
         return np.array(columns).reshape(motions.T.shape).T
 
-    def kinetic_energy(self, q: Vector, v: Vector, data: pin.Data) -> float:
+    def kinetic_energy(self, q: Vector, v: Vector, data: pin.Data | TreeRecursion) -> float:
         """The kinetic energy at q (nq,) and v (nv,), J, that of the armature included.
 
         `pin.computeKineticEnergy` leaves out the armature of some joints, up to Pinocchio 4.1.
@@ -240,16 +248,22 @@ class PinocchioTree:
         momentum = self.inverse_dynamics(q, still, v, data) - self.inverse_dynamics(q, still, still, data)
         return 0.5 * float(v @ momentum)
 
-    def potential_energy(self, q: Vector, data: pin.Data) -> float:
+    def potential_energy(self, q: Vector, data: pin.Data | TreeRecursion) -> float:
         """The potential energy of gravity and springs at q (nq,), J."""
+        if isinstance(data, TreeRecursion):
+            return data.potential_energy(q) + self.springs.energy(q)
+        if len(self.model.mimicking_joints):  # not supported by Pinocchio 4.1
+            return TreeRecursion(self.model).potential_energy(q) + self.springs.energy(q)
         return float(pin.computePotentialEnergy(self.model, data, q)) + self.springs.energy(q)
 
-    def memory(self, given: pin.Data | None = None) -> pin.Data:
-        """The given `pin.Data`, or a new one.
+    def memory(self, given: pin.Data | None = None) -> pin.Data | TreeRecursion:
+        """The given `pin.Data`; or a new one, or memory of a large tree.
 
         Raises:
             ValueError: It is no `pin.Data`, or one of another model.
         """
+        if given is None and self.nv > MOST_VELOCITIES_WITH_DATA:
+            return TreeRecursion(self.model)
         return checked_data(self.model, given)
 
     def pairs(self, anchors: Sequence[tuple[Anchor, Anchor]], velocities: Indices | None) -> FramePairs:
