@@ -6,7 +6,7 @@ at zero, and every loop is closed there because both its sides are the same poin
 """
 
 from robots.builder.drawing import Drawing, End
-from robots.builder.joint import Joint, Motor, ball, cross, prismatic, revolute, unit, universal
+from robots.builder.joint import Joint, Motor, Spring, ball, cross, prismatic, revolute, unit, universal
 from robots.builder.shape import Box, Cylinder, Shape, Sphere, Vector3, midpoint
 from robots.builder.write import write
 
@@ -19,6 +19,7 @@ __all__ = [
     "Motor",
     "Shape",
     "Sphere",
+    "Spring",
     "Vector3",
     "ball",
     "cross",

@@ -39,6 +39,19 @@ PASSIVE = Motor(effort=0.0, velocity=20.0)
 
 
 @dataclass(frozen=True, slots=True)
+class Spring:
+    """A spring on the coordinate of a joint.
+
+    Attributes:
+        stiffness: N·m/rad, N/m.
+        rest: Angle (rad) or travel (m) at which it has no force, seen from the drawn pose.
+    """
+
+    stiffness: float
+    rest: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class Joint:
     """A joint, in the drawn pose, in world coordinates.
 
@@ -51,6 +64,7 @@ class Joint:
         axes: Unit vectors x, y, z of its frame. A universal joint turns about x, then y; others keep the world's axes.
         stops: Lowest and highest angle (rad) or travel (m), seen from the drawn pose; None where nothing stops it.
         motor: What drives it; None if nothing does.
+        spring: A spring on it, or None.
     """
 
     name: str
@@ -61,6 +75,7 @@ class Joint:
     axes: tuple[Vector3, Vector3, Vector3] = WORLD
     stops: tuple[float, float] | None = None
     motor: Motor | None = None
+    spring: Spring | None = None
 
     @property
     def rotation(self) -> Matrix3:
@@ -77,6 +92,7 @@ def revolute(
     degrees: tuple[float, float] | None = None,
     drawn: float = 0.0,
     motor: Motor | None = None,
+    spring: Spring | None = None,
 ) -> Joint:
     """A revolute joint.
 
@@ -88,9 +104,10 @@ def revolute(
         degrees: Lowest and highest angle on the maker's scale, degrees; None where nothing stops it.
         drawn: Angle of the drawn pose on that scale, degrees.
         motor: What drives it.
+        spring: A spring on it.
     """
     stops = degrees and (round(math.radians(degrees[0] - drawn), 4), round(math.radians(degrees[1] - drawn), 4))
-    return Joint(name, "revolute", parent, at, unit(axis), stops=stops, motor=motor)
+    return Joint(name, "revolute", parent, at, unit(axis), stops=stops, motor=motor, spring=spring)
 
 
 def prismatic(
@@ -102,6 +119,7 @@ def prismatic(
     metres: tuple[float, float],
     drawn: float = 0.0,
     motor: Motor | None = None,
+    spring: Spring | None = None,
 ) -> Joint:
     """A prismatic joint.
 
@@ -113,9 +131,10 @@ def prismatic(
         metres: Shortest and longest travel on the maker's scale, m.
         drawn: Travel of the drawn pose on that scale, m.
         motor: What drives it.
+        spring: A spring on it.
     """
     stops = (round(metres[0] - drawn, 6), round(metres[1] - drawn, 6))
-    return Joint(name, "prismatic", parent, at, unit(axis), stops=stops, motor=motor)
+    return Joint(name, "prismatic", parent, at, unit(axis), stops=stops, motor=motor, spring=spring)
 
 
 def ball(name: str, parent: str, at: Vector3) -> Joint:

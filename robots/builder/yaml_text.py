@@ -20,24 +20,25 @@ _HEAD = "# Written by build.py beside this file: change it there.\n"
 
 
 def yaml_text(drawing: Drawing) -> str:
-    """The description in version 2.0; a drawing is assembled with every joint at its neutral."""
+    """The description in version 2.0, or 2.1 with springs; a drawing is assembled with every joint at its neutral."""
+    version = "2.1" if any(joint.spring for joint in drawing.joints) else "2.0"
     content: dict[str, Value] = {
-        "extended_urdf": "2.0",
+        "extended_urdf": version,
         "urdf": "robot.urdf",
         "root": "" if drawing.root == "fixed" else drawing.root,
         "closures": [
             {"name": closure.name, "type": closure.type, "frames": closure.frames} for closure in drawing.closures
         ],
-        "joints": {joint.name: _type_2(joint) for joint in _replaced(drawing)},
+        "joints": {joint.name: _type_2(joint) for joint in _replaced(drawing)} | _springs(drawing),
         "actuators": [joint.name for joint in drawing.joints if joint.motor],
         "configurations": {"assembled": {}},
         "metadata": drawing.metadata,
     }
-    return _SCHEMA.format("2.0") + _HEAD + _text(content)
+    return _SCHEMA.format(version) + _HEAD + _text(content)
 
 
 def version_1_text(drawing: Drawing) -> str:
-    """The description in version 1, which can say the same mechanism, but neither configurations nor metadata."""
+    """The description in version 1, which can say the same mechanism, but no springs, configurations or metadata."""
     replaced = _replaced(drawing)
     content: dict[str, Value] = {
         "closed_loop": [closure.frames for closure in drawing.closures],
@@ -57,6 +58,15 @@ def _replaced(drawing: Drawing) -> list[Joint]:
 def _type_2(joint: Joint) -> Value:
     """What a joint is in version 2.0; the axes of a universal one are x and y of its frame."""
     return {"type": "universal", "axes": "xy"} if joint.type == "universal" else joint.type
+
+
+def _springs(drawing: Drawing) -> dict[str, Value]:
+    """The joints with springs, in version 2.1."""
+    return {
+        joint.name: {"stiffness": joint.spring.stiffness, **({"rest": joint.spring.rest} if joint.spring.rest else {})}
+        for joint in drawing.joints
+        if joint.spring
+    }
 
 
 def _type_1(joint: Joint) -> str:

@@ -16,7 +16,7 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 
 import eurdf
 from eurdf.pinocchio.configuration import configuration_vector
-from robots.builder import Box, Cylinder, Drawing, Motor, Sphere, ball, prismatic, revolute, universal, write
+from robots.builder import Box, Cylinder, Drawing, Motor, Sphere, Spring, ball, prismatic, revolute, universal, write
 from robots.builder.mirror import mirrored_shape
 from robots.builder.number_text import length_text, mass_text, number_text
 from robots.builder.shape import rotation_of, rpy_of
@@ -239,6 +239,32 @@ def test_mirrored_side_has_equal_coordinates(tmp_path):
     assert len(bodies) == 6
     for body in bodies:
         assert position(body.replace("left", "right")) == pytest.approx(position(body) * [1.0, -1.0, 1.0], abs=1e-12)
+
+
+def test_springs_are_written_in_version_2_1_and_mirrored(tmp_path):
+    robot = Drawing("legs", materials={"steel": (0.5, 0.5, 0.5, 1.0)}, metadata={}, root="floating")
+    robot.body("trunk", None, Sphere((0.0, 0.0, 1.0), 0.1, mass=5.0), material="steel")
+    shin = revolute(
+        "left_shin", "trunk", (0.0, 0.2, 0.5), (1.0, 1.0, 0.0), degrees=(-9.0, 9.0), spring=Spring(900.0, 0.1)
+    )
+    robot.body("left_leg", shin, Sphere((0.0, 0.2, 0.3), 0.1, mass=1.0), material="steel")
+    slide = prismatic(
+        "left_slide", "left_leg", (0.0, 0.2, 0.1), (0.0, 0.0, 1.0), metres=(0.0, 0.1), spring=Spring(5000.0)
+    )
+    robot.body("left_foot", slide, Sphere((0.0, 0.2, 0.0), 0.1, mass=1.0), material="steel")
+    robot.mirror("left", "right")
+    write(robot, tmp_path)
+    loaded = eurdf.load(tmp_path)
+    assert loaded.mechanism.version == "2.1"
+    springs = {joint.name: (joint.properties.stiffness, joint.properties.rest) for joint in loaded.mechanism.joints}
+    assert springs["left_shin"] == springs["right_shin"] == ((900.0,), (0.1,))
+    assert springs["left_slide"] == springs["right_slide"] == ((5000.0,), (0.0,))
+    first = (tmp_path / "robot.yaml").read_text().splitlines()[0]
+    assert first.endswith("extended-urdf-2.1.schema.json")
+
+
+def test_drawing_without_springs_is_written_in_version_2_0():
+    assert yaml.safe_load(yaml_text(limb()))["extended_urdf"] == "2.0"
 
 
 def unit_quaternion(random):
