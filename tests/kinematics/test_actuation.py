@@ -168,4 +168,6 @@ def test_info_shows_names_ranges_and_springs(tmp_path: Path, capsys: pytest.Capt
     springs = {each["name"]: (each["stiffness"], each["rest"]) for each in info["joint_list"] if each["stiffness"]}
     assert springs == {"b": ([7.5], [0.25])}
     assert main(["info", path]) == 0
-    assert "spring 7.5, rest 0.25" in capsys.readouterr().out
+    shown = capsys.readouterr().out
+    assert "spring 7.5, rest 0.25" in shown
+    assert "actuated as a, -3 to 4.5" in shown

@@ -175,14 +175,17 @@ def _mobilities(info: RobotInfo) -> list[tuple[str, int | str | None, str]]:
 
 
 def _closures(info: RobotInfo) -> Table:
-    table = new_table("closure", "type", "frame A", "frame B", "residual")
+    table = new_table("closure", "type", "frame A", "frame B", "residual", "")
     table.columns[4].justify = "right"
     for closure in info.closure_list:
         frames = [
             cell(frame) if frame is not None else cell(f"on {body}", "dim")
             for frame, body in zip(closure.frames, closure.bodies, strict=True)
         ]
-        table.add_row(cell(closure.name, "bold"), closure.type, *frames, _number(closure.residual))
+        linear, angular = closure.compliance
+        compliances = [f"{linear:g} m/N"] * bool(linear) + [f"{angular:g} rad/(N·m)"] * bool(angular)
+        note = cell(f"compliance {', '.join(compliances)}" if compliances else "", "dim")
+        table.add_row(cell(closure.name, "bold"), closure.type, *frames, _number(closure.residual), note)
     return table
 
 
@@ -238,12 +241,18 @@ def _dependent(info: RobotInfo) -> Table:
 def _joints(info: RobotInfo) -> Table:
     table = new_table("joint", "type", "parent", "child", "nv", "")
     table.columns[4].justify = "right"
+    motors = {motor.joint: motor for motor in info.actuator_list}
     for joint in info.joint_list:
         notes = [f"mimics {joint.mimics}"] if joint.mimics else []
         if any(joint.stiffness):
             stiffness = ", ".join(f"{each:g}" for each in joint.stiffness)
             notes.append(f"spring {stiffness}, rest {', '.join(f'{each:g}' for each in joint.rest)}")
-        note = cell("; ".join(["actuated", *notes]), "cyan") if joint.actuated else cell("; ".join(notes), "dim")
+        motor = motors.get(joint.name)
+        if motor is not None:
+            name = "" if motor.name == joint.name else f" as {motor.name}"
+            control = "" if motor.control is None else f", {motor.control[0]:g} to {motor.control[1]:g}"
+            notes.insert(0, f"actuated{name}{control}")
+        note = cell("; ".join(notes), "dim" if motor is None else "cyan")
         table.add_row(
             cell(joint.name, "bold"), joint.type.value, cell(joint.parent), cell(joint.child), str(joint.nv), note
         )
