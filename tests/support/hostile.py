@@ -234,9 +234,21 @@ HOSTILE = {
     "a chain of 666 floating joints": _urdf("", lambda: chain(666, "floating")),
     "a chain of 10,000 fixed links": _urdf("", lambda: chain(10_000, "fixed")),
     "4,000 links on one": _urdf("", lambda: star(4_000)),
-    "a cycle of 60,000 links": _urdf(
+    "a cycle of 30,000 links": _urdf(
         "urdf-cycle",
-        lambda: robot(numbered(60_000), [joint(f"j{i}", f"l{i}", f"l{(i + 1) % 60_000}") for i in range(60_000)]),
+        lambda: robot(numbered(30_000), [joint(f"j{i}", f"l{i}", f"l{(i + 1) % 30_000}") for i in range(30_000)]),
+    ),
+    "80,000 joints": _urdf("file-too-large", lambda: star(80_000)),
+    "30,000 mimics of unknown joints": _urdf(
+        "urdf-mimic-unknown",
+        lambda: robot(
+            numbered(30_001),
+            [joint(f"j{i}", "l0", f"l{i + 1}", content=f'<mimic joint="x{i}"/>') for i in range(30_000)],
+        ),
+    ),
+    "16,000,000 lines and an unknown key": _yaml("unknown-key", f"{VERSION2}{chr(10) * 16_000_000}key: 1"),
+    "an unknown key in a line of 16,000,000 characters": _yaml(
+        "unknown-key", f"{VERSION2}x-a: {'b' * 16_000_000}\nkey: 1"
     ),
     "a chain of 12,000 mimics": _urdf("file-too-large", lambda: mimics(12_000, "")),
     "a chain of 2,000 mimics": _urdf("", lambda: mimics(2_000, "")),
@@ -256,6 +268,17 @@ HOSTILE = {
     "1,000 four-bars in series": _files("", lambda: four_bars(1_000, in_series=True)),
     "1,000 four-bars that cannot close": _files("", lambda: four_bars(1_000, in_series=True, ground=4.0)),
     "6,000 frames": _yaml("", many("frames", "{{name: f{}, link: l0}}", 6_000)),
+    "4,000 closures on one joint that cannot close": _files(
+        "",
+        lambda: (
+            VERSION2
+            + "frames:\n"
+            + "".join(f"- {{name: f{i}, link: l0, xyz: [{i}, 1, 0]}}\n" for i in range(4_000))
+            + "closures:\n"
+            + "".join(f"- {{name: c{i}, type: 3d, frames: [f{i}, l1]}}\n" for i in range(4_000)),
+            star(1),
+        ),
+    ),
     "6,000 meshes that are not there": _urdf(
         "",
         lambda: (

@@ -49,10 +49,7 @@ class XmlDocument:
             element: An element of this file.
             attribute: Name of an attribute as lxml gives it. If the element lacks it, the place is the element's.
         """
-        if not self._tags:
-            self._find_elements()
-        pointer = self._path(element)
-        start, after_name = self._tags[element]
+        pointer, (start, after_name) = self._of_root() if element is self.root else self._of(element)
         if attribute is None:
             return self.source.place(start, after_name, pointer)
         name = _written_name(element, attribute)
@@ -63,6 +60,16 @@ class XmlDocument:
                 return self.source.place(*found.span(2 if found[2] is not None else 3), pointer)
             end = found.end()
         return self.source.place(start, after_name, pointer)
+
+    def _of_root(self) -> tuple[str, tuple[int, int]]:
+        """Its pointer and its tag, without those of all others: of a file that is too large, only this is wanted."""
+        first = next(found.span() for found in _MARKUP.finditer(self.source.text) if found[1])
+        return f"/{_written_name(self.root, self.root.tag)}", first
+
+    def _of(self, element: etree._Element) -> tuple[str, tuple[int, int]]:
+        if not self._tags:
+            self._find_elements()
+        return self._path(element), self._tags[element]
 
     def _find_elements(self) -> None:
         # Only once something is to be reported. libxml2 keeps no columns, and the line where a start tag ends.

@@ -17,6 +17,10 @@ from eurdf.reading.xml_reader import XmlDocument
 #: Elements by which other dialects state a closure or a coupling; a parser of this format would ignore them.
 _CLOSURE_DIALECTS = frozenset({"loop", "loop_joint", "constraint", "coupling"})
 
+#: Joints of a URDF that are read (EU-FIL-002): a merge makes one joint of three, so that of more than these, more than
+#: a robot may have are left.
+READ_JOINTS = 30_000
+
 
 def read_urdf(
     document: XmlDocument,
@@ -58,6 +62,11 @@ def _read_robot(reader: UrdfReader, root: Element, materials: Materials | None) 
                 materials.define(element)
         elif isinstance(tag, str) and not _is_of_other_dialect(reader, element):
             reader.unknown(root, element)
+    count = sum(element.tag == "joint" for element in elements)
+    if count > READ_JOINTS:
+        message = f"the URDF has {count:,} joints; the maximum is {READ_JOINTS:,}, and fewer unless joints are merged"
+        reader.report("file-too-large", message, root)
+        return None
     links: list[UrdfLink] = []
     joints: list[UrdfJoint] = []
     for element in elements:
