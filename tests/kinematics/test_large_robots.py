@@ -12,10 +12,10 @@ import pytest
 
 import eurdf
 from eurdf.commands.robot_info import robot_info
-from eurdf.kinematics.ancestry import Ancestry
-from eurdf.kinematics.assembly import Assembler, work_of_step
+from eurdf.kinematics.assembly import Assembler
 from eurdf.kinematics.loop import Loop, find_loops, independent_groups, joints_of_loops
 from eurdf.linking.link import JOINT_LIMIT, ROW_LIMIT, VELOCITY_LIMIT
+from eurdf.pinocchio.ancestry import Ancestry
 from support.hostile import VERSION2, chain, four_bars, joint, numbered, robot, shared, star
 
 
@@ -130,7 +130,7 @@ def test_skipped_check_is_no_error(tmp_path: Path, monkeypatch: pytest.MonkeyPat
 
 
 def test_large_group_does_not_keep_others_open(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("eurdf.kinematics.assembly._MOST_VELOCITIES_WITH_DATA", 0)
+    monkeypatch.setattr("eurdf.kinematics.assembly._MOST_VELOCITIES_AT_ONCE", 0)
     # The first three loops share their joints with one around them.
     description, urdf = four_bars(5, in_series=True)
     around = (
@@ -217,7 +217,7 @@ def test_search_that_is_cut_short_decides_nothing(tmp_path: Path, monkeypatch: p
     whole = eurdf.assemble(loaded)
     assert whole.reason == "not closed"
     # Enough for the first descents, but not for all restarts.
-    work = sum(work_of_step(each.group) for each in Assembler(loaded).evaluations)
+    work = sum(each.work for each in Assembler(loaded).evaluations)
     monkeypatch.setattr("eurdf.kinematics.assembly._MOST_WORK", 65 * work)
     cut = eurdf.assemble(loaded)
     assert 10 < cut.iterations < whole.iterations

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eurdf.kinematics.ancestry import Ancestry
 from eurdf.kinematics.array import Indices
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.tree_kinematics import TreeKinematics
 from eurdf.mechanism.constraint import Constraint
+from eurdf.pinocchio.ancestry import Ancestry
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot

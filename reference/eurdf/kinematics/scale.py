@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eurdf.kinematics.ancestry import Ancestry
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.constraint_stack import all_constraints
 from eurdf.kinematics.loop import find_loops, joints_of_loops
+from eurdf.pinocchio.ancestry import Ancestry
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot

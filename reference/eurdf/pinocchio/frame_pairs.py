@@ -17,6 +17,8 @@ import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
+from eurdf.pinocchio.ancestry import Ancestry
+
 Vector = npt.NDArray[np.float64]
 Matrix = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.intp]
@@ -61,7 +63,7 @@ class FramePairs:
         bundles: list[tuple[list[int], set[int]]] = []
         found: list[Part] = []
         size = 0
-        for which, joints in self._clusters():
+        for which, joints in self._clusters:
             velocities = sum(self.model.nvs[joint] for joint in joints)
             # Mimic joints have columns of their own in Pinocchio's Jacobians, which only the paths add to their
             # leaders'. Without velocities, Jacobians of Pinocchio 4.1 read memory that is not their own.
@@ -76,25 +78,30 @@ class FramePairs:
                 size = velocities
         return found + [self._part(sorted(which), sorted(joints)) for which, joints in bundles]
 
+    @cached_property
     def _clusters(self) -> list[tuple[list[int], set[int]]]:
-        """Pairs that share joints with one another, and these joints."""
+        """Pairs that share joints with one another, and these joints.
+
+        The time is linear in the number of pairs and of joints, however many pairs share a joint.
+        """
+        runs = _JointRuns(self._parents)
+        ancestry = Ancestry(self._parents)
+        lowest = []  # of each pair a joint between its frames; 0 if there is none
+        for (a, _), (b, _) in self.pairs:
+            above = ancestry.common(a, b)
+            ends = [joint for joint in (a, b) if joint != above]
+            for joint in ends:
+                runs.add(joint, above)
+            if len(ends) == 2:
+                runs.join(a, b)
+            lowest.append(ends[0] if ends else 0)
         clusters: dict[int, tuple[list[int], set[int]]] = {}
-        member: dict[int, int] = {}  # of each joint the first pair of its cluster, if it was not joined to another
-        leader = list(range(len(self.pairs)))
-
-        def find(pair: int) -> int:
-            while leader[pair] != pair:
-                leader[pair] = leader[leader[pair]]
-                pair = leader[pair]
-            return pair
-
-        for index, signs in enumerate(self._signs):
-            for joint in signs:
-                leader[find(index)] = find(member.setdefault(joint, index))
-        for index, signs in enumerate(self._signs):
-            which, joints = clusters.setdefault(find(index), ([], set()))
-            which.append(index)
-            joints.update(signs)
+        alone = itertools.count(-1, -1)
+        for index, joint in enumerate(lowest):
+            key = runs.cluster(joint) if joint else next(alone)
+            clusters.setdefault(key, ([], set()))[0].append(index)
+        for joint in runs.joints:
+            clusters[runs.cluster(joint)][1].add(joint)
         return list(clusters.values())
 
     def _part(self, which: list[int], joints: list[int]) -> Part:
@@ -143,7 +150,7 @@ class FramePairs:
     def joints(self) -> list[tuple[int, int, Any, Any, slice]]:
         """Of each joint between frames: its index, its parent, its placement, itself, and its columns in J."""
         model, found, first = self.model, [], 0
-        for joint in sorted(set().union(*self._signs)):
+        for joint in sorted(set().union(*(joints for _, joints in self._clusters))):
             moving = model.joints[joint]
             columns = slice(first, first + moving.nvExtended)
             found.append((joint, self._parents[joint], pin.SE3(model.jointPlacements[joint]), moving, columns))
@@ -192,6 +199,46 @@ class FramePairs:
                     signs[joint_b], joint_b = 1.0, parents[joint_b]
             found.append(signs)
         return found
+
+
+class _JointRuns:
+    """Joints of a tree, joined to clusters by the paths that they are on; a run is joined from each to its parent.
+
+    Attributes:
+        joints: The joints on paths so far.
+    """
+
+    def __init__(self, parents: Sequence[int]) -> None:
+        self.joints: dict[int, None] = {}
+        self._parents = parents
+        self._above = list(range(len(parents)))  # of each joint another of its run, farther up
+        self._leader = list(range(len(parents)))  # of each joint another of its cluster
+
+    def add(self, joint: int, above: int) -> None:
+        """Join the joints from one up to an ancestor, which is no part of them."""
+        self.joints[joint] = None
+        top = _last(self._above, joint)
+        while (parent := self._parents[top]) > above and top > above:  # a parent has a lower index than its child
+            self.joints[parent] = None
+            self._above[top] = parent
+            self.join(top, parent)
+            top = _last(self._above, parent)
+
+    def join(self, a: int, b: int) -> None:
+        """Join the clusters of two joints."""
+        self._leader[self.cluster(a)] = self.cluster(b)
+
+    def cluster(self, joint: int) -> int:
+        """The joint that represents a cluster."""
+        return _last(self._leader, joint)
+
+
+def _last(following: list[int], index: int) -> int:
+    """The end of a chain of indices, which is shortened."""
+    while following[index] != index:
+        following[index] = following[following[index]]
+        index = following[index]
+    return index
 
 
 @dataclass(frozen=True, eq=False)
