@@ -1,1 +1,1 @@
-"""Parsers behind the protocol: the reference, and two small examples to begin an adapter from."""
+"""Parsers that speak the protocol: the reference, and two small examples to start an adapter from."""

@@ -22,7 +22,7 @@ from eurdf_conformance.protocol.reply import accepted, rejected
 
 
 class Reference:
-    """`eurdf` as a parser. What it makes of a robot can be changed one method at a time."""
+    """`eurdf` as a parser. Subclasses can change one method at a time."""
 
     name = "eurdf"
     version = eurdf.__version__
@@ -57,17 +57,17 @@ class Reference:
         frames: Sequence[str],
         quantities: Sequence[Quantity],
     ) -> list[Values]:
-        """Where things are, of the robot accepted last."""
+        """Evaluate the robot accepted last."""
         if self._robot is None:
             raise ValueError("no robot was accepted")
         return [self.values(self._robot, each, frames, quantities) for each in configurations]
 
     def describe(self, description: Path, urdf: Path) -> Unlinked | Linked:
-        """The robot as read; that the URDF exists which the description names is for the parser to see."""
+        """The robot as read. The parser itself checks that the URDF of the description exists."""
         return describe(description, urdf if os.path.lexists(urdf) else None)
 
     def issues(self, found: Iterable[Diagnostic]) -> list[Issue]:
-        """Diagnostics as the protocol has them."""
+        """Diagnostics in the form of the protocol."""
         return [
             Issue(
                 code=each.code,
@@ -91,7 +91,7 @@ class Reference:
         frames: Sequence[str],
         quantities: Sequence[Quantity],
     ) -> Values:
-        """The quantities asked for, at one configuration."""
+        """The requested quantities at one configuration."""
         return Quantities(robot, configuration, frames).values(quantities)
 
 

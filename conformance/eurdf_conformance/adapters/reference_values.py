@@ -1,4 +1,4 @@
-"""Where things are, of a robot of `eurdf`: Pinocchio's numbers, in the terms of the protocol.
+"""Poses and other quantities of a robot of `eurdf`: Pinocchio's numbers in the conventions of the protocol.
 
 Joint by joint the velocities of `eurdf`'s models are those of the specification, in their order and their frame: only
 where they are has to be said. Coordinates differ (an angle may be a cosine and a sine) and are converted by `eurdf`.
@@ -27,10 +27,10 @@ Matrix = npt.NDArray[np.float64]
 
 
 class Quantities:
-    """What can be asked of a robot at a configuration, each computed when asked for."""
+    """The quantities of a robot at a configuration, each computed when requested."""
 
     def __init__(self, robot: Robot, configuration: Mapping[str, Sequence[float]], frames: Sequence[str]) -> None:
-        """Place the robot.
+        """Set the robot's configuration.
 
         Args:
             robot: The robot.
@@ -47,7 +47,7 @@ class Quantities:
         self._bodies = body_frame_ids(robot.mechanism)
 
     def values(self, quantities: Sequence[Quantity]) -> Values:
-        """The quantities asked for."""
+        """The requested quantities."""
         every: dict[Quantity, Any] = {
             "poses": self.poses,
             "residuals": self.residuals,
@@ -59,7 +59,7 @@ class Quantities:
         return Values(**{name: every[name]() for name in quantities})
 
     def poses(self) -> dict[str, Pose]:
-        """Of each frame in the world; a ValueError where a name is that of none, or of two."""
+        """The pose of each frame in the world; a ValueError if a name means no frame, or two."""
         found = {}
         for name in self.frames:
             body, placement = _frame(self.robot.mechanism, name)
@@ -68,7 +68,7 @@ class Quantities:
         return found
 
     def residuals(self) -> dict[str, list[float]]:
-        """Of each closure, seen from A, m and rad; of each coupling."""
+        """The residual of each closure, seen from A, m and rad; and of each coupling."""
         return {name: rows.tolist() for name, rows in self._by_constraint(self._residual_and_jacobian[0]).items()}
 
     def jacobian(self) -> Jacobian:
@@ -81,11 +81,11 @@ class Quantities:
         return MassMatrix(columns=_columns(self.robot), matrix=_mass_matrix(self.robot, self.q).tolist())
 
     def mass(self) -> float:
-        """Of all bodies, the root too, kg."""
+        """Mass of all bodies, including the root, kg."""
         return float(sum(mass for mass, _ in self._masses))
 
     def center_of_mass(self) -> list[float] | None:
-        """In the world, m; of what weighs nothing there is none."""
+        """Centre of mass in the world, m; undefined for a robot without mass."""
         mass = self.mass()
         if mass == 0.0:
             return None

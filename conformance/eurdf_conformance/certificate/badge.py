@@ -1,4 +1,4 @@
-"""The badge: a small picture that says what a parser is certified for."""
+"""The badge: a small picture that shows which levels a parser is certified for."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _HEIGHT, _PADDING = 20, 7
 
 
 def badge(certificate: Certificate) -> str:
-    """The badge as a text of SVG: which versions on the left, which levels on the right."""
+    """The badge as SVG text: the versions on the left, the levels on the right."""
     left, right = badge_texts(certificate)
     color = _GREEN if any(certified_levels(certificate, version) for version in VERSIONS) else _GREY
     widths = [_width(text) + 2 * _PADDING for text in (left, right)]
@@ -40,7 +40,7 @@ def badge(certificate: Certificate) -> str:
 
 
 def badge_texts(certificate: Certificate) -> tuple[str, str]:
-    """What the badge says, on the left and on the right."""
+    """The left and the right text of the badge."""
     certified = {version: certified_levels(certificate, version) for version in VERSIONS}
     versions = [version for version in VERSIONS if certified[version]]
     if not versions:

@@ -1,4 +1,4 @@
-"""The certificate: what a parser has come to, as one JSON value, which has a JSON Schema.
+"""The certificate: the result of a parser in the suite, as one JSON value, which has a JSON Schema.
 
 Two runs of one suite on one parser with one seed give the same bytes: it holds no time but the date, and that only
 where it is given. This is so however a run is spread over processes.
@@ -45,7 +45,7 @@ class Suite(_Part):
 
 
 class Scope(_Part):
-    """What the user asked to be tested."""
+    """What the run was asked to test."""
 
     levels: tuple[Level, ...]
     versions: tuple[Version, ...]
@@ -60,7 +60,7 @@ class Scope(_Part):
 
 
 class ClauseResult(_Part):
-    """How many of the items that test a clause have passed, of those that were asked."""
+    """How many items that test a clause ran, and how many of them passed."""
 
     id: str
     items: Count
@@ -68,7 +68,7 @@ class ClauseResult(_Part):
 
 
 class Failure(_Part):
-    """An item that has not passed."""
+    """An item that did not pass."""
 
     id: str
     """Topic and id of a case, or name of a property."""
@@ -86,7 +86,7 @@ class Failure(_Part):
 
 
 class Certificate(_Part):
-    """What a parser of Extended URDF has come to in the conformance suite."""
+    """The result of a parser in the conformance suite."""
 
     certificate: Literal["1.0"] = "1.0"
     """Version of this form."""
@@ -110,20 +110,20 @@ class Certificate(_Part):
     """Where the results differ from the file of known failures."""
 
     def at(self, version: Version, level: Level) -> LevelResult | None:
-        """What it says of one level."""
+        """The result of one level."""
         return next((each for each in self.levels if (each.version, each.level) == (version, level)), None)
 
     def to_text(self) -> str:
-        """The text of its file."""
+        """The text of the certificate's file."""
         return json.dumps(self.model_dump(mode="json"), indent=2, ensure_ascii=False) + "\n"
 
 
 class NoCertificate(Exception):  # noqa: N818 - shown to the user as it is
-    """There is no certificate there; its text says why."""
+    """The path has no certificate; the text gives the reason."""
 
 
 def read_certificate(path: Path) -> Certificate:
-    """Read a certificate: the file itself, or the folder that it is in.
+    """Read a certificate from its file, or from the folder that holds it.
 
     Raises:
         NoCertificate: There is none, or it does not fit the schema.

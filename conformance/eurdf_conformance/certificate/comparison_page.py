@@ -43,7 +43,7 @@ def _parsers(certificates: Sequence[Certificate]) -> Iterator[Element]:
 
 
 def _titles(certificates: Sequence[Certificate]) -> list[str]:
-    """A title for each that no other has: with the language, and at last a number, where name and version are alike."""
+    """A unique title for each certificate, with the language, and then a number, where name and version are equal."""
     titles = [parser_title(each) for each in certificates]
     languages = [each.parser.language if each.parser else "" for each in certificates]
     said = Counter(titles)

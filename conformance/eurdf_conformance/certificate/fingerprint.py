@@ -1,4 +1,4 @@
-"""Hashes that say whether two runs were of the same suite."""
+"""Hashes that tell whether two runs used the same suite."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from eurdf_conformance.properties.example import FROZEN
 
 
 def clauses_hash(clauses: Iterable[Clause] | None = None) -> str:
-    """Hash of what clauses demand, whoever enforces and tests them; those of this edition if left out."""
+    """Hash of the requirements of the clauses; of this edition's by default."""
     values = [
         [clause.id, clause.keyword, clause.text, clause.level, clause.versions, sorted(clause.codes)]
         for clause in sorted(clauses or read_clauses().values(), key=lambda clause: clause.id)
@@ -24,18 +24,18 @@ def clauses_hash(clauses: Iterable[Clause] | None = None) -> str:
 
 
 def corpus_hash(cases: Iterable[CorpusCase] | None = None) -> str:
-    """Hash of all files of cases, in whatever order these come; of all cases if left out."""
+    """Hash of the files of cases, in any order; of all cases by default."""
     return files_hash(dict(chain.from_iterable(map(case_files, all_cases() if cases is None else cases))))
 
 
 def properties_hash() -> str:
-    """Hash of what the properties hold, and of the mechanisms that they are tried on in every certification."""
+    """Hash of the relations and of the stored mechanisms that each certification tests them on."""
     values = [[each.name, each.title, each.clauses, each.levels, each.versions] for each in PROPERTIES]
     return files_hash({"properties": json.dumps(values, ensure_ascii=False).encode(), FROZEN.name: FROZEN.read_bytes()})
 
 
 def files_hash(files: Mapping[str, bytes]) -> str:
-    """Hash of files by name: that of the sorted lines that hold their hashes and names."""
+    """Hash of files by name: the hash of the sorted lines with the hash and the name of each file."""
     lines = sorted(f"{_hash(content)}  {name}\n" for name, content in files.items())
     return _hash("".join(lines).encode())
 

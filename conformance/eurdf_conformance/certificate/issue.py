@@ -1,4 +1,4 @@
-"""A certificate, drawn from a run of the suite."""
+"""Makes the certificate of a run of the suite."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _UNSTABLE = (Verdict.MISPLACED, Verdict.NOT_STARTED)
 
 
 def installed_suite() -> Suite:
-    """What the suite that is installed here is."""
+    """The suite that is installed here."""
     return Suite(
         version=version(_DISTRIBUTION),
         protocol=PROTOCOL,

@@ -14,11 +14,11 @@ from eurdf_conformance.visible import visible
 Element = _Element
 Content = str | Element
 
-# Roles of the specification's text, {code}`x`, of which a parser sees the argument.
+# Roles in the text of the specification, {code}`x`; only the argument is shown.
 _ROLE = re.compile(r"\{[a-z:]+\}(?=`)")
 _LINK = re.compile(r"\[([^]]+)\]\([^)]*\)")
 
-# Nothing is loaded and nothing runs, whatever text of a parser the page contains.
+# The page loads and runs nothing, whatever texts of a parser it contains.
 _POLICY = "default-src 'none'; style-src 'unsafe-inline'"
 
 

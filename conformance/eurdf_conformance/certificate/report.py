@@ -13,7 +13,7 @@ from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.judging.level_result import LevelResult
 from eurdf_conformance.level import VERSIONS, Level
 
-# A parser that fails everything fails hundreds of items. So many are open to begin with.
+# Number of failures that are unfolded at first; a parser that fails everything fails hundreds of items.
 _OPEN = 10
 
 
@@ -31,7 +31,7 @@ def report(certificate: Certificate) -> str:
 def level_cell(
     result: LevelResult | None, words: Callable[[LevelResult], str] = level_words, tried: bool = False
 ) -> Element:
-    """What became of a level, as a cell of a table.
+    """The result of a level as a table cell.
 
     Args:
         result: Of the level; None where the certificate does not have it.
@@ -177,5 +177,5 @@ def _link(anchor: str, text: str) -> Element:
 
 
 def _anchor(failure: Failure) -> str:
-    # No two ids differ in other characters only: those of cases are of letters and digits.
+    # Unique, since ids of cases consist of letters and digits.
     return re.sub(r"[^A-Za-z0-9_-]", "-", f"item-{failure.id}-{failure.level}")

@@ -1,4 +1,4 @@
-"""What a certificate says, in words."""
+"""A certificate in words."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ def certified_levels(certificate: Certificate, version: Version) -> tuple[Level,
 
 
 def parser_title(certificate: Certificate) -> str:
-    """Name and version of the parser, or the parser where it could not be started."""
+    """Name and version of the parser, or its command if it could not be started."""
     parser = certificate.parser
     return certificate.parser_option if parser is None else f"{parser.name} {parser.version}".strip()
 
 
 def headline(certificate: Certificate) -> str:
-    """What the parser is certified for, and what it claims beside that, in a sentence or two."""
+    """What the parser is certified for, and what else it claims, in a sentence or two."""
     if certificate.parser is None:
         return "The parser could not be started"
     if certificate.scope.smoke:
@@ -35,7 +35,7 @@ def headline(certificate: Certificate) -> str:
 
 
 def level_words(result: LevelResult, smoke: bool = False) -> str:
-    """What became of a level, in a few words."""
+    """The result of a level in a few words."""
     if not result.claimed:
         return "not claimed"
     if not result.asked:
@@ -51,14 +51,14 @@ def level_words(result: LevelResult, smoke: bool = False) -> str:
 
 
 def level_count(result: LevelResult) -> str:
-    """The same where there is room for two numbers."""
+    """The result of a level as two numbers, for narrow columns."""
     if not (result.claimed and result.asked):
         return level_words(result)
     return f"{result.counts.get(Verdict.PASSED, 0)} of {result.items}"
 
 
 def _by_version(certificate: Certificate, certified: bool) -> str:
-    """The levels that were tested and are certified, or are not."""
+    """The tested levels that are certified, or that are not, by version."""
     levels = {
         version: [
             each.level
@@ -71,7 +71,7 @@ def _by_version(certificate: Certificate, certified: bool) -> str:
 
 
 def levels_text(levels: Sequence[Level], separator: str) -> str:
-    """The names of levels; of all of them, that they are all."""
+    """The names of levels, or "all levels"."""
     return "all levels" if len(levels) == len(Level) else separator.join(levels)
 
 

@@ -1,4 +1,4 @@
-"""A certificate as files: whole or not at all."""
+"""Writes the files of a certificate: all of them, or none."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from eurdf_conformance.certificate.certificate import FILE, Certificate
 from eurdf_conformance.certificate.report import report
 from eurdf_conformance.write_together import write_together
 
-#: What shows a certificate to people.
+#: The files that show a certificate to people.
 _SHOWING = ("report.html", "badge.svg")
 
 
 class NoRoom(Exception):  # noqa: N818 - shown to the user as it is
-    """No certificate can be written there; its text says why."""
+    """No certificate can be written there; the text gives the reason."""
 
 
 def make_room(folder: Path, *, force: bool = False) -> None:

@@ -1,4 +1,4 @@
-"""What ``eurdf certify`` shows of a certificate to a person."""
+"""Shows a certificate in the terminal."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from eurdf_conformance.level import VERSIONS, Level
 from eurdf_conformance.properties.explore import EXPLORED
 from eurdf_conformance.suite.smoke import smoke_lines
 
-# How many of the items that did not pass are shown; the certificate has all.
+# Number of failures shown; the certificate has all of them.
 _SHOWN = 20
 
 
 def show(certificate: Certificate) -> None:
-    """Write what a certificate says to the standard output: what did not pass, then the levels, then the verdict."""
+    """Write to standard output what did not pass, then the levels, then the verdict."""
     if certificate.scope.smoke:
         write_lines(([(visible(line), "")] for line in _smoke_lines(certificate)), sys.stdout)
         return

@@ -36,7 +36,7 @@ _UNEXPECTED = re.compile(r"(.+)/([a-z]+): (?:listed as '([a-z ]+)'|the suite has
 
 
 class Replay(BaseModel):
-    """What came of running a certificate again."""
+    """The result of running a certificate again."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
@@ -57,7 +57,7 @@ def suite_differences(certificate: Certificate) -> list[str]:
 
 
 def replay_differences(certificate: Certificate, again: Certificate) -> list[str]:
-    """In what a second run is not what a certificate says, one line each.
+    """Differences between a second run and a certificate, one line each.
 
     Neither the date nor the command that reached the parser matters, nor which failures were expected (`own_errors`),
     nor the last digits of numbers that a parser has computed: all else that a certificate says is to be the same.
@@ -75,7 +75,7 @@ def _fresh(before: Certificate, now: Certificate) -> Iterator[str]:
 
 
 def own_errors(certificate: Certificate) -> list[str]:
-    """In what a certificate is none that the suite writes, whatever came of the cases, one line each.
+    """Errors of a certificate that contradicts itself, one line each.
 
     A second run cannot tell which failures were expected, nor how the first was started. But what the certificate says
     of it must agree with itself.
@@ -84,7 +84,7 @@ def own_errors(certificate: Certificate) -> list[str]:
 
 
 def file_differences(path: Path, certificate: Certificate) -> list[str]:
-    """Which files do not show a certificate as the suite writes it, one line each.
+    """Files that differ from those the suite writes for a certificate, one line each.
 
     Args:
         path: The file that it was read from, or the folder, in which the files beside it are looked at too.
@@ -101,13 +101,13 @@ def file_differences(path: Path, certificate: Certificate) -> list[str]:
 
 
 def _otherwise(file: Path) -> str:
-    """How a file that is a certificate is written otherwise than the suite writes it."""
+    """How the file of a certificate differs from what the suite writes."""
     _, errors = read_json(file.read_bytes())
     return errors[0] if errors else "not formatted as the suite writes it"
 
 
 def _commands(certificate: Certificate) -> Iterator[str]:
-    """Command lines that people may copy, and that do not run the item."""
+    """Command lines in the certificate that do not run the item they belong to."""
     scope = certificate.scope
     setting = Setting(certificate.parser_option, explore=scope.explore, seed=scope.seed)
     for failure in certificate.failures:
@@ -130,7 +130,7 @@ def _known(certificate: Certificate) -> Iterator[str]:
 
 
 def _unexpected(certificate: Certificate) -> Iterator[str]:
-    """What is said of the file of known failures, and cannot be said of any."""
+    """Sentences on the file of known failures that no file can cause."""
     if not certificate.unexpected:
         return
     items = {item.key: item for item in planned_items(all_cases())}
@@ -153,7 +153,7 @@ def _unexpected(certificate: Certificate) -> Iterator[str]:
 
 
 def _entry(sentence: str) -> KnownFailure | None:
-    """The known failure that a sentence on one is of."""
+    """The known failure that a sentence is about."""
     if (said := _UNEXPECTED.match(sentence)) is None:
         return None
     try:

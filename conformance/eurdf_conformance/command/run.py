@@ -1,4 +1,4 @@
-"""``eurdf certify``: what any parser has come to in the conformance suite."""
+"""``eurdf certify``: run the conformance suite on any parser."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ _EPILOG = ending(
     "eurdf certify --parser 'cmd:./my_parser --flag' --certificate out",
 )
 
-# Options that say what a run is of; those that say how it is done.
+# Options that select what is tested, and options of how to run it.
 _OF_A_RUN = ("level", "format_version", "known_failures", "certificate", "date", "explore", "seed")
 _OF_ANY_RUN = ("jobs", "parser_timeout", "parser_start_timeout", "json")
 
@@ -92,7 +92,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def certify(argv: Sequence[str]) -> int:
-    """Do what the arguments ask, and return the exit code.
+    """Run the command, and return the exit code.
 
     Raises:
         CannotRun: It cannot be done.
@@ -166,7 +166,7 @@ def _compare(paths: Sequence[Path], output: Path | None, force: bool) -> int:
 
 
 def _suite_run(args: argparse.Namespace, parser: str, certificate: Certificate | None = None) -> SuiteRun:
-    """What is to be run: as the arguments say, or what a certificate is of."""
+    """What to run: as the arguments say, or as a certificate records."""
     scope = certificate.scope if certificate else None
     versions = scope.versions if scope else (args.format_version,)
     return SuiteRun(
@@ -207,7 +207,7 @@ def _progress() -> Iterator[Progress | None]:
 
 
 def _refuse(mode: str, args: argparse.Namespace, *names: str) -> None:
-    """Refuse options that would be left out in silence."""
+    """Refuse options that would have no effect."""
     given = [name for name in names if getattr(args, name) not in (None, False, 0, [])]
     if given:
         raise CannotRun(f"{mode} does not go with --{given[0].replace('_', '-')}")

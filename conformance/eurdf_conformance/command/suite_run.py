@@ -1,4 +1,4 @@
-"""The suite, run from within a program: one certificate comes out.
+"""Runs the suite from within a program and returns its certificate.
 
 It is the suite that ``pytest conformance/`` runs, whether this package lies in a checkout or in a wheel. Neither a
 configuration of pytest that lies about, nor what the environment says to it, has a part in it.
@@ -27,12 +27,12 @@ if TYPE_CHECKING:
 
 _SUITE = "eurdf_conformance.suite"
 
-#: Called with how many items are done, and of how many.
+#: Called with the number of finished items and the number of all items.
 Progress = Callable[[int, int], None]
 
 
 class CannotRunSuite(Exception):  # noqa: N818 - shown to the user as it is
-    """The suite has come to no result; its text says why.
+    """The suite gave no result; the text gives the reason.
 
     Attributes:
         log: What pytest wrote, or the parser, where that may help.
@@ -98,7 +98,7 @@ def run_suite(run: SuiteRun, progress: Progress | None = None) -> Certificate:
 
 
 def _greet(run: SuiteRun) -> None:
-    """See whether the parser starts, before everything is asked of what does not."""
+    """Check that the parser starts, before the whole suite is run on it."""
     session = Session(run.parser) if run.start_timeout is None else Session(run.parser, start_timeout=run.start_timeout)
     with session:
         try:
@@ -134,7 +134,7 @@ def _options(run: SuiteRun) -> Iterator[tuple[str, Any]]:
 
 @contextlib.contextmanager
 def _environment(run: SuiteRun) -> Iterator[None]:
-    """Let no plug-in and no option of pytest have a part in it that somebody has for their own tests."""
+    """The environment without the plug-ins and options of pytest that the user has set for other tests."""
     before = dict(os.environ)
     for name in before:
         if name.startswith("PYTEST_"):

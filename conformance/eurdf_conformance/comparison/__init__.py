@@ -1,1 +1,1 @@
-"""What is expected against what a parser gave: the result is a list of differences, empty where the two agree."""
+"""Compares expected values with the answers of a parser. The result is a list of differences, empty if they agree."""

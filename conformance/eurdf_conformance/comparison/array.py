@@ -1,4 +1,4 @@
-"""Numbers against numbers, within a distance, and names against names."""
+"""Compares numbers within a tolerance, and names."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ TOLERANCE = 1e-8
 
 @dataclass(frozen=True, slots=True)
 class Near:
-    """EU-PRO-008: by how much numbers may be off.
+    """EU-PRO-008: tolerances of numbers.
 
     Attributes:
         length: Positions, and the rows of residuals and K that are of a position, m.
@@ -30,21 +30,21 @@ class Near:
 
     @classmethod
     def of(cls, size: float, tolerance: float = TOLERANCE) -> Near:
-        """What is allowed of a robot whose frames are no farther apart than ``size``, m."""
+        """The tolerances for a robot whose frames are at most ``size`` apart, m."""
         return cls(tolerance * max(1.0, size), tolerance)
 
     def rows(self, count: int) -> Matrix:
-        """For each of so many rows of a closure: the first three are of a position, those after of a rotation."""
+        """The tolerance of each row of a closure: three position rows, then the rotation rows."""
         return np.array([self.length] * min(count, 3) + [self.angle] * max(count - 3, 0))
 
 
 def agree(expected: Matrix, given: Matrix, near: float | Matrix) -> bool:
-    """Whether two arrays of one shape are the same within a distance, or each entry within its own."""
+    """Whether two arrays of one shape agree within a tolerance, which is one number or one per entry."""
     return bool((np.abs(expected - given) <= near).all())
 
 
 def worst(expected: Matrix, given: Matrix, near: float | Matrix) -> tuple[int, str]:
-    """The entry of two arrays that is farthest beyond what is allowed, as its flat index, and how far that is."""
+    """Flat index and excess of the entry that is farthest beyond the tolerance."""
     off = np.abs(expected - given)
     allowed = np.broadcast_to(np.asarray(near, dtype=float), off.shape)
     index = int(np.argmax(off - allowed))
@@ -52,7 +52,7 @@ def worst(expected: Matrix, given: Matrix, near: float | Matrix) -> tuple[int, s
 
 
 def array_differences(expected: Any, given: Any, near: float | Matrix, pointer: str, why: str) -> Iterator[Difference]:
-    """One difference, where numbers are not the same within a distance ``near``, or not as many."""
+    """One difference if arrays do not agree within ``near``, or differ in shape."""
     one, other = np.array(expected, dtype=float), np.array(given, dtype=float)
     if one.shape != other.shape:
         yield Difference(pointer, expected, given, f"{why}: number of entries")
@@ -63,7 +63,7 @@ def array_differences(expected: Any, given: Any, near: float | Matrix, pointer: 
 def name_differences(
     expected: Mapping[str, Any], given: Mapping[str, Any], pointer: str, kind: str
 ) -> Iterator[Difference]:
-    """The names that one of two mappings lacks."""
+    """The names that only one of two mappings has."""
     for name in expected:
         if name not in given:
             yield Difference(pointer, expected[name], ABSENT, f"{kind} '{name}' is missing")
@@ -73,5 +73,5 @@ def name_differences(
 
 
 def both(expected: Mapping[str, Any], given: Mapping[str, Any]) -> list[str]:
-    """The names that both have, in the order of the first."""
+    """The names that both mappings have, in the order of the first."""
     return [name for name in expected if name in given]

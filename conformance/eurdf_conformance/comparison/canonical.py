@@ -1,4 +1,4 @@
-"""Two canonical descriptions, compared as EU-CAN-005 says."""
+"""Compares two canonical descriptions by EU-CAN-005."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def canonical_differences(
         return []
     bodies = [list(body) for body in bodies]
     one = plain_robot(expected, bodies, expected.links)
-    # What is a link of the URDF is not for the parser to say.
+    # The links of the URDF come from the expectation, not from the parser.
     other = plain_robot(given, bodies, expected.links)
     return [
         *value_differences(expected.name, given.name, "/name", "name of the robot"),

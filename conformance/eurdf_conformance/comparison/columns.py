@@ -1,4 +1,4 @@
-"""K and M, whose columns may have any order."""
+"""Compares K and M, whose columns may have any order."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def column_differences(expected: Sequence[Column], given: Sequence[Column], poin
 
 
 def _order(expected: Sequence[Column], given: Sequence[Column]) -> list[int] | None:
-    """Where each expected column is among those given; None where they are not the same."""
+    """For each expected column its index among those given; None if the columns are not the same."""
     return [given.index(column) for column in expected] if sorted(expected) == sorted(given) else None
 
 
@@ -86,7 +86,7 @@ def _entry_differences(
     columns: Sequence[int],
     names: Sequence[Column],
 ) -> Iterator[Difference]:
-    """One difference for a matrix, its worst entry; ``rows`` and ``columns`` say where those are in the answer."""
+    """One difference for a matrix, at its worst entry; ``rows`` and ``columns`` are the indices in the answer."""
     if agree(expected, given, near):
         return
     entry, off = worst(expected, given, near)

@@ -1,4 +1,4 @@
-"""Coordinates of one joint: which are the same, and which are neutral."""
+"""Coordinates of one joint: equality, and neutral values."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ COORDINATES = {
     "floating": 7,
 }
 
-#: Number of velocities of each type; where it is smaller, the last four coordinates are a quaternion.
+#: Number of velocities of each type; if it is smaller, the last four coordinates are a quaternion.
 VELOCITIES = {**COORDINATES, "spherical": 3, "floating": 6}
 
 
 def neutral(joint_type: str) -> list[float]:
-    """Coordinates at which the child's frame is that of the joint: zeros, and the unit quaternion x y z w."""
+    """The neutral coordinates of a type of joint: zeros, and the unit quaternion (0, 0, 0, 1)."""
     zeros = [0.0] * COORDINATES[joint_type]
     if has_quaternion(joint_type):
         zeros[-1] = 1.0

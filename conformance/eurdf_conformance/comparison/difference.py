@@ -1,4 +1,4 @@
-"""One way in which an answer differs from what is expected."""
+"""One difference between an answer and the expectation."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _WIDTH = 200
 
 
 class Absent(Enum):
-    """In place of a value where there is none; null is a value."""
+    """Used in place of a value if there is none; null is a value."""
 
     ABSENT = "nothing"
 
@@ -28,7 +28,7 @@ ABSENT: Final = Absent.ABSENT
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """One way in which an answer differs from what is expected.
+    """One difference between an answer and the expectation.
 
     Attributes:
         pointer: JSON pointer (RFC 6901) into the answer, of the value given, or of where it should be.
@@ -47,12 +47,12 @@ class Difference:
         return f"{where}: {cut(self.why, _WIDTH)}: expected {shown(self.expected)}, got {shown(self.given)}"
 
     def within(self, pointer: str) -> Difference:
-        """The same difference, of an answer that holds this one at a pointer."""
+        """The same difference with a pointer into an answer that contains this one."""
         return Difference(pointer + self.pointer, self.expected, self.given, self.why)
 
 
 def shown(value: Any) -> str:
-    """A value in one line, cut where it is long."""
+    """A value on one line, cut if it is long."""
     if value is ABSENT:
         return "nothing"
     text = json.dumps(_beginning(plain(value)), ensure_ascii=False)
@@ -69,7 +69,7 @@ def _beginning(value: Any) -> Any:
 
 
 def plain(value: Any) -> Any:
-    """A part of a message, or a list or mapping of such, as a JSON value."""
+    """A part of a message, or a list or mapping of parts, as a JSON value."""
     if isinstance(value, BaseModel):
         return value.model_dump(mode="json")
     if isinstance(value, dict):

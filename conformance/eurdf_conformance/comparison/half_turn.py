@@ -24,7 +24,7 @@ NEARLY = 1e-7
 
 
 def is_half_turn(residual: Matrix) -> bool:
-    """Whether a residual (6,) is one with a twin."""
+    """Whether a residual (6,) has a twin."""
     return residual.shape == (6,) and abs(float(np.linalg.norm(residual[3:])) - math.pi) < NEARLY
 
 
@@ -37,7 +37,7 @@ def twin_residual(residual: Matrix) -> Matrix:
 
 
 def twin_rows(residual: Matrix, rows: Matrix) -> Matrix:
-    """The rows (6, n) of K that go with the twin, from those that go with a residual (6,)."""
+    """The rows (6, n) of K for the twin, from those for a residual (6,)."""
     return np.asarray(np.linalg.solve(_jexp6(twin_residual(residual)), _jexp6(residual) @ rows))
 
 

@@ -1,4 +1,4 @@
-"""The issues that a parser reports, against the one error of a case, or its warnings: the level diagnose."""
+"""Compares the issues that a parser reports with the expected error or warnings of a case: the level diagnose."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from eurdf_conformance.comparison.difference import ABSENT, Difference
 from eurdf_conformance.json_pointer import step
 from eurdf_conformance.protocol.message import Issue
 
-#: EU-DIA-013: where a text stops being YAML, or XML, each parser has its own opinion.
+#: EU-DIA-013: parsers differ in where they find a syntax error of YAML or XML.
 _ANYWHERE = frozenset({"yaml-syntax", "xml-syntax"})
 
 Severity = Literal["error", "warning"]
 
 
 class Spot(Protocol):
-    """Where a diagnostic is expected; without line and column it is the file as a whole."""
+    """The expected place of a diagnostic; without line and column it is the whole file."""
 
     @property
     def file(self) -> str:
@@ -32,7 +32,7 @@ class Spot(Protocol):
 
 
 class Finding(Protocol):
-    """A diagnostic that is expected."""
+    """An expected diagnostic."""
 
     @property
     def code(self) -> str:
@@ -44,12 +44,12 @@ class Finding(Protocol):
 
 
 def error_differences(error: Finding, issues: Sequence[Issue]) -> list[Difference]:
-    """EU-DIA-001, EU-DIA-002: where issues are not the one error of a case, at its place, and nothing else."""
+    """EU-DIA-001, EU-DIA-002: differences from the one error of a case, at its place, without any other."""
     return _differences([error], issues, "error")
 
 
 def warning_differences(warnings: Iterable[Finding], issues: Sequence[Issue]) -> list[Difference]:
-    """EU-DIA-001: where issues are not the warnings of a valid case, each at its place, and nothing else."""
+    """EU-DIA-001: differences from the warnings of a valid case, each at its place, without any other."""
     return _differences(list(warnings), issues, "warning")
 
 
@@ -72,7 +72,7 @@ def _differences(expected: Sequence[Finding], issues: Sequence[Issue], severity:
 
 
 def _is_own(issue: Issue) -> bool:
-    """EU-DIA-006: a parser may warn of what is its own matter."""
+    """EU-DIA-006: whether the issue is advice of the parser, with a code of its own."""
     return issue.severity == "warning" and issue.code is not None and issue.code.startswith("x-")
 
 

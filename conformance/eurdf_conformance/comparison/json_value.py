@@ -1,4 +1,4 @@
-"""Two JSON values, whose numbers are the same where they differ by rounding only."""
+"""Compares JSON values; numbers may differ by rounding."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def same_number(expected: float, given: float) -> bool:
 
 
 def value_differences(expected: Any, given: Any, pointer: str, why: str) -> Iterator[Difference]:
-    """Where two JSON values, or parts of messages, are not the same.
+    """Differences between two JSON values, or parts of messages.
 
     Args:
         expected: What it should be.

@@ -1,4 +1,4 @@
-"""A canonical description without style: what is left after steps 1 to 4, and 6, of EU-CAN-005."""
+"""A canonical description in a common form: steps 1 to 4, and 6, of EU-CAN-005."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from eurdf_conformance.protocol.message import (
     CanonicalRobot,
 )
 
-#: The joint by which a floating root moves.
+#: The joint of a floating root.
 ROOT_JOINT = "root_joint"
 
 Part = TypeVar("Part", CanonicalJoint, CanonicalClosure, CanonicalCoupling, CanonicalActuator)
@@ -32,7 +32,7 @@ Part = TypeVar("Part", CanonicalJoint, CanonicalClosure, CanonicalCoupling, Cano
 
 @dataclass(frozen=True, slots=True)
 class Placed(Generic[Part]):
-    """A joint, a closure or an actuator, and its place.
+    """A joint, closure or actuator, and its place in the answer.
 
     Attributes:
         part: Without style.
@@ -45,7 +45,7 @@ class Placed(Generic[Part]):
 
 @dataclass(frozen=True, slots=True)
 class PlainRobot:
-    """A canonical description without style.
+    """A canonical description in the common form.
 
     Attributes:
         links: Names of its links.

@@ -1,4 +1,4 @@
-"""EU-CAN-005, step 3: two revolutes with nothing of the URDF between them are one universal joint."""
+"""EU-CAN-005, step 3: two revolutes without a link of the URDF between them are one universal joint."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Pair:
     second: CanonicalJoint
 
     def joint(self) -> CanonicalJoint:
-        """The one joint, between the outer two bodies; its lists are those of the two in a row."""
+        """The one joint between the outer bodies; its lists are those of the two joints, one after the other."""
         lists = {key: [*getattr(self.first, key), *getattr(self.second, key)] for key in _LISTS}
         if self.first.stiffness or self.second.stiffness:
             for key in _SPRINGS:
@@ -32,7 +32,7 @@ class Pair:
         )
 
     def actuator(self, actuators: Mapping[str, CanonicalActuator]) -> CanonicalActuator | None:
-        """The one actuator where both joints have one; a motor on one of the two axes stays that joint's."""
+        """The one actuator if both joints have one; a motor on one axis only stays at that joint."""
         if self.first.name not in actuators or self.second.name not in actuators:
             return None
         one, two = with_defaults(actuators[self.first.name], 1), with_defaults(actuators[self.second.name], 1)
@@ -45,7 +45,7 @@ class Pair:
         )
 
     def coordinates(self, configuration: Mapping[str, Sequence[float]]) -> list[float] | None:
-        """The two angles in a configuration that names one of the joints, or both; None where it names none."""
+        """The two angles in a configuration that names at least one of the joints; None if it names neither."""
         if self.first.name not in configuration and self.second.name not in configuration:
             return None
         return [
@@ -109,7 +109,7 @@ def with_limits(joint: CanonicalJoint) -> CanonicalJoint:
 
 
 def velocities(joint: CanonicalJoint | None) -> int:
-    """Number of velocities of a joint; 1 for one that is not known."""
+    """Number of velocities of a joint; 1 if its type is unknown."""
     return 1 if joint is None else VELOCITIES[joint.type]
 
 

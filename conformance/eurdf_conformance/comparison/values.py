@@ -1,4 +1,4 @@
-"""What a parser says of a robot at one configuration, against what is expected, within EU-PRO-008 and EU-PRO-009."""
+"""Compares a parser's values at one configuration with the expected ones: EU-PRO-008, EU-PRO-009."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The cases: one error each, or none. ``cases/<topic>/<name>.yaml`` says what one is, and how its files are made."""
+"""The cases, each with one error or none, described in ``cases/<topic>/<name>.yaml``."""

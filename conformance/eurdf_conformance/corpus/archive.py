@@ -35,7 +35,7 @@ NAME = "eurdf-conformance-cases"
 
 MANIFEST = "2.0"
 
-#: What a case says of how its files are made, which those who have the files need not know.
+#: Keys of a case on how its files are made, which users of the archive do not need.
 _MAKING = {"base", "edits", "files", "edit"}
 
 #: Folder of the cases in the zip: as deep as here, so that the path of its schema in a case leads there.
@@ -43,12 +43,12 @@ _CASES = "cases"
 
 _README = Path(__file__).with_name("archive_readme.txt")
 
-#: The earliest that a zip can say.
+#: The earliest date that a zip file can contain.
 _DATE = (1980, 1, 1, 0, 0, 0)
 
 
 def write_archive(folder: Path, cases: Iterable[CorpusCase]) -> None:
-    """Write the zip and the manifest into a folder, which is made where it is not there: both, or none.
+    """Write the zip and the manifest into a folder, which is created if necessary: both, or none.
 
     Raises:
         OSError: They cannot be written; what was there before is still there.
@@ -62,7 +62,7 @@ def write_archive(folder: Path, cases: Iterable[CorpusCase]) -> None:
 
 
 def archive_paths(folder: Path) -> tuple[Path, Path]:
-    """Where the zip and the manifest are in a folder."""
+    """The paths of the zip and the manifest in a folder."""
     return folder / f"{NAME}.zip", folder / f"{NAME}.json"
 
 
@@ -80,7 +80,7 @@ def _zipped(cases: Iterable[CorpusCase]) -> bytes:
 
 
 def _beside(cases: Iterable[CorpusCase]) -> dict[str, bytes]:
-    """What is beside the cases, so that the zip is whole without this project."""
+    """The files beside the cases, which make the zip usable without this project."""
     citing = defaultdict(list)
     for case in cases:
         for clause in case.case.clauses:
@@ -129,7 +129,7 @@ def case_files(case: CorpusCase) -> Iterator[tuple[str, bytes]]:
 
 
 def _names(case: CorpusCase) -> Iterator[str]:
-    """The names of the robot's two files, whether they exist or not, and then of the others."""
+    """The names of the robot's two files, whether they exist or not, and then of the other files."""
     yield from dict.fromkeys((case.case.description, case.case.urdf, *case.files))
 
 
@@ -143,7 +143,7 @@ def _content(content: bytes | None) -> str | dict[str, str] | None:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Write the two files, and say so.
+    """Write the two files, and print their paths.
 
     Returns:
         0 where they are written, 2 where they are not.
@@ -176,7 +176,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _refusal(folder: Path, force: bool) -> str | None:
-    """Why nothing is to be written there."""
+    """Why nothing may be written there."""
     if folder.exists() and not folder.is_dir():
         return f"'{folder}' is a file, and is to be a folder"
     there = [path for path in archive_paths(folder) if path.exists()]

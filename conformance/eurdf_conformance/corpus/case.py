@@ -1,4 +1,4 @@
-"""What the file of a case says. ``python -m eurdf_conformance.corpus.case`` writes its JSON Schema."""
+"""The content of a case file. ``python -m eurdf_conformance.corpus.case`` writes its JSON Schema."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ Coordinates = Annotated[list[Annotated[float, Field(allow_inf_nan=False)]], Fiel
 
 
 class CasePlace(Part):
-    """Where a diagnostic is; without line and column it is the file as a whole."""
+    """The place of a diagnostic; without line and column it is the whole file."""
 
     file: FileName = Field(description="Name of one of the two files.")
     line: Annotated[int, Field(ge=1)] | None = None
@@ -66,14 +66,14 @@ class CasePlace(Part):
 
 
 class ExpectedWarning(Part):
-    """A warning that a valid case deserves."""
+    """A warning that a parser must report on a valid case."""
 
     code: Code
     place: CasePlace
 
 
 class Provenance(Part):
-    """Where the expectation comes from; never from a parser."""
+    """The source of the expectation, which is never a parser."""
 
     expectation: Literal["hand", "oracle"] = Field(
         description="hand: follows from the clauses, or is computed as the note says; oracle: written by the oracle."
@@ -82,7 +82,7 @@ class Provenance(Part):
 
 
 class BaseCase(Part):
-    """What every case says."""
+    """The keys that every case has."""
 
     id: CaseId
     title: Sentence = Field(description="What the case is about, as a sentence.")
@@ -94,7 +94,7 @@ class BaseCase(Part):
 
 
 class ValidCase(BaseCase):
-    """Two files that are right."""
+    """A case of two valid files."""
 
     valid: Literal[True]
     robot: str | None = Field(None, description="A robot of the collection, whose files are those of the case.")
@@ -119,7 +119,7 @@ class ValidCase(BaseCase):
 
 
 class InvalidCase(BaseCase):
-    """Two files with one error."""
+    """A case of two files with one error."""
 
     valid: Literal[False]
     code: Code = Field(description="The one error.")
@@ -140,13 +140,13 @@ CASE: TypeAdapter[Case] = TypeAdapter(Annotated[Case, Field(discriminator="valid
 
 
 def case_schema() -> dict[str, Any]:
-    """JSON Schema (2020-12) of the file of a case."""
+    """JSON Schema (2020-12) of a case file."""
     title = "A case of the conformance suite of Extended URDF"
     return json_schema.published("schema:conformance-case", CASE.json_schema(), title=title)
 
 
 def schema_text() -> str:
-    """The schema as its file holds it."""
+    """The text of the schema's file."""
     return json_schema.schema_text(case_schema())
 
 

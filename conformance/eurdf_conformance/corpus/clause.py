@@ -1,4 +1,4 @@
-"""The clauses of the specification, from the registry that is drawn from its text."""
+"""The clauses of the specification, read from its registry."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Clause:
 
     @property
     def must(self) -> bool:
-        """Whether breaking it is an error."""
+        """Whether a violation is an error."""
         return self.keyword.startswith("MUST")
 
 
@@ -50,7 +50,7 @@ def read_registry() -> dict[str, Any]:
 
 @cache
 def read_clauses() -> Mapping[str, Clause]:
-    """The clauses of this edition by id, read once a process."""
+    """The clauses of this edition by id, read once per process."""
     registry = read_registry()
     codes: defaultdict[str, set[str]] = defaultdict(set)
     for diagnostic in registry["diagnostics"]:

@@ -1,4 +1,4 @@
-"""What a case says of its files: their contents, and the edits that make one file of another."""
+"""The contents of a case's files, and the edits that make one file from another."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ FilePath = Annotated[
 
 
 class Hex(Part):
-    """Bytes that are not UTF-8."""
+    """Bytes in hexadecimal, for content that is not UTF-8."""
 
     hex: str = Field(pattern=r"^([0-9a-f]{2} ?)+$", examples=["ff fe"])
 
 
 class Repeated(Part):
-    """A text many times in a row."""
+    """A text that is repeated."""
 
     repeat: str = Field(description="The text; in it, {i} is the number of the repetition, from 0.")
     times: Annotated[int, Field(ge=2)]
@@ -65,7 +65,7 @@ class Replace(Part):
 
 
 class Rename(Part):
-    """A file gets another name."""
+    """A file is renamed."""
 
     file: FilePath
     rename: FilePath
@@ -80,7 +80,7 @@ Edit = Annotated[Annotated[Replace, Tag("replace")] | Annotated[Rename, Tag("ren
 
 
 def content_bytes(content: Content) -> bytes:
-    """The bytes of a file, or of a piece of it."""
+    """The bytes of a file, or of a part of it."""
     if isinstance(content, list):
         return b"".join(map(content_bytes, content))
     if isinstance(content, Hex):
@@ -116,6 +116,6 @@ def edited(files: Mapping[str, bytes], edit: Edit) -> dict[str, bytes]:
 
 
 def _line(content: bytes, number: int) -> tuple[int, int]:
-    """Where a line begins, and where the next one does."""
+    """The offsets of the beginning of a line and of the next one."""
     starts = [0, *(match.end() for match in _END.finditer(content)), len(content)]
     return (starts[number - 1], starts[number]) if number < len(starts) else (0, 0)

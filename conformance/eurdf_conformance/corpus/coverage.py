@@ -1,4 +1,4 @@
-"""Which clauses have no case that tests them, in each version that they are of."""
+"""Finds clauses that no case tests, for each version they belong to."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from eurdf_conformance.corpus.case import Case, InvalidCase, ValidCase
 from eurdf_conformance.corpus.clause import Clause
 from eurdf_conformance.level import Version
 
-#: By clause the versions of it in which no two files can keep it or break it, each with the reason.
+#: For each clause the versions in which no files can show or violate it, with the reason.
 UNSAID: Mapping[str, Mapping[Version, str]] = {
     "EU-CAN-004": {"1": "Version 1 has no configurations."},
     "EU-JNT-007": {"1": "UJOINT names two axes that differ; joints of parallel axes are not merged, by EU-ONE-007."},
@@ -16,13 +16,13 @@ UNSAID: Mapping[str, Mapping[Version, str]] = {
 
 
 def said_in(clause: Clause) -> tuple[Version, ...]:
-    """The versions of a clause in which files can keep it or break it; what 2.1 shares with 2 is said in 2."""
+    """The versions of a clause in which cases test it; what 2.1 shares with 2 is tested in 2."""
     own = (version for version in clause.versions if version != "2.1" or "2" not in clause.versions)
     return tuple(version for version in own if version not in UNSAID.get(clause.id, {}))
 
 
 def missing(cases: Iterable[Case], clauses: Mapping[str, Clause], elsewhere: Iterable[str] = ()) -> Iterator[str]:
-    """What is missing, one line a clause and version, for each version is certified apart.
+    """What is missing, one line per clause and version, since each version is certified separately.
 
     A MUST with a diagnostic needs a case that violates it and one that does not; a SHOULD, one with the warning; any
     other MUST, a case. If a clause has a code, the case that violates it has that code.

@@ -1,4 +1,4 @@
-"""What is expected of the valid cases, by the oracle.
+"""Computes what is expected of the valid cases, with the oracle.
 
 ``python -m eurdf_conformance.corpus.expect [CASE…]`` writes the `expected.json` of all valid cases, or of those named;
 ``--check`` writes nothing and says which differ. One that is written by hand is never overwritten.
@@ -22,12 +22,12 @@ from eurdf_conformance.corpus.read import CorpusCase, read_cases
 from eurdf_conformance.oracle import NotRead, OracleRobot, read
 from eurdf_conformance.protocol.message import Quantity, Values
 
-#: Digits kept of a number, relative to the largest of its kind: those below depend on the processor.
+#: Digits kept of a number, relative to the largest of its kind; further digits depend on the processor.
 _DIGITS = 12
 
 
 def expect(case: CorpusCase) -> Expected:
-    """What the oracle expects of a valid case.
+    """The oracle's expectation for a valid case.
 
     Raises:
         NotRead: The oracle is not sure of the files.
@@ -56,7 +56,7 @@ def expected_of(
 
 
 def stale(case: CorpusCase) -> Iterator[str]:
-    """Why an `expected.json` is not what the oracle expects: numbers may differ by as much as two parsers may."""
+    """Why an `expected.json` differs from the oracle's; numbers may differ as much as those of two parsers."""
     assert isinstance(case.case, ValidCase)
     try:
         found, now = case.expected, expect(case)
@@ -80,7 +80,7 @@ def stale(case: CorpusCase) -> Iterator[str]:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Write, or check, what is expected of valid cases.
+    """Write, or check, the expectations of valid cases.
 
     Returns:
         0 where all is well, 1 where an expectation is not, or could not be written.
@@ -120,7 +120,7 @@ def _rounded(values: Values) -> Values:
 
 
 def _round(value: Any, scale: float | None = None) -> Any:
-    """Numbers without their last digits; those of one list or mapping of numbers are of one kind."""
+    """Round numbers; those in one list or mapping of numbers are of one kind."""
     if isinstance(value, dict):
         return {key: _round(each) for key, each in value.items()}
     if isinstance(value, list | tuple):

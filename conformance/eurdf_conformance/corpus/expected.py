@@ -1,4 +1,4 @@
-"""What is expected of a parser of a valid case: `<name>.expected.json`."""
+"""The expectation for a parser on a valid case: `<name>.expected.json`."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _OPEN_LEVELS = 4
 
 
 class Expected(Part):
-    """What the two files of a valid case mean."""
+    """The meaning of the two files of a valid case."""
 
     bodies: list[list[str]] = Field(description="For each body, the links that fixed or locked joints hold together.")
     robot: CanonicalRobot
@@ -36,7 +36,7 @@ def read_expected(path: Path) -> Expected:
 
 
 def expected_text(expected: Expected) -> str:
-    """An `expected.json` as its file holds it: a line a joint, a pose, a row of a matrix."""
+    """The text of an `expected.json`: one line per joint, pose and row of a matrix."""
     return _text(expected.model_dump(mode="json", exclude_none=False), 0) + "\n"
 
 
@@ -53,6 +53,6 @@ def _text(value: Any, depth: int) -> str:
 
 
 def _is_flat(value: dict[str, Any] | list[Any]) -> bool:
-    """Whether it holds numbers and words only, or the lists and mappings in it do: a pose, a joint."""
+    """Whether it contains only numbers and words, or only lists and mappings of them: a pose, a joint."""
     inside = list(value.values() if isinstance(value, dict) else value)
     return all(not isinstance(each, dict | list) for each in inside)

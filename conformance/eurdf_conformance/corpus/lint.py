@@ -42,19 +42,19 @@ class LintError:
 
 @dataclass(frozen=True)
 class Corpus:
-    """All cases that can be read, and the clauses."""
+    """All readable cases, and the clauses."""
 
     cases: Sequence[CorpusCase]
     clauses: Mapping[str, Clause]
 
     @cached_property
     def ids(self) -> Counter[str]:
-        """How many cases have each id."""
+        """The number of cases for each id."""
         return Counter(case.id for case in self.cases)
 
     @cached_property
     def titles(self) -> Counter[tuple[str, str]]:
-        """How many cases of a version have each title."""
+        """The number of cases of a version for each title."""
         return Counter((case.case.version, case.case.title) for case in self.cases)
 
 
@@ -63,7 +63,7 @@ Rule = Callable[[CorpusCase, Corpus], Iterator[str]]
 
 
 def lint(root: Path = CASES, clauses: Mapping[str, Clause] | None = None) -> list[LintError]:
-    """What is wrong with the cases below a folder."""
+    """The errors in the cases of a folder."""
     cases, errors = _sorted_out(root)
     corpus = Corpus(cases, read_clauses() if clauses is None else clauses)
     return errors + [
@@ -75,7 +75,7 @@ def lint(root: Path = CASES, clauses: Mapping[str, Clause] | None = None) -> lis
 
 
 def _sorted_out(root: Path) -> tuple[list[CorpusCase], list[LintError]]:
-    """The cases whose files can be made, and why the other files below the folder are none."""
+    """The cases whose files can be made, and the errors of the others."""
     known = Cases(root)
     cases: list[CorpusCase] = []
     errors: list[LintError] = []

@@ -1,4 +1,4 @@
-"""What is asked of a parser beside the cases: that it keeps the protocol."""
+"""The checks of a parser that are no cases: whether it follows the protocol."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class ProtocolRule:
-    """One question on the protocol.
+    """One check of the protocol.
 
     Attributes:
         name: Permanent.
@@ -40,5 +40,5 @@ STOP = ProtocolRule("stop", "A parser answers `stop`, and its process then exits
 
 RULES = (START, QUIET, GOES_ON, STOP)
 
-#: Clauses that bind the suite itself, which its own tests show to be met.
+#: Clauses on the suite itself, which its own tests check.
 OF_RUNNERS = ("EU-PRO-006", "EU-PRO-010")

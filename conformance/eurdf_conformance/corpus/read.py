@@ -1,4 +1,4 @@
-"""The cases as they are on disk: ``cases/<topic>/<name>.yaml`` says what a case is, and how its files are made."""
+"""Reads the cases: ``cases/<topic>/<name>.yaml`` describes a case and how its files are made."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class NotACase(Exception):  # noqa: N818 - it says what the file is
 
 
 class Cases(dict[str, "CorpusCase"]):
-    """The cases of a folder by topic and name, each read when it is asked for.
+    """The cases of a folder by topic and name; each is read when requested.
 
     Attributes:
         made: Where their files are written; where nothing is said, a folder that is removed with the cases.
@@ -84,12 +84,12 @@ class CorpusCase:
 
     @property
     def topic(self) -> str:
-        """Name of the folder that it is in."""
+        """Name of the folder that contains it."""
         return self.path.parent.name
 
     @property
     def origin(self) -> CorpusCase | None:
-        """The case whose files its own are made from: the twin of an invalid case, the base of a valid one.
+        """The case that its files are made from: the twin of an invalid case, the base of a valid one.
 
         Raises:
             NotACase: There is no such case.
@@ -109,7 +109,7 @@ class CorpusCase:
 
     @cached_property
     def files(self) -> Mapping[str, bytes]:
-        """The contents of its files, by their paths from its folder.
+        """The contents of its files, by path relative to its folder.
 
         Raises:
             NotACase: The file of the case does not say what they are.
@@ -128,7 +128,7 @@ class CorpusCase:
 
     @cached_property
     def folder(self) -> Path:
-        """A folder with its files, which are written when they are first asked for."""
+        """A folder with its files, which are written at the first request."""
         if (home := self._collection) is not None:
             return home
         folder = self._others.folder(self.name)
@@ -136,7 +136,7 @@ class CorpusCase:
         return folder
 
     def write(self, folder: Path) -> None:
-        """Write its files into a folder, which is made where it is not there."""
+        """Write its files into a folder, which is created if necessary."""
         for name, content in self.files.items():
             path = folder / name
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -154,12 +154,12 @@ class CorpusCase:
 
     @property
     def expectation(self) -> Path:
-        """The file that says what is expected of a valid case."""
+        """The file with the expectation of a valid case."""
         return self.path.with_suffix(".expected.json")
 
     @cached_property
     def expected(self) -> Expected:
-        """What is expected of a valid case."""
+        """The expectation of a valid case."""
         return read_expected(self.expectation)
 
     @property
@@ -172,7 +172,7 @@ class CorpusCase:
 
     @cached_property
     def _collection(self) -> Path | None:
-        """The folder of the robot of the collection that it is about."""
+        """The folder of its robot of the collection."""
         if not isinstance(self.case, ValidCase) or self.case.robot is None:
             return None
         home = collection_folder()
@@ -193,7 +193,7 @@ def _read(path: Path, name: str, others: Cases) -> CorpusCase:
 
 
 def read_case(path: Path) -> CorpusCase:
-    """The case of a file ``<topic>/<name>.yaml``; those that it is made from are beside it.
+    """The case in a file ``<topic>/<name>.yaml``; the cases it is made from are beside it.
 
     Raises:
         NotACase: The file does not describe a case.
@@ -219,7 +219,7 @@ def suite_cases() -> Cases:
 
 @cache
 def all_cases() -> tuple[CorpusCase, ...]:
-    """The cases of the suite, read once a process."""
+    """The cases of the suite, read once per process."""
     return tuple(suite_cases()[name] for name in case_names())
 
 

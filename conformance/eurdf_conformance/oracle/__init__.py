@@ -1,4 +1,4 @@
-"""The oracle: a second implementation of what a description means, written from the specification alone.
+"""The oracle: a second implementation of the semantics, written from the specification alone.
 
 It is here to compare with, so it is plain before it is quick: NumPy, and about one section of the specification a
 module. It reads valid files; whatever it is not sure of it does not read, and says so.

@@ -23,7 +23,7 @@ from eurdf_conformance.protocol.message import (
 
 
 def canonical(urdf: Urdf, description: Description, tree: Tree) -> CanonicalRobot:
-    """What was read, without style."""
+    """The canonical description of a robot."""
     joints = {joint.name: joint for joint in tree.joints[1:]}
     link = links_of_bodies(tree)
     motors = {actuator.joint: actuator for actuator in description.actuators}
@@ -67,7 +67,7 @@ def canonical_coupling(coupling: Coupling, tree: Tree) -> CanonicalCoupling:
 
 
 def links_of_bodies(tree: Tree) -> list[str]:
-    """A link of each body. That between the two joints that version 1 makes of one has none, but a name of its own."""
+    """One link of each body. The body between the two joints of a universal one has no link, but its own name."""
     found: dict[int, str] = {}
     for name, placed in tree.links.items():
         found.setdefault(placed.body, name)
@@ -93,7 +93,7 @@ def canonical_joint(joint: Joint, parent: str, child: str, motor: Actuator | Non
 
 
 def canonical_actuator(actuator: Actuator, joints: dict[str, Joint]) -> CanonicalActuator:
-    """A joint with a motor, along each of its velocities, EU-ACT-007."""
+    """A joint with a motor, for each of its velocities, EU-ACT-007."""
     if actuator.joint not in joints or not (nv := joints[actuator.joint].kind.nv) or joints[actuator.joint].mimic:
         raise NotRead(f"the actuator {actuator.joint!r}")
     return CanonicalActuator(

@@ -1,4 +1,4 @@
-"""A closed configuration near a given one: where the rank of K is meant, chapter Closures."""
+"""A closed configuration near a given one, at which the rank of K is defined: chapter Closures."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ import numpy as np
 from eurdf_conformance.oracle.configuration import Configuration
 from eurdf_conformance.oracle.spatial import Array
 
-#: Steps that may follow one another without the residual getting smaller.
+#: Number of successive steps that may not reduce the residual.
 PATIENCE = 50
 
-#: m and rad; closer is no better than rounding.
+#: m and rad; smaller residuals are rounding.
 CLOSED = 1e-13
 
-#: Singular values below this share of the largest are redundant rows: a step along them would lead anywhere.
+#: Singular values below this fraction of the largest are redundant rows, and steps ignore them.
 REDUNDANT = 1e-7
 
 #: rad or m, the largest step.
@@ -28,7 +28,7 @@ def closed(
     jacobian: Callable[[Configuration], Array],
     moved: Callable[[Configuration, Array], Configuration],
 ) -> Configuration:
-    """The configuration with the smallest residual that Newton's steps −K⁺ r lead to, however small that is."""
+    """The configuration with the smallest residual that Newton's steps −K⁺ r reach."""
     best, r = q, residual(q)
     least = np.linalg.norm(r)
     waited = 0

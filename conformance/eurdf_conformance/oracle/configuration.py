@@ -1,4 +1,4 @@
-"""Configurations by joint name, and the coordinates and velocities of all joints that they mean."""
+"""Configurations by joint name, and the coordinates and velocities of all joints."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ Configuration = Mapping[str, Sequence[float]]
 
 
 def neutral(tree: Tree) -> dict[str, Sequence[float]]:
-    """The neutral of every joint that has coordinates of its own."""
+    """The neutral coordinates of every joint that has coordinates of its own."""
     return {joint.name: joint.kind.neutral for joint in tree.joints if joint.kind.neutral and not joint.mimic}
 
 
 def normalised(joint: Joint, coordinates: Sequence[float]) -> Array:
-    """Coordinates of a joint, its quaternion brought to unit length, EU-CFG-006."""
+    """Coordinates of a joint with a quaternion of unit length, EU-CFG-006."""
     q = np.array(coordinates, dtype=float)
     if len(q) != len(joint.kind.neutral):
         raise NotRead(f"{len(q)} coordinates for {joint.name!r}")
@@ -31,7 +31,7 @@ def normalised(joint: Joint, coordinates: Sequence[float]) -> Array:
 
 
 def stated(tree: Tree, configuration: Configuration) -> dict[str, Array]:
-    """The coordinates that a configuration states, of joints that have some of their own, EU-CFG-001."""
+    """The coordinates that a configuration gives, for joints with coordinates of their own, EU-CFG-001."""
     joints = {joint.name: joint for joint in tree.joints if joint.kind.neutral and not joint.mimic}
     if unknown := configuration.keys() - joints.keys():
         raise NotRead(f"no coordinates of {sorted(unknown)}")
@@ -39,7 +39,7 @@ def stated(tree: Tree, configuration: Configuration) -> dict[str, Array]:
 
 
 def coordinates(tree: Tree, configuration: Configuration) -> list[Array]:
-    """Of every joint; one left out is at its neutral, EU-CFG-005, one that mimics where it follows, EU-URD-032."""
+    """Coordinates of every joint: neutral if left out, EU-CFG-005; of a mimic joint by its leader, EU-URD-032."""
     q = stated(tree, neutral(tree) | dict(configuration))
     found = []
     for joint, (driver, multiplier, offset) in zip(tree.joints, drivers(tree), strict=True):
@@ -72,17 +72,17 @@ def drivers(tree: Tree) -> list[tuple[int, float, float]]:
 
 
 def velocities(tree: Tree) -> list[tuple[str, int]]:
-    """The columns of K and M: a joint, and which of its velocities, EU-JNT-026."""
+    """The columns of K and M: a joint and the index of its velocity, EU-JNT-026."""
     return [(joint.name, i) for joint in tree.joints if not joint.mimic for i in range(joint.kind.nv)]
 
 
 def kinds(tree: Tree) -> str:
-    """For each of the velocities, whether it turns, `a`, or slides, `l`."""
+    """For each velocity whether it is angular, `a`, or linear, `l`."""
     return "".join(joint.kind.velocities for joint in tree.joints if not joint.mimic)
 
 
 def sharing(tree: Tree) -> Array:
-    """G, which takes the velocities of the mechanism to those of every joint, mimics too: q̇ = multiplier · q̇_driver."""
+    """G, which maps the velocities of the mechanism to those of every joint: q̇ = multiplier · q̇_driver for mimics."""
     columns = {column: i for i, column in enumerate(velocities(tree))}
     G = np.zeros((sum(joint.kind.nv for joint in tree.joints), len(columns)))
     row = 0

@@ -1,4 +1,4 @@
-"""What a scalar of YAML means under the core schema of YAML 1.2, EU-YML-011."""
+"""The meaning of a YAML scalar under the core schema of YAML 1.2, EU-YML-011."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _NOT_FINITE = re.compile(r"[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)")
 
 
 def plain(source: str) -> Scalar:
-    """A plain scalar without a tag is what it looks like."""
+    """The value of a plain scalar without a tag."""
     if _NULL.fullmatch(source):
         return None
     if _BOOL.fullmatch(source):
@@ -51,7 +51,7 @@ def _number(source: str) -> float | None:
 
 
 def tagged(tag: str, source: str) -> Scalar:
-    """A scalar with a tag is what the tag says, and looks like it, EU-YML-005."""
+    """The value of a scalar with a tag, which must match the tag, EU-YML-005."""
     if tag in ("!", CORE + "str"):
         return source
     found = plain(source)

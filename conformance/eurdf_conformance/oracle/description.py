@@ -1,4 +1,4 @@
-"""What a description says, whatever its version: the input of `tree`."""
+"""The content of a description of either version: the input of `tree`."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from eurdf_conformance.oracle.spatial import Array
 
 ClosureType = Literal["3d", "6d", "hinge", "distance"]
 
-#: A number for all coordinates or velocities of a joint, or one each.
+#: One number for all coordinates or velocities of a joint, or one for each.
 PerNumber = list[float]
 
 
 @dataclass(frozen=True)
 class FrameReference:
-    """A frame, as chapter Frames lets one say it: by a name, or at a pose on a link or a joint."""
+    """A reference to a frame, chapter Frames: a name, or a pose on a link or a joint."""
 
     on: Literal["name", "link", "joint"]
     name: str
@@ -26,15 +26,15 @@ class FrameReference:
 
 @dataclass(frozen=True)
 class Closure:
-    """Frames A and B, held together."""
+    """A closure between frames A and B."""
 
     name: str
     type: ClosureType
     a: FrameReference
     b: FrameReference
-    #: Of a hinge: unit vectors, in A and in B.
+    #: Unit vectors of the axis of a hinge, in A and in B.
     axes: tuple[Array, ...] = ()
-    #: Of a distance, m.
+    #: Length of a distance, m.
     length: float | None = None
     #: linear, m/N, and angular, rad/(N·m), where one of them is stated.
     compliance: dict[str, float] | None = None
@@ -52,15 +52,15 @@ class Coupling:
 
 @dataclass(frozen=True)
 class Change:
-    """What a joint becomes, and what is stated of it; what is not stated stays the URDF's."""
+    """A joint's new type and its stated properties; other properties stay as in the URDF."""
 
-    #: None: as it is. "pair": the two revolutes that version 1 makes, EU-ONE-006.
+    #: None: the type of the URDF. "pair": the two revolutes that version 1 makes, EU-ONE-006.
     type: str | None = None
-    #: Unit vectors in the joint's frame, of a universal joint or a pair.
+    #: Axes of a universal joint or a pair: unit vectors in the joint's frame.
     axes: tuple[Array, ...] = ()
-    #: Letters of the names of a pair.
+    #: The letters in the names of a pair.
     letters: str = ""
-    #: m a revolution.
+    #: m per revolution.
     pitch: float = 0.0
     merges: tuple[str, ...] = ()
     #: lower, upper, velocity, effort, damping, friction, armature, stiffness, rest.
@@ -90,12 +90,12 @@ class Description:
     root: Literal["fixed", "floating"] = "fixed"
     closures: tuple[Closure, ...] = ()
     couplings: tuple[Coupling, ...] = ()
-    #: By name; with `merges` that of the joint made, which need be none of the URDF's.
+    #: By name; with `merges` it is the name of the new joint, which may be new.
     changes: dict[str, Change] = field(default_factory=dict)
     actuators: tuple[Actuator, ...] = ()
-    #: Frames that it adds, by name.
+    #: Frames that the description adds, by name.
     frames: dict[str, FrameReference] = field(default_factory=dict)
-    #: By name, for each joint its coordinates.
+    #: Coordinates of joints, by name of the configuration.
     configurations: dict[str, dict[str, list[float]]] = field(default_factory=dict)
     #: User data, by JSON pointer.
     own: dict[str, Any] = field(default_factory=dict)

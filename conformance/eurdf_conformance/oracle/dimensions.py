@@ -1,4 +1,4 @@
-"""Rank of K and the words of dimension: chapter Scope and terms."""
+"""Rank of K, mobility and the other dimensions: chapter Scope and terms."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ import numpy as np
 
 from eurdf_conformance.oracle.spatial import Array
 
-#: Singular values of K, made free of units, below which there is nothing but rounding.
+#: Singular values of the unit-free K below this are rounding.
 ROUNDING = 1e-9
 
-#: Where the loops are open by more, they are not closed, and the rank is that of the open ones.
+#: Loops that are open by more are not closed; the rank is then that of the open loops.
 CLOSED = 1e-6
 
 
 @dataclass(frozen=True)
 class Dimensions:
-    """Of a mechanism at one configuration."""
+    """The dimensions of a mechanism at one configuration."""
 
     nv: int
     nc: int
@@ -27,7 +27,7 @@ class Dimensions:
 
 
 def dimensions(K: Array, S: Array, open_by: float, rows: Array, columns: Array) -> Dimensions:
-    """Of a mechanism whose loops are open by no more than `open_by`.
+    """The dimensions of a mechanism whose loops are open by at most `open_by`.
 
     Units are taken out first: a row in metres is divided by the size of the robot, a column of a joint that slides is
     multiplied by it. A loop that is left open by rounded numbers makes redundant rows independent by about as much, so

@@ -11,7 +11,7 @@ from eurdf_conformance.oracle.spatial import Array
 from eurdf_conformance.oracle.tree import Placed
 from eurdf_conformance.oracle.urdf import Inertia
 
-#: Inertias of links, and where the links are.
+#: Inertias and poses of links.
 Masses = Iterable[tuple[Inertia, Placed]]
 
 
@@ -34,12 +34,12 @@ def mass_matrix(at: Kinematics, sharing: Array, armature: Array, masses: Masses)
 
 
 def mass(masses: Masses) -> float:
-    """Of all bodies, the root too, kg."""
+    """Mass of all bodies, including the root, kg."""
     return float(sum(inertia.mass for inertia, _ in masses))
 
 
 def center_of_mass(at: Kinematics, masses: Masses) -> Array | None:
-    """In the world, m: Σ m c / Σ m; of what weighs nothing there is none."""
+    """Centre of mass in the world, m: Σ m c / Σ m; undefined for a robot without mass."""
     total, moment = 0.0, np.zeros(3)
     for inertia, link in masses:
         rMl = at.pose(link)

@@ -12,7 +12,7 @@ from eurdf_conformance.oracle.not_read import NotRead
 from eurdf_conformance.oracle.spatial import Array, inverse, pose
 from eurdf_conformance.oracle.urdf import Urdf, UrdfJoint
 
-#: kg, each link in between weighs less, EU-JNT-012.
+#: kg, the mass of each link in between is less, EU-JNT-012.
 LIGHT = 1e-5
 #: m, from the point to each axis, EU-JNT-014.
 NEAR = 1e-4
@@ -24,7 +24,7 @@ EVEN = 1e-9
 
 @dataclass(frozen=True)
 class Ball:
-    """Where the spherical joint is that three joints are together, all at zero."""
+    """The pose of a spherical joint in place of three joints, at zero."""
 
     #: pMj, its frame in that of the link before.
     placement: Array
@@ -71,7 +71,7 @@ def nearest(axes: Array) -> list[int]:
 
 
 def chain(urdf: Urdf, names: tuple[str, ...]) -> list[UrdfJoint]:
-    """The joints of a merge, which hang in a row, EU-JNT-011."""
+    """The joints of a merge, in order from the root, EU-JNT-011."""
     joints = [urdf.joints[name] for name in names]
     if len(joints) != 3 or any(urdf.below(a.child) != [b] for a, b in pairwise(joints)):
         raise NotRead(f"{names} is no chain of three joints")
@@ -79,7 +79,7 @@ def chain(urdf: Urdf, names: tuple[str, ...]) -> list[UrdfJoint]:
 
 
 def with_merges_found(description: Description, urdf: Urdf) -> Description:
-    """A description of version 1, with a change for each three joints that become one, EU-ONE-007."""
+    """A description of version 1 with a change for each three joints that are merged, EU-ONE-007."""
     held = {reference.name for closure in description.closures for reference in (closure.a, closure.b)}
     taken = set(description.changes)
     changes = dict(description.changes)

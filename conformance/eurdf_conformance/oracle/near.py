@@ -1,4 +1,4 @@
-"""Names that are near one another: chapter Scope and terms."""
+"""Near names: chapter Scope and terms."""
 
 from __future__ import annotations
 

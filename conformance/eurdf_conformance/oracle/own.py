@@ -8,7 +8,7 @@ from eurdf_conformance.json_pointer import step
 
 
 def own_data(value: Any, pointer: str = "") -> dict[str, Any]:
-    """Every key that begins with `x-`, at any level. What is under one is a part of its value."""
+    """Every key that begins with `x-`, at any level, with its whole value."""
     found: dict[str, Any] = {}
     if isinstance(value, list):
         for i, item in enumerate(value):

@@ -1,4 +1,4 @@
-"""Values of a YAML document, taken for what they should be, or not at all."""
+"""Values of a YAML document, read as a given type or refused."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from eurdf_conformance.oracle.spatial import Array
 
 
 def mapping(value: Any, allowed: Collection[str] | None = None) -> dict[str, Any]:
-    """The members of a mapping without user data, EU-EXT-002; of `allowed` keys only, if they are given."""
+    """The members of a mapping without user data, EU-EXT-002; only `allowed` keys, if given."""
     if not isinstance(value, dict):
         raise NotRead(f"{value!r} is no mapping")
     members = {key: member for key, member in value.items() if not key.startswith("x-")}
@@ -36,14 +36,14 @@ def text(value: Any) -> str:
 
 
 def number(value: Any) -> float:
-    """A number; a boolean is none, EU-SCH-002."""
+    """A number; a boolean is not one, EU-SCH-002."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise NotRead(f"{value!r} is no number")
     return float(value)
 
 
 def numbers(value: Any) -> list[float]:
-    """A list of numbers, or one number alone."""
+    """A list of numbers, or a single number."""
     return [number(item) for item in value] if isinstance(value, list) else [number(value)]
 
 

@@ -1,4 +1,4 @@
-"""Reading a robot from its two files."""
+"""Reads a robot from its two files."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from eurdf_conformance.oracle.yaml_text import value_of
 
 
 def read(description: Path | None, urdf: Path, version: Version | None = None) -> OracleRobot:
-    """The robot of two files that are valid.
+    """The robot of two valid files.
 
     Args:
         description: The YAML file; None: there is none, and the URDF is all.
@@ -64,7 +64,7 @@ def freed(urdf: Urdf, description: Description) -> Urdf:
 
 
 def described(path: Path) -> Description:
-    """The description in a file, of the version that it says, EU-VER-001 to 003."""
+    """The description in a file, of the version that it states, EU-VER-001 to 003."""
     document = value_of(text_of(path))
     if not isinstance(document, dict):
         raise NotRead("the description is not a mapping")

@@ -1,4 +1,4 @@
-"""A robot of the oracle: everything that the protocol asks for."""
+"""A robot of the oracle, with all quantities of the protocol."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from eurdf_conformance.oracle.tree import Placed, Tree
 from eurdf_conformance.oracle.urdf import Inertia, Urdf
 from eurdf_conformance.protocol.message import CanonicalRobot, Jacobian, MassMatrix, Pose, Quantity, Values
 
-#: For each type of closure, what its rows are: lengths, `l`, and angles, `a`.
+#: For each type of closure whether its rows are lengths, `l`, or angles, `a`.
 ROWS = {"3d": "lll", "6d": "lllaaa", "hinge": "lllaa", "distance": "l"}
 
 
@@ -35,11 +35,11 @@ class OracleRobot:
     tree: Tree
 
     def canonical(self) -> CanonicalRobot:
-        """What was read, without style."""
+        """The canonical description."""
         return canonical.canonical(self.urdf, self.description, self.tree)
 
     def neutral(self) -> dict[str, list[float]]:
-        """The configuration at which every joint is at its neutral."""
+        """The configuration with every joint at neutral."""
         return {name: list(q) for name, q in configuration.neutral(self.tree).items()}
 
     def moved(self, q: Configuration, v: Array) -> dict[str, list[float]]:
@@ -48,12 +48,12 @@ class OracleRobot:
 
     @cached_property
     def velocities(self) -> list[tuple[str, int]]:
-        """The columns of K and M: a joint, and which of its velocities."""
+        """The columns of K and M: a joint and the index of its velocity."""
         return configuration.velocities(self.tree)
 
     @cached_property
     def closures(self) -> dict[str, tuple[str, Placed, Placed]]:
-        """By name, their types and their frames A and B."""
+        """Types and frames A and B of the closures, by name."""
         refer = self.tree.refer
         return {
             closure.name: (closure.type, refer(closure.a), refer(closure.b)) for closure in self.description.closures
@@ -75,7 +75,7 @@ class OracleRobot:
 
     @cached_property
     def masses(self) -> list[tuple[Inertia, Placed]]:
-        """The inertias of links, and where the links are."""
+        """Inertias and poses of links."""
         places = self.tree.links
         return [(link.inertia, places[name]) for name, link in self.urdf.links.items() if link.inertia]
 
@@ -85,16 +85,16 @@ class OracleRobot:
 
     @cached_property
     def armature(self) -> Array:
-        """One a velocity, kg·m² or kg."""
+        """Armature for each velocity, kg·m² or kg."""
         return armature_at_leaders(self)
 
     def kinematics(self, q: Configuration) -> Kinematics:
-        """Where the bodies are, and how they can move."""
+        """Poses and motions of the bodies."""
         return kinematics(self.tree, configuration.coordinates(self.tree, q))
 
     @cached_property
     def bodies(self) -> list[list[str]]:
-        """For each body of the URDF its links: those that fixed or locked joints hold together."""
+        """For each body of the URDF its links, which fixed or locked joints connect."""
         found: dict[int, list[str]] = {}
         for name, place in self.tree.links.items():
             found.setdefault(place.body, []).append(name)
@@ -131,7 +131,7 @@ class OracleRobot:
         return np.vstack([np.zeros((0, len(self.velocities))), *self.jacobians(q).values()])
 
     def closed(self, q: Configuration) -> Configuration:
-        """A configuration near q at which all closures are closed, or if there is none as nearly as can be."""
+        """A configuration near q with all closures closed, or as nearly closed as possible."""
         return closed(q, self.residual, self.jacobian, self.moved)
 
     def mass_matrix(self, q: Configuration) -> Array:
@@ -147,7 +147,7 @@ class OracleRobot:
         return float(max(np.max(np.linalg.norm(points - point, axis=1)) for point in points))
 
     def dimensions(self, q: Configuration) -> Dimensions:
-        """Rank, mobility and the other words of dimension, which are meant at a closed configuration."""
+        """Rank, mobility and the other dimensions, which are defined at a closed configuration."""
         L = self.size(q) or 1.0
         rows = np.array([size for sizes in self.row_sizes(L).values() for size in sizes])
         columns = np.array([L if kind == "l" else 1.0 for kind in configuration.kinds(self.tree)])

@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 
 
 def pose(R: Array | None = None, p: Array | Sequence[float] | None = None) -> Array:
-    """The pose (R, p), which takes c to R c + p; what is left out is that of the identity."""
+    """The pose (R, p), which takes c to R c + p; an omitted part is that of the identity."""
     M = np.eye(4)
     if R is not None:
         M[:3, :3] = R
@@ -37,7 +37,7 @@ def skew(w: Array) -> Array:
 
 
 def unit(a: Array) -> Array:
-    """The direction of a vector, whatever its length, EU-URD-035."""
+    """The direction of a vector of any length, EU-URD-035."""
     scaled = a / np.max(np.abs(a))  # else the squares of a very long or short vector would not be numbers
     return np.asarray(scaled / np.linalg.norm(scaled))
 

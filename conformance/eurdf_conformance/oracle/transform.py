@@ -1,4 +1,4 @@
-"""What each type of joint does: the table of chapter Joints, clauses EU-JNT-015 to 019, 025 and 026."""
+"""The motion of each type of joint: the table of chapter Joints, clauses EU-JNT-015 to 019, 025 and 026."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Z = np.array([0.0, 0.0, 1.0])
 
 
 def transform(kind: str, axes: Array, pitch: float, q: Array) -> Array:
-    """jMc(q): the pose of the child's frame in the joint's.
+    """jMc(q): the pose of the child's frame in the joint's frame.
 
     Args:
         kind: Type of the joint.

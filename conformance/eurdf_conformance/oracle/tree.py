@@ -1,4 +1,4 @@
-"""The spanning tree: the URDF as the description changes it, as bodies that joints carry.
+"""The spanning tree: the URDF with the changes of the description, as joints and bodies.
 
 Body i is what joint i carries, and its frame is the joint's on the child's side. Joint 0 is the root's, fixed or
 floating; every other hangs from a body before it. Links are placed on bodies: those that fixed or locked joints hold
@@ -18,7 +18,7 @@ from eurdf_conformance.oracle.not_read import NotRead
 from eurdf_conformance.oracle.spatial import Array
 from eurdf_conformance.oracle.urdf import Mimic, Urdf, UrdfJoint
 
-#: Names of joint 0 where the root floats and where it is fixed. No other joint has them, EU-URD-011.
+#: Names of joint 0 of a floating and of a fixed root. No other joint has them, EU-URD-011.
 ROOT_JOINT = {"floating": "root_joint", "fixed": "universe"}
 
 
@@ -28,7 +28,7 @@ class Joint:
 
     name: str
     type: str
-    #: Index of the body that it hangs from; of joint 0, its own.
+    #: Index of the parent body; for joint 0 it is 0.
     parent: int
     #: Pose of the joint's frame in that body's.
     placement: Array
@@ -36,19 +36,19 @@ class Joint:
     axes: Array
     pitch: float = 0.0
     mimic: Mimic | None = None
-    #: Joints of the URDF that it is made of: none for the root's, three if merged, else one.
+    #: Joints of the URDF that it comes from: none for the root joint, three if merged, else one.
     source: tuple[UrdfJoint, ...] = ()
     change: Change = field(default_factory=Change)
 
     @property
     def kind(self) -> JointKind:
-        """Its row in the table of types."""
+        """Its type in the table of types."""
         return KINDS[self.type]
 
 
 @dataclass(frozen=True)
 class Placed:
-    """A frame, fixed to a body."""
+    """A frame on a body."""
 
     body: int
     #: In the body's frame.
@@ -61,7 +61,7 @@ class Placed:
 
 @dataclass(frozen=True)
 class Tree:
-    """Joints, and the frames on the bodies that they carry."""
+    """Joints, and the frames on their bodies."""
 
     joints: list[Joint]
     links: dict[str, Placed]
@@ -71,7 +71,7 @@ class Tree:
     added: dict[str, Placed]
 
     def frame(self, name: str) -> Placed:
-        """The frame of a name, EU-FRM-001 and 002."""
+        """The frame with a name, EU-FRM-001 and 002."""
         found = [frames[name] for frames in (self.links, self.joint_frames, self.added) if name in frames]
         if not found:
             raise NotRead(f"no frame {name!r}")
@@ -80,7 +80,7 @@ class Tree:
         return found[0]
 
     def refer(self, reference: FrameReference) -> Placed:
-        """The frame that a reference says."""
+        """The frame of a reference."""
         if reference.on == "name":
             return self.frame(reference.name)
         frames = self.links if reference.on == "link" else self.joint_frames
@@ -90,7 +90,7 @@ class Tree:
 
 
 def build(urdf: Urdf, description: Description) -> Tree:
-    """The tree of a URDF, with the joints that the description changes."""
+    """The tree of a URDF, with the changes of the description."""
     merged = [name for change in description.changes.values() for name in change.merges]
     changed = [*merged, *(name for name, change in description.changes.items() if not change.merges)]
     if len(set(changed)) < len(changed) or not urdf.joints.keys() >= set(changed):

@@ -1,4 +1,4 @@
-"""The URDF as it is written: links, joints and inertias, chapter The URDF. Shapes are not read."""
+"""The content of a URDF: links, joints and inertias, chapter The URDF. Shapes are not read."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _TYPES = ("revolute", "continuous", "prismatic", "planar", "floating", "fixed")
 
 @dataclass(frozen=True)
 class Inertia:
-    """Of a link, in its frame."""
+    """Inertia of a link, in its frame."""
 
     #: kg
     mass: float
@@ -31,7 +31,7 @@ class Inertia:
 
 @dataclass(frozen=True)
 class Link:
-    """A link; one without `inertial` weighs nothing."""
+    """A link; without `inertial` it has no mass."""
 
     name: str
     inertia: Inertia | None
@@ -48,7 +48,7 @@ class Mimic:
 
 @dataclass(frozen=True)
 class UrdfJoint:
-    """A joint; a limit is None where there is none. Units m, rad, N, s."""
+    """A joint; a limit is None if it is missing. Units m, rad, N, s."""
 
     name: str
     type: str
@@ -89,41 +89,41 @@ class Urdf:
         return replace(self, joints=joints)
 
     def below(self, link: str) -> list[UrdfJoint]:
-        """The joints on a link, in the order of the file."""
+        """The child joints of a link, in the order of the file."""
         return [joint for joint in self.joints.values() if joint.parent == link]
 
 
 @dataclass(frozen=True)
 class Element:
-    """An element of the file. Names are as written: a prefix is a part of the name, and needs no definition."""
+    """An element of the file. Names are as written: a prefix is a part of the name and needs no definition."""
 
     name: str
     attributes: dict[str, str]
     children: list[Element]
 
     def all(self, name: str) -> list[Element]:
-        """The elements of a name in this one."""
+        """The children with a name."""
         return [child for child in self.children if child.name == name]
 
     def one(self, name: str) -> Element:
-        """The element of a name in this one; an empty one where there is none."""
+        """The child with a name; an empty element if there is none."""
         found = self.all(name)
         if len(found) > 1:
             raise NotRead(f"{len(found)} elements {name!r} in one {self.name!r}")
         return found[0] if found else Element(name, {}, [])
 
     def text(self, name: str) -> str:
-        """An attribute that must be there."""
+        """A required attribute."""
         if not self.attributes.get(name, "").strip(" \t\r\n"):
             raise NotRead(f"an element {self.name!r} without {name!r}")
         return self.attributes[name]
 
     def number(self, name: str, default: float | None = None) -> float:
-        """An attribute of one number."""
+        """An attribute with one number."""
         return float(self.numbers(name, None if default is None else [default])[0])
 
     def numbers(self, name: str, default: list[float] | None = None) -> Array:
-        """An attribute of one number, or of as many as its default has, EU-URD-007."""
+        """An attribute with one number, or with as many as its default, EU-URD-007."""
         if default is not None and name not in self.attributes:
             return np.array(default)
         words = re.split(r"[ \t\r\n]+", self.text(name).strip(" \t\r\n"))
@@ -136,7 +136,7 @@ class Element:
 
 
 def parse(source: bytes) -> Element:
-    """The root element of an XML document, EU-URD-001 and 002. No entity is resolved but the five of XML itself."""
+    """The root element of an XML document, EU-URD-001 and 002. Only the five entities of XML itself are resolved."""
     top: list[Element] = []
     stack: list[Element] = []
 
@@ -160,7 +160,7 @@ def parse(source: bytes) -> Element:
 
 
 def read_urdf(path: Path) -> Urdf:
-    """The URDF of a file."""
+    """The URDF in a file."""
     robot = parse(path.read_bytes())
     if robot.name != "robot":
         raise NotRead(f"the root element is {robot.name!r}")
@@ -176,13 +176,13 @@ def read_urdf(path: Path) -> Urdf:
 
 
 def origin(element: Element) -> Array:
-    """The pose that the `origin` in an element states, or the identity."""
+    """The pose in the `origin` of an element, or the identity."""
     found = element.one("origin")
     return pose(from_rpy(found.numbers("rpy", [0.0] * 3)), found.numbers("xyz", [0.0] * 3))
 
 
 def inertia(link: Element) -> Inertia | None:
-    """The inertia of a link, turned into the link's frame: R I Rᵀ, chapter Inertia."""
+    """The inertia of a link in the axes of its frame: R I Rᵀ, chapter Inertia."""
     if not link.all("inertial"):
         return None
     inertial = link.one("inertial")
@@ -197,7 +197,7 @@ def inertia(link: Element) -> Inertia | None:
 
 
 def joint(element: Element) -> UrdfJoint:
-    """A joint, with what the table of chapter The URDF says of what is left out. A fixed one mimics none."""
+    """A joint, with the defaults in the table of chapter The URDF. A fixed joint mimics no other."""
     kind = element.text("type")
     if kind not in _TYPES:
         raise NotRead(f"a joint of type {kind!r}")
@@ -232,5 +232,5 @@ def joint(element: Element) -> UrdfJoint:
 
 
 def mimic(element: Element) -> Mimic:
-    """What a joint follows."""
+    """The mimic of a joint."""
     return Mimic(element.text("joint"), element.number("multiplier", 1.0), element.number("offset", 0.0))

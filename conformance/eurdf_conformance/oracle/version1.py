@@ -34,7 +34,7 @@ def version1(document: dict[str, Any]) -> Description:
 
 
 def closure(i: int, loop: Any, kind: str) -> Closure:
-    """The i-th closure, from 1: its name is made of that, EU-ONE-005."""
+    """The i-th closure, from 1, which gives its name, EU-ONE-005."""
     types: dict[str, Literal["3d", "6d"]] = {"3d": "3d", "6d": "6d"}
     if kind.lower() not in types or len(sequence(loop)) != 2:
         raise NotRead(f"the closure {loop!r} of type {kind!r}")
@@ -43,7 +43,7 @@ def closure(i: int, loop: Any, kind: str) -> Closure:
 
 
 def change(kind: str) -> Change:
-    """What one word of `joint_type` makes of a joint."""
+    """The change for one word of `joint_type`."""
     if kind in ("SPHERICAL", "FIXED"):
         return Change(kind.lower())
     letters = kind.removeprefix("UJOINT_")

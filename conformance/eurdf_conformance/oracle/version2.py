@@ -140,7 +140,7 @@ def coupling(value: Any) -> Coupling:
 
 
 def reference(value: Any) -> FrameReference:
-    """A frame by its name, or a mapping with `link` or `joint` and a pose."""
+    """A reference to a frame: a name, or a mapping with `link` or `joint` and a pose."""
     if isinstance(value, str):
         return FrameReference("name", value, np.eye(4))
     members = mapping(value, ("link", "joint", "xyz", "rpy"))
@@ -159,7 +159,7 @@ def frame(value: Any) -> tuple[str, FrameReference]:
 
 
 def actuator(value: Any, version: Version) -> Actuator:
-    """A joint by its name, or with its motor."""
+    """An actuator: a joint name, or a mapping with properties of the motor."""
     if isinstance(value, str):
         return Actuator(value)
     members = mapping(

@@ -1,4 +1,4 @@
-"""YAML text to plain values, EU-YML-001 to 010.
+"""Reads YAML text as plain values, EU-YML-001 to 010.
 
 The library only finds the structure. What a scalar means is decided by `core_schema`, and by nothing else.
 """
@@ -30,7 +30,7 @@ from eurdf_conformance.oracle.not_read import NotRead
 MOST_COPIES = 100_000
 DEEPEST = 64
 
-#: Ends of lines in YAML 1.1, where the library still breaks them.
+#: Line ends of YAML 1.1, at which the library still breaks lines.
 _OLD_BREAKS = "\x85\u2028\u2029"
 _SURROGATE = re.compile("[\ud800-\udfff]")
 
@@ -58,7 +58,7 @@ def value_of(source: str) -> Any:
 
 
 class _Document:
-    """Its events, read once from front to back, and the anchors met so far."""
+    """The events of a document, read once from start to end, and the anchors so far."""
 
     def __init__(self, events: Iterator[Event]) -> None:
         self.events = events
@@ -99,13 +99,13 @@ class _Document:
         return found
 
     def reach(self, depth: int) -> None:
-        """A mapping or list is at a depth, EU-YML-007."""
+        """Check the depth of a mapping or list, EU-YML-007."""
         self.deepest = max(self.deepest, depth)
         if depth > DEEPEST:
             raise NotRead(f"mappings and lists nested deeper than {DEEPEST}")
 
     def copy(self, anchor: str) -> tuple[Any, int]:
-        """What an alias means."""
+        """The value of an alias."""
         if anchor not in self.anchors:
             raise NotRead(f"no anchor {anchor!r} before its alias")
         self.copies += self.anchors[anchor][1]

@@ -19,13 +19,13 @@ from eurdf_conformance.protocol.message import Quantity
 
 
 def accepted(harness: Harness, example: Example, version: Version, level: Level) -> list[Difference]:
-    """EU-CNF-002, EU-CLO-011: what is right is accepted, redundant rows or not."""
+    """EU-CNF-002, EU-CLO-011: the parser accepts valid files, with or without redundant rows."""
     harness.load(query_of(example.mechanism, version))
     return []
 
 
 def agreement(harness: Harness, example: Example, version: Version, level: Level) -> list[Difference]:
-    """What the oracle says is what the parser says."""
+    """The parser's answers agree with the oracle's."""
     query, robot = query_of(example.mechanism, version), truth(example.mechanism, version)
     if LEVELS[level].compared is Compared.ROBOT:
         read = harness.read(query)
@@ -40,14 +40,14 @@ def agreement(harness: Harness, example: Example, version: Version, level: Level
 
 
 def columns(harness: Harness, example: Example, version: Version, level: Level) -> list[Difference]:
-    """EU-PRO-007. That every velocity is named once is seen as the answer is read."""
+    """EU-PRO-007. Reading the answer checks that each velocity is named once."""
     quantity: Quantity = "jacobian" if level is Level.KINEMATICS else "mass_matrix"
     harness.evaluate(query_of(example.mechanism, version), (quantity,))
     return []
 
 
 def inertia(harness: Harness, example: Example, version: Version, level: Level) -> list[Difference]:
-    """EU-INR-005, EU-INR-006: the mass is that of all links, and no motion is without kinetic energy.
+    """EU-INR-005, EU-INR-006: the mass is that of all links, and each motion has kinetic energy.
 
     The examples are such that rounding cannot decide.
     """

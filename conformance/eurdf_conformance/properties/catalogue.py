@@ -1,4 +1,4 @@
-"""All properties, and the properties that they are in the suite: one a level and version."""
+"""All properties, and the items that they become in the suite: one per level and version."""
 
 from __future__ import annotations
 
@@ -47,5 +47,5 @@ PROPERTIES: tuple[Property, ...] = (
 
 
 def property_of(name: str) -> Property:
-    """The property of a name."""
+    """The property with a name."""
     return next(prop for prop in PROPERTIES if prop.name == name)

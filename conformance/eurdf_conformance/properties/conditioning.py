@@ -1,4 +1,4 @@
-"""Whether the numbers of a mechanism are far from where rounding decides."""
+"""Whether a mechanism is so well conditioned that rounding decides nothing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""nv, nc, rank and what follows from them, of what a parser says of K: chapter Scope and terms."""
+"""nv, nc, rank and what follows from them, for the K of a parser: chapter Scope and terms."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _RANK = 1e-5
 
 @dataclass(frozen=True)
 class Counts:
-    """The words of dimension, at one configuration."""
+    """nv, nc, rank, mobility and the other dimensions at one configuration."""
 
     nv: int
     nc: int
@@ -30,7 +30,7 @@ class Counts:
 
 
 def counts_of(K: Matrix, robot: OracleRobot, q: Configuration) -> Counts:
-    """Of a constraint Jacobian.
+    """The counts of a constraint Jacobian.
 
     Args:
         K: All rows, the columns in the order of the oracle's.
@@ -43,7 +43,7 @@ def counts_of(K: Matrix, robot: OracleRobot, q: Configuration) -> Counts:
 
 
 def count_differences(expected: Counts, given: Counts, pointer: str) -> list[Difference]:
-    """Where they are not the same."""
+    """The counts that differ."""
     return [
         Difference(pointer, one, asdict(given)[word], f"{word}, of K at a closed configuration")
         for word, one in asdict(expected).items()

@@ -1,4 +1,4 @@
-"""Of the robots that a parser was asked about, the one that it is wrong about."""
+"""Finds, among the robots of a failed property, the one that the parser gets wrong."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from eurdf_conformance.properties.truth import truth
 
 
 def culprit(harness: Harness, level: Level) -> Query:
-    """The first of which the parser does not say what the oracle says, at a level; if there is none, the last."""
+    """The first robot on which the parser differs from the oracle, at a level; the last robot if there is none."""
     queries = [each for each, _ in harness.queries]
     return next((each for each in queries if is_wrong(harness, each, level)), queries[-1])
 
 
 def is_wrong(harness: Harness, query: Query, level: Level) -> bool:
-    """Whether a parser does not say of a robot what the oracle says."""
+    """Whether the parser differs from the oracle on a robot."""
     robot = truth(query.mechanism, query.version)
     try:
         read = harness.read(query)

@@ -1,4 +1,4 @@
-"""The description of a mechanism, as the value that its YAML means, in either version."""
+"""The description of a mechanism as a YAML value, in either version."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def document(mechanism: Mechanism, version: Version) -> Document:
 
 
 def version2(mechanism: Mechanism) -> Document:
-    """What is empty is left out, and so is a root that is fixed."""
+    """The description in version 2; empty parts and a fixed root are left out."""
     found: Document = {"extended_urdf": "2.0"}
     if mechanism.root != "fixed":
         found["root"] = mechanism.root
@@ -58,7 +58,7 @@ def version1(mechanism: Mechanism) -> Document:
 
 
 def names1(mechanism: Mechanism, joint: str) -> list[str]:
-    """What version 1 calls a joint of the mechanism: a universal one is two joints, EU-ONE-006."""
+    """The names of a joint in version 1: a universal joint is two joints, EU-ONE-006."""
     change = mechanism.changes.get(joint)
     if change is None or change.type != "universal":
         return [joint]
@@ -67,7 +67,7 @@ def names1(mechanism: Mechanism, joint: str) -> list[str]:
 
 
 def configuration(mechanism: Mechanism, stated: Configuration, version: Version) -> Configuration:
-    """A configuration of the mechanism, in the joints of a version."""
+    """A configuration of the mechanism, by the joints of a version."""
     if version != "1":
         return stated
     found: Configuration = {}

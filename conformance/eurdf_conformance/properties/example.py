@@ -1,4 +1,4 @@
-"""What a property is tried with: a mechanism, and what varies it."""
+"""An example of a property: a mechanism and its variation."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from eurdf_conformance.properties.mechanism import Mechanism, Part
 #: Versions of the format in which mechanisms are drawn; those of version 2 are also of version 2.1.
 DRAWN_VERSIONS: tuple[Version, ...] = ("1", "2")
 
-#: The examples of every certification: the same on every machine, whatever the version of Hypothesis.
+#: The examples of every certification: the same on every machine and with every version of Hypothesis.
 FROZEN = Path(__file__).with_name("frozen.json")
 
 
 class Example(Part):
-    """A mechanism, and what varies it.
+    """A mechanism and its variation.
 
     Attributes:
         mechanism: Of version 1, one that both versions can say.
@@ -33,7 +33,7 @@ class Example(Part):
 
     @property
     def chance(self) -> Chance:
-        """The choices, from the first one on."""
+        """The random choices, from the first one."""
         return Chance(self.seed)
 
 

@@ -1,4 +1,4 @@
-"""A search beyond the frozen examples: more mechanisms, and for what is wrong with one the smallest that shows it."""
+"""Searches beyond the frozen examples, and reduces a failure to the smallest mechanism that shows it."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ SHRINKING = 30.0
 
 
 class _Wrong(Exception):  # noqa: N818 - it says what the parser is
-    """The parser departs from the property."""
+    """The parser violates the property."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ def try_property(prop: Property, level: Level, trial: Trial) -> Judgement:
 
 
 def explore(prop: Property, level: Level, trial: Trial, harness: Harness, folder: Path = EXPLORED) -> Judgement:
-    """Try a property on mechanisms that are drawn at random.
+    """Try a property on random mechanisms.
 
     What it fails on is made as small as it can be while it fails in the same way, and written as a case.
 
@@ -171,7 +171,7 @@ def _reduced(
 
 
 def drawn(prop: Property, version: Version) -> SearchStrategy[Example]:
-    """What a property is tried with."""
+    """An example for a property."""
     if prop.family is not None:
         return st.integers(prop.smallest, LARGEST).map(prop.family)
     examples = st.builds(

@@ -1,4 +1,4 @@
-"""What of the format a mechanism uses."""
+"""The features of the format that a mechanism uses."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from eurdf_conformance.properties.mechanism import Mechanism, Spot
 
 
 def features(mechanism: Mechanism) -> frozenset[str]:
-    """Each as a few words."""
+    """The features, each in a few words."""
     return frozenset(_features(mechanism))
 
 

@@ -23,7 +23,7 @@ class Files:
     urdf: bytes
 
     def write(self, folder: Path) -> tuple[Path, Path]:
-        """Write both into a folder; their paths."""
+        """Write both files into a folder; return their paths."""
         description, urdf = folder / DESCRIPTION, folder / URDF
         description.write_bytes(self.description)
         urdf.write_bytes(self.urdf)
@@ -31,5 +31,5 @@ class Files:
 
 
 def files_of(mechanism: Mechanism, version: Version) -> Files:
-    """The files of a mechanism, as people write them."""
+    """The files of a mechanism in the usual style."""
     return Files(yaml_text(document(mechanism, version)), urdf_text(mechanism).encode())

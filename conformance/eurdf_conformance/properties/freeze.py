@@ -19,10 +19,10 @@ from eurdf_conformance.properties.features import features
 from eurdf_conformance.properties.mechanism import Mechanism
 from eurdf_conformance.properties.strategies.mechanisms import mechanisms
 
-#: Drawn, and kept of these, for each version.
+#: Numbers of examples drawn and kept, for each version.
 DRAWN, KEPT = 1200, {"1": 30, "2": 40}
 
-#: So often each feature is wanted.
+#: How many examples show each feature, if possible.
 _WANTED = 3
 
 
@@ -57,7 +57,7 @@ def drawn(version: Version) -> list[Example]:
 
 
 def chosen(examples: Sequence[Example], count: int) -> list[Example]:
-    """Those that show most of what was seen too seldom so far, one after the other."""
+    """Examples chosen one after the other, each for the features that were rarest so far."""
     left, seen = list(examples), Counter[str]()
     kept: list[Example] = []
     used = {id(example): features(example.mechanism) for example in left}

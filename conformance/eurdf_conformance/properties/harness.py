@@ -1,4 +1,4 @@
-"""A parser, and the questions that properties put to it."""
+"""A parser and the queries that properties send to it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from eurdf_conformance.runner.outcome import Answered, Outcome
 
 
 class NotAnswered(Exception):  # noqa: N818 - it says what happened
-    """A parser did not say what it was asked.
+    """The parser gave no answer of the requested kind.
 
     Attributes:
         expected: The word that the answer should be.
@@ -31,7 +31,7 @@ class NotAnswered(Exception):  # noqa: N818 - it says what happened
 
 
 class Harness:
-    """A parser that is asked about one mechanism after the other.
+    """Sends queries about one mechanism after the other to a parser.
 
     Attributes:
         folder: Where files are written for the parser.
@@ -46,11 +46,11 @@ class Harness:
         self._accepted: Accepted | None = None
 
     def begin(self) -> None:
-        """Another example."""
+        """Begin another example."""
         self.queries.clear()
 
     def load(self, query: Query) -> Accepted:
-        """Let it read two files, if they are not those that it read last.
+        """Ask it to read two files, unless it read them last.
 
         Raises:
             NotAnswered: It does not accept them.
@@ -66,7 +66,7 @@ class Harness:
         return self._accepted
 
     def read(self, query: Query) -> CanonicalRobot | None:
-        """What it has read; None where it does not say.
+        """The canonical description that it read; None if it gives none.
 
         Raises:
             NotAnswered: It does not accept the files.
@@ -74,7 +74,7 @@ class Harness:
         return self.load(query).robot
 
     def evaluate(self, query: Query, quantities: Sequence[Quantity]) -> list[Values]:
-        """What it says at each configuration, and nothing but that, the columns in the order of the oracle's.
+        """Its values at each configuration, as requested, with the columns in the oracle's order.
 
         Raises:
             NotAnswered: It does not accept the files, or does not say.
@@ -94,7 +94,7 @@ class Harness:
         ]
 
     def _write(self, files: Files) -> tuple[Path, Path]:
-        """Into a folder of their own: no parser can take one file for the one that was there before."""
+        """Write files into a new folder, so that no parser can confuse them with earlier ones."""
         folder = self.folder / secrets.token_hex(8)
         folder.mkdir()
         return files.write(folder)

@@ -1,4 +1,4 @@
-"""A mechanism as a plain value: what the two files of a robot say, before any spelling of it.
+"""A mechanism as a plain value: the content of a robot's two files, without any spelling.
 
 `urdf` and `document` write it down; relations change it. It is as free as the files are: nothing here checks it.
 """
@@ -26,7 +26,7 @@ class Part(BaseModel):
 
 
 class Pose(Part):
-    """Origin, m, and roll, pitch, yaw, rad, as EU-FRM-006 has them."""
+    """Origin, m, and roll, pitch, yaw, rad, EU-FRM-006."""
 
     xyz: Vector = ZERO
     rpy: Vector = ZERO
@@ -65,7 +65,7 @@ class Mimic(Part):
 
 
 class Joint(Part):
-    """A joint as the URDF has it."""
+    """A joint of the URDF."""
 
     name: str
     type: Literal["revolute", "continuous", "prismatic", "planar", "floating", "fixed"]
@@ -80,14 +80,14 @@ class Joint(Part):
 
 
 class Change(Part):
-    """What the description says of a joint: what it becomes, its properties, or both."""
+    """What the description states about a joint: a new type, properties, or both."""
 
     type: Literal["spherical", "universal", "cylindrical", "helical", "fixed"] | None = None
     #: Of a universal joint: two letters, or two vectors in the joint's frame.
     axes: str | tuple[Vector, Vector] | None = None
     #: Of a helical joint, m a revolution.
     pitch: float | None = None
-    #: Joints of the URDF that are one spherical joint.
+    #: Joints of the URDF that are merged into one spherical joint.
     merges: tuple[str, ...] = ()
     lower: PerNumber | None = None
     upper: PerNumber | None = None
@@ -101,12 +101,12 @@ class Change(Part):
 
     @property
     def says_something(self) -> bool:
-        """Whether it has a type or a property: a joint that is kept as it is has no entry in a file."""
+        """Whether it states a type or a property; otherwise the file has no entry for the joint."""
         return self != Change(own=self.own)
 
 
 class Spot(Part):
-    """A frame at a pose in that of a link or a joint."""
+    """A frame at a pose in the frame of a link or a joint."""
 
     on: Literal["link", "joint"]
     of: str
@@ -121,7 +121,7 @@ class Frame(Part):
 
 
 class Closure(Part):
-    """Frames A and B, held together; each is a name, or a pose written in place."""
+    """A closure between frames A and B; each is a name, or a pose written in place."""
 
     name: str
     type: Literal["3d", "6d"]
@@ -138,7 +138,7 @@ class Actuator(Part):
 
 
 class Mechanism(Part):
-    """What the two files of a robot say."""
+    """The content of a robot's two files."""
 
     name: str = "robot"
     root: Literal["fixed", "floating"] = "fixed"
@@ -156,17 +156,17 @@ class Mechanism(Part):
 
     @property
     def merged(self) -> dict[str, str]:
-        """Of each joint that is merged into another, the name of that."""
+        """For each merged joint, the name of the joint that it is merged into."""
         return {joint: name for name, change in self.changes.items() for joint in change.merges}
 
     def type_of(self, joint: Joint) -> str:
-        """What a joint of the URDF is in the mechanism: a joint that is merged into another is `merged`."""
+        """Type that a joint of the URDF has in the mechanism; `merged` if it is merged into another."""
         if joint.name in self.merged:
             return "merged"
         return (self.changes[joint.name].type if joint.name in self.changes else None) or joint.type
 
     def types(self) -> dict[str, str]:
-        """Of every joint that moves its type: those made by merging too, those that mimic too."""
+        """The type of each moving joint, including joints made by merging and mimic joints."""
         found = {joint.name: self.type_of(joint) for joint in self.joints}
         found |= {name: "spherical" for name, change in self.changes.items() if change.merges}
         if self.root == "floating":
@@ -174,5 +174,5 @@ class Mechanism(Part):
         return {name: kind for name, kind in found.items() if kind not in ("fixed", "merged")}
 
     def replace(self, **parts: Any) -> Mechanism:
-        """The same mechanism but for some parts."""
+        """The same mechanism with some parts replaced."""
         return self.model_copy(update=parts)

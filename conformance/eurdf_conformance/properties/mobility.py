@@ -22,7 +22,7 @@ _CLAUSES = ("EU-CLO-010", "EU-CLO-011", "EU-PRO-007", "EU-CLO-008", "EU-CLO-009"
 
 
 def mobility(harness: Harness, example: Example, version: Version, level: Level) -> list[Difference]:
-    """The counts at the closed configuration, of which the examples leave no doubt."""
+    """The counts at the closed configuration; the examples are well conditioned."""
     robot = truth(example.mechanism, version)
     assembled = example.mechanism.configurations["assembled"]
     q = configuration(example.mechanism, assembled, version)
@@ -37,7 +37,7 @@ def mobility(harness: Harness, example: Example, version: Version, level: Level)
 
 
 def family(name: str, title: str, member: Callable[[int], Example], sizes: Sequence[int]) -> Property:
-    """The property on one family."""
+    """The property for one family."""
     return Property(
         name,
         title,
@@ -52,7 +52,7 @@ def family(name: str, title: str, member: Callable[[int], Example], sizes: Seque
 
 
 def redundant() -> list[Example]:
-    """Members of all families that have redundant rows."""
+    """The members of all families that have redundant rows."""
     members = [planar.polygon(4), planar.spatial_polygon(5), planar.parallelograms(3), spherical.polygon(4)]
     return [*members, paradoxical.sarrus(2), paradoxical.bennett(8)]
 

@@ -1,4 +1,4 @@
-"""Other names for everything that has one."""
+"""New names for all named parts."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ CURIOUS = (
 
 @dataclass(frozen=True)
 class Names:
-    """For every old name a new one, of links, joints, frames, closures and configurations."""
+    """A new name for each old name of links, joints, frames, closures and configurations."""
 
     links: Mapping[str, str]
     joints: Mapping[str, str]
@@ -33,24 +33,24 @@ class Names:
     configurations: Mapping[str, str]
 
     def frame(self, name: str) -> str:
-        """That of a frame, whatever has it."""
+        """The new name of a frame, whether of a link, a joint or the description."""
         return next(names[name] for names in (self.links, self.joints, self.frames) if name in names)
 
     def link(self, name: str) -> str:
-        """That of a link; a name that is none of links stays."""
+        """The new name of a link; any other name is unchanged."""
         return self.links.get(name, name)
 
     def closure(self, name: str) -> str:
-        """That of a closure; a name that is none of closures stays."""
+        """The new name of a closure; any other name is unchanged."""
         return self.closures.get(name, name)
 
     def joint(self, name: str) -> str:
-        """That of a joint; the root's keeps its own."""
+        """The new name of a joint; the root joint keeps its name."""
         return self.joints.get(name, name)
 
 
 def new_names(mechanism: Mechanism, chance: Chance, version: Version) -> Names:
-    """Curious names, no two alike, for all that a version lets one name."""
+    """Unusual names, all different, for all parts that a version can name."""
     pool = [*chance.shuffled(CURIOUS), *(f"{name} {i}" for i in range(1, 9) for name in CURIOUS)]
     unused = iter(pool)
 
@@ -73,7 +73,7 @@ def new_names(mechanism: Mechanism, chance: Chance, version: Version) -> Names:
 
 
 def renamed(mechanism: Mechanism, names: Names) -> Mechanism:
-    """The same mechanism under other names."""
+    """The same mechanism with other names."""
     joint, link = names.joint, names.links
 
     def spot(spot: Spot) -> Spot:
@@ -113,7 +113,7 @@ def renamed(mechanism: Mechanism, names: Names) -> Mechanism:
 
 
 def keyed(mapping: Mapping[str, Value], name: Callable[[str], str]) -> dict[str, Value]:
-    """The same values under other keys."""
+    """The same values with other keys."""
     return {name(key): value for key, value in mapping.items()}
 
 

@@ -1,4 +1,4 @@
-"""A relation: two robots of which what a parser says of one follows from what it says of the other."""
+"""A metamorphic relation: the parser's answers on one robot determine its answers on another."""
 
 from __future__ import annotations
 
@@ -19,18 +19,18 @@ from eurdf_conformance.protocol.message import CanonicalRobot, Values
 
 
 def unchanged(values: Values, index: int) -> Values:
-    """What is said of one is said of the other."""
+    """The values of both robots are equal."""
     return values
 
 
 def unchanged_robot(robot: CanonicalRobot) -> CanonicalRobot:
-    """What was read of one is what was read of the other."""
+    """The canonical descriptions of both robots are equal."""
     return robot
 
 
 @dataclass(frozen=True)
 class Pair:
-    """Two robots.
+    """Two robots of a relation.
 
     Attributes:
         one: The first.

@@ -1,4 +1,4 @@
-"""Poses of files, and the 4×4 matrices that they are."""
+"""Poses as in files, and as 4×4 matrices."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def matrix_of(pose: Pose) -> Matrix:
 
 
 def pose_of(M: Matrix) -> Pose:
-    """The pose whose matrix this is.
+    """The pose of a matrix.
 
     The yaw is taken out before the other two are read, so that near a pitch of a quarter turn, where it is uncertain,
     they make up for it.
@@ -70,6 +70,6 @@ def rotation_of(quaternion: tuple[float, ...]) -> Matrix:
 
 
 def vector(numbers: object) -> Vector:
-    """Three numbers of an array."""
+    """An array as three numbers."""
     x, y, z = np.asarray(numbers, dtype=float).tolist()
     return x, y, z

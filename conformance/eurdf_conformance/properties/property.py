@@ -1,4 +1,4 @@
-"""A property: what holds of any parser, said of one mechanism at a time."""
+"""A property: a statement that holds for any parser and any mechanism, checked on one mechanism at a time."""
 
 from __future__ import annotations
 
@@ -11,29 +11,29 @@ from eurdf_conformance.properties.example import DRAWN_VERSIONS, Example, frozen
 from eurdf_conformance.properties.harness import Harness
 from eurdf_conformance.properties.mechanism import Mechanism
 
-#: How a parser departs from a property on one example.
+#: How a parser violates a property on one example.
 Check = Callable[[Harness, Example, Version, Level], list[Difference]]
 
 #: Size of the largest member of a family that is explored.
 LARGEST = 11
 
-#: So many frozen examples are tried, of those that a property says something of.
+#: Number of frozen examples tried, among those that the property applies to.
 MOST = 24
 
 
 def anything(mechanism: Mechanism) -> bool:
-    """A property that says something of every mechanism."""
+    """The property applies to every mechanism."""
     return True
 
 
 def closed(mechanism: Mechanism) -> bool:
-    """A property on closures."""
+    """The property applies to mechanisms with closures."""
     return bool(mechanism.closures)
 
 
 @dataclass(frozen=True)
 class Property:
-    """What holds of any parser and any mechanism.
+    """A statement that holds for any parser and any mechanism.
 
     Attributes:
         name: Permanent.
@@ -62,5 +62,5 @@ class Property:
     smallest: int = 1
 
     def frozen(self, version: Version) -> list[Example]:
-        """The examples of every certification, of those that it says something of."""
+        """The examples of every certification that the property applies to."""
         return [example for example in self.examples(version) if self.applies(example.mechanism)][:MOST]

@@ -1,4 +1,4 @@
-"""What is asked of a parser about one mechanism."""
+"""The queries to a parser about one mechanism."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from eurdf_conformance.properties.mechanism import Configuration, Mechanism
 
 @dataclass(frozen=True)
 class Query:
-    """Two files, and where the robot that they describe is evaluated.
+    """Two files, and the configurations at which the robot is evaluated.
 
     Attributes:
         mechanism: What the files say.
@@ -38,7 +38,7 @@ def query_of(
     at: Mapping[str, Configuration] | None = None,
     frames: Sequence[str] | None = None,
 ) -> Query:
-    """Ask about a mechanism.
+    """A query about a mechanism.
 
     Args:
         mechanism: The mechanism.
@@ -58,7 +58,7 @@ def query_of(
 
 
 def all_frames(mechanism: Mechanism) -> list[str]:
-    """The names of all frames: links, joints, those made by merging too, and what the description adds."""
+    """The names of all frames: links, joints, merged joints, and frames of the description."""
     names = [link.name for link in mechanism.links]
     names += [joint.name for joint in mechanism.joints]
     names += [name for name, change in mechanism.changes.items() if change.merges]

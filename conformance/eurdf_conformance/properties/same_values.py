@@ -1,4 +1,4 @@
-"""Values of a parser against other values of the same parser: both may be off by what is allowed."""
+"""Compares values of a parser with other values of the same parser; both may have the allowed error."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from eurdf_conformance.comparison.difference import Difference
 from eurdf_conformance.comparison.values import values_differences
 from eurdf_conformance.protocol.message import Values
 
-#: EU-PRO-008, EU-PRO-009: each of two right answers may be off by 1e-8, and what is made of one of them by more.
+#: EU-PRO-008, EU-PRO-009: each of two right answers may have an error of 1e-8; computing with one enlarges it.
 NEAR = 100.0 * TOLERANCE
 
 
 def same_values(expected: Values, given: Values, size: float, pointer: str) -> list[Difference]:
-    """Where values differ by more than two right answers may.
+    """Values that differ by more than two right answers may.
 
     Args:
         expected: What follows from another answer; what is None is not compared.

@@ -1,4 +1,4 @@
-"""Whether values are of the shape asked for: every frame, closure and velocity once, and all numbers of each."""
+"""Checks the shape of values: each frame, closure and velocity once, with the right number of numbers."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from eurdf_conformance.json_pointer import step
 from eurdf_conformance.oracle import OracleRobot
 from eurdf_conformance.protocol.message import Jacobian, MassMatrix, Quantity, Values
 
-#: m, kg, or whatever the unit: no number of a mechanism comes near, and of more the squares are no numbers.
+#: In any unit: larger than any number of a mechanism; squares of larger numbers may overflow.
 HUGE = 1e100
 
 
 class WrongShape(Exception):  # noqa: N818 - it says what the values are
-    """Values that are not of the shape asked for.
+    """The values do not have the requested shape.
 
     Attributes:
         differences: Where they are not.
@@ -31,7 +31,7 @@ class WrongShape(Exception):  # noqa: N818 - it says what the values are
 def shaped(
     values: Values, robot: OracleRobot, frames: Sequence[str], quantities: Sequence[Quantity], pointer: str
 ) -> Values:
-    """The quantities that were asked for, their columns in the order of the oracle's.
+    """The requested quantities, with their columns in the oracle's order.
 
     Args:
         values: As a parser gave them.
@@ -114,5 +114,5 @@ def _huge_numbers(value: Any, pointer: str) -> Iterator[Difference]:
 
 
 def _is_tame(values: list[Any]) -> bool:
-    """Whether they are numbers, none of them huge: what nearly every row is, and looked at no further."""
+    """Whether all entries are numbers and none is huge: a quick test that nearly every row passes."""
     return all(isinstance(each, float) and -HUGE <= each <= HUGE for each in values)

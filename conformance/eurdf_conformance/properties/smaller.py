@@ -1,4 +1,4 @@
-"""A mechanism with a part less. Hypothesis cannot leave out what it drew before the part that shows what is wrong."""
+"""Removes parts of a mechanism. Hypothesis cannot remove what it drew before the part that matters."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _Part = TypeVar("_Part", bound=Part)
 
 
 def smaller(mechanism: Mechanism) -> Iterator[Mechanism]:
-    """Mechanisms that lack one closure, motor, frame or joint of this one, and what is said of that alone.
+    """Mechanisms with one closure, motor, frame or joint less, and without what refers to that part alone.
 
     Three joints that are merged go together. Of a mechanism whose loops are closed, those that are left are closed.
     """
@@ -37,7 +37,7 @@ def _without(parts: tuple[_Part, ...], index: int) -> tuple[_Part, ...]:
 
 
 def _without_joints(mechanism: Mechanism, name: str, chain: list[Joint]) -> Iterator[Mechanism]:
-    """The mechanism without a chain of joints that are one of that name, where nothing else names a part of it.
+    """The mechanism without the joints of one name, if nothing else refers to them.
 
     What hangs from it comes nearer to the root, where no loop is held open by that.
     """

@@ -1,4 +1,4 @@
-"""What the oracle says of a mechanism, without the detour through YAML text."""
+"""The oracle's reading of a mechanism, without writing and parsing YAML text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A property, tried on a parser: on one example, and on the frozen ones."""
+"""Tries a property on a parser: on one example, or on the frozen ones."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def try_frozen(prop: Property, level: Level, version: Version, harness: Harness)
 
 
 def _files(harness: Harness, judgement: Judgement) -> Iterator[str]:
-    """The files that a parser was asked about, and the configuration of each robot at the first difference."""
+    """The files of the queries, and the configuration of each robot at the first difference."""
     for query, paths in harness.queries:
         yield from map(str, paths)
         yield from where_it_stood(judgement, query.configurations)

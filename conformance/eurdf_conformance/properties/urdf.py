@@ -11,7 +11,7 @@ _MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
 def urdf_text(mechanism: Mechanism, *, backwards: bool = False) -> str:
-    """The file's text.
+    """The text of the URDF.
 
     Args:
         mechanism: The mechanism; of its links and joints the order is kept.
@@ -70,7 +70,7 @@ def _joint(joint: Joint) -> ElementTree.Element:
 
 
 def _origin(element: ElementTree.Element, pose: Pose) -> None:
-    """What is zero is left out."""
+    """The `origin` element, without zeros."""
     attributes = {key: _numbers(value) for key, value in (("xyz", pose.xyz), ("rpy", pose.rpy)) if any(value)}
     if attributes:
         ElementTree.SubElement(element, "origin", attributes)

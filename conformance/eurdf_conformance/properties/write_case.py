@@ -1,4 +1,4 @@
-"""What was found by exploring, as a case that is ready to commit."""
+"""Writes a failure found by exploring as a case that is ready to commit."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _ALPHABET = "abcdefghijklmnopqrstuvwxyz0123456789"
 
 
 def write_case(prop: Property, query: Query, folder: Path) -> Path:
-    """Write a robot as a case, with what the oracle expects.
+    """Write a robot as a case, with the oracle's expectation.
 
     Args:
         prop: The property that the parser breaks.
@@ -56,14 +56,14 @@ def write_case(prop: Property, query: Query, folder: Path) -> Path:
 
 
 def _text(said: Mapping[str, Any]) -> str:
-    """A case as its file holds it: the texts of files as they are, all else in short."""
+    """The text of a case file: texts of files as blocks, everything else in flow style."""
     short = {key: value for key, value in said.items() if key != "files"}
     head = yaml.safe_dump(short, sort_keys=False, allow_unicode=True, width=120, default_flow_style=None)
     return head + yaml.dump({"files": said["files"]}, Dumper=_Blocks, sort_keys=False, allow_unicode=True)
 
 
 class _Blocks(yaml.SafeDumper):
-    """Writes texts of several lines as they are."""
+    """Writes texts of several lines as blocks."""
 
 
 def _block(dumper: yaml.SafeDumper, text: str) -> yaml.ScalarNode:
@@ -74,7 +74,7 @@ _Blocks.add_representer(str, _block)
 
 
 def how_to_keep(path: Path) -> Iterator[str]:
-    """What to do with a case that was written, one line each."""
+    """How to add the written case to the corpus, one line per step."""
     here = Path.cwd()
     topic = (CASES.relative_to(here) if CASES.is_relative_to(here) else CASES) / path.parent.name
     files = map(str, (path, path.with_suffix(".expected.json")))
@@ -86,7 +86,7 @@ def how_to_keep(path: Path) -> Iterator[str]:
 
 
 def fresh_id(query: Query, taken: set[str]) -> str:
-    """An id that no case has: made of the files, so that what is found again is written to the same place."""
+    """A new id, derived from the files, so that a failure found again is written to the same place."""
     digest = int.from_bytes(hashlib.sha256(query.files.description + query.files.urdf).digest(), "big")
     while True:
         digest, number = divmod(digest, len(_ALPHABET) ** 6)

@@ -1,4 +1,4 @@
-"""A description as YAML text: as people write it, or in any other spelling with the same meaning."""
+"""A description as YAML text, in the usual style or in a random spelling with the same meaning."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def yaml_text(document: dict[str, Any], chance: Chance | None = None) -> bytes:
 
 
 class _Writer:
-    """One document, written from its top to its end, and the anchors set so far."""
+    """Writes one document from start to end, and remembers the anchors set so far."""
 
     def __init__(self, document: dict[str, Any], chance: Chance | None) -> None:
         self.chance = chance
@@ -62,7 +62,7 @@ class _Writer:
             self._count(document)
 
     def block(self, value: Any, indent: int) -> str:
-        """What follows a colon or a dash, to the end of the line that it ends on."""
+        """The text after a colon or a dash, to the end of its last line."""
         mark = self._mark(value)
         if mark.startswith("*"):
             return f" {mark}{self._comment()}\n"
@@ -103,7 +103,7 @@ class _Writer:
         return mark if mark.startswith("*") else mark + self._flow(value)
 
     def _mark(self, value: Any) -> str:
-        """An anchor to set before a value that comes again, or the alias of it, each with a space."""
+        """The anchor to set before a repeated value, or the alias of it, each with a space."""
         if self.chance is None:
             return ""
         key = _key(value)

@@ -39,14 +39,11 @@ class Value(Plain):
     @model_serializer(mode="wrap")
     def _without_optional(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
         written: dict[str, Any] = handler(self)
-        for name in self.optional:
-            if written.get(name) is None:
-                written.pop(name, None)
-        return written
+        return {name: value for name, value in written.items() if value is not None or name not in self.optional}
 
 
 class Request(Value):
-    """What the runner asks."""
+    """A request of the runner."""
 
     #: Kinds of answer beside `unsupported`, `skipped` and `errored`.
     outcomes: ClassVar[tuple[str, ...]]
@@ -60,7 +57,7 @@ class Start(Request):
     outcomes = ("started",)
 
     command: Literal["start"] = "start"
-    protocol: str = Field(default=PROTOCOL, description="Version of the protocol spoken.")
+    protocol: str = Field(default=PROTOCOL, description="Version of the protocol.")
 
 
 class Load(Request):
@@ -77,15 +74,15 @@ Quantity = Literal["poses", "residuals", "jacobian", "mass_matrix", "mass", "cen
 
 
 class Evaluate(Request):
-    """Say where things are, of the robot accepted last."""
+    """Compute poses and other quantities of the robot accepted last."""
 
     outcomes = ("evaluated",)
 
     command: Literal["evaluate"] = "evaluate"
     quantities: list[Quantity]
-    frames: list[str] = Field(description="Names of the frames of which poses are asked for.")
+    frames: list[str] = Field(description="Names of the frames whose poses are requested.")
     configurations: list[dict[str, Numbers]] = Field(
-        description="By joint, its coordinates as files have them; a floating root under root_joint."
+        description="For each joint its coordinates as in files; those of a floating root under root_joint."
     )
 
 
@@ -98,13 +95,13 @@ class Stop(Request):
 
 
 class Answer(Value):
-    """What a parser answers."""
+    """An answer of a parser."""
 
-    id: int = Field(description="That of the request.")
+    id: int = Field(description="The id of the request.")
 
 
 class ParserInfo(Plain):
-    """Who answers."""
+    """The parser that answers."""
 
     name: Annotated[str, Field(min_length=1)]
     version: str
@@ -112,12 +109,12 @@ class ParserInfo(Plain):
 
 
 class Started(Answer):
-    """To `start`."""
+    """The answer to `start`."""
 
     outcome: Literal["started"] = "started"
     protocol: Literal["1.0"]
     parser: ParserInfo
-    claims: dict[Version, list[Level]] = Field(description="For each version of the format, the levels claimed.")
+    claims: dict[Version, list[Level]] = Field(description="The claimed levels, for each version of the format.")
 
 
 class Issue(Value):
@@ -156,17 +153,17 @@ class CanonicalJoint(Value):
         "cylindrical",
         "helical",
     ]
-    parent: str = Field(description="A link of the body it hangs from.")
-    child: str = Field(description="A link of the body it carries.")
-    lower: list[Number | None] = Field(description="One a coordinate, rad or m; null where there is no limit.")
+    parent: str = Field(description="A link of the parent body.")
+    child: str = Field(description="A link of the child body.")
+    lower: list[Number | None] = Field(description="One value per coordinate, rad or m; null: no limit.")
     upper: list[Number | None]
-    velocity: list[Number | None] = Field(description="One a velocity, rad/s or m/s; null where there is no limit.")
+    velocity: list[Number | None] = Field(description="One value per velocity, rad/s or m/s; null: no limit.")
     effort: list[Number | None]
     damping: Numbers
     friction: Numbers
     armature: Numbers
-    stiffness: Numbers | None = Field(default=None, description="Of springs, one a coordinate, N·m/rad or N/m.")
-    rest: Numbers | None = Field(default=None, description="Where they have no force, one a coordinate, rad or m.")
+    stiffness: Numbers | None = Field(default=None, description="One value per coordinate, N·m/rad or N/m.")
+    rest: Numbers | None = Field(default=None, description="Rest positions of the springs, rad or m.")
     mimic: CanonicalMimic | None = None
 
 
@@ -178,18 +175,18 @@ class CanonicalCompliance(Value):
 
 
 class CanonicalClosure(Value):
-    """Two frames held together."""
+    """A closure between two frames, A and B."""
 
     optional = frozenset({"axes", "length", "compliance"})
 
     name: str
     type: Literal["3d", "6d", "hinge", "distance"]
-    a: str = Field(description="A link of the body that frame A is on.")
-    b: str = Field(description="A link of the body that frame B is on.")
+    a: str = Field(description="A link of the body that carries frame A.")
+    b: str = Field(description="A link of the body that carries frame B.")
     axes: Annotated[list[Row3], Field(min_length=2, max_length=2)] | None = Field(
-        default=None, description="Of a hinge: the unit vectors of its axis in A and of that in B."
+        default=None, description="Unit vectors of the axis of a hinge, in A and in B."
     )
-    length: Number | None = Field(default=None, description="Of a distance: m.")
+    length: Number | None = Field(default=None, description="Length of a distance, m.")
     compliance: CanonicalCompliance | None = Field(default=None, description="Rigid if left out.")
 
 
@@ -202,7 +199,7 @@ class CanonicalCoupling(Value):
 
 
 class CanonicalActuator(Value):
-    """A joint with a motor; ratio and inertia one a velocity."""
+    """A joint with a motor; gear ratio and rotor inertia have one value per velocity."""
 
     optional = frozenset({"name", "control"})
 
@@ -216,7 +213,7 @@ class CanonicalActuator(Value):
 
 
 class CanonicalRobot(Value):
-    """What a parser has read, without style: chapter The canonical description."""
+    """The canonical description of a robot, as a parser has read it: chapter The canonical description."""
 
     name: str
     version: Version
@@ -228,7 +225,7 @@ class CanonicalRobot(Value):
     actuators: list[CanonicalActuator]
     configurations: dict[str, dict[str, Numbers]]
     couplings: list[CanonicalCoupling] = Field(default=[], description="Left out where there are none.")
-    own: dict[str, Any] = Field(description="User data, by the JSON pointer of their key.")
+    own: dict[str, Any] = Field(description="User data, by the JSON pointer to the key.")
 
     @model_serializer(mode="wrap")
     def _of_its_version(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
@@ -237,22 +234,22 @@ class CanonicalRobot(Value):
 
 
 class Accepted(Answer):
-    """To `load`: the robot is read."""
+    """An answer to `load`: the parser has read the robot."""
 
     outcome: Literal["accepted"] = "accepted"
-    robot: CanonicalRobot | None = Field(description="null where the level structure is not claimed.")
+    robot: CanonicalRobot | None = Field(description="null if the parser does not claim the level structure.")
     issues: list[Issue] = []
 
 
 class Rejected(Answer):
-    """To `load`: the description is wrong."""
+    """An answer to `load`: the files have an error."""
 
     outcome: Literal["rejected"] = "rejected"
     issues: list[Issue]
 
 
 class Pose(Value):
-    """Of a frame in the world."""
+    """Pose of a frame in the world."""
 
     rotation: Annotated[list[Row3], Field(min_length=3, max_length=3)]
     translation: Row3 = Field(description="m")
@@ -261,8 +258,8 @@ class Pose(Value):
 class Jacobian(Value):
     """The constraint Jacobian K."""
 
-    columns: list[tuple[str, int]] = Field(description="For each column a joint and which of its velocities, from 0.")
-    rows: dict[str, list[Numbers]] = Field(description="For each closure and coupling its rows.")
+    columns: list[tuple[str, int]] = Field(description="For each column its joint and index of the velocity, from 0.")
+    rows: dict[str, list[Numbers]] = Field(description="The rows of each closure and coupling.")
 
 
 class MassMatrix(Value):
@@ -273,7 +270,7 @@ class MassMatrix(Value):
 
 
 class Values(Value):
-    """At one configuration, the quantities asked for."""
+    """The requested quantities at one configuration."""
 
     poses: dict[str, Pose] | None = None
     residuals: dict[str, Numbers] | None = None
@@ -284,20 +281,20 @@ class Values(Value):
 
 
 class Evaluated(Answer):
-    """To `evaluate`: one value per configuration, in their order."""
+    """The answer to `evaluate`: one value per configuration, in the order of the request."""
 
     outcome: Literal["evaluated"] = "evaluated"
     values: list[Values]
 
 
 class Stopped(Answer):
-    """To `stop`."""
+    """The answer to `stop`."""
 
     outcome: Literal["stopped"] = "stopped"
 
 
 class Unsupported(Answer):
-    """To any request but `stop`: the parser lacks a feature."""
+    """An answer to any request except `stop`: the parser lacks a feature."""
 
     outcome: Literal["unsupported"] = "unsupported"
     feature: str
@@ -305,14 +302,14 @@ class Unsupported(Answer):
 
 
 class Skipped(Answer):
-    """To any request but `stop`: the parser would rather not, for a reason."""
+    """An answer to any request except `stop`: the parser chooses not to answer, and gives a reason."""
 
     outcome: Literal["skipped"] = "skipped"
     reason: str
 
 
 class Errored(Answer):
-    """To any request but `stop`: the parser failed, by its own word."""
+    """An answer to any request except `stop`: the parser reports that it failed."""
 
     outcome: Literal["errored"] = "errored"
     message: str

@@ -9,7 +9,7 @@ from typing import Any, get_args
 from eurdf_conformance.json_schema import Schema, published, schema_text
 from eurdf_conformance.protocol.message import PROTOCOL, Answer, AnyAnswer, AnyRequest, Request
 
-#: Where the files are: ``load.schema.json`` and the like, by the command or the outcome.
+#: The folder of the files, which are named by command or outcome, such as ``load.schema.json``.
 FOLDER = Path(__file__).parent / "schema"
 
 
@@ -27,7 +27,7 @@ def main(folder: Path) -> None:
 
 
 def _schema(message: type[Request] | type[Answer]) -> Schema:
-    """EU-PRO-003: what a message of a kind is.
+    """The schema of a kind of message, EU-PRO-003.
 
     A request has all its members, always; of an answer, some may be left out.
     """

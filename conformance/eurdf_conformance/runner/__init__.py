@@ -1,1 +1,1 @@
-"""How a parser's process is started, asked with a time-out, and ended; and what can happen on the way."""
+"""Starts a parser's process, sends requests with a time-out, ends the process, and names each possible outcome."""

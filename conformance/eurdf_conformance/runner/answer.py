@@ -37,7 +37,7 @@ _ANY_TIME = ("unsupported", "skipped", "errored")
 
 
 def read_answer(line: bytes, request: AnyRequest) -> AnyAnswer | Malformed | Misplaced:
-    """The answer that a line is, to one request.
+    """Read a line as the answer to one request.
 
     Args:
         line: Without the line feed that ends it.
@@ -55,7 +55,7 @@ def read_answer(line: bytes, request: AnyRequest) -> AnyAnswer | Malformed | Mis
 
 
 def shown(line: bytes) -> str:
-    """The beginning of a line, as text."""
+    """The beginning of a line as text."""
     text = line[: 4 * SHOWN].decode("utf-8", "backslashreplace")
     return text if len(text) <= SHOWN and len(line) <= 4 * SHOWN else f"{text[:SHOWN]}… ({len(line):,} bytes)"
 
@@ -121,7 +121,7 @@ def _unfit(line: bytes, request: AnyRequest, error: ValidationError) -> AnyAnswe
 
 
 def _elsewhere(value: dict[str, Any], line: bytes, request: AnyRequest) -> Malformed | Misplaced | None:
-    """Why an object does not belong to the request: it has no id, two ids, or that of another request."""
+    """Why an object is no answer to the request: it has no id, two ids, or another request's id."""
     if isinstance(value, Doubled) and "id" in value.keys_twice:
         return Malformed(shown(line), "duplicate key 'id'")
     given_id = value.get("id")

@@ -1,4 +1,4 @@
-"""From the text of ``--parser`` to the command that starts a parser."""
+"""Turns the text of ``--parser`` into the command that starts a parser."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _OBJECT = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*:[^\W\d]\w*(\.[^\W\d]\w*)*")
 
 
 def command_of(parser: str) -> list[str]:
-    """The program that a parser is, and its arguments.
+    """The program of a parser and its arguments.
 
     Args:
         parser: ``package.module:object``, a Python object that `protocol.serve` serves; or ``cmd:`` and a command line,

@@ -1,4 +1,4 @@
-"""A Python parser, asked in this process: for tests of a parser, or of the suite, that start none."""
+"""Runs a Python parser in this process: for tests of a parser, or of the suite, that start no process."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from eurdf_conformance.runner.outcome import Answered, Outcome
 
 
 class InProcess:
-    """A parser that is asked as a `Session` is; a crash of it is one of this process."""
+    """A parser with the interface of a `Session`; if it crashes, this process crashes."""
 
     def __init__(self, parser: PythonParser) -> None:
         self._parser = parser
 
     def load(self, description: Path, urdf: Path) -> Outcome:
-        """Let it read a robot."""
+        """Ask it to read a robot."""
         begin = time.perf_counter()
         try:
             answer: AnyAnswer = self._parser.load(description.absolute(), urdf.absolute())
@@ -32,7 +32,7 @@ class InProcess:
         frames: Sequence[str],
         quantities: Sequence[Quantity],
     ) -> Outcome:
-        """Let it say where things are, of the robot accepted last."""
+        """Ask it to evaluate the robot accepted last."""
         begin = time.perf_counter()
         answer: AnyAnswer
         if isinstance(self._parser, Evaluator):

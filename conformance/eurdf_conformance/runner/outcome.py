@@ -21,7 +21,7 @@ class Answered:
 
     @property
     def word(self) -> str:
-        """What happened, in the words of the protocol."""
+        """The outcome in the words of the protocol."""
         return self.answer.outcome
 
     def __str__(self) -> str:

@@ -1,4 +1,4 @@
-"""A process and its three pipes: whole lines out of its standard output, with a deadline and a bound on memory.
+"""A process and its three pipes: reads whole lines of its standard output, with a deadline and a bound on memory.
 
 One selector waits for all of them, and for the end of the process, so that a parser that fills one pipe while another
 is waited for can neither hang nor hang up. A `keeper` starts the process. What the process has started ends with it,
@@ -21,7 +21,7 @@ from pathlib import Path
 
 _KEEPER = Path(__file__).with_name("keeper.py")
 
-#: Bytes that a line may have. The mass matrix of a robot of 1000 velocities takes 20 MB.
+#: Largest length of a line, bytes. The mass matrix of a robot with 1000 velocities takes 20 MB.
 LINE_LIMIT = 64 * 2**20
 
 #: Bytes that are kept of standard error, the last ones.
@@ -103,16 +103,16 @@ class Pipes:
 
     @property
     def log(self) -> str:
-        """The end of what it wrote to standard error since the last `send`; after the first, since it started."""
+        """The end of its standard error since the last `send`, or since it started."""
         return self._log.decode("utf-8", "replace")
 
     @property
     def unfinished(self) -> bytes:
-        """What it wrote of a line that has not ended."""
+        """The beginning of a line that has not ended."""
         return bytes(self._received)
 
     def send(self, line: bytes) -> None:
-        """Write a line to its standard input; what does not fit into the pipe goes out while `line` waits."""
+        """Write a line to its standard input; `line` sends the rest if the pipe is full."""
         if self._begun:
             self._log.clear()
         self._begun = True
@@ -122,7 +122,7 @@ class Pipes:
             self._selector.register(self._stdin, selectors.EVENT_WRITE, self._write)
 
     def close_input(self) -> None:
-        """Let it see the end of its standard input."""
+        """Close its standard input."""
         assert self._process.stdin is not None
         if self._stdin in self._selector.get_map():
             self._selector.unregister(self._stdin)
@@ -159,7 +159,7 @@ class Pipes:
         return self._ended
 
     def close(self) -> None:
-        """End the process and all that it started, whatever they do, and free what they took."""
+        """End the process and all that it started, and release its resources."""
         if self._closed:
             return
         self._closed = True
@@ -226,7 +226,7 @@ class Pipes:
                 self.left = tuple(json.loads(value))
 
     def _handle(self, deadline: float) -> None:
-        """Wait for something to happen, and do what is to be done then."""
+        """Wait for an event and handle it."""
         for key, _ in self._selector.select(max(deadline - time.monotonic(), 0.0)):
             key.data()
 
@@ -248,7 +248,7 @@ class Pipes:
         return line
 
     def _receive(self) -> bool:
-        """Read what standard output holds; whether there was anything."""
+        """Read what is in standard output; return whether there was anything."""
         if self._output_closed is not None:
             return False
         chunk = _read(self._stdout)
@@ -259,7 +259,7 @@ class Pipes:
         return bool(chunk)
 
     def _take_log(self) -> bool:
-        """The same of standard error."""
+        """Read what is in standard error; return whether there was anything."""
         if not self._log_open:
             return False
         chunk = _read(self._stderr)
@@ -271,7 +271,7 @@ class Pipes:
         return bool(chunk)
 
     def _notice_exit(self) -> None:
-        """The process has ended: what it wrote last is in the pipes, and what more comes is of others."""
+        """The process has ended: read what it wrote last; later output comes from other processes."""
         self._selector.unregister(self._control)
         _empty(self._receive, self._line_limit)
         _empty(self._take_log, self._line_limit)

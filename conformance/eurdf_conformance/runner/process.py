@@ -1,4 +1,4 @@
-"""One process of a parser. It gets one request at a time and is ended when answers can no longer be matched."""
+"""One process of a parser. It gets one request at a time, and is ended when answers can no longer be matched."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ _MOST_LINES = 100
 
 
 class ParserProcess:
-    """A parser that runs."""
+    """A running parser."""
 
     def __init__(self, command: Sequence[str], line_limit: int = LINE_LIMIT) -> None:
-        """Start it; for what this raises see `Pipes`."""
+        """Start it; for the exceptions see `Pipes`."""
         self._line_limit = line_limit
         self._pipes = Pipes(command, line_limit)
         self.alive = True
@@ -101,14 +101,14 @@ class ParserProcess:
         return Malformed(shown(first), why, log=self._pipes.log)
 
     def _rest(self) -> list[bytes]:
-        """The lines that are there already, behind an answer."""
+        """The lines after an answer that are there already."""
         lines: list[bytes] = []
         while len(lines) < _MOST_LINES and isinstance(line := self._pipes.line(0.0), bytes):
             lines.append(line)
         return lines
 
     def _silent(self, silence: Silence, timeout: float, lines: Sequence[bytes], before: bool = False) -> Outcome:
-        """What it means that no line came, but perhaps some that are no answers."""
+        """The outcome if no answer came."""
         pipes = self._pipes
         if silence is Silence.TOO_LONG:
             why = f"a line of more than {self._line_limit:,} bytes"
@@ -119,7 +119,7 @@ class ParserProcess:
         return self._crashed(written, before)
 
     def _crashed(self, written: str, before: bool) -> Crashed:
-        """What ended the process."""
+        """The outcome if the process ended."""
         self.end()
         code = self._pipes.exit_code
         if code is not None and code < 0:

@@ -1,4 +1,4 @@
-"""A conversation with a parser, over as many processes as it takes."""
+"""A conversation with a parser, which may take several processes."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from eurdf_conformance.visible import cut
 
 
 class NotStarted(Exception):  # noqa: N818 - it says what the parser is
-    """A parser that did not answer `start` with `started`.
+    """The parser did not answer `start` with `started`.
 
     Attributes:
         outcome: What came of it instead.
@@ -64,7 +64,7 @@ class Session:
         failed_starts: int = 3,
         line_limit: int = LINE_LIMIT,
     ) -> None:
-        """Nothing is started yet.
+        """Prepare a session; nothing is started yet.
 
         Args:
             parser: ``package.module:object`` or ``cmd:`` and a command line, see `command_of`.
@@ -104,7 +104,7 @@ class Session:
 
     @property
     def started(self) -> Started:
-        """Who the parser is, and what it claims.
+        """The parser's answer to `start`: its name and its claims.
 
         Raises:
             NotStarted: It did not say.
@@ -115,13 +115,13 @@ class Session:
         raise NotStarted(outcome)
 
     def start(self) -> Outcome:
-        """Start the parser, if that was not done; what came of the first start."""
+        """Start the parser, if it is not started; the outcome of the first start."""
         if self._first is None:
             self._first = self._begin()
         return self._first
 
     def load(self, description: Path, urdf: Path, *, timeout: float | None = None) -> Outcome:
-        """Let it read a robot.
+        """Ask the parser to read a robot.
 
         Args:
             description: The YAML file.
@@ -139,7 +139,7 @@ class Session:
         *,
         timeout: float | None = None,
     ) -> Outcome:
-        """Let it say where things are, of the robot accepted last.
+        """Ask the parser to evaluate the robot accepted last.
 
         Args:
             configurations: For each, by joint its coordinates as files have them.
@@ -152,7 +152,7 @@ class Session:
         return self.ask(request, timeout=timeout)
 
     def ask(self, request: AnyRequest, *, timeout: float | None = None) -> Outcome:
-        """Ask it anything but `start` and `stop`.
+        """Send any request except `start` and `stop`.
 
         EU-PRO-006: only an answer that says so is a rejection; each other outcome is one of its own.
 
@@ -174,7 +174,7 @@ class Session:
         return outcome
 
     def stop(self) -> Outcome | None:
-        """End the conversation; what came of it, or None where no process was running."""
+        """End the conversation; its outcome, or None if no process was running."""
         process = self._process
         if process is not None and process.alive:
             self.ended = process.stop(Stop(id=self._next_id()), self._stop_timeout)
@@ -188,7 +188,7 @@ class Session:
             self.left += self._process.left
 
     def _ready(self, request: AnyRequest) -> CannotStart | None:
-        """See to it that there is a process to ask; why there is none."""
+        """Make sure that a process is running; the reason if there is none."""
         first = self.start()
         if not _is_started(first):
             return CannotStart(_why(first))
@@ -209,7 +209,7 @@ class Session:
         return None
 
     def _begin(self) -> Outcome:
-        """Start a process and greet it."""
+        """Start a process and send `start`."""
         try:
             command = command_of(self.parser)
         except ValueError as why:
@@ -225,7 +225,7 @@ class Session:
         return outcome
 
     def _put(self, request: AnyRequest, timeout: float) -> Outcome:
-        """Ask the process that runs."""
+        """Send a request to the running process."""
         assert self._process is not None
         begin = time.perf_counter()
         outcome = self._process.ask(request.model_copy(update={"id": self._next_id()}), timeout)

@@ -1,4 +1,4 @@
-"""A mechanism built as it is assembled: frames are given in the world, and joints and closures follow."""
+"""Builds a mechanism from the poses of its frames in the world; joints and closures follow."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _Kind = Literal["revolute", "prismatic", "spherical", "universal"]
 
 
 class Building:
-    """A mechanism that grows from the link `ground`."""
+    """A mechanism that starts from the link `ground`."""
 
     def __init__(self, name: str) -> None:
         self._name = name
@@ -58,7 +58,7 @@ class Building:
         *,
         motor: bool = False,
     ) -> None:
-        """Hang a link, which is its joint's name too, with `_joint` behind it.
+        """Add a link and its joint, which is named after the link with `_joint` appended.
 
         Args:
             kind: Type of the joint; a universal one turns about its x and then its y.
@@ -85,14 +85,14 @@ class Building:
         self._q[name] = q
 
     def close(self, kind: Literal["3d", "6d"], a: str, b: str, where: Matrix) -> None:
-        """Hold a frame of one link on one of another, both at a pose where the mechanism is assembled."""
+        """Add a closure between a frame of one link and one of another, at a pose in the assembled mechanism."""
         M = matrix_of(ASKEW) @ where
         spots = [Spot(on="link", of=link, pose=pose_of(inverse(self._frames[link]) @ M)) for link in (a, b)]
         name = f"closure_{len(self._closures) + 1}"
         self._closures.append(Closure(name=name, type=kind, a=spots[0], b=spots[1]))
 
     def example(self, nv: int, rank: int, uncontrolled: int) -> Example:
-        """The mechanism, with the counts that are known of it."""
+        """The mechanism with its known counts."""
         mechanism = Mechanism(
             name=self._name,
             links=tuple(self._links),
@@ -123,5 +123,5 @@ def along(axis: Sequence[float] | Matrix) -> Matrix:
 
 
 def angle(i: int) -> float:
-    """Some angle of the i-th joint, rad: no joint is at its neutral."""
+    """A nonzero angle for the i-th joint, rad."""
     return 0.3 + 0.2 * (i % 5) if i % 2 else -0.2 - 0.15 * (i % 4)

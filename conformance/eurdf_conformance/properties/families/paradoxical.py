@@ -1,4 +1,4 @@
-"""Rings that move although counting links and joints says that they cannot."""
+"""Loops that move although counting links and joints predicts that they cannot."""
 
 from __future__ import annotations
 

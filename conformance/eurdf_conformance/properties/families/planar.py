@@ -1,4 +1,4 @@
-"""Linkages in a plane, all of whose axes are parallel."""
+"""Planar linkages: all axes are parallel."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A platform on legs that can be made longer, each between two joints that let it turn."""
+"""Platforms on legs of variable length, each between two joints."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from eurdf_conformance.properties.placement import Matrix, quaternion_of
 
 
 def with_universals(n: int) -> Example:
-    """N legs UPS, each with a motor: mobility 6, of which n are held."""
+    """N legs UPS, each with a motor: mobility 6; the motors determine n of these."""
     return _platform(n, "universal").example(nv=3 * n + 3, rank=3 * (n - 1), uncontrolled=max(6 - n, 0))
 
 
 def with_balls(n: int) -> Example:
-    """N legs SPS, each with a motor: mobility 6 + n, since each leg spins about itself."""
+    """N legs SPS, each with a motor: mobility 6 + n, since each leg can spin about itself."""
     return _platform(n, "spherical").example(nv=4 * n + 3, rank=3 * (n - 1), uncontrolled=max(6 - n, 0) + n)
 
 

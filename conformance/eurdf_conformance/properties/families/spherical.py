@@ -1,4 +1,4 @@
-"""Linkages whose axes all pass one point, and rings of balls."""
+"""Linkages whose axes all meet in one point, and rings of spherical joints."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def polygon(n: int) -> Example:
 
 
 def balls(n: int) -> Example:
-    """N links in a ring, n balls of which the last is the closure, 3d: mobility 3 n − 6, with the spin of each rod."""
+    """N links in a ring, n spherical joints, the last one a 3d closure: mobility 3 n − 6, with the spin of each rod."""
     ring = Building(f"ring of {n} balls")
     before = "ground"
     for i in range(n):
@@ -41,7 +41,7 @@ def balls(n: int) -> Example:
 
 
 def ball_chain(n: int) -> Example:
-    """N balls in a row, closed nowhere: mobility 3 n."""
+    """N spherical joints in a row, without closures: mobility 3 n."""
     chain = Building(f"chain of {n} balls")
     before = "ground"
     for i in range(n):

@@ -1,4 +1,4 @@
-"""A 3d closure is a ball between its frames: a 6d one on a spherical joint more lets the mechanism move as much."""
+"""Replacing a 3d closure by a spherical joint and a 6d closure leaves the possible motions the same."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _BALL = Inertia(mass=0.5, moments=(0.01, 0.0, 0.0, 0.01, 0.0, 0.01))
 
 
 def ball_closure(harness: Harness, example: Example, version: Version, level: Level) -> list[Difference]:
-    """The null space of K, and that of the K of the twin without the balls' own motions, are one space."""
+    """The null space of K equals that of the twin's K without the motions of the added spherical joints."""
     one, other = example.mechanism, with_balls(example.mechanism)
     before, after = (motions(harness, mechanism, version) for mechanism in (one, other))
     robot = truth(one, version)
@@ -45,7 +45,7 @@ def ball_closure(harness: Harness, example: Example, version: Version, level: Le
 
 
 def motions(harness: Harness, mechanism: Mechanism, version: Version) -> Matrix:
-    """An orthonormal basis of the null space of K at the closed configuration, in velocities free of units."""
+    """An orthonormal basis of the null space of K at the closed configuration, in unit-free velocities."""
     at = {"assembled": mechanism.configurations["assembled"]}
     robot, q = truth(mechanism, version), configuration(mechanism, at["assembled"], version)
     (values,) = harness.evaluate(query_of(mechanism, version, at=at, frames=[]), ("jacobian",))
@@ -61,7 +61,7 @@ def stacked(values: Values) -> Matrix:
 
 
 def with_balls(mechanism: Mechanism) -> Mechanism:
-    """Every 3d closure as a 6d one, of frame A and a link that hangs from frame B by a spherical joint."""
+    """Each 3d closure replaced by a 6d one between frame A and a link on a spherical joint at frame B."""
     mechanism = with_inline_frames(mechanism)
     robot, q = truth(mechanism, "2"), dict(mechanism.configurations["assembled"])
     at = robot.kinematics(q)
@@ -90,7 +90,7 @@ def with_balls(mechanism: Mechanism) -> Mechanism:
 
 
 def has_3d(mechanism: Mechanism) -> bool:
-    """Whether a closure is a ball."""
+    """Whether the mechanism has a 3d closure."""
     return any(closure.type == "3d" for closure in mechanism.closures)
 
 

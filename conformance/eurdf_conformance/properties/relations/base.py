@@ -1,4 +1,4 @@
-"""The whole robot is somewhere else: what is given in the world moves with it, and nothing else changes."""
+"""The whole robot at another pose: what is given in the world moves with it, and nothing else changes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _NEUTRAL = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 
 
 def moving(example: Example, version: Version) -> Pair:
-    """A robot, and the same one moved as a whole: mounted on another root, or, where its root floats, afloat there."""
+    """A robot, and the same robot at another pose: on another root link, or with another pose of its floating root."""
     mechanism = example.mechanism
     pose = any_pose(example.chance)
     T = matrix_of(pose)
@@ -40,7 +40,7 @@ def moving(example: Example, version: Version) -> Pair:
 
 
 def floating(example: Example, version: Version) -> Pair:
-    """A robot whose root is fixed, and the same one afloat: its root moves no closure, and its joints weigh as much."""
+    """A robot with a fixed root, and the same with a floating root, which changes neither K nor M of its joints."""
     mechanism = example.mechanism
     pose = any_pose(example.chance)
     T = matrix_of(pose)
@@ -60,14 +60,14 @@ def floating(example: Example, version: Version) -> Pair:
 
 
 def any_pose(chance: Chance) -> Pose:
-    """Somewhere within 2 m."""
+    """A pose within 2 m."""
     x, y, z = (chance.between(-2, 2) for _ in range(3))
     roll, pitch, yaw = (chance.between(-3, 3) for _ in range(3))
     return Pose(xyz=(x, y, z), rpy=(roll, pitch, yaw))
 
 
 def mounted(mechanism: Mechanism, pose: Pose) -> Mechanism:
-    """The root link, held at a pose by a further one."""
+    """The root link fixed to a new root at a pose."""
     carried = {joint.child for joint in mechanism.joints}
     root = next(link.name for link in mechanism.links if link.name not in carried)
     mount = Joint(name="mount of all", type="fixed", parent="floor", child=root, origin=pose)

@@ -1,4 +1,4 @@
-"""How values change with the velocities, and with the frame, in which they are said."""
+"""Changes values to other velocities, and to another world frame."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from eurdf_conformance.protocol.message import Jacobian, MassMatrix, Pose, Value
 
 
 def moved(values: Values, T: Matrix) -> Values:
-    """What is said in the world, of a robot that was moved by T as a whole."""
+    """The values in the world of a robot that was moved as a whole by T."""
     changed: dict[str, object] = {}
     if values.poses is not None:
         changed["poses"] = {name: pose_message(T @ pose_matrix(pose)) for name, pose in values.poses.items()}
@@ -22,7 +22,7 @@ def moved(values: Values, T: Matrix) -> Values:
 
 
 def in_velocities(values: Values, J: Matrix, columns: Sequence[Column]) -> Values:
-    """K J and Jᵀ M J, where v = J w takes other velocities w to those of K and M."""
+    """K J and Jᵀ M J, where v = J w gives the velocities of K and M from other velocities w."""
     changed: dict[str, object] = {}
     if (K := values.jacobian) is not None:
         rows = {name: (np.array(rows).reshape(-1, len(J)) @ J).tolist() for name, rows in K.rows.items()}
@@ -34,19 +34,19 @@ def in_velocities(values: Values, J: Matrix, columns: Sequence[Column]) -> Value
 
 
 def with_poses_of(values: Values, frames: Sequence[str]) -> Values:
-    """The same, without the poses of other frames."""
+    """The same values with the poses of these frames only."""
     if values.poses is None:
         return values
     return values.model_copy(update={"poses": {name: values.poses[name] for name in frames}})
 
 
 def pose_matrix(pose: Pose) -> Matrix:
-    """As a 4×4 matrix."""
+    """A pose as a 4×4 matrix."""
     M = np.eye(4)
     M[:3, :3], M[:3, 3] = pose.rotation, pose.translation
     return M
 
 
 def pose_message(M: Matrix) -> Pose:
-    """Of a 4×4 matrix."""
+    """The message of a 4×4 matrix."""
     return Pose(rotation=M[:3, :3].tolist(), translation=M[:3, 3].tolist())

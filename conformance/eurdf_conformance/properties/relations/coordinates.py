@@ -1,4 +1,4 @@
-"""One configuration in other numbers: what is left out, −q for q, and a turn more."""
+"""One configuration in other numbers: neutral joints left out, −q for q, and additional turns."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from eurdf_conformance.properties.truth import truth
 
 
 def leaving_out(example: Example, version: Version) -> Pair:
-    """A robot at configurations that name every joint, and where those at their neutral are left out."""
+    """A robot at configurations that name every joint, and at the same without joints at neutral."""
     mechanism = example.mechanism
     neutral = {name: tuple(q) for name, q in truth(mechanism, "2").neutral().items()}
     whole = {name: {**neutral, **q} for name, q in mechanism.configurations.items()}
@@ -22,7 +22,7 @@ def leaving_out(example: Example, version: Version) -> Pair:
 
 
 def turning(example: Example, version: Version) -> Pair:
-    """A robot, and the same one with −q for every quaternion q and another turn of every continuous joint."""
+    """A robot, and the same with −q for each quaternion q and an additional turn of each continuous joint."""
     mechanism = example.mechanism
     types = mechanism.types()
     at: dict[str, Configuration] = {
@@ -42,12 +42,12 @@ def _turned(kind: str, q: Coordinates) -> Coordinates:
 
 
 def _leads(mechanism: Mechanism, joint: str) -> bool:
-    """Whether another joint follows this one: then a turn more is not the same."""
+    """Whether another joint mimics this one: then an additional turn changes the pose."""
     return any(each.mimic is not None and each.mimic.joint == joint for each in mechanism.joints)
 
 
 def has_turns(mechanism: Mechanism) -> bool:
-    """Whether a joint has coordinates of which others are the same."""
+    """Whether a joint has several coordinates for one pose."""
     return bool({"continuous", "spherical", "floating"} & set(mechanism.types().values()))
 
 

@@ -1,4 +1,4 @@
-"""Every joint of several velocities, or of a pitch, moves as a row of joints that slide or turn."""
+"""Each joint with several velocities, or with a pitch, moves as a row of prismatic and revolute joints."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _WIDE = Limit(effort=1.0, velocity=1.0, lower=-100.0, upper=100.0)
 
 
 def elementary(example: Example, version: Version) -> Pair:
-    """A mechanism whose joints slide, or turn, and the one that it was made from.
+    """A mechanism of prismatic and revolute joints, and the one that it was made from.
 
     With w the velocities of the second and v = J w those of the first, K′ = K J and M′ = Jᵀ M J.
     """
@@ -45,7 +45,7 @@ def elementary(example: Example, version: Version) -> Pair:
 
 
 def in_rows(mechanism: Mechanism, rows: dict[str, JointRow]) -> Mechanism:
-    """Each of some joints as a row of others, on links of no mass."""
+    """Some joints replaced by rows of joints, with massless links between them."""
     links, joints = list(mechanism.links), []
     for joint in mechanism.joints:
         if joint.name not in rows:
@@ -65,7 +65,7 @@ def in_rows(mechanism: Mechanism, rows: dict[str, JointRow]) -> Mechanism:
 
 
 def parts_of(joint: Joint, row: JointRow) -> list[Joint]:
-    """The joints of a row, from link to link."""
+    """The joints of a row, in order."""
     ends = [joint.parent, *(f"link of {name}" for name, _, _ in row.parts[:-1]), joint.child]
     parts = [
         Joint(name=name, type=kind, parent=ends[i], child=ends[i + 1], axis=axis, limit=_WIDE)
@@ -76,7 +76,7 @@ def parts_of(joint: Joint, row: JointRow) -> list[Joint]:
 
 
 def without_armature(mechanism: Mechanism) -> Mechanism:
-    """Without motors, and without the armatures of joints that become rows: those are of other velocities."""
+    """Without motors, and without armatures of replaced joints, whose velocities are others."""
     types = mechanism.types()
     return mechanism.replace(
         actuators=(),
@@ -88,7 +88,7 @@ def without_armature(mechanism: Mechanism) -> Mechanism:
 
 
 def has_row(mechanism: Mechanism) -> bool:
-    """Whether a joint is a row of others."""
+    """Whether a joint can be replaced by a row."""
     return any(mechanism.type_of(joint) in KINDS for joint in mechanism.joints)
 
 

@@ -49,7 +49,7 @@ def following(example: Example, version: Version) -> Pair:
 
 
 def leader(mechanism: Mechanism, joint: str) -> tuple[str, float, float]:
-    """Whom a joint follows in the end, with the multiplier and the offset of the whole chain."""
+    """The joint at the end of a chain of mimics, with the multiplier and the offset of the whole chain."""
     mimics = {each.name: each.mimic for each in mechanism.joints}
     multiplier, offset = 1.0, 0.0
     while (mimic := mimics.get(joint)) is not None:
@@ -58,7 +58,7 @@ def leader(mechanism: Mechanism, joint: str) -> tuple[str, float, float]:
 
 
 def freed(mechanism: Mechanism) -> Mechanism:
-    """Without mimics, and with room for those that were."""
+    """Without mimics, and with wider limits for the joints that had one."""
     return mechanism.replace(
         joints=tuple(
             joint.model_copy(update={"mimic": None, "limit": _WIDE}) if joint.mimic else joint
@@ -68,7 +68,7 @@ def freed(mechanism: Mechanism) -> Mechanism:
 
 
 def ignoring(example: Example, version: Version) -> Pair:
-    """A mechanism without mimics, and the same one whose URDF has some, right or wrong."""
+    """A mechanism without mimics, and the same with mimics in its URDF, right or wrong."""
     mechanism, chance = example.mechanism, example.chance
     names = [*(joint.name for joint in mechanism.joints), "nobody"]
     joints = tuple(
@@ -89,12 +89,12 @@ def ignoring(example: Example, version: Version) -> Pair:
 
 
 def has_joint(mechanism: Mechanism) -> bool:
-    """Whether there is a joint that could have a mimic."""
+    """Whether a joint could have a mimic."""
     return bool(mechanism.joints)
 
 
 def has_mimic(mechanism: Mechanism) -> bool:
-    """Whether a joint follows another."""
+    """Whether a joint mimics another."""
     return any(joint.mimic for joint in mechanism.joints)
 
 

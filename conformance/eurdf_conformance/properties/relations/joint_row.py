@@ -1,4 +1,4 @@
-"""A joint of several velocities, or of a pitch, as a row of joints that slide or turn."""
+"""A joint with several velocities, or with a pitch, as a row of prismatic and revolute joints."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Part = tuple[str, Literal["prismatic", "continuous"], Vector | None]
 
 @dataclass(frozen=True)
 class JointRow:
-    """Joints in a row, the last of which has the name of the joint that they are.
+    """Joints in a row; the last one has the name of the joint that they replace.
 
     Attributes:
         parts: For each its name, type and axis.
@@ -46,7 +46,7 @@ class JointRow:
 
 
 def row_of(mechanism: Mechanism, joint: Joint) -> JointRow | None:
-    """The row that a joint of the URDF is, if it is one."""
+    """The row for a joint of the URDF, if it can be replaced by one."""
     name, axis = joint.name, joint.axis or X
     change = mechanism.changes.get(name, Change())
     one, two, three = (f"{name} part {i}" for i in range(3))

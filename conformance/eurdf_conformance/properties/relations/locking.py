@@ -1,4 +1,4 @@
-"""A joint that is locked by the description is one that is fixed in the URDF."""
+"""A joint that the description locks behaves as a joint that is fixed in the URDF."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def locking(example: Example, version: Version) -> Pair:
 
 
 def fixed_in_urdf(mechanism: Mechanism) -> Mechanism:
-    """Without the changes to fixed."""
+    """The mechanism with locked joints fixed in the URDF."""
     locked = {name for name, change in mechanism.changes.items() if change.type == "fixed"}
     return mechanism.replace(
         joints=tuple(_fixed(joint) if joint.name in locked else joint for joint in mechanism.joints),

@@ -14,12 +14,12 @@ from eurdf_conformance.properties.query import query_of
 
 
 def lumping(example: Example, version: Version) -> Pair:
-    """A mechanism, and one in which links on fixed joints weigh nothing, and what carries them weighs more."""
+    """A mechanism, and the same with the inertia of each fixed link added to the link that carries it."""
     return Pair(query_of(example.mechanism, version), query_of(lumped(example.mechanism), version))
 
 
 def lumped(mechanism: Mechanism) -> Mechanism:
-    """Every inertia behind a fixed joint, on the link before it; from the leaves on."""
+    """Each inertia behind a fixed joint added to its parent link, from the leaves to the root."""
     inertias = {link.name: link.inertia for link in mechanism.links}
     for joint in reversed(mechanism.joints):  # a joint is after the one that it hangs from
         if mechanism.type_of(joint) == "fixed" and (carried := inertias[joint.child]) is not None:
@@ -52,7 +52,7 @@ def _symmetric(inertia: Inertia) -> Matrix:
 
 
 def has_fixed_mass(mechanism: Mechanism) -> bool:
-    """Whether a link behind a fixed joint weighs something."""
+    """Whether a link on a fixed joint has mass."""
     weighs = {link.name: link.inertia is not None for link in mechanism.links}
     return any(mechanism.type_of(joint) == "fixed" and weighs[joint.child] for joint in mechanism.joints)
 

@@ -20,7 +20,7 @@ Angles = tuple[float, float, float]
 
 
 def merging(example: Example, version: Version) -> Pair:
-    """A mechanism with merged joints, and the same one in which the three revolutes turn one by one.
+    """A mechanism with merged joints, and the same with the three revolutes instead.
 
     With a the axes at zero, seen from the last frame, R = R(a₁, θ₁) R(a₂, θ₂) R(a₃, θ₃) and ω = A(θ) θ̇ seen from the
     child: K′ = K A and M′ = Aᵀ M A.
@@ -64,7 +64,7 @@ def merging(example: Example, version: Version) -> Pair:
 
 
 def weightless(mechanism: Mechanism) -> Mechanism:
-    """Without what the links between merged joints weigh, and without motors and armatures of what these become."""
+    """Without the inertias between merged joints, and without their motors and armatures."""
     between = {
         joint.child
         for joint in mechanism.joints
@@ -85,13 +85,13 @@ def weightless(mechanism: Mechanism) -> Mechanism:
 
 
 def unmerged(mechanism: Mechanism) -> Mechanism:
-    """Without the merges; its files state no configuration, for they would be of joints that are no more."""
+    """Without the merges and without configurations, which would name joints that do not exist."""
     changes = {name: change for name, change in mechanism.changes.items() if not change.merges}
     return mechanism.replace(changes=changes, configurations={})
 
 
 def axes_at_zero(mechanism: Mechanism, merged: tuple[str, ...]) -> Matrix:
-    """Of three joints, one a row, seen from the last one's frame."""
+    """The axes of three joints, one per row, in the last joint's frame."""
     joints = {joint.name: joint for joint in mechanism.joints}
     frame, seen = np.eye(4), []
     for name in merged:

@@ -1,4 +1,4 @@
-"""Other names change nothing but names."""
+"""Renaming changes nothing but names."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Name = Callable[[str], str]
 
 
 def renaming(example: Example, version: Version) -> Pair:
-    """A mechanism, and the same one under curious names."""
+    """A mechanism, and the same with unusual names."""
     mechanism = example.mechanism
     names = new_names(mechanism, example.chance, version)
     joint = joint_names(mechanism, names, version)
@@ -32,7 +32,7 @@ def renaming(example: Example, version: Version) -> Pair:
 
 
 def joint_names(mechanism: Mechanism, names: Names, version: Version) -> Name:
-    """New names of joints; in version 1 a universal joint is two, whose names are made of its own."""
+    """New names of joints; in version 1 a universal joint is two joints, whose names contain its own."""
     if version == "2":
         return names.joint
     pairs = {name: name.removeprefix(joint) for joint in mechanism.changes for name in names1(mechanism, joint)}
@@ -42,7 +42,7 @@ def joint_names(mechanism: Mechanism, names: Names, version: Version) -> Name:
 
 
 def values_renamed(values: Values, names: Names, joint: Name) -> Values:
-    """The same values under other names."""
+    """The same values with other names."""
     changed: dict[str, object] = {}
     if values.poses is not None:
         changed["poses"] = keyed(values.poses, names.frame)
@@ -92,7 +92,7 @@ def robot_renamed(robot: CanonicalRobot, names: Names, joint: Name) -> Canonical
 
 
 def _pointer(pointer: str, joint: Name) -> str:
-    """A JSON pointer to user data, which may lead by the name of a joint."""
+    """A JSON pointer to user data, which may contain the name of a joint."""
     match pointer.split("/"):
         case ["", "joints", name, *rest]:
             return "/".join([f"/joints{step(joint(key_of(name)))}", *rest])

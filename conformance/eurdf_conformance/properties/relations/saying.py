@@ -1,4 +1,4 @@
-"""The ways to say a frame: by a name that the description adds, as a pose in place, as a link of the URDF."""
+"""The ways to refer to a frame: by name, as a pose in place, or as a link of the URDF."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from eurdf_conformance.properties.query import all_frames, query_of
 
 
 def saying(example: Example, version: Version) -> Pair:
-    """A mechanism whose closures say their frames in place, and the same one that says each in another way."""
+    """A mechanism with poses in place, and the same with other references to the same frames."""
     inline = with_inline_frames(example.mechanism)
     other = said_otherwise(inline, example.chance)
     return Pair(query_of(inline, version), query_of(other, version, frames=all_frames(inline)))
@@ -41,7 +41,7 @@ def with_named_frames(mechanism: Mechanism) -> Mechanism:
 
 
 def said_otherwise(mechanism: Mechanism, chance: Chance) -> Mechanism:
-    """Each pose in place as a frame that has a name, as one on the joint that carries its link, or as a link."""
+    """Each pose in place as a named frame, as a pose on the joint that carries its link, or as a link."""
     carrier = {joint.child: joint.name for joint in mechanism.joints}
     links, joints, frames = list(mechanism.links), list(mechanism.joints), list(mechanism.frames)
 

@@ -1,4 +1,4 @@
-"""A mechanism all of whose lengths, or all of whose masses, are as many times larger."""
+"""A mechanism with all lengths, or all masses, multiplied by a factor."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ from eurdf_conformance.properties.mechanism import (
     Spot,
 )
 
-#: How many of the coordinates, and of the velocities, are lengths: the first ones.
+#: Number of coordinates and velocities that are lengths; they come first.
 _LENGTHS = {"prismatic": 1, "cylindrical": 1, "planar": 2, "floating": 3}
 
 
 def lengthened(mechanism: Mechanism, s: float) -> Mechanism:
-    """Every length times s. Limits, which say nothing of where things are, are left out where they are on lengths."""
+    """All lengths multiplied by s, without limits on lengths."""
     types = mechanism.types()
 
     def pose(pose: Pose) -> Pose:
@@ -63,7 +63,7 @@ def lengthened(mechanism: Mechanism, s: float) -> Mechanism:
 
 
 def armed(mechanism: Mechanism) -> dict[str, Change]:
-    """The changes, with the armature of every motor in place of its gear and rotor, EU-ACT-006."""
+    """The changes with each motor's gear and rotor written as an armature, EU-ACT-006."""
     changes = dict(mechanism.changes)
     for motor in mechanism.actuators:
         change = changes.get(motor.joint, Change())
@@ -74,7 +74,7 @@ def armed(mechanism: Mechanism) -> dict[str, Change]:
 
 
 def _stretched(configuration: Configuration, types: dict[str, str], s: float) -> Configuration:
-    """A configuration whose lengths are s times longer."""
+    """A configuration with its lengths multiplied by s."""
     return {
         joint: tuple(s * x if i < _LENGTHS.get(types[joint], 0) else x for i, x in enumerate(q))
         for joint, q in configuration.items()
@@ -82,7 +82,7 @@ def _stretched(configuration: Configuration, types: dict[str, str], s: float) ->
 
 
 def weighted(mechanism: Mechanism, s: float) -> Mechanism:
-    """Every mass times s, and what is reflected of motors too."""
+    """All masses multiplied by s, and the reflected inertia of motors too."""
 
     def heavier(value: PerNumber | None) -> PerNumber | None:
         return tuple(s * x for x in value) if isinstance(value, tuple) else None if value is None else s * value
@@ -114,7 +114,7 @@ def _scaled(link: Link, mass: float, length: float) -> Link:
 
 
 def _longer(change: Change, kind: str, s: float) -> Change:
-    """The armature of what turns is an inertia, kg·m², and that of what slides a mass."""
+    """An armature after scaling of lengths: for rotations it is an inertia, kg·m², else a mass."""
     changed: dict[str, Any] = {}
     if change.pitch is not None:
         changed["pitch"] = s * change.pitch

@@ -1,4 +1,4 @@
-"""Another order, and another style of YAML, change nothing."""
+"""The order and the YAML style of files change nothing."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from eurdf_conformance.properties.yaml_text import yaml_text
 
 
 def reordering(example: Example, version: Version) -> Pair:
-    """A mechanism, and the same one with its links, joints, keys and elements in another order."""
+    """A mechanism, and the same with its links, joints, keys and elements in another order."""
     mechanism, chance = example.mechanism, example.chance
     other = reordered(mechanism, chance, version)
     keys = shuffled_keys(document(other, version), chance)
@@ -35,7 +35,7 @@ def restyling(example: Example, version: Version) -> Pair:
 
 
 def reordered(mechanism: Mechanism, chance: Chance, version: Version) -> Mechanism:
-    """The order of closures is their name in version 1, so there it is kept."""
+    """The mechanism in another order; closures keep theirs in version 1, where it gives their names."""
     closures = mechanism.closures if version == "1" else tuple(chance.shuffled(mechanism.closures))
     return mechanism.replace(
         links=tuple(chance.shuffled(mechanism.links)),

@@ -40,7 +40,7 @@ def swapping(example: Example, version: Version) -> Pair:
         return compared(values.model_copy(update={"residuals": residuals, "jacobian": jacobian}), index)
 
     def compared(values: Values, index: int) -> Values:
-        """Without the rows of K that do not follow."""
+        """Without the rows of K that the relation does not determine."""
         if names[index] == "assembled" or values.jacobian is None:
             return values
         balls = {closure.name for closure in mechanism.closures if closure.type == "3d"}

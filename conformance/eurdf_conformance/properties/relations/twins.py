@@ -1,4 +1,4 @@
-"""What both versions can say, in either."""
+"""A mechanism that both versions can express, in either version."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from eurdf_conformance.protocol.message import CanonicalRobot, Jacobian, MassMat
 
 
 def twins(harness: Harness, example: Example, version: Version, level: Level) -> list[Difference]:
-    """What is said of a description of version 2 is said of that of version 1.
+    """The answers on a description of version 2 equal those on a description of version 1.
 
     Who does not read version 2 is compared with the oracle's reading of it.
     """
@@ -40,7 +40,7 @@ def twins(harness: Harness, example: Example, version: Version, level: Level) ->
 
 
 def read2(harness: Harness, query: Query) -> CanonicalRobot:
-    """What the parser reads of the description of version 2."""
+    """The parser's canonical description of version 2."""
     try:
         read = harness.read(query)
     except NotAnswered:
@@ -49,7 +49,7 @@ def read2(harness: Harness, query: Query) -> CanonicalRobot:
 
 
 def evaluate2(harness: Harness, query: Query, level: Level) -> list[Values]:
-    """What the parser says of the description of version 2."""
+    """The parser's values for version 2."""
     try:
         return harness.evaluate(query, LEVELS[level].quantities)
     except NotAnswered:
@@ -58,12 +58,12 @@ def evaluate2(harness: Harness, query: Query, level: Level) -> list[Values]:
 
 
 def robot_of_version1(robot: CanonicalRobot) -> CanonicalRobot:
-    """The same, but for what version 1 cannot say: its files have no configurations."""
+    """The same canonical description in version 1, whose files have no configurations."""
     return robot.model_copy(update={"version": "1", "configurations": {}})
 
 
 def values_of_version1(values: Values, mechanism: Mechanism) -> Values:
-    """The same, with the two joints that version 1 makes of a universal one."""
+    """The same values with two joints for each universal joint, as in version 1."""
 
     def column(name: str, i: int) -> tuple[str, int]:
         names = names1(mechanism, name)

@@ -1,4 +1,4 @@
-"""Another unit of length, and another of mass: numbers are what they were, times what their unit asks for."""
+"""Another unit of length or of mass: each number is multiplied by a power of the factor that its unit gives."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from eurdf_conformance.protocol.message import Jacobian, MassMatrix, Values
 
 
 def length_unit(example: Example, version: Version) -> Pair:
-    """A robot, and one all of whose lengths are as many times longer."""
+    """A robot, and the same with all lengths multiplied by a factor."""
     mechanism, s = example.mechanism, example.chance.one_of([0.25, 0.7, 3.0])
     robot = truth(mechanism, version)
     # A column of what slides means as much more, in the unit of those that turn.
@@ -50,7 +50,7 @@ def length_unit(example: Example, version: Version) -> Pair:
 
 
 def mass_unit(example: Example, version: Version) -> Pair:
-    """A robot, and one all of whose masses are as many times larger."""
+    """A robot, and the same with all masses multiplied by a factor."""
     mechanism, s = example.mechanism, example.chance.one_of([0.25, 0.7, 1.9])
 
     def carry(values: Values, index: int) -> Values:

@@ -1,1 +1,1 @@
-"""How random mechanisms are drawn: well-conditioned, of text that reads back exactly, and small once shrunk."""
+"""Strategies for random mechanisms: well conditioned, with numbers that read back exactly, and small once shrunk."""

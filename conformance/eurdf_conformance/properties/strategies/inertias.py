@@ -1,4 +1,4 @@
-"""Inertias that matter can have: of boxes, turned and moved."""
+"""Physical inertias: boxes at any pose."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from eurdf_conformance.properties.strategies.numbers import decimals, poses, vec
 
 @cache
 def inertias() -> SearchStrategy[Inertia]:
-    """Of boxes of some decimetres, whose axes are those of none of the frames."""
+    """Inertias of boxes of some decimetres, with axes along those of no frame."""
     sides = st.tuples(*[decimals(0.1, 0.4)] * 3)
     return st.builds(_of_box, decimals(0.5, 3.0, 1), sides, vectors(3.1), poses())
 

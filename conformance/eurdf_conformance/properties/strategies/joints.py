@@ -1,4 +1,4 @@
-"""Joints of every type: as the URDF has them, and as the description changes them."""
+"""Joints of every type, in the URDF and with changes by the description."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ LENGTH, ANGLE = 0.5, 1.6
 
 @cache
 def urdf_joints(kind: Plain) -> SearchStrategy[Joint]:
-    """A joint of the URDF, from link to link."""
+    """A joint of the URDF between two links."""
     if kind == "fixed":
         return st.builds(lambda origin: _joint(kind, origin, None, None, None, None), poses())
     ranged = kind in ("revolute", "prismatic")
@@ -72,7 +72,7 @@ def _joint(
 
 @cache
 def mimics(leader: str) -> SearchStrategy[Mimic]:
-    """Following a joint, forwards or backwards."""
+    """A mimic with a positive or negative multiplier."""
     return st.builds(
         Mimic, joint=st.just(leader), multiplier=decimals(-2, 2, 1).filter(bool), offset=decimals(-0.5, 0.5)
     )
@@ -80,7 +80,7 @@ def mimics(leader: str) -> SearchStrategy[Mimic]:
 
 @st.composite
 def changes(draw: DrawFn, kind: Any, was: Plain, *, plain: bool = False) -> Change:
-    """What the description says of a joint.
+    """What the description states about a joint.
 
     Args:
         draw: Of Hypothesis.
@@ -101,7 +101,7 @@ def changes(draw: DrawFn, kind: Any, was: Plain, *, plain: bool = False) -> Chan
 
 @st.composite
 def stated(draw: DrawFn, kind: str) -> dict[str, Any]:
-    """Properties that the description states, in place of the URDF's, and user data."""
+    """Properties in the description, which replace the URDF's, and user data."""
     nq, nv = COORDINATES[kind], VELOCITIES[kind]
     ranges = {"armature": (0, 0.5), "damping": (0, 2), "friction": (0, 2), "velocity": (0, 9), "effort": (0, 9)}
     ranges |= {"lower": (-4, -2), "upper": (2, 4)} if kind in _BOUNDED else {}

@@ -1,4 +1,4 @@
-"""Closures that are closed by construction: frame B is placed where frame A is at the configuration `assembled`."""
+"""Closures that are closed by construction: at `assembled`, frame B is at the pose of frame A."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ KINDS: tuple[Literal["3d", "6d"], ...] = ("3d", "6d")
 
 @st.composite
 def with_closures(draw: DrawFn, tree: Mechanism, version: Version, least: int = 0) -> Mechanism:
-    """A tree with closures, at most three, each between another two bodies."""
+    """A tree with at most three closures, each between two other bodies."""
     robot = truth(tree, version)
     at = robot.kinematics(configuration(tree, tree.configurations["assembled"], version))
     bodies = [links[0] for links in robot.bodies]
@@ -40,7 +40,7 @@ def with_closures(draw: DrawFn, tree: Mechanism, version: Version, least: int = 
 def with_closure(
     draw: DrawFn, mechanism: Mechanism, version: Version, kind: Literal["3d", "6d"], a: str, b: str, aMb: Matrix
 ) -> Mechanism:
-    """One more closure, of a frame on link a and one on link b, whose pose in a is aMb where it is closed."""
+    """A tree with another closure between frames on links a and b, where aMb is the pose of b in a when closed."""
     on_a = draw(st.just(Pose()) | poses())
     M = inverse(aMb) @ matrix_of(on_a)
     if kind == "3d":
@@ -54,7 +54,7 @@ def with_closure(
 
 @st.composite
 def said(draw: DrawFn, mechanism: Mechanism, version: Version, link: str, pose: Pose) -> tuple[Mechanism, str | Spot]:
-    """A frame on a link, in one of the ways to say it; what it takes is added to the mechanism."""
+    """A reference to a frame on a link, in one of the possible ways, with the parts that it needs."""
     carrier = {joint.child: joint.name for joint in mechanism.joints}
     if pose == Pose() and draw(st.booleans()):
         return mechanism, link

@@ -15,7 +15,7 @@ from eurdf_conformance.properties.strategies.trees import trees
 
 @st.composite
 def mechanisms(draw: DrawFn, version: Version = "2", closures: int = 0, most: int = 6) -> Mechanism:
-    """A mechanism that version 2 can say, or, where that is asked for, version 1 too.
+    """A mechanism that version 2 can express, or on request version 1 too.
 
     Args:
         draw: Of Hypothesis.

@@ -1,4 +1,4 @@
-"""Three revolute joints in a row whose axes meet in one point: what becomes one spherical joint."""
+"""Three revolute joints in a row with axes through one point, which become one spherical joint."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Numbers of few digits, and what is made of them.
+"""Numbers with few digits, and vectors, poses and axes made of them.
 
 A strategy is made once: to make one takes longer than to draw from it.
 """
@@ -19,14 +19,14 @@ _APART = 0.3
 
 @cache
 def decimals(low: float, high: float, digits: int = 2) -> SearchStrategy[float]:
-    """Numbers of so many digits behind the point."""
+    """Numbers with this many decimals."""
     scale = 10**digits
     return st.integers(round(low * scale), round(high * scale)).map(lambda number: number / scale)
 
 
 @cache
 def vectors(limit: float) -> SearchStrategy[Vector]:
-    """Three numbers of no more than a limit."""
+    """Three numbers within a limit."""
     scale = 100
     numbers = st.integers(round(-limit * scale), round(limit * scale))
     return st.tuples(numbers, numbers, numbers).map(lambda v: (v[0] / scale, v[1] / scale, v[2] / scale))
@@ -34,21 +34,21 @@ def vectors(limit: float) -> SearchStrategy[Vector]:
 
 @cache
 def poses() -> SearchStrategy[Pose]:
-    """Any pose within half a metre, those along the axes often."""
+    """A pose within half a metre, often along the axes."""
     turned = st.tuples(vectors(0.5), vectors(3.1)).map(lambda pose: Pose(xyz=pose[0], rpy=pose[1]))
     return vectors(0.5).map(lambda xyz: Pose(xyz=xyz)) | turned
 
 
 @cache
 def axes() -> SearchStrategy[Vector]:
-    """Directions of any length but zero."""
+    """Vectors of any length except zero."""
     steps = st.integers(-3, 3)
     return st.tuples(steps, steps, steps).filter(any).map(lambda v: (float(v[0]), float(v[1]), float(v[2])))
 
 
 @cache
 def axis_pairs() -> SearchStrategy[tuple[Vector, Vector]]:
-    """Two directions that are far from parallel."""
+    """Two vectors that are far from parallel."""
     return st.tuples(axes(), axes()).filter(_are_apart)
 
 

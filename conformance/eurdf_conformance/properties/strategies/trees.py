@@ -1,4 +1,4 @@
-"""Spanning trees: links and joints, what the description makes of the joints, and configurations."""
+"""Spanning trees: links, joints, their changes by the description, and configurations."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ from eurdf_conformance.properties.strategies.joints import (
 from eurdf_conformance.properties.strategies.merges import chains
 from eurdf_conformance.properties.strategies.numbers import decimals, quaternions
 
-#: What version 1 cannot say.
+#: What version 1 cannot express.
 _VERSION_2 = ("cylindrical", "helical")
 
 
 @dataclass
 class Growth:
-    """A tree that grows."""
+    """A tree under construction."""
 
     version: Version
     links: list[Link] = field(default_factory=list)
@@ -58,7 +58,7 @@ class Growth:
 
 @st.composite
 def trees(draw: DrawFn, version: Version, most: int = 6) -> Mechanism:
-    """A tree that version 2 can say, or both versions, with the configurations `assembled` and `open`."""
+    """A tree that version 2 or both versions can express, with the configurations `assembled` and `open`."""
     growth = Growth(version)
     growth.links.append(Link(name="link0", inertia=draw(st.none() | inertias())))
     growth.free.append("link0")
@@ -86,7 +86,7 @@ def trees(draw: DrawFn, version: Version, most: int = 6) -> Mechanism:
 
 @st.composite
 def grown(draw: DrawFn, growth: Growth) -> bool:
-    """Add a joint of any type, and say whether to go on.
+    """Add a joint of any type, and draw whether to go on.
 
     All that is drawn for a joint is drawn here, so that Hypothesis can leave out any one of them.
     """
@@ -102,7 +102,7 @@ def grown(draw: DrawFn, growth: Growth) -> bool:
 
 
 def grow_joint(draw: DrawFn, growth: Growth, kind: Any) -> None:
-    """Add a joint and the link that it carries."""
+    """Add a joint and its child link."""
     name, (child,) = f"joint{len(growth.joints)}", growth.new_links(1)
     parent = draw(st.sampled_from(growth.free))
     was: Plain = kind
@@ -126,7 +126,7 @@ def grow_joint(draw: DrawFn, growth: Growth, kind: Any) -> None:
 
 
 def grow_ball(draw: DrawFn, growth: Growth) -> None:
-    """Add three joints that are one, and the link that they carry."""
+    """Add three joints that are merged into one, and its child link."""
     joints = [f"joint{len(growth.joints) + i}" for i in range(3)]
     links = growth.new_links(3)
     found, between = draw(chains(joints, [draw(st.sampled_from(growth.free)), *links]))
@@ -151,13 +151,13 @@ def actuators(joint: str, version: Version) -> SearchStrategy[Actuator]:
 
 @st.composite
 def configurations(draw: DrawFn, types: dict[str, str], *, every: bool) -> Configuration:
-    """Coordinates of all joints, or of some: the others are at their neutral."""
+    """Coordinates of all joints, or of some; the others are at neutral."""
     return {name: draw(coordinates(kind)) for name, kind in types.items() if every or draw(st.booleans())}
 
 
 @cache
 def coordinates(kind: str) -> SearchStrategy[Coordinates]:
-    """Those of a joint of a type, in the order of files."""
+    """Coordinates of a type of joint, in the order of files."""
     length, angle = decimals(-LENGTH, LENGTH), decimals(-ANGLE, ANGLE)
     ways: dict[str, SearchStrategy[Coordinates]] = {
         "prismatic": st.tuples(length),
