@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -41,7 +42,14 @@ class Outcome:
 class Watched:
     """A worker, started when it is needed."""
 
-    def __init__(self, wall: float = WALL_SECONDS) -> None:
+    def __init__(self, wall: float = WALL_SECONDS, program: Sequence[str] = ("-m", "benchmarks.fuzz.worker")) -> None:
+        """Nothing is started yet.
+
+        Args:
+            wall: Time after which a case is taken to hang, s.
+            program: Arguments of Python that start a worker.
+        """
+        self._program = program
         self._process: subprocess.Popen[bytes] | None = None
         self._log = tempfile.TemporaryFile()  # noqa: SIM115 - closed with this
         self._wall = wall
@@ -100,7 +108,7 @@ class Watched:
         # One thread, so that processor time is time, also beside other programs.
         threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "benchmarks.fuzz.worker"],
+            [sys.executable, *self._program],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self._log,

@@ -239,3 +239,19 @@ print("done")
 """
     ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert ended.stdout == "done\n", ended.stderr
+
+
+@pytest.mark.parametrize("wrong", [[], ["coupler"], np.zeros(6), "coupler", 1.0], ids=repr)
+@pytest.mark.parametrize(("name", "parameter"), [("inverse_kinematics", "targets"), ("forward_dynamics", "external")])
+def test_what_maps_no_names_is_refused(name: str, parameter: str, wrong: Any) -> None:
+    with pytest.raises(ValueError, match=f"{parameter} must map names of frames to .*, not {type(wrong).__name__}"):
+        call(name, {**valid(name), parameter: wrong})
+
+
+@pytest.mark.parametrize(
+    ("duration", "step"), [(0.0, np.inf), (np.inf, 1.0), (1e-320, np.inf), (0.0, np.nan), (-1.0, 1.0)]
+)
+def test_simulation_has_finite_times(duration: float, step: float) -> None:
+    q = np.array(robot().configurations["assembled"])
+    with pytest.raises(ValueError, match="duration must be finite and at least 0 s, and step finite and above 0 s"):
+        eurdf.simulate(robot(), q, duration=duration, step=step)

@@ -38,6 +38,8 @@ class AppliedForce:
         self._tree = robot.tree
         self._dissipation = dissipation
         self._external: tuple[FramePairs, Matrix] | None = None
+        if external is not None and not isinstance(external, Mapping):
+            raise ValueError(f"external must map names of frames to forces (6,), not {type(external).__name__}")
         if external:
             forces = [
                 checked_array(f"external['{name}']", getattr(given, "vector", given), (6,))

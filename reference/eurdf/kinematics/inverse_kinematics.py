@@ -154,9 +154,11 @@ def inverse_kinematics(
         The configuration found. The result is deterministic.
 
     Raises:
-        ValueError: ``q0`` is not a configuration; a frame is unknown or ambiguous; a target is neither a pose nor a
-            finite position.
+        ValueError: ``q0`` is not a configuration; ``targets`` is not a mapping; a frame is unknown or ambiguous; a
+            target is neither a pose nor a finite position.
     """
+    if not isinstance(targets, Mapping):
+        raise ValueError(f"targets must map names of frames to poses or positions, not {type(targets).__name__}")
     checked = {name: _target(name, target) for name, target in targets.items()}
     chosen, tolerance = chosen_limits(robot, limits), checked_tolerance(tolerance)
     q, restarts = start(robot, q0), checked_count("restarts", restarts, 0)

@@ -111,8 +111,8 @@ def simulate(
         SimulationDiverged: The steps are too long for the motion.
         NumericalOverflow: As in `forward_dynamics`.
     """
-    if not (step > 0.0 and duration >= 0.0 and np.isfinite(duration / step)):
-        raise ValueError("duration must be at least 0 s, and step above 0 s")
+    if not (0.0 < step < np.inf and 0.0 <= duration < np.inf and np.isfinite(duration / step)):
+        raise ValueError("duration must be finite and at least 0 s, and step finite and above 0 s")
     tree = robot.tree
     count = round(duration / step)
     times: Vector = np.linspace(0.0, count * step, count + 1)
