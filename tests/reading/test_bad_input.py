@@ -19,7 +19,7 @@ import eurdf
 from benchmarks.fuzz.robots import case_of, seeds
 from eurdf.diagnostics import Diagnostics, Place, did_you_mean
 from eurdf.diagnostics.diagnostic import LISTED, LONGEST
-from support.hostile import HOSTILE, MEMORY
+from support.hostile import HOSTILE, INERTIAL, MEMORY, joint, numbered, robot
 from support.plain_urdf import Root, trees
 
 TESTS = Path(__file__).parents[1]
@@ -254,6 +254,38 @@ def test_centre_of_mass_beyond_range_is_the_only_error(tmp_path: Path) -> None:
     with pytest.raises(eurdf.InvalidRobot) as raised:
         load_changed(tmp_path, 'xyz="0 0.15 0"/><mass', 'xyz="0 1e200 0"/><mass')
     assert [found.code for found in raised.value.diagnostics if found.severity == "error"] == ["derived-not-finite"]
+
+
+@pytest.mark.parametrize("relation", ['multiplier="1e200"', 'multiplier="-1e10" offset="1e300"'])
+def test_chained_mimics_beyond_range_are_an_error(tmp_path: Path, relation: str) -> None:
+    """EU-INR-007: multiplier and offset with respect to the leader at the end."""
+    mimics = [f'<mimic joint="j{index + 1}" {relation}/>' for index in range(2)] + [""]
+    joints = [joint(f"j{index}", "l0", f"l{index + 1}", content=each) for index, each in enumerate(mimics)]
+    (tmp_path / "robot.urdf").write_text(robot(numbered(4), joints, INERTIAL), encoding="utf-8")
+    (found,) = eurdf.check(tmp_path).errors
+    assert (found.code, found.pointer) == ("derived-not-finite", "/robot/joint[1]/mimic")
+    assert eurdf.load(tmp_path, mimic=False).model.nv == 3
+
+
+@pytest.mark.parametrize(
+    ("content", "what"),
+    [
+        ('<limit effort="1e300" velocity="1" lower="0" upper="1"/>', "effort limit"),
+        ('<limit effort="1" velocity="1" lower="0" upper="1"/><dynamics damping="1e200"/>', "damping"),
+        ('<limit effort="1" velocity="1" lower="0" upper="1"/><dynamics friction="1e300"/>', "friction"),
+    ],
+)
+def test_screw_beyond_range_is_an_error(tmp_path: Path, content: str, what: str) -> None:
+    """EU-INR-007: what the URDF says of a slide is converted to the angle."""
+    slide = joint("j", "l0", "l1", "prismatic", content)
+    (tmp_path / "robot.urdf").write_text(robot(numbered(2), [slide], INERTIAL), encoding="utf-8")
+    screw = 'extended_urdf: "2.0"\njoints: {j: {type: helical, pitch: %s}}\n'
+    (tmp_path / "robot.yaml").write_text(screw % "1e100", encoding="utf-8")
+    (found,) = eurdf.check(tmp_path).errors
+    assert (found.code, found.line) == ("derived-not-finite", 2)
+    assert what in found.message
+    (tmp_path / "robot.yaml").write_text(screw % "0.01", encoding="utf-8")
+    assert eurdf.check(tmp_path).ok
 
 
 def test_mimic_cycle_is_reported_alone_and_shortened(tmp_path: Path) -> None:

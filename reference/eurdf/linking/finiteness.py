@@ -18,7 +18,7 @@ from eurdf.mechanism.pose import IDENTITY, Pose
 
 
 def check_finite(mechanism: Mechanism, urdf: Urdf, extension: Extension | None, diagnostics: Diagnostics) -> None:
-    """EU-INR-007: armatures, poses at zero, and inertias about joints are finite.
+    """EU-INR-007: armatures, poses at zero, relations of mimic joints, and inertias about joints are finite.
 
     One error for a robot: what depends on a quantity that is not finite is not finite either.
 
@@ -48,6 +48,11 @@ def _not_finite(mechanism: Mechanism, urdf: Urdf, extension: Extension | None) -
         for name, what in _not_finite_at_leaders(mechanism):
             place = urdf.document.place(urdf.joints[name].element)
             yield what, extension.document.place(pointers[name]) if name in pointers else place
+    for name, mimic in drivers({joint.name: joint.mimic for joint in mechanism.joints if joint.mimic}).items():
+        if not (math.isfinite(mimic.multiplier) and math.isfinite(mimic.offset)):
+            element = next(urdf.joints[name].element.iterchildren("mimic"))
+            what = f"the relation of mimic joint '{name}' to joint '{mimic.joint}', multiplier or offset,"
+            yield what, urdf.document.place(element)
     root = mechanism.bodies[0]
     pose_of = {root.name: IDENTITY}  # in the frame of the root, at zero
     in_joint = {root.name: (root.name, IDENTITY)}  # the body that the last joint moves, and the pose in its frame

@@ -358,7 +358,7 @@ class _Replacement:
     def helical(self, joint: Joint) -> Joint | None:
         """EU-JNT-008, EU-JNT-029: a helix has a pitch; what the URDF says of a slide holds of the screw's angle.
 
-        EU-INR-007: the limits of the angle are finite.
+        EU-INR-007: the limits, damping and friction of the angle are finite.
         """
         pitch = self.entry.pitch
         if pitch == 0.0:
@@ -374,14 +374,24 @@ class _Replacement:
                 self.report("derived-not-finite", message, "pitch", hint="write the advance per revolution, in m")
                 return None
             lower, upper = sorted((properties.lower[0] / lead, properties.upper[0] / lead))
+            turning = {
+                "effort limit": (properties.effort[0], properties.effort[0] * abs(lead)),
+                "damping": (properties.damping[0], properties.damping[0] * lead * lead),
+                "friction": (properties.friction[0], properties.friction[0] * abs(lead)),
+            }
+            for what, (of_slide, of_angle) in turning.items():
+                if math.isfinite(of_slide) and not math.isfinite(of_angle):
+                    message = f"the {what} of helical joint '{joint.name}' is not finite: its pitch is {pitch:g} m"
+                    self.report("derived-not-finite", message, "pitch", hint="write the advance per revolution, in m")
+                    return None
             properties = replace(
                 properties,
                 lower=(lower,),
                 upper=(upper,),
                 velocity=(properties.velocity[0] / abs(lead),),
-                effort=(properties.effort[0] * abs(lead),),
-                damping=(properties.damping[0] * lead * lead,),
-                friction=(properties.friction[0] * abs(lead),),
+                effort=(turning["effort limit"][1],),
+                damping=(turning["damping"][1],),
+                friction=(turning["friction"][1],),
             )
         return replace(joint, type=JointType.HELICAL, pitch=pitch, properties=properties)
 
