@@ -291,7 +291,8 @@ def test_no_function_of_kinematics_asks_for_a_kind() -> None:
     asking = files_with(rf"""\b({kinds})\b|["'][36]d["']|residualSize|CONTACT_""", "kinematics")
     asking = {path for path in asking if not path.startswith(STATING)}
     assert asking == {f"kinematics/constraints/{name}.py" for name in ("point", "frame", *NEW)}
-    assert files_with("CONTACT_[36]D") == {"pinocchio/constraint.py", "pinocchio/frame_pairs.py"}
+    by_pinocchio = {f"pinocchio/{name}.py" for name in ("constraint", "constrained_dynamics", "frame_pairs")}
+    assert files_with("CONTACT_[36]D") == by_pinocchio
 
 
 # --- mobility --------------------------------------------------------------------------------------------------------
