@@ -7,6 +7,7 @@ from eurdf_conformance.properties.property import Property
 from eurdf_conformance.properties.relations import (
     ball_closure,
     base,
+    closing,
     coordinates,
     elementary,
     following,
@@ -33,6 +34,7 @@ PROPERTIES: tuple[Property, ...] = (
     *saying.PROPERTIES,
     *swapping.PROPERTIES,
     *ball_closure.PROPERTIES,
+    *closing.PROPERTIES,
     *base.PROPERTIES,
     *units.PROPERTIES,
     *locking.PROPERTIES,

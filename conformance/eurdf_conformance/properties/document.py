@@ -28,9 +28,16 @@ def version2(mechanism: Mechanism) -> Document:
         found["root"] = mechanism.root
     parts = {
         "closures": [
-            {"name": closure.name, "type": closure.type, "frames": [_reference(closure.a), _reference(closure.b)]}
+            {
+                "name": closure.name,
+                "type": closure.type,
+                "frames": [_reference(closure.a), _reference(closure.b)],
+                **({} if closure.axis is None else {"axis": list(closure.axis)}),
+                **({} if closure.length is None else {"length": closure.length}),
+            }
             for closure in mechanism.closures
         ],
+        "couplings": [coupling.model_dump() for coupling in mechanism.couplings],
         "joints": {name: _change(change) for name, change in mechanism.changes.items() if change.says_something},
         "actuators": [_actuator(actuator) for actuator in mechanism.actuators],
         "frames": [{"name": frame.name, **_spot(frame.spot)} for frame in mechanism.frames],

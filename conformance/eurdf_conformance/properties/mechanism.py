@@ -124,9 +124,21 @@ class Closure(Part):
     """A closure between frames A and B; each is a name, or a pose written in place."""
 
     name: str
-    type: Literal["3d", "6d"]
+    type: Literal["3d", "6d", "hinge", "distance"]
     a: str | Spot
     b: str | Spot
+    #: Of a hinge, the axis in A and in B.
+    axis: Vector | None = None
+    #: Of a distance, m.
+    length: float | None = None
+
+
+class Coupling(Part):
+    """Σ coefficient · coordinate = offset."""
+
+    name: str
+    joints: dict[str, float]
+    offset: float = 0.0
 
 
 class Actuator(Part):
@@ -148,6 +160,8 @@ class Mechanism(Part):
     changes: dict[str, Change] = {}
     frames: tuple[Frame, ...] = ()
     closures: tuple[Closure, ...] = ()
+    #: Of version 2.1.
+    couplings: tuple[Coupling, ...] = ()
     actuators: tuple[Actuator, ...] = ()
     #: At `assembled` every closure is closed. Those of version 1, whose files have none, are asked for all the same.
     configurations: dict[str, Configuration] = {}
