@@ -72,7 +72,7 @@ def link_actuators(
                 "actuator-mimic",
                 f"joint '{name}' mimics '{joint.mimic.joint}' and cannot be actuated",
                 pointer,
-                f"actuate '{joint.mimic.joint}'",
+                f"actuate '{joint.mimic.joint}', or free '{name}' with mimic: false, which is of version 2.1",
             )
         elif _has_motor(entry, named, reporter):
             listed[name] = None
