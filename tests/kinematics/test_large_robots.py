@@ -66,6 +66,21 @@ def test_thousand_four_bars_need_small_data_only(tmp_path: Path, monkeypatch: py
     assert max(made) <= 60
 
 
+def test_kinematics_of_hundred_four_bars_needs_small_data_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    loaded = eurdf.load(write(tmp_path, *four_bars(100, in_series=True)), geometry=False)
+    made: list[int] = []
+    create = pin.Model.createData
+    monkeypatch.setattr(pin.Model, "createData", lambda model: (made.append(model.nv), create(model))[1])
+    q = eurdf.assemble(loaded).q
+    there = eurdf.forward_kinematics(loaded, q[loaded.actuation.idx_q] + 0.01, q)
+    np.testing.assert_allclose(eurdf.residual(loaded, there), 0.0, atol=1e-10)
+    frame = loaded.mechanism.bodies[-1].name
+    target = loaded.tree.frames([frame]).memory().placements(there)[0].translation
+    assert eurdf.inverse_kinematics(loaded, {frame: np.array(target)}, q).converged
+    eurdf.actuated_jacobian(loaded, there, frame)
+    assert max(made) <= 60
+
+
 # -- the bounds of EU-FIL-002 --------------------------------------------------------------------------------------
 
 
