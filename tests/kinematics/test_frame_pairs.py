@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
-import numpy as np
 import pinocchio as pin
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -15,7 +12,7 @@ from eurdf.pinocchio.frame_pairs import FramePairs, Site
 def pairs_of(parents: list[int], ends: list[tuple[int, int]]) -> FramePairs:
     still = pin.SE3.Identity()
     pairs = [(Site(a, still), Site(b, still)) for a, b in ends]
-    return FramePairs(SimpleNamespace(parents=np.array(parents)), pairs, None)
+    return FramePairs(pin.Model(), parents, pairs, None)
 
 
 @st.composite

@@ -47,9 +47,19 @@ _LARGEST = 60
 class FramePairs:
     """Pairs of frames A, B of one model, and what does not depend on a configuration. Threads may share it."""
 
-    def __init__(self, model: pin.Model, pairs: Sequence[Pair], velocities: Indices | None) -> None:
-        """``velocities`` (n,) are the indices in v of the columns of the Jacobian, all if None."""
+    def __init__(
+        self, model: pin.Model, parents: Sequence[int], pairs: Sequence[Pair], velocities: Indices | None
+    ) -> None:
+        """Take pairs of a model.
+
+        Args:
+            model: The model.
+            parents: Of each of its joints the parent.
+            pairs: The pairs.
+            velocities: Indices (n,) in v of the columns of the Jacobian, all if None.
+        """
         self.model = model
+        self._parents = parents
         self.pairs = pairs
         self.velocities = velocities
 
@@ -68,7 +78,9 @@ class FramePairs:
             # Mimic joints have columns of their own in Pinocchio's Jacobians, which only the paths add to their
             # leaders'. Without velocities, Jacobians of Pinocchio 4.1 read memory that is not their own.
             if velocities > _LARGEST or not all(self.model.nvs[joint] for joint in joints) or not joints:
-                found.append(Part(which, FramePairs(self.model, [self.pairs[i] for i in which], self.velocities)))
+                found.append(
+                    Part(which, FramePairs(self.model, self._parents, [self.pairs[i] for i in which], self.velocities))
+                )
             elif bundles and size + velocities <= _BUNDLED:
                 bundles[-1][0].extend(which)
                 bundles[-1][1].update(joints)
@@ -124,7 +136,9 @@ class FramePairs:
         own.sort(key=lambda at: column[int(velocities[at])])
         columns = np.array([column[velocity] for velocity in velocities[own].tolist()], np.intp)
         small_velocities = None if own == list(range(small.nv)) else np.array(own, np.intp)
-        return Part(which, FramePairs(small, pairs, small_velocities), coordinates, velocities, columns)
+        return Part(
+            which, FramePairs(small, small.parents.tolist(), pairs, small_velocities), coordinates, velocities, columns
+        )
 
     @property
     def size(self) -> int:
@@ -181,10 +195,6 @@ class FramePairs:
             twice = len(set(in_K)) < len(in_K)  # where a joint mimics another one of the path
             found.append((np.array(in_J, np.intp), np.array(sign), np.array(in_K, np.intp), twice))
         return found
-
-    @cached_property
-    def _parents(self) -> list[int]:
-        return list(self.model.parents.tolist())
 
     @cached_property
     def _signs(self) -> list[dict[int, float]]:

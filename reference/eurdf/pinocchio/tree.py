@@ -268,7 +268,7 @@ class PinocchioTree:
 
     def pairs(self, anchors: Sequence[tuple[Anchor, Anchor]], velocities: Indices | None) -> FramePairs:
         """See `eurdf.kinematics.tree_kinematics.TreeKinematics`."""
-        return FramePairs(self.model, [(self.site(a), self.site(b)) for a, b in anchors], velocities)
+        return FramePairs(self.model, self.parents, [(self.site(a), self.site(b)) for a, b in anchors], velocities)
 
     def frames(self, names: Sequence[str]) -> FramePairs:
         """See `eurdf.kinematics.tree_kinematics.TreeKinematics`."""
@@ -276,7 +276,7 @@ class PinocchioTree:
         for name in names:
             frame = self.model.frames[frame_index(self.model, name)]
             pairs.append((world, Site(frame.parentJoint, pin.SE3(frame.placement))))
-        return FramePairs(self.model, pairs, None)
+        return FramePairs(self.model, self.parents, pairs, None)
 
     def jacobian_along(self, joints: Sequence[int], q: Vector) -> Matrix:
         """The world Jacobian (6, nvExtended) at q (nq,), zero but in the columns of the joints and of their ancestors.
