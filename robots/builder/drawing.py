@@ -49,24 +49,34 @@ class Body:
 
 @dataclass(frozen=True, slots=True)
 class Closure:
-    """A loop closure: at one point of the drawing, two bodies are held together.
+    """A loop closure: two bodies are held together. Its frames are along the axes of the world.
 
     Attributes:
         name: Unique among closures.
-        type: ``3d`` holds the point, ``6d`` the orientation too.
+        type: ``3d`` holds a point, ``6d`` the orientation too, ``hinge`` an axis too, ``distance`` the distance of two.
         bodies: The two bodies, A and B.
-        at: The point in the world, m.
+        points: The points on A and on B in the world, m; one and the same, except for a distance.
+        axis: Of a hinge, in the world.
     """
 
     name: str
-    type: Literal["3d", "6d"]
+    type: Literal["3d", "6d", "hinge", "distance"]
     bodies: tuple[str, str]
-    at: Vector3
+    points: tuple[Vector3, Vector3]
+    axis: Vector3 | None = None
 
     @property
     def frames(self) -> tuple[str, str]:
         """Names of the two frames, on A and on B."""
         return (f"{self.name}_a", f"{self.name}_b")
+
+
+@dataclass(frozen=True, slots=True)
+class Coupling:
+    """A linear relation of joint coordinates: the products of coefficients (by joint) and coordinates add up to 0."""
+
+    name: str
+    joints: Mapping[str, float]
 
 
 class Drawing:
@@ -79,6 +89,7 @@ class Drawing:
         root: Whether its root is fixed or floats.
         bodies: By name; parents before their children.
         closures: In the order drawn.
+        couplings: Likewise.
     """
 
     def __init__(
@@ -94,6 +105,7 @@ class Drawing:
         self.root = root
         self.bodies: dict[str, Body] = {}
         self.closures: list[Closure] = []
+        self.couplings: list[Coupling] = []
 
     @property
     def joints(self) -> list[Joint]:
@@ -133,10 +145,40 @@ class Drawing:
         Raises:
             ValueError: If a body is not drawn.
         """
-        for body in (body_a, body_b):
+        self._add(Closure(name, type, (body_a, body_b), (at, at)))
+
+    def hinge(self, name: str, body_a: str, body_b: str, at: Vector3, axis: Vector3) -> None:
+        """Closes a loop by a pin at a point of the world (m) about an axis of the world.
+
+        Raises:
+            ValueError: If a body is not drawn.
+        """
+        self._add(Closure(name, "hinge", (body_a, body_b), (at, at), axis))
+
+    def distance(self, name: str, start: tuple[str, Vector3], end: tuple[str, Vector3]) -> None:
+        """Keeps two points of the world (m), each on a body, at the distance at which they are drawn.
+
+        Raises:
+            ValueError: If a body is not drawn.
+        """
+        self._add(Closure(name, "distance", (start[0], end[0]), (start[1], end[1])))
+
+    def couple(self, name: str, **joints: float) -> None:
+        """Couples joints by their coefficients. As drawn, every coordinate is 0, so the products add up to 0.
+
+        Raises:
+            ValueError: If a joint is not drawn.
+        """
+        for joint in joints:
+            if joint not in (other.name for other in self.joints):
+                raise ValueError(f"coupling '{name}' is of '{joint}', which is not drawn")
+        self.couplings.append(Coupling(name, joints))
+
+    def _add(self, closure: Closure) -> None:
+        for body in closure.bodies:
             if body not in self.bodies:
-                raise ValueError(f"closure '{name}' is on '{body}', which is not drawn")
-        self.closures.append(Closure(name, type, (body_a, body_b), at))
+                raise ValueError(f"closure '{closure.name}' is on '{body}', which is not drawn")
+        self.closures.append(closure)
 
     def rod(
         self,
@@ -215,9 +257,16 @@ class Drawing:
         for closure in list(self.closures):
             a, b = closure.bodies
             if side in closure.name:
-                self.close(renamed(closure.name), closure.type, renamed(a), renamed(b), mirrored_vector(closure.at))
+                first, second = map(mirrored_vector, closure.points)
+                axis = closure.axis and mirrored_vector(closure.axis)
+                ends = renamed(a), renamed(b)
+                self._add(Closure(renamed(closure.name), closure.type, ends, (first, second), axis))
             elif side in a or side in b:
                 raise ValueError(f"closure '{closure.name}' holds '{a}' and '{b}' but is not named '{side}'")
+        for coupling in list(self.couplings):
+            if side in coupling.name:
+                joints = {renamed(joint): factor for joint, factor in coupling.joints.items()}
+                self.couplings.append(Coupling(renamed(coupling.name), joints))
 
 
 def _rod_joint(kind: End, rod: str, start: tuple[str, Vector3], toward: Vector3) -> Joint:

@@ -25,10 +25,10 @@ def urdf_text(drawing: Drawing) -> str:
             _write_joint(robot, body.joint, body.name, drawing.bodies[body.joint.parent])
         _write_link(robot, body)
     for closure in drawing.closures:
-        for frame, body_name in zip(closure.frames, closure.bodies, strict=True):
+        for frame, body_name, at in zip(closure.frames, closure.bodies, closure.points, strict=True):
             joint = etree.SubElement(robot, "joint", name=f"weld_{frame}", type="fixed")
             body = drawing.bodies[body_name]
-            _write_origin(joint, closure.at, rpy_of(body.rotation.T), body)
+            _write_origin(joint, at, rpy_of(body.rotation.T), body)
             etree.SubElement(joint, "parent", link=body_name)
             etree.SubElement(joint, "child", link=frame)
             etree.SubElement(robot, "link", name=frame)

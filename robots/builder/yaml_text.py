@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 
-from robots.builder.drawing import Drawing
+from robots.builder.drawing import Closure, Drawing
 from robots.builder.joint import Joint
 from robots.builder.number_text import number_text
 
@@ -20,15 +21,15 @@ _HEAD = "# Written by build.py beside this file: change it there.\n"
 
 
 def yaml_text(drawing: Drawing) -> str:
-    """The description in version 2.0, or 2.1 with springs; a drawing is assembled with every joint at its neutral."""
-    version = "2.1" if any(joint.spring for joint in drawing.joints) else "2.0"
+    """The description in the lowest version that can say it; a drawing is assembled with every joint at its neutral."""
+    later = any(joint.spring for joint in drawing.joints) or drawing.couplings
+    version = "2.1" if later or len(_plain(drawing)) < len(drawing.closures) else "2.0"
     content: dict[str, Value] = {
         "extended_urdf": version,
         "urdf": "robot.urdf",
         "root": "" if drawing.root == "fixed" else drawing.root,
-        "closures": [
-            {"name": closure.name, "type": closure.type, "frames": closure.frames} for closure in drawing.closures
-        ],
+        "closures": [_closure(closure) for closure in drawing.closures],
+        "couplings": [{"name": coupling.name, "joints": coupling.joints} for coupling in drawing.couplings],
         "joints": {joint.name: _type_2(joint) for joint in _replaced(drawing)} | _springs(drawing),
         "actuators": [joint.name for joint in drawing.joints if joint.motor],
         "configurations": {"assembled": {}},
@@ -38,16 +39,30 @@ def yaml_text(drawing: Drawing) -> str:
 
 
 def version_1_text(drawing: Drawing) -> str:
-    """The description in version 1, which can say the same mechanism, but no springs, configurations or metadata."""
+    """The description in version 1, without what that cannot say: `NOT_IN_VERSION_1` of the quality rules."""
     replaced = _replaced(drawing)
     content: dict[str, Value] = {
-        "closed_loop": [closure.frames for closure in drawing.closures],
-        "type": [closure.type for closure in drawing.closures],
+        "closed_loop": [closure.frames for closure in _plain(drawing)],
+        "type": [closure.type for closure in _plain(drawing)],
         "name_mot": [joint.name for joint in drawing.joints if joint.motor],
         "joint_name": [joint.name for joint in replaced],
         "joint_type": [_type_1(joint) for joint in replaced],
     }
     return _SCHEMA.format("1") + _HEAD + _text(content)
+
+
+def _plain(drawing: Drawing) -> list[Closure]:
+    """The closures of types that every version has."""
+    return [closure for closure in drawing.closures if closure.type in ("3d", "6d")]
+
+
+def _closure(closure: Closure) -> Value:
+    entry: dict[str, Value] = {"name": closure.name, "type": closure.type, "frames": closure.frames}
+    if closure.axis is not None:
+        entry["axis"] = closure.axis
+    if closure.type == "distance":
+        entry["length"] = math.dist(*closure.points)
+    return entry
 
 
 def _replaced(drawing: Drawing) -> list[Joint]:

@@ -181,6 +181,46 @@ def test_rod_with_point_end_is_one_body():
     ]
 
 
+def test_closures_and_couplings_of_version_2_1_are_drawn_closed(tmp_path):
+    robot = pendulum()
+    for side, y in (("left", 0.3), ("right", -0.3)):
+        at = (0.0, y, 0.5)
+        robot.body(
+            f"{side}_crank",
+            revolute(f"{side}_turn", "base", at, (1.0, 0.2, 0.0)),
+            Sphere(at, 0.1, 2.0),
+            material="steel",
+        )
+    robot.hinge("pin", "left_crank", "right_crank", (0.0, 0.0, 0.5), (0.0, 3.0, 4.0))
+    robot.distance("tie", ("arm", (0.1, 0.0, 0.2)), ("left_crank", (0.1, 0.3, 0.6)))
+    robot.couple("gear", left_turn=1.0, right_turn=-2.0)
+    description = yaml.safe_load(yaml_text(robot))
+    assert description["extended_urdf"] == "2.1"
+    assert [closure["type"] for closure in description["closures"]] == ["hinge", "distance"]
+    assert description["closures"][1]["length"] == pytest.approx(0.5)
+    assert description["couplings"] == [{"name": "gear", "joints": {"left_turn": 1.0, "right_turn": -2.0}}]
+    assert "closed_loop" not in version_1_text(robot)
+    write(robot, tmp_path)
+    built = eurdf.load(tmp_path, geometry=False)
+    assert [constraint.type for constraint in built.constraints] == ["hinge", "distance", "coupling"]
+    assert np.abs(eurdf.residual(built, built.configurations["assembled"])).max() < 1e-12
+
+
+def test_mirror_repeats_hinges_distances_and_couplings():
+    robot = pendulum()
+    at = (0.0, 0.3, 0.5)
+    robot.body("left_crank", revolute("left_turn", "base", at, (1.0, 0.0, 0.0)), material="steel")
+    robot.body("left_bar", revolute("left_bend", "left_crank", at, (1.0, 0.0, 0.0)), material="steel")
+    robot.hinge("left_pin", "left_bar", "base", (0.0, 0.4, 0.5), (0.0, 1.0, 0.5))
+    robot.distance("left_tie", ("left_bar", (0.0, 0.4, 0.1)), ("base", (0.0, 0.2, 0.1)))
+    robot.couple("left_gear", left_turn=1.0, left_bend=-1.0)
+    robot.mirror("left", "right")
+    pin, tie = robot.closures[2:]
+    assert (pin.name, pin.bodies, pin.axis) == ("right_pin", ("right_bar", "base"), (0.0, -1.0, 0.5))
+    assert (tie.type, tie.points) == ("distance", ((0.0, -0.4, 0.1), (0.0, -0.2, 0.1)))
+    assert robot.couplings[1].joints == {"right_turn": 1.0, "right_bend": -1.0}
+
+
 def test_rod_on_universal_joint_cannot_spin(tmp_path):
     robot = pendulum()
     rod_between(robot, ("ball", "universal"))
