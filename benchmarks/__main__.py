@@ -12,12 +12,14 @@ from benchmarks import (
     check,
     conformance,
     derivatives,
+    dynamics,
     forward_kinematics,
     growth,
     hostile,
     inverse_kinematics,
     load,
     loops,
+    simulation,
 )
 from benchmarks.fuzz import campaign
 
@@ -31,6 +33,8 @@ MEASUREMENTS: dict[str, Callable[[], None]] = {
     "forward_kinematics": forward_kinematics.main,
     "inverse_kinematics": inverse_kinematics.main,
     "derivatives": derivatives.main,
+    "dynamics": dynamics.main,
+    "simulation": simulation.main,
     "batch": batch.main,
     "conformance": conformance.main,
 }

@@ -52,19 +52,19 @@ class EquationOfMotion:
         self.drift = acceleration_drift(robot, q, v)
         spaces = derived(robot, TangentSpaces)
         space = spaces.at(self.K)
-        self.P, self.unit, self._basis = space.inverse, spaces.scale, space.basis
+        self.P, self.unit, self._space = space.inverse, spaces.scale, space
         self.bias: Vector = robot.tree.inverse_dynamics(q, v, np.zeros(robot.tree.nv), data)
         finite("the equation of motion", self.r, self.drift, self.bias, self.P)
 
     @cached_property
     def free(self) -> Matrix:
         """Basis (nv, f) of the free motions, orthonormal in the units of the velocities."""
-        return np.linalg.qr(self._basis / self.unit[:, None])[0]
+        return np.asarray(self.N / self.unit[:, None])
 
     @cached_property
     def N(self) -> Matrix:  # noqa: N802 - the field's own symbol
         """The same in rad/s and m/s: K N = 0."""
-        return self.unit[:, None] * self.free
+        return self._space.free
 
     @cached_property
     def by_motors(self) -> tuple[Matrix, Matrix]:

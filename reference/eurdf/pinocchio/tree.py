@@ -162,6 +162,11 @@ class PinocchioTree:
         return np.array(data.S.reshape(6, -1))
 
     @cached_property
+    def _upper(self) -> npt.NDArray[np.bool_]:
+        """Which entries of a matrix (nv, nv) are on or above the diagonal."""
+        return np.triu(np.ones((self.nv, self.nv), dtype=bool))
+
+    @cached_property
     def _neutral(self) -> Vector:
         return np.asarray(pin.neutral(self.model))
 
@@ -232,8 +237,8 @@ class PinocchioTree:
         if isinstance(data, TreeRecursion):
             return data.mass_matrix(q) @ motions
         if not len(self.model.mimicking_joints):
-            M = np.triu(pin.crba(self.model, data, q))
-            return np.asarray((M + np.triu(M, 1).T) @ motions)
+            M = pin.crba(self.model, data, q)  # its upper triangle is valid
+            return np.asarray(np.where(self._upper, M, M.T) @ motions)
         still = np.zeros(self.nv)
         gravity = self.inverse_dynamics(q, still, still, data)
         columns = [self.inverse_dynamics(q, still, a, data) - gravity for a in motions.T]
