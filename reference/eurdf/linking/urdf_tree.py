@@ -8,6 +8,7 @@ from eurdf.format.urdf.data import Urdf, UrdfJoint
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.pose import Vector3
 
 _AXIAL = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC})
 
@@ -24,16 +25,18 @@ def joint_of(joint: UrdfJoint) -> Joint:
     their coordinates, of different units.
     """
     kind = joint.type
-    fixed = Joint(joint.name, kind, joint.parent, joint.child, joint.placement)
-    if kind is JointType.FIXED:
-        return fixed
-    properties = JointProperties.unlimited(kind)
-    if kind not in _AXIAL:
-        return replace(fixed, properties=properties)
-    properties = replace(properties, damping=(joint.damping,), friction=(joint.friction,))
-    limit = joint.limit
-    if limit is not None:
-        properties = replace(properties, velocity=(limit.velocity,), effort=(limit.effort,))
-        if kind is not JointType.CONTINUOUS:
-            properties = replace(properties, lower=(limit.lower,), upper=(limit.upper,))
-    return replace(fixed, axes=(joint.axis,), properties=properties, mimic=joint.mimic)
+    axes: tuple[Vector3, ...] = ()
+    properties = JointProperties() if kind is JointType.FIXED else JointProperties.unlimited(kind)
+    if kind in _AXIAL:
+        axes = (joint.axis,)
+        changes = {"damping": (joint.damping,), "friction": (joint.friction,)}
+        limit = joint.limit
+        if limit is not None:
+            changes |= {"velocity": (limit.velocity,), "effort": (limit.effort,)}
+            if kind is not JointType.CONTINUOUS:
+                changes |= {"lower": (limit.lower,), "upper": (limit.upper,)}
+        properties = replace(properties, **changes)
+    mimic = joint.mimic if kind in _AXIAL else None
+    return Joint(
+        joint.name, kind, joint.parent, joint.child, joint.placement, axes=axes, properties=properties, mimic=mimic
+    )

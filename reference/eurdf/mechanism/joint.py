@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cache
 
 from eurdf.mechanism.joint_type import COORDINATES, Coordinates, JointType
 from eurdf.mechanism.mimic import Mimic
@@ -44,6 +45,7 @@ class JointProperties:
     rest: tuple[float, ...] = ()
 
     @classmethod
+    @cache
     def unlimited(cls, kind: JointType) -> JointProperties:
         """The properties of a joint without limits, losses, motor and springs, every number written out."""
         coordinates = COORDINATES[kind]

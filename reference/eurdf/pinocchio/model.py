@@ -114,7 +114,7 @@ def build_model(mechanism: Mechanism) -> pin.Model:
     folded = with_followers(mechanism, led)
     set_limits(
         model,
-        [(replace(joint, properties=folded.get(joint.name, joint.properties)), nq) for joint, nq in free],
+        [(replace(joint, properties=folded[joint.name]) if joint.name in folded else joint, nq) for joint, nq in free],
         root_nq,
         root_nv,
     )
