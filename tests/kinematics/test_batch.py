@@ -131,11 +131,12 @@ def test_forward_kinematics_of_random_mechanisms_equals_single_one(seed: int, ki
     assert_same_forward_kinematics(robot, motors_near(robot, q0, random, 3, 0.2), q0)
 
 
-@of_every_robot
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=[pytest.mark.slow] if name == "kangaroo_2legs" else []) for name in collection_names()],
+)
 def test_projection_equals_single_one(name: str) -> None:
     robot = robot_called(name)
-    if robot.model.nv > 60:
-        pytest.skip("the single function takes seconds for so many velocities; the leg of this robot is tested")
     q = moved(robot, eurdf.assemble(robot).q, np.random.default_rng(7), 2, 0.1)
     q = np.concatenate((q, eurdf.assemble(robot).q[None]))  # one that is closed stays where it is
     found = eurdf.batch.project_configuration(robot, q)
