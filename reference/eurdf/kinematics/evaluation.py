@@ -11,7 +11,6 @@ import numpy as np
 
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.constraint_stack import ConstraintStack
-from eurdf.kinematics.constraints.kind import State
 from eurdf.kinematics.loop import LoopGroup
 
 if TYPE_CHECKING:
@@ -48,7 +47,7 @@ class Evaluation:
         self._memory = self._stack.memory()
         m, n = len(group.rows), len(group.velocities)
         self.work = float(m) * n * min(m, n) + _WORK_OF_A_CLOSURE * len(group.closures)
-        self._at: State | None = None
+        self._at = self._stack.at(robot.tree.neutral(), self._memory)
         self._held: Vector | None = None
 
     def holding(self, direction: Vector) -> Evaluation:
@@ -70,17 +69,12 @@ class Evaluation:
 
     def jacobian(self) -> Matrix:
         """Derivative (m, n) of the rows by the velocities, where `residual` last was, dimensionless."""
-        A = self._stack.jacobian(self._here) * self._scale
+        A = self._stack.jacobian(self._at) * self._scale
         return A if self._held is None else A - np.outer(A @ self._held, self._held)
 
     def openings(self) -> list[tuple[float, float]]:
         """How far each constraint is open where `residual` last was, m and rad."""
-        return self._stack.openings(self._here)
-
-    @property
-    def _here(self) -> State:
-        assert self._at is not None, "residual comes first"
-        return self._at
+        return self._stack.openings(self._at)
 
 
 def evaluations(
