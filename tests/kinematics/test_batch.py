@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 import eurdf
 from eurdf.collection import collection_names
-from eurdf.kinematics.batch import rigid
+from eurdf.kinematics.batch import linear, rigid
 from eurdf.kinematics.batch.joints import motion
 from eurdf.kinematics.batch.problem import problem
 from eurdf.kinematics.batch.stack import BatchStack
@@ -536,3 +536,18 @@ def test_logarithms_and_their_derivatives_are_exact(angle: float) -> None:
             rigid.log6(np.stack([e.rotation for e in ends], axis=-1), np.stack([e.translation for e in ends], axis=-1))
         )
         np.testing.assert_allclose((logs[:, ::2] - logs[:, 1::2]) / (2.0 * h), J[:, column], atol=1e-6)
+
+
+@pytest.mark.parametrize("n", [1, 5, 61])  # the last one by LAPACK
+def test_systems_are_solved_and_those_without_full_rank_named(n: int) -> None:
+    random = np.random.default_rng(n)
+    A, b = random.normal(size=(n, n + 2, 4)), random.normal(size=(n, 2, 4))
+    A[-1, :, 1] = A[0, :, 1] if n > 1 else 0.0
+    G = np.array(linear.gram(A))
+    G[0, 0, 2] = np.nan
+    G[0, 0, 3] = -1.0
+    x, pivot = linear.solve(G, b)
+    np.testing.assert_allclose(G[:, :, 0] @ x[:, :, 0], b[:, :, 0], atol=1e-8)
+    assert pivot[0] > 1e-8
+    assert (pivot[1:] < 1e-12).all()
+    np.testing.assert_allclose(linear.solve(G, b[:, 0])[0][:, 0], x[:, 0, 0])
