@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from lxml import etree
 
 import eurdf
 
@@ -74,3 +75,14 @@ def test_overflow_of_given_velocity_is_named(size: float) -> None:
     q = robot.configurations["assembled"]
     with pytest.raises(eurdf.NumericalOverflow, match="would not be finite"):
         eurdf.forward_dynamics(robot, q, np.full(robot.model.nv, size))
+
+
+def test_mobility_of_a_joint_that_follows_1e200_times_prints_nothing(tmp_path: Path) -> None:
+    """Warnings are errors in these tests: paths along which numbers overflow gave one."""
+    urdf = etree.parse(ROBOTS / "digit_leg" / "robot.urdf")
+    (joint,) = urdf.xpath("//joint[@name='free_foot2']")
+    joint.set("type", "prismatic")
+    etree.SubElement(joint, "mimic", joint="motor_hip_z", multiplier="1e200")
+    urdf.write(tmp_path / "robot.urdf")
+    (tmp_path / "robot.yaml").write_bytes((ROBOTS / "digit_leg" / "robot.yaml").read_bytes())
+    assert eurdf.analyze(eurdf.load(tmp_path)).closes

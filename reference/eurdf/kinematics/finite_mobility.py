@@ -98,6 +98,7 @@ class MobilityTest:
         self._assembler = assembler
         self._work = 0.0
 
+    @np.errstate(over="ignore", invalid="ignore")  # a path on which numbers overflow does not close
     def finite(self, q: Vector) -> list[FiniteMobility]:
         """The finite mobility of each group at a closed configuration q (nq,)."""
         evaluations = self._assembler.evaluations
@@ -121,6 +122,7 @@ class MobilityTest:
                 found.append(self._bounded(evaluation, q))
         return found
 
+    @np.errstate(over="ignore", invalid="ignore")  # a path on which numbers overflow does not close
     def rounded(self, q: Vector) -> tuple[int, float] | None:
         """Mobility of loops that are closed only to rounding, and their residual, at the least open q (nq,).
 
