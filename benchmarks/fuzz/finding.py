@@ -30,7 +30,8 @@ class Finding:
     def signature(self) -> str:
         """What findings of one cause have in common: the outcome without numbers and names of the case."""
         words = re.sub(r"'[^']*'|\d+", "#", self.outcome.trouble.partition(": ")[0])
-        return f"{self.case.kind}-{self.outcome.word}-{words}"[:200]
+        of = self.case.kind if self.case.call is None else f"{self.case.kind} of {self.case.call['function']}"
+        return f"{of}: {self.outcome.word}: {words}"[:200]
 
 
 def minimized(finding: Finding, worker: Watched, seconds: float) -> Finding:

@@ -86,3 +86,13 @@ def test_mobility_of_a_joint_that_follows_1e200_times_prints_nothing(tmp_path: P
     urdf.write(tmp_path / "robot.urdf")
     (tmp_path / "robot.yaml").write_bytes((ROBOTS / "digit_leg" / "robot.yaml").read_bytes())
     assert eurdf.analyze(eurdf.load(tmp_path)).closes
+
+
+@pytest.mark.parametrize("function", [eurdf.residual, eurdf.residual_and_jacobian, eurdf.closure_openings])
+@pytest.mark.parametrize("size", [1e155, -1e155, 1e308])
+def test_residual_at_coordinates_that_overflow_is_an_error(function: Callable[..., Any], size: float) -> None:
+    robot = eurdf.load("digit_leg", geometry=False)
+    q = np.array(robot.configurations["assembled"])
+    q[robot.model.joints[robot.model.getJointId("ball_rod1_start")].idx_q + 2] = size
+    with pytest.raises(eurdf.NumericalOverflow):
+        function(robot, q)

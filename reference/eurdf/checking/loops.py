@@ -67,10 +67,10 @@ def _hint_for_open(mechanism: Mechanism, name: str) -> str:
 
 def assembled_diagnostics(description: Described, robot: Robot) -> Diagnostics:
     """EU-CLO-005: at ``assembled`` every closure is closed."""
-    from eurdf.kinematics.residual import closure_openings
+    from eurdf.kinematics.residual import all_openings
 
     diagnostics = Diagnostics()
-    openings = closure_openings(robot, robot.configurations["assembled"])
+    openings = all_openings(robot, robot.configurations["assembled"])
     if any(opening.is_open for opening in openings):
         diagnostics.report(
             "assembled-open",

@@ -12,7 +12,7 @@ from eurdf.kinematics.assembly import start
 from eurdf.kinematics.exceptions import CannotLock, LockedOpen
 from eurdf.kinematics.locked_mechanism import lock_joints
 from eurdf.kinematics.loop import find_loops
-from eurdf.kinematics.residual import CLOSED, closure_openings, residual
+from eurdf.kinematics.residual import CLOSED, all_openings, residual
 from eurdf.kinematics.several import several
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_tolerance
@@ -114,7 +114,7 @@ def _check_closed(robot: Robot, q: Vector, names: Collection[str], tolerance: fl
         for constraint, loop in zip(robot.constraints, find_loops(robot), strict=True)
     ]
     if any(is_open):
-        openings = closure_openings(robot, q)
+        openings = all_openings(robot, q)
         raise LockedOpen(tuple(found for found, stays in zip(openings, is_open, strict=True) if stays), tolerance)
 
 

@@ -13,10 +13,13 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.constraint_stack import ConstraintStack, all_constraints
 from eurdf.kinematics.constraints.kind import State
 from eurdf.kinematics.derived import borrowed
+from eurdf.kinematics.finite import finite
 from eurdf.kinematics.tree_kinematics import PairMemory
 from eurdf.pinocchio.arguments import checked_array
 
@@ -39,9 +42,12 @@ def residual(robot: Robot, q: Vector) -> Vector:
 
     Raises:
         ValueError: ``q`` has another shape or is not finite.
+        NumericalOverflow: Coordinates or lengths are so large that the residual is not finite.
     """
     with _evaluated(robot, q) as (stack, at):
-        return stack.residual(at)
+        r = stack.residual(at)
+    finite("the residual", r)
+    return r
 
 
 def residual_and_jacobian(robot: Robot, q: Vector) -> tuple[Vector, Matrix]:
@@ -56,9 +62,12 @@ def residual_and_jacobian(robot: Robot, q: Vector) -> tuple[Vector, Matrix]:
 
     Raises:
         ValueError: As in `residual`.
+        NumericalOverflow: As in `residual`, also of the derivative.
     """
     with _evaluated(robot, q) as (stack, at):
-        return stack.residual(at), stack.jacobian(at)
+        r, K = stack.residual(at), stack.jacobian(at)
+    finite("the residual and its derivative", r, K)
+    return r, K
 
 
 def acceleration_drift(robot: Robot, q: Vector, v: Vector) -> Vector:
@@ -121,10 +130,18 @@ def closure_openings(robot: Robot, q: Vector) -> tuple[Opening, ...]:
 
     Raises:
         ValueError: As in `residual`.
+        NumericalOverflow: As in `residual`.
     """
+    found = all_openings(robot, q)
+    finite("the opening of a closure", np.array([(each.position, each.angle) for each in found]))
+    return found
+
+
+def all_openings(robot: Robot, q: Vector) -> tuple[Opening, ...]:
+    """As `closure_openings`, also where they are not finite: such a constraint is open."""
     with _evaluated(robot, q) as (stack, at):
-        openings = stack.openings(at)
-    return tuple(Opening(found.name, *opening) for found, opening in zip(stack.constraints, openings, strict=True))
+        found = stack.openings(at)
+    return tuple(Opening(of.name, *opening) for of, opening in zip(stack.constraints, found, strict=True))
 
 
 @contextmanager

@@ -82,11 +82,11 @@ def _distance(one: tuple[float, ...], other: tuple[float, ...]) -> float:
 
 
 def _closes(robot: Robot, coordinates: _Coordinates) -> bool:
-    from eurdf.kinematics.residual import closure_openings
+    from eurdf.kinematics.residual import all_openings
     from eurdf.pinocchio.configuration import configuration_vector
 
     q = configuration_vector(robot.mechanism, robot.model, coordinates)
-    return not any(opening.is_open for opening in closure_openings(robot, q))
+    return not any(opening.is_open for opening in all_openings(robot, q))
 
 
 def _looped(robot: Robot) -> set[str]:
