@@ -43,11 +43,11 @@ from eurdf.kinematics.inverse_kinematics import inverse_kinematics as inverse_ki
 from eurdf.kinematics.locking import LockedRobot as LockedRobot
 from eurdf.kinematics.locking import lock as lock
 from eurdf.kinematics.mass_matrix import mass_matrix as mass_matrix
+from eurdf.kinematics.opening import Opening as Opening
 from eurdf.kinematics.position_limit import JointAtLimit as JointAtLimit
 from eurdf.kinematics.projection import project_acceleration as project_acceleration
 from eurdf.kinematics.projection import project_configuration as project_configuration
 from eurdf.kinematics.projection import project_velocity as project_velocity
-from eurdf.kinematics.residual import Opening as Opening
 from eurdf.kinematics.residual import closure_openings as closure_openings
 from eurdf.kinematics.residual import residual as residual
 from eurdf.kinematics.residual import residual_and_jacobian as residual_and_jacobian

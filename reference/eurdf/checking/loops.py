@@ -11,7 +11,7 @@ from eurdf.linking.description import Described, Linked
 
 if TYPE_CHECKING:
     from eurdf.kinematics.assembly import Assembly
-    from eurdf.kinematics.residual import Opening
+    from eurdf.kinematics.opening import Opening
     from eurdf.mechanism.mechanism import Mechanism
     from eurdf.pinocchio.robot import Robot
 

@@ -20,8 +20,8 @@ from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.descent import Descent
 from eurdf.kinematics.evaluation import Evaluation, evaluations
 from eurdf.kinematics.loop import find_loops, independent_groups, merged
+from eurdf.kinematics.opening import CLOSED, Opening
 from eurdf.kinematics.position_limit import JointAtLimit, Limits, PositionLimits, chosen_limits
-from eurdf.kinematics.residual import CLOSED, Opening
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
 from eurdf.kinematics.several import several
 from eurdf.kinematics.tree_kinematics import TreeKinematics

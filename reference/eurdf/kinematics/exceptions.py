@@ -10,7 +10,7 @@ from eurdf.exceptions import EurdfError
 
 if TYPE_CHECKING:
     from eurdf.kinematics.array import Vector
-    from eurdf.kinematics.residual import Opening
+    from eurdf.kinematics.opening import Opening
 
 
 class CannotLock(EurdfError, ValueError):  # noqa: N818 - part of the public interface

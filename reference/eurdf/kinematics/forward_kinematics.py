@@ -14,7 +14,7 @@ from eurdf.kinematics.assembly import Assembler, start
 from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.driven_motion import DrivenMotion
 from eurdf.kinematics.exceptions import NotClosable
-from eurdf.kinematics.residual import closure_openings, residual_and_jacobian
+from eurdf.kinematics.residual import all_openings, residual_and_jacobian
 from eurdf.kinematics.spring_equilibrium import spring_equilibrium
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.mechanism.mechanism import ROOT_JOINT
@@ -213,4 +213,4 @@ def _stopped(robot: Robot, assembler: Assembler, q: Vector, goal: Vector, coordi
         "the loops can be closed at the given coordinates, but not on a straight path to them; "
         "give intermediate configurations, or call assemble with hold"
     )
-    return NotClosable(reason, closure_openings(robot, there), there)
+    return NotClosable(reason, all_openings(robot, there), there)

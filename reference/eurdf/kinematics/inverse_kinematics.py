@@ -17,9 +17,10 @@ from eurdf.kinematics.constraint_stack import all_constraints
 from eurdf.kinematics.constraints.vector import origins, velocity_of_origin
 from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.least_solution import certain_inverse
+from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.position_limit import BEYOND, JointAtLimit, Limits, chosen_limits
 from eurdf.kinematics.rank import numerical_rank
-from eurdf.kinematics.residual import Opening, closure_openings
+from eurdf.kinematics.residual import all_openings
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.kinematics.tree_kinematics import PairMemory
 from eurdf.pinocchio.arguments import checked_array, checked_count, checked_tolerance
@@ -202,7 +203,7 @@ class _Search:
 
     def run(self, q: Vector, restarts: int) -> InverseKinematics:
         if np.array_equal(self._clipped(q), q) and self._reached(self._error(q)):
-            openings = closure_openings(self.robot, q)
+            openings = all_openings(self.robot, q)
             if not any(found.is_open for found in openings):
                 return InverseKinematics(q, True, self._errors(q), openings, 0)
         q, opened = self._closed(self._clipped(q), 20)
@@ -234,7 +235,7 @@ class _Search:
             q=best,
             converged=reason is None,
             errors=self._errors(best),
-            open=closure_openings(self.robot, best),
+            open=all_openings(self.robot, best),
             iterations=self.iterations,
             reason=reason,
             at_limits=at_limits,

@@ -12,7 +12,8 @@ from eurdf.kinematics.assembly import start
 from eurdf.kinematics.exceptions import CannotLock, LockedOpen
 from eurdf.kinematics.locked_mechanism import lock_joints
 from eurdf.kinematics.loop import find_loops
-from eurdf.kinematics.residual import CLOSED, all_openings, residual
+from eurdf.kinematics.opening import CLOSED
+from eurdf.kinematics.residual import all_openings, residual
 from eurdf.kinematics.several import several
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_tolerance

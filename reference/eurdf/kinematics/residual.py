@@ -7,10 +7,8 @@ K v = d/dt r(q ⊕ t v) at t = 0 (EU-CLO-010), at every configuration, closed or
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,14 +18,12 @@ from eurdf.kinematics.constraint_stack import ConstraintStack, all_constraints
 from eurdf.kinematics.constraints.kind import State
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.finite import finite
+from eurdf.kinematics.opening import Opening
 from eurdf.kinematics.tree_kinematics import PairMemory
 from eurdf.pinocchio.arguments import checked_array
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
-
-#: A closure that is open by no more than this, in m or rad, counts as closed (EU-CLO-005).
-CLOSED = 1e-6
 
 
 def residual(robot: Robot, q: Vector) -> Vector:
@@ -89,36 +85,6 @@ def acceleration_drift(robot: Robot, q: Vector, v: Vector) -> Vector:
     q, v = checked_array("q", q, (robot.tree.nq,)), checked_array("v", v, (robot.tree.nv,))
     with borrowed(robot, _memory) as memory:
         return all_constraints(robot).drift(q, v, memory)
-
-
-@dataclass(frozen=True, slots=True)
-class Opening:
-    """How far a constraint is open.
-
-    Attributes:
-        name: Name of the constraint.
-        position: Distance between the origins of A and B, m; for a distance closure, what it is off its length. For a
-            coupling whose coordinate with the largest coefficient is a length, what that would have to move, else 0.
-        angle: Angle between A and B, rad, or between their axes for a hinge; 0 for a closure that leaves it free. For
-            other couplings, what the coordinate with the largest coefficient would have to move.
-    """
-
-    name: str
-    position: float
-    angle: float
-
-    def __str__(self) -> str:
-        parts = []
-        if self.position > CLOSED or self.angle <= CLOSED:
-            parts.append(f"{self.position * 1e3:.3g} mm")
-        if self.angle > CLOSED:
-            parts.append(f"{math.degrees(self.angle):.3g} degrees")
-        return f"'{self.name}' by {' and '.join(parts)}"
-
-    @property
-    def is_open(self) -> bool:
-        """Whether it is open by more than `CLOSED`; what is no number is open."""
-        return not max(self.position, self.angle) <= CLOSED
 
 
 def closure_openings(robot: Robot, q: Vector) -> tuple[Opening, ...]:

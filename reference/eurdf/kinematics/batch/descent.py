@@ -13,8 +13,8 @@ from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.batch import linear
 from eurdf.kinematics.batch.problem import Group, Problem
 from eurdf.kinematics.batch.stack import State
+from eurdf.kinematics.opening import CLOSED
 from eurdf.kinematics.position_limit import PositionLimits
-from eurdf.kinematics.residual import CLOSED
 
 # As in `eurdf.kinematics.assembly` and `eurdf.kinematics.descent`, so that results are the same.
 _MOST_STEPS = 60

@@ -1,0 +1,39 @@
+"""How far a constraint is open."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+#: A closure that is open by no more than this, in m or rad, counts as closed (EU-CLO-005).
+CLOSED = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class Opening:
+    """How far a constraint is open.
+
+    Attributes:
+        name: Name of the constraint.
+        position: Distance between the origins of A and B, m; for a distance closure, what it is off its length. For a
+            coupling whose coordinate with the largest coefficient is a length, what that would have to move, else 0.
+        angle: Angle between A and B, rad, or between their axes for a hinge; 0 for a closure that leaves it free. For
+            other couplings, what the coordinate with the largest coefficient would have to move.
+    """
+
+    name: str
+    position: float
+    angle: float
+
+    def __str__(self) -> str:
+        parts = []
+        if self.position > CLOSED or self.angle <= CLOSED:
+            parts.append(f"{self.position * 1e3:.3g} mm")
+        if self.angle > CLOSED:
+            parts.append(f"{math.degrees(self.angle):.3g} degrees")
+        return f"'{self.name}' by {' and '.join(parts)}"
+
+    @property
+    def is_open(self) -> bool:
+        """Whether it is open by more than `CLOSED`; what is no number is open."""
+        return not max(self.position, self.angle) <= CLOSED
