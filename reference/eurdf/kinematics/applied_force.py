@@ -34,7 +34,7 @@ class AppliedForce:
         Raises:
             ValueError: A frame is unknown, or a force is not six finite numbers.
         """
-        self._selection = robot.actuation.selection
+        self._idx_v = robot.actuation.idx_v
         self._tree = robot.tree
         self._dissipation = dissipation
         self._external: tuple[FramePairs, Matrix] | None = None
@@ -61,7 +61,7 @@ class AppliedForce:
         """
         force = np.zeros(self._tree.nv) if tau is None else np.array(checked_array("tau", tau, (self._tree.nv,)))
         if u is not None:
-            force += self._selection @ checked_array("u", u, (self._selection.shape[1],))
+            force[self._idx_v] += checked_array("u", u, self._idx_v.shape)
         if self._external is not None:
             force += self._at_frames(*self._external, q)
         if self._dissipation:
