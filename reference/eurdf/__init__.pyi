@@ -11,6 +11,11 @@ from eurdf.exceptions import EurdfError as EurdfError
 from eurdf.exceptions import InvalidRobot as InvalidRobot
 from eurdf.exceptions import MissingExtra as MissingExtra
 from eurdf.exceptions import RobotNotFound as RobotNotFound
+from eurdf.exporting.coordinates import Coordinates as Coordinates
+from eurdf.exporting.exceptions import CannotExport as CannotExport
+from eurdf.exporting.export import Export as Export
+from eurdf.exporting.export import export as export
+from eurdf.exporting.loss import Loss as Loss
 from eurdf.kinematics.analysis import Analysis as Analysis
 from eurdf.kinematics.analysis import LoopAnalysis as LoopAnalysis
 from eurdf.kinematics.analysis import Motion as Motion

@@ -1,0 +1,1 @@
+"""A mechanism in the formats of others: each export says what it lost."""

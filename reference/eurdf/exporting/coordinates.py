@@ -1,0 +1,284 @@
+"""From the configurations and velocities of a robot to those of an exported model, and back."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from eurdf.mechanism.joint_type import COORDINATES, JointType
+from eurdf.mechanism.pose import Pose, Quaternion
+
+Vector = npt.NDArray[np.float64]
+Matrix = npt.NDArray[np.float64]
+
+_UPRIGHT: Quaternion = (0.0, 0.0, 0.0, 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where the coordinates and velocities of a joint are in the vectors of a robot.
+
+    Attributes:
+        idx_q: Index of its first coordinate in q.
+        nq: Number of its coordinates in q; one more than in files where an angle is (cos, sin).
+        idx_v: Index of its first velocity in v.
+    """
+
+    idx_q: int
+    nq: int
+    idx_v: int
+
+
+@dataclass(frozen=True, slots=True)
+class OwnVectors:
+    """The vectors of a robot.
+
+    Attributes:
+        nq: Number of coordinates.
+        nv: Number of velocities.
+        places: Place of each joint with coordinates of its own, by name; of a floating root under ``root_joint``.
+    """
+
+    nq: int
+    nv: int
+    places: Mapping[str, Place]
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A joint of the robot in the exported model.
+
+    Attributes:
+        names: Names of the joints of the model that it is, in order.
+        joint: The joint whose coordinates move it: itself, or the leader of a mimic joint.
+        type: Type of the joint. Its coordinates in the model are those of files, but for ``ratios`` and ``turn``.
+        ratios: Where all coordinates are angles and lengths: for each one of the model, the index of the coordinate
+            of ``joint`` that it follows, multiplier and offset.
+        turn: Orientation O of the child's frame in the joint's moving frame. A ball joint of the model has the rotation
+            O⁻¹ Q O for Q of the robot, and the angular velocity O⁻¹ ω.
+        mimics: Whether ``joint`` is a leader: the way back ignores the part.
+    """
+
+    names: tuple[str, ...]
+    joint: str
+    type: JointType
+    ratios: tuple[tuple[int, float, float], ...] = ()
+    turn: Quaternion = _UPRIGHT
+    mimics: bool = False
+
+    @property
+    def nq(self) -> int:
+        """Number of coordinates in the model."""
+        return len(self.ratios) or len(COORDINATES[self.type].names)
+
+    @property
+    def nv(self) -> int:
+        """Number of velocities in the model."""
+        return len(self.ratios) or COORDINATES[self.type].nv
+
+
+@dataclass(frozen=True)
+class Coordinates:
+    """The map between the vectors of a robot, q (nq,) and v (nv,), and those of an exported model.
+
+    In the model, angles (rad) and lengths (m) are zero where those of the robot are: no offset of zero. The linear
+    velocity of planar and floating joints, and of a floating root, is along the axes of the joint's frame at rest (of
+    the world for a root), where that of the robot is along those of the child. Forces go the other way: τ = Tᵀ τ_model
+    with T of `rates`.
+
+    Attributes:
+        parts: In the order of the model.
+        own: The vectors of the robot.
+        quaternion: Order of the components of a quaternion in the model.
+    """
+
+    parts: tuple[Part, ...]
+    own: OwnVectors
+    quaternion: str = "wxyz"
+    _idx_q: tuple[int, ...] = field(init=False, repr=False)
+    _idx_v: tuple[int, ...] = field(init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        idx_q, idx_v = [0], [0]
+        for part in self.parts:
+            idx_q.append(idx_q[-1] + part.nq)
+            idx_v.append(idx_v[-1] + part.nv)
+        object.__setattr__(self, "_idx_q", tuple(idx_q))
+        object.__setattr__(self, "_idx_v", tuple(idx_v))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the joints of the model, in order."""
+        return tuple(name for part in self.parts for name in part.names)
+
+    @property
+    def nq(self) -> int:
+        """Number of coordinates of the model."""
+        return self._idx_q[-1]
+
+    @property
+    def nv(self) -> int:
+        """Number of velocities of the model."""
+        return self._idx_v[-1]
+
+    def from_files(self, coordinates: Mapping[str, Sequence[float]]) -> Vector:
+        """The configuration of the model, of shape (`nq`,), from coordinates as files have them.
+
+        Args:
+            coordinates: By name of the joint; a joint that is left out is at its neutral.
+        """
+        found = np.empty(self.nq)
+        for part, start in zip(self.parts, self._idx_q, strict=False):
+            kind = COORDINATES[part.type]
+            given = tuple(coordinates.get(part.joint, kind.neutral if not part.mimics else (0.0,)))
+            found[start : start + part.nq] = self._in_model(part, given)
+        return found
+
+    def to_q(self, q: Vector) -> Vector:
+        """The configuration of the model, of shape (`nq`,), at q (nq,) of the robot."""
+        q = _checked("q", q, self.own.nq)
+        return self.from_files({part.joint: self._own_coordinates(part, q) for part in self.parts})
+
+    def from_q(self, configuration: Vector) -> Vector:
+        """The q (nq,) of the robot at a configuration (`nq`,) of the model; coordinates of mimic joints are ignored."""
+        given = _checked("configuration", configuration, self.nq)
+        q = np.empty(self.own.nq)
+        for part, start in zip(self.parts, self._idx_q, strict=False):
+            if part.mimics:
+                continue
+            own = self._from_model(part, given[start : start + part.nq].tolist())
+            place = self.own.places[part.joint]
+            if place.nq > len(own):
+                own[-1:] = math.cos(own[-1]), math.sin(own[-1])
+            q[place.idx_q : place.idx_q + place.nq] = own
+        return q
+
+    def rates(self, q: Vector) -> Matrix:
+        """T (`nv`, nv) at q (nq,): the velocity of the model is T v."""
+        q = _checked("q", q, self.own.nq)
+        T = np.zeros((self.nv, self.own.nv))
+        for part, row in zip(self.parts, self._idx_v, strict=False):
+            block = self._block(part, q)
+            column = self.own.places[part.joint].idx_v
+            T[row : row + block.shape[0], column : column + block.shape[1]] = block
+        return T
+
+    def to_v(self, q: Vector, v: Vector) -> Vector:
+        """The velocity of the model, of shape (`nv`,), at q (nq,) and v (nv,) of the robot."""
+        return np.asarray(self.rates(q) @ _checked("v", v, self.own.nv))
+
+    def from_v(self, configuration: Vector, velocity: Vector) -> Vector:
+        """The v (nv,) of the robot at a configuration (`nq`,) and a velocity (`nv`,) of the model."""
+        q = self.from_q(configuration)
+        given = _checked("velocity", velocity, self.nv)
+        v = np.empty(self.own.nv)
+        for part, row in zip(self.parts, self._idx_v, strict=False):
+            if part.mimics:
+                continue
+            mine = given[row : row + part.nv]
+            at = self.own.places[part.joint].idx_v
+            if part.ratios:
+                for value, (index, _, _) in zip(mine, part.ratios, strict=True):  # a helical joint: the angle is last
+                    v[at + index] = value
+            else:
+                v[at : at + part.nv] = self._block(part, q).T @ mine  # the block is a rotation
+        return v
+
+    def to_a(self, q: Vector, v: Vector, a: Vector) -> Vector:
+        """The acceleration of the model, T a + Ṫ v of shape (`nv`,), at q (nq,), v and a (nv,) of the robot."""
+        found = self.rates(q) @ _checked("a", a, self.own.nv)
+        v = _checked("v", v, self.own.nv)
+        for part, row in zip(self.parts, self._idx_v, strict=False):
+            if part.type not in (JointType.PLANAR, JointType.FLOATING):
+                continue
+            at = self.own.places[part.joint].idx_v
+            n = 2 if part.type is JointType.PLANAR else 3
+            linear = np.zeros(3)
+            linear[:n] = v[at : at + n]
+            angular = np.array((0.0, 0.0, v[at + 2])) if n == 2 else v[at + 3 : at + 6]
+            found[row : row + n] += self._block(part, q)[:n, :n] @ np.cross(angular, linear)[:n]
+        return np.asarray(found)
+
+    def _own_coordinates(self, part: Part, q: Vector) -> tuple[float, ...]:
+        place = self.own.places[part.joint]
+        own = q[place.idx_q : place.idx_q + place.nq].tolist()
+        expected = 1 if part.mimics else len(COORDINATES[part.type].names)
+        if place.nq > expected:
+            own[-2:] = [math.atan2(own[-1], own[-2])]
+        return tuple(own)
+
+    def _in_model(self, part: Part, own: Sequence[float]) -> Sequence[float]:
+        if part.ratios:
+            return [multiplier * own[index] + offset for index, multiplier, offset in part.ratios]
+        at = COORDINATES[part.type].quaternion
+        if at is None:
+            return own
+        turn = Pose(quaternion=part.turn)
+        norm = math.hypot(*own[at:])
+        x, y, z, w = (value / norm for value in own[at:])
+        turned = (x, y, z, w)
+        if part.turn != _UPRIGHT:
+            turned = (turn.inverse() * Pose(quaternion=turned) * turn).quaternion
+        return (*own[:at], *self._ordered(turned))
+
+    def _from_model(self, part: Part, given: list[float]) -> list[float]:
+        if part.ratios:
+            own = [0.0] * len(COORDINATES[part.type].names)
+            for value, (index, _, _) in zip(given, part.ratios, strict=True):
+                own[index] = value
+            return own
+        at = COORDINATES[part.type].quaternion
+        if at is None:
+            return given
+        quaternion = given[at:]
+        if self.quaternion == "wxyz":
+            quaternion = [*quaternion[1:], quaternion[0]]
+        x, y, z, w = quaternion
+        if part.turn != _UPRIGHT:
+            turn = Pose(quaternion=part.turn)
+            x, y, z, w = (turn * Pose(quaternion=(x, y, z, w)) * turn.inverse()).quaternion
+        return [*given[:at], x, y, z, w]
+
+    def _ordered(self, quaternion: Quaternion) -> Quaternion:
+        x, y, z, w = quaternion
+        return (w, x, y, z) if self.quaternion == "wxyz" else quaternion
+
+    def _block(self, part: Part, q: Vector) -> Matrix:
+        """T of one part: from the velocities of ``part.joint`` to those of the part."""
+        if part.ratios:
+            n = 1 if part.mimics else COORDINATES[part.type].nv
+            block = np.zeros((len(part.ratios), n))
+            for row, (index, multiplier, _) in enumerate(part.ratios):
+                block[row, index] = multiplier
+            return block
+        own = self._own_coordinates(part, q)
+        if part.type is JointType.PLANAR:
+            c, s = math.cos(own[2]), math.sin(own[2])
+            return np.array(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0)))
+        turn = rotation_matrix(Pose(quaternion=part.turn).inverse().quaternion)
+        if part.type is JointType.SPHERICAL:
+            return turn
+        block = np.zeros((6, 6))
+        block[:3, :3] = rotation_matrix(own[3:])
+        block[3:, 3:] = turn
+        return block
+
+
+def rotation_matrix(quaternion: Sequence[float]) -> Matrix:
+    """The rotation (3, 3) of a quaternion x, y, z, w of any length but 0."""
+    u, w = np.array(quaternion[:3]), quaternion[3]
+    x, y, z = u
+    square = float(u @ u) + w * w
+    cross = np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
+    return np.asarray(((w * w - u @ u) * np.eye(3) + 2.0 * np.outer(u, u) + 2.0 * w * cross) / square)
+
+
+def _checked(name: str, given: Vector, size: int) -> Vector:
+    values = np.asarray(given, dtype=np.float64)
+    if values.shape != (size,):
+        raise ValueError(f"{name} has the shape {values.shape}; expected ({size},)")
+    return values

@@ -1,0 +1,166 @@
+"""`eurdf.export`: a robot in the format of a simulator, and what it loses there."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import get_args
+
+from eurdf.diagnostics import did_you_mean
+from eurdf.exceptions import InvalidRobot
+from eurdf.exporting.coordinates import Coordinates, OwnVectors, Place
+from eurdf.exporting.exceptions import CannotExport
+from eurdf.exporting.formats import FORMATS
+from eurdf.exporting.loss import Effect, Loss
+from eurdf.exporting.output_folder import write_files
+from eurdf.exporting.written import Actuators, Exportable
+from eurdf.kinematics.assembly import assemble
+from eurdf.linking.description import Unlinked, describe, find_meshes
+from eurdf.mechanism.mechanism import ROOT_JOINT, Root
+from eurdf.pinocchio.robot import Robot, build_robot
+from eurdf.reading.given import Given
+
+#: The configuration to start from, unless another one is asked for.
+ASSEMBLED = "assembled"
+
+
+@dataclass(frozen=True, eq=False)
+class Export:
+    """A robot in another format.
+
+    Attributes:
+        format: Name of the format.
+        files: Content of each file by its path relative to a folder; the main file is the first.
+        losses: What is not as in the robot; empty if the file says everything.
+        coordinates: From q and v of the robot to those of the exported model, and back.
+    """
+
+    format: str
+    files: Mapping[str, bytes]
+    losses: tuple[Loss, ...]
+    coordinates: Coordinates
+
+    @property
+    def main(self) -> bytes:
+        """Content of the main file."""
+        return next(iter(self.files.values()))
+
+    def write(self, folder: str | os.PathLike[str], *, force: bool = False) -> tuple[Path, ...]:
+        """Write the files to a folder: all of them or none.
+
+        Args:
+            folder: Where to write; made if it does not exist.
+            force: Whether to replace files that exist.
+
+        Returns:
+            Paths of the files; the main file is the first.
+
+        Raises:
+            FileExistsError: A file exists, and `force` is False.
+            OSError: A file cannot be written.
+        """
+        return write_files(folder, self.files, force=force)
+
+
+def export(
+    robot: Given | Robot,
+    format: str,
+    *,
+    urdf: Given | None = None,
+    root: Root | None = None,
+    configuration: str = ASSEMBLED,
+    actuators: Actuators = "motor",
+    strict: bool = False,
+    package_dirs: Sequence[str | os.PathLike[str]] = (),
+    xacro_args: Mapping[str, str] | None = None,
+    confined: bool = False,
+) -> Export:
+    """Export a robot to the format of a simulator.
+
+    Nothing is dropped in silence: what the format cannot say is in ``losses``. Numbers are read back to the last bit.
+
+    Args:
+        robot: What `eurdf.load` takes, or a robot that it returned, with the geometry that it was loaded with.
+        format: ``mjcf`` or ``urdf``.
+        urdf: As for `eurdf.load`; only if `robot` is not loaded yet, as all below but the next three.
+        root: As for `eurdf.load`.
+        configuration: Name of the configuration to start a simulation from. If the description has none of the name
+            ``assembled``, one is searched.
+        actuators: What actuators become, in a format that distinguishes: ``motor`` (a force or torque on the joint),
+            ``position`` or ``none``.
+        strict: Whether to refuse losses that are not exact.
+        package_dirs: As for `eurdf.load`.
+        xacro_args: As for `eurdf.load`.
+        confined: As for `eurdf.load`.
+
+    Returns:
+        The files, the losses and the map of coordinates.
+
+    Raises:
+        InvalidRobot: The robot cannot be built without guessing.
+        RobotNotFound: There are no such files.
+        CannotExport: The robot cannot be written in this format, or, if `strict`, not without losses.
+        ValueError: There is no such format, configuration or kind of actuator.
+    """
+    if format not in FORMATS:
+        hint = did_you_mean(format, FORMATS) or f"the formats are: {', '.join(FORMATS)}"
+        raise ValueError(f"there is no format '{format}'; {hint}")
+    if actuators not in get_args(Actuators):
+        raise ValueError(f"actuators is {actuators!r}; it must be one of {', '.join(get_args(Actuators))}")
+    if isinstance(robot, Robot):
+        meshes = _meshes_of(robot)
+    else:
+        description = describe(
+            robot, urdf, root, package_dirs=package_dirs, xacro_args=xacro_args, confined=confined
+        )
+        if isinstance(description, Unlinked) or description.diagnostics.refused:
+            raise InvalidRobot(description.path, tuple(description.diagnostics))
+        found, _ = find_meshes(description.urdf, package_dirs)
+        uris = {shape.filename for body in description.mechanism.bodies for shape in (*body.visuals, *body.collisions)}
+        meshes = {uri: Path(path) for uri, path in found.items() if uri in uris}
+        robot = build_robot(description.mechanism, geometry=False)
+    given = Exportable(robot.mechanism, _own_vectors(robot), _configurations(robot, configuration), meshes, actuators)
+    written = FORMATS[format].write(given)
+    losses = written.losses
+    if strict and (refused := tuple(loss for loss in losses if loss.effect is not Effect.EXACT)):
+        more = f"; and {len(refused) - 1} more" if len(refused) > 1 else ""
+        raise CannotExport(f"'{robot.mechanism.name}' has losses in the format {format}: {refused[0]}{more}", refused)
+    return Export(format, MappingProxyType(dict(written.files)), losses, written.coordinates)
+
+
+def _own_vectors(robot: Robot) -> OwnVectors:
+    places = {name: Place(slot.idx_q, slot.nq, slot.idx_v) for name, slot in robot.slots.items()}
+    if robot.mechanism.root == "floating":
+        places[ROOT_JOINT] = Place(0, 7, 0)
+    return OwnVectors(robot.model.nq, robot.model.nv, MappingProxyType(places))
+
+
+def _configurations(robot: Robot, first: str) -> dict[str, Mapping[str, tuple[float, ...]]]:
+    """The configurations of the robot, the one to start from first; without one, a closed one that is found."""
+    stated = robot.mechanism.configurations
+    if first in stated:
+        return {first: stated[first], **stated}
+    if first != ASSEMBLED:
+        hint = did_you_mean(first, stated) or f"the configurations are: {', '.join((ASSEMBLED, *stated))}"
+        raise ValueError(f"there is no configuration '{first}'; {hint}")
+    for limits in (True, False):
+        assembly = assemble(robot, limits=limits)
+        if assembly.closes:
+            return {ASSEMBLED: robot.coordinates(assembly.q), **stated}
+    return dict(stated)
+
+
+def _meshes_of(robot: Robot) -> dict[str, Path]:
+    """The files of the meshes of a robot that was loaded with its geometry."""
+    if robot.geometry is None:
+        return {}
+    found = {}
+    for model, use in ((robot.geometry.visual, "visuals"), (robot.geometry.collision, "collisions")):
+        shapes = [shape for body in robot.mechanism.bodies for shape in getattr(body, use)]
+        for shape, built in zip(shapes, model.geometryObjects, strict=True):
+            if shape.kind == "mesh":
+                found[shape.filename] = Path(built.meshPath)
+    return found

@@ -1,0 +1,9 @@
+"""The formats, one file each; a format sees a mechanism and nothing else of a robot."""
+
+from __future__ import annotations
+
+from eurdf.exporting.formats import mjcf
+from eurdf.exporting.written import Format
+
+#: Every format, by name. A new one is a file here and its line.
+FORMATS: dict[str, Format] = {each.name: each for each in (mjcf.FORMAT,)}

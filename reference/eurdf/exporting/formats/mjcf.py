@@ -1,0 +1,778 @@
+"""MJCF, the format of MuJoCo.
+
+Facts of MuJoCo that the file relies on (documentation, XML reference): angles are in radians by ``compiler/angle``;
+quaternions are w x y z; joints of one body act in order; equalities of joints and tendons are relative to the reference
+configuration, which is all zeros here; a moving body needs mass and inertia above 1e-15.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from pathlib import PurePosixPath
+
+import numpy as np
+from lxml import etree
+
+from eurdf.exporting.coordinates import Coordinates, Part
+from eurdf.exporting.exceptions import CannotExport
+from eurdf.exporting.inertia import about_centre, physical
+from eurdf.exporting.loss import Effect, Losses, LossKind
+from eurdf.exporting.mesh_file import mesh_names
+from eurdf.exporting.written import Exportable, Format, Written
+from eurdf.exporting.xml_text import file_content, numbers, representable
+from eurdf.mechanism.body import Body, Shape
+from eurdf.mechanism.constraint import (
+    Closure,
+    Coupling,
+    DistanceClosure,
+    FrameClosure,
+    HingeClosure,
+    PointClosure,
+)
+from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mechanism import ROOT_JOINT
+from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic, drivers
+from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
+from eurdf.mechanism.spanning_tree import rigid_roots
+
+#: kg and kg·m² that a moving body without inertia gets: above MuJoCo's least, 1e-15, and far below any of a robot.
+LEAST = 1e-14
+
+#: Time step, s. The equalities below are as stiff as it allows: MuJoCo keeps their time constant at two steps or more.
+TIMESTEP = 0.001
+
+#: Time constant (s) and damping ratio, and impedances, of closures, couplings and mimic joints.
+SOLREF, SOLIMP = (2.0 * TIMESTEP, 1.0), (0.9999, 0.9999, 0.001, 0.5, 2.0)
+
+#: Distance of the two points that hold a hinge, m.
+HINGE_WIDTH = 0.1
+
+#: Error at which a position actuator reaches the effort limit, rad or m; and its gain without such a limit.
+FULL_EFFORT_AT, GAIN = 0.1, 100.0
+
+#: The bound of a side without limit, where the other side has one: rad or m.
+_UNLIMITED = 1e10
+
+_X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+_WORLD = "world"
+
+LOSSES = (
+    LossKind(
+        "export-helical-joint",
+        "helical joint",
+        Effect.APPROXIMATE,
+        "becomes a slide and a hinge that a soft equality couples",
+        "let the simulation start at a keyframe, which meets the equality",
+    ),
+    LossKind(
+        "export-mimic-joint",
+        "mimic joint",
+        Effect.APPROXIMATE,
+        "becomes a free joint that a soft equality couples to its leader",
+        "let the simulation start at a keyframe, which meets the equality",
+    ),
+    LossKind(
+        "export-soft-3d",
+        "3d closure",
+        Effect.APPROXIMATE,
+        "becomes a 'connect', which is soft",
+        "for loops that open less, shorten option/timestep and solref together",
+    ),
+    LossKind(
+        "export-soft-6d",
+        "6d closure",
+        Effect.APPROXIMATE,
+        "becomes a 'weld', which is soft",
+        "for loops that open less, shorten option/timestep and solref together",
+    ),
+    LossKind(
+        "export-hinge-closure",
+        "hinge closure",
+        Effect.APPROXIMATE,
+        "becomes two 'connect' on the axis: 6 soft rows of rank 5",
+        "for loops that open less, shorten option/timestep and solref together",
+    ),
+    LossKind(
+        "export-distance-closure",
+        "distance closure",
+        Effect.APPROXIMATE,
+        "becomes the soft equality of a spatial tendon",
+        "for loops that open less, shorten option/timestep and solref together",
+    ),
+    LossKind(
+        "export-soft-coupling",
+        "coupling",
+        Effect.APPROXIMATE,
+        "becomes a soft equality of two joints, or of a fixed tendon of three or more",
+        "let the simulation start at a keyframe, which meets the equality",
+    ),
+    LossKind(
+        "export-compliance",
+        "compliance",
+        Effect.DROPPED,
+        "is left out: MuJoCo states the softness of an equality as a time constant",
+        "set solref and solimp of the equality by hand",
+    ),
+    LossKind(
+        "export-velocity-limit",
+        "velocity limit",
+        Effect.DROPPED,
+        "is left out: MuJoCo has no velocity limits of joints",
+        "limit velocities in the controller",
+    ),
+    LossKind(
+        "export-effort-limit",
+        "effort limit",
+        Effect.DROPPED,
+        "is left out: MuJoCo has none for a ball joint, and none of 0",
+        "limit efforts in the controller",
+    ),
+    LossKind(
+        "export-equal-limits",
+        "position limit",
+        Effect.APPROXIMATE,
+        "both limits are equal, which MuJoCo refuses: becomes a soft equality",
+        "make the joint 'fixed' in the description",
+    ),
+    LossKind(
+        "export-unequal-axes",
+        "armature",
+        Effect.APPROXIMATE,
+        "the axes of the joint have different values: their mean is written",
+        "give the axes of the joint one value",
+    ),
+    LossKind(
+        "export-gear-ratio",
+        "gear ratio",
+        Effect.EXACT,
+        "controls are on the side of the joint; the rotor is in the armature, gear ratio² · rotor inertia",
+        "to control the motor side, multiply 'gear' and divide 'ctrlrange' by the gear ratio",
+    ),
+    LossKind(
+        "export-force-axes",
+        "actuator",
+        Effect.APPROXIMATE,
+        "acts along the axes of the joint at rest, not along those of the child",
+        "turn the forces with Export.coordinates.rates",
+    ),
+    LossKind(
+        "export-position-gain",
+        "actuator",
+        Effect.APPROXIMATE,
+        "the description has no gain",
+        "set 'kp' and 'dampratio' of the actuator",
+    ),
+    LossKind(
+        "export-no-actuator",
+        "actuator",
+        Effect.DROPPED,
+        "is left out, as asked for",
+        "export with actuators 'motor' or 'position'",
+    ),
+    LossKind(
+        "export-massless-link",
+        "link without mass",
+        Effect.APPROXIMATE,
+        f"moves without inertia, which MuJoCo refuses: gets {LEAST:g} kg and kg·m²",
+        "give the link its mass, or merge its joints into one of a type with several axes",
+    ),
+    LossKind(
+        "export-inertia",
+        "inertia",
+        Effect.APPROXIMATE,
+        "is not that of a body with volume, which MuJoCo asks for: principal moments are raised",
+        "correct the inertia in the URDF; `eurdf check` reports those that no body has",
+    ),
+    LossKind(
+        "export-mesh-missing",
+        "mesh",
+        Effect.DROPPED,
+        "is left out: its file was not found",
+        "give the folder of its package, --package-dir or package_dirs=",
+    ),
+    LossKind(
+        "export-mesh-format",
+        "mesh",
+        Effect.DROPPED,
+        "is left out: MuJoCo reads binary STL, OBJ and MSH files",
+        "convert the mesh, and name the new file in the URDF",
+    ),
+    LossKind(
+        "export-texture",
+        "texture",
+        Effect.DROPPED,
+        "is left out; the color is kept",
+        "add a texture and a material to the file",
+    ),
+    LossKind(
+        "export-no-configuration",
+        "configuration",
+        Effect.DROPPED,
+        "no closed configuration was found, so there is no keyframe",
+        "find one with `eurdf assemble`, and write it to the description as 'assembled'",
+    ),
+    LossKind(
+        "export-name",
+        "name",
+        Effect.EXACT,
+        "is changed: the format cannot contain it, or has it already",
+        "choose another name in the description",
+    ),
+    LossKind(
+        "export-metadata",
+        "metadata",
+        Effect.DROPPED,
+        "metadata and user data are left out",
+        "keep the description beside the file",
+    ),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class _Piece:
+    """A joint of MuJoCo: one of those, in order, that a joint of the mechanism is.
+
+    Attributes:
+        name: Its name.
+        kind: ``hinge``, ``slide`` or ``ball``.
+        axis: In the frame of the joint at rest; of a ball the z axis, without effect.
+        velocities: Indices of the velocities of the joint that it has.
+        coordinate: Index of the coordinate of the joint that it has, if it is an angle or a length.
+    """
+
+    name: str
+    kind: str
+    axis: Vector3
+    velocities: tuple[int, ...]
+    coordinate: int | None = None
+
+
+def write(given: Exportable) -> Written:
+    """Write the MJCF of a robot: ``robot.xml``, and its meshes in ``meshes/``.
+
+    Raises:
+        CannotExport: A link has a negative mass.
+    """
+    return _Writer(given).write()
+
+
+class _Names:
+    """Unique names of the elements of one kind."""
+
+    def __init__(self, losses: Losses, *reserved: str) -> None:
+        self._losses, self._used = losses, set(reserved)
+
+    def new(self, name: str) -> str:
+        found = representable(name)
+        while found in self._used:
+            found += "_"
+        self._used.add(found)
+        if found != name:
+            self._losses.add("export-name", name, f"becomes '{found}'")
+        return found
+
+
+class _Writer:
+    """A file while it is written."""
+
+    def __init__(self, given: Exportable) -> None:
+        self.given, self.mechanism = given, given.mechanism
+        self.losses = Losses(LOSSES)
+        self.bodies = _Names(self.losses, _WORLD)
+        self.joints, self.sites, self.equalities, self.tendons, self.actuators = (
+            _Names(self.losses) for _ in range(5)
+        )
+        self.root = etree.Element("mujoco", model=representable(self.mechanism.name))
+        self._head()
+        self.asset = etree.SubElement(self.root, "asset")
+        self.world = etree.SubElement(self.root, "worldbody")
+        #: For each link, the element that has it, and its pose there.
+        self.hosts: dict[str, tuple[etree._Element, Pose]] = {}
+        #: The MuJoCo joints of each joint.
+        self.pieces: dict[str, tuple[_Piece, ...]] = {}
+        self.parts: list[Part] = []
+        self.files, self.mesh_ids = mesh_names(given.meshes)
+        self.used_meshes: dict[tuple[str, tuple[float, ...]], str] = {}
+        self.mimics = drivers(
+            {
+                joint.name: joint.mimic
+                for joint in self.mechanism.joints
+                if joint.mimic is not None and joint.type in MIMIC_TYPES
+            }
+        )
+
+    def write(self) -> Written:
+        mechanism = self.mechanism
+        self._root_body(mechanism.bodies[0])
+        for joint, body in zip(mechanism.joints, mechanism.bodies[1:], strict=True):
+            self._body(joint, body)
+        for frame in mechanism.frames:
+            self._site(frame.body, frame.pose, frame.name)
+        self._exclusions()
+        tendon = etree.SubElement(self.root, "tendon")
+        equality = etree.SubElement(self.root, "equality")
+        for closure in mechanism.closures:
+            self._closure(closure, tendon, equality)
+        for coupling in mechanism.couplings:
+            self._coupling(coupling, tendon, equality)
+        for joint in mechanism.joints:
+            self._joint_equalities(joint, equality)
+        actuator = etree.SubElement(self.root, "actuator")
+        for name in mechanism.actuators:
+            self._actuator(name, actuator)
+        coordinates = Coordinates(tuple(self.parts), self.given.own, "wxyz")
+        keyframe = etree.SubElement(self.root, "keyframe")
+        keys = _Names(self.losses)
+        for name, configuration in self.given.configurations.items():
+            etree.SubElement(keyframe, "key", name=keys.new(name), qpos=numbers(coordinates.from_files(configuration)))
+        if mechanism.constraints and not self.given.configurations:
+            self.losses.add("export-no-configuration", "assembled")
+        if mechanism.metadata or mechanism.own_data:
+            self.losses.add("export-metadata", mechanism.name)
+        for section in [each for each in self.root if len(each) == 0 and each.tag not in ("compiler", "option")]:
+            self.root.remove(section)
+        used = {uri for uri, _ in self.used_meshes}
+        meshes = {f"meshes/{self.mesh_ids[uri]}": self.files[uri] for uri in used}
+        return Written({"robot.xml": file_content(self.root), **meshes}, self.losses.found, coordinates)
+
+    def _head(self) -> None:
+        etree.SubElement(
+            self.root, "compiler", angle="radian", inertiafromgeom="false", autolimits="true", meshdir="meshes"
+        )
+        etree.SubElement(self.root, "option", timestep=numbers((TIMESTEP,)), integrator="implicitfast")
+        default = etree.SubElement(self.root, "default")
+        etree.SubElement(default, "equality", solref=numbers(SOLREF), solimp=numbers(SOLIMP))
+        visual = etree.SubElement(default, "default", {"class": "visual"})
+        etree.SubElement(visual, "geom", group="2", contype="0", conaffinity="0")
+        collision = etree.SubElement(default, "default", {"class": "collision"})
+        etree.SubElement(collision, "geom", group="3")
+
+    # -- bodies and joints ------------------------------------------------------------------------------------------
+
+    def _root_body(self, body: Body) -> None:
+        if self.mechanism.root == "fixed":
+            self._fixed(body, self.world, IDENTITY)
+            return
+        element = etree.SubElement(self.world, "body", name=self.bodies.new(body.name))
+        name = self.joints.new(ROOT_JOINT)
+        etree.SubElement(element, "freejoint", name=name)
+        self.parts.append(Part((name,), ROOT_JOINT, JointType.FLOATING))
+        self._content(body, element, IDENTITY, moving=True)
+
+    def _body(self, joint: Joint, body: Body) -> None:
+        host, pose = self.hosts[joint.parent]
+        pose = pose * joint.placement
+        if joint.type is JointType.FIXED:
+            self._fixed(body, host, pose * joint.offset)
+            return
+        element = etree.SubElement(host, "body", name=self.bodies.new(body.name), **_placed(pose * joint.offset))
+        back = joint.offset.inverse()
+        pieces = tuple(self._pieces(joint))
+        self.pieces[joint.name] = pieces
+        for piece in pieces:
+            attributes = {"name": piece.name, "type": piece.kind}
+            if joint.offset is not IDENTITY and any(back.xyz):
+                attributes["pos"] = numbers(back.xyz)
+            if piece.kind != "ball":
+                attributes["axis"] = numbers(back.rotate(direction(piece.axis)))
+            attributes |= self._properties(joint, piece)
+            etree.SubElement(element, "joint", attributes)
+        self.parts.append(self._part(joint, pieces))
+        self._content(body, element, IDENTITY, moving=True)
+
+    def _fixed(self, body: Body, host: etree._Element, pose: Pose) -> None:
+        """A link that is fixed to its host: a body, or a site if it has no mass."""
+        if body.inertia is None or not (body.inertia.mass or any(body.inertia.moments)):
+            self._content(body, host, pose)
+            if not body.virtual:
+                self._site(body.name, IDENTITY, body.name)
+            return
+        element = etree.SubElement(host, "body", name=self.bodies.new(body.name), **_placed(pose))
+        self._content(body, element, IDENTITY)
+
+    def _content(self, body: Body, element: etree._Element, pose: Pose, *, moving: bool = False) -> None:
+        """Inertia and shapes of a link, which is at a pose in the element."""
+        self.hosts[body.name] = (element, pose)
+        if element is not self.world and (element.get("name") is not None) and pose is IDENTITY:
+            self._inertial(body, element, moving)
+        for shape in body.visuals:
+            self._geom(body, shape, element, pose, "visual")
+        for shape in body.collisions:
+            self._geom(body, shape, element, pose, "collision")
+
+    def _inertial(self, body: Body, element: etree._Element, moving: bool) -> None:
+        inertia = body.inertia
+        if inertia is not None and inertia.mass < 0.0:
+            raise CannotExport(f"link '{body.name}' has the mass {inertia.mass:g} kg; correct it in the URDF")
+        if inertia is None or inertia.mass < LEAST:
+            if not moving:
+                return
+            mass, moments = LEAST, np.zeros((3, 3)) if inertia is None else about_centre(inertia)
+            moments, _ = physical(moments, LEAST)
+            centre = (0.0, 0.0, 0.0) if inertia is None else inertia.pose.xyz
+            self.losses.add("export-massless-link", body.name)
+        else:
+            mass, centre = inertia.mass, inertia.pose.xyz
+            moments, change = physical(about_centre(inertia), LEAST)
+            if change > 0.0:
+                self.losses.add("export-inertia", body.name, f"a principal moment changes by {change:.1e} kg·m²")
+        xx, yy, zz, xy, xz, yz = (moments[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))
+        etree.SubElement(
+            element,
+            "inertial",
+            pos=numbers(centre),
+            mass=numbers((mass,)),
+            fullinertia=numbers((xx, yy, zz, xy, xz, yz)),
+        )
+
+    def _pieces(self, joint: Joint) -> Iterator[_Piece]:
+        def new(suffix: str, kind: str, axis: Vector3, velocity: int | None) -> _Piece:
+            name = self.joints.new(joint.name + suffix)
+            return _Piece(name, kind, axis, () if velocity is None else (velocity,), velocity)
+
+        match joint.type:
+            case JointType.REVOLUTE | JointType.CONTINUOUS:
+                yield new("", "hinge", joint.axes[0], 0)
+            case JointType.PRISMATIC:
+                yield new("", "slide", joint.axes[0], 0)
+            case JointType.HELICAL:
+                yield new("_slide", "slide", joint.axes[0], None)
+                yield new("", "hinge", joint.axes[0], 0)
+            case JointType.CYLINDRICAL:
+                yield new("_slide", "slide", joint.axes[0], 0)
+                yield new("_turn", "hinge", joint.axes[0], 1)
+            case JointType.UNIVERSAL:
+                yield new("_1", "hinge", joint.axes[0], 0)
+                yield new("_2", "hinge", joint.axes[1], 1)
+            case JointType.PLANAR:
+                yield new("_x", "slide", _X, 0)
+                yield new("_y", "slide", _Y, 1)
+                yield new("_angle", "hinge", _Z, 2)
+            case JointType.SPHERICAL:
+                yield _Piece(self.joints.new(joint.name), "ball", _Z, (0, 1, 2))
+            case JointType.FLOATING:
+                for index, (suffix, axis) in enumerate((("_x", _X), ("_y", _Y), ("_z", _Z))):
+                    yield new(suffix, "slide", axis, index)
+                yield _Piece(self.joints.new(f"{joint.name}_ball"), "ball", _Z, (3, 4, 5))
+
+    def _part(self, joint: Joint, pieces: Sequence[_Piece]) -> Part:
+        names = tuple(piece.name for piece in pieces)
+        mimic = self.mimics.get(joint.name)
+        if mimic is not None:
+            return Part(names, mimic.joint, joint.type, ((0, mimic.multiplier, mimic.offset),), mimics=True)
+        if joint.type in (JointType.PLANAR, JointType.SPHERICAL, JointType.FLOATING):
+            return Part(names, joint.name, joint.type, turn=joint.offset.quaternion)
+        if joint.type is JointType.HELICAL:
+            return Part(names, joint.name, joint.type, ((0, _advance(joint), 0.0), (0, 1.0, 0.0)))
+        return Part(names, joint.name, joint.type, tuple((index, 1.0, 0.0) for index in range(len(pieces))))
+
+    def _properties(self, joint: Joint, piece: _Piece) -> dict[str, str]:
+        properties, found = joint.properties, {}
+        for attribute, values in (
+            ("armature", properties.armature),
+            ("damping", properties.damping),
+            ("frictionloss", properties.friction),
+        ):
+            mine = [values[index] for index in piece.velocities] if values else []
+            together = [values[i] for i in _sharing(joint, piece)] if values else []
+            if any(together):
+                if len(set(together)) > 1:
+                    shown = ", ".join(f"{value:g}" for value in together)
+                    self.losses.add("export-unequal-axes", joint.name, f"{attribute} {shown}: the mean is written")
+                    mine = together
+                found[attribute] = numbers((math.fsum(mine) / len(mine),))
+        for index in piece.velocities:
+            if properties.velocity and math.isfinite(properties.velocity[index]):
+                self.losses.add("export-velocity-limit", joint.name, f"{properties.velocity[index]:g} is left out")
+            effort = properties.effort[index] if properties.effort else math.inf
+            if math.isfinite(effort):
+                if piece.kind == "ball" or effort == 0.0:
+                    if piece.kind == "ball" or joint.name in self.mechanism.actuators:
+                        self.losses.add("export-effort-limit", joint.name)
+                else:
+                    found["actuatorfrcrange"] = numbers((-effort, effort))
+        if piece.coordinate is None:
+            return found
+        if properties.stiffness and properties.stiffness[piece.coordinate]:
+            found["stiffness"] = numbers((properties.stiffness[piece.coordinate],))
+            found["springref"] = numbers((properties.rest[piece.coordinate],))
+        lower, upper = _range(joint, piece.coordinate)
+        if (math.isfinite(lower) or math.isfinite(upper)) and lower < upper:
+            found["range"] = numbers((max(lower, -_UNLIMITED), min(upper, _UNLIMITED)))
+        return found
+
+    # -- shapes and sites -------------------------------------------------------------------------------------------
+
+    def _geom(self, body: Body, shape: Shape, element: etree._Element, pose: Pose, use: str) -> None:
+        attributes = {"class": use, "type": shape.kind}
+        size = shape.size
+        match shape.kind:
+            case "box":
+                attributes["size"] = numbers([side / 2.0 for side in size])
+            case "cylinder" | "capsule":
+                attributes["size"] = numbers((size[0], size[1] / 2.0))
+            case "sphere":
+                attributes["size"] = numbers(size)
+            case "mesh":
+                name = self._mesh(shape)
+                if name is None:
+                    return
+                attributes["mesh"] = name
+        if shape.color is not None:
+            attributes["rgba"] = numbers(shape.color)
+        if shape.texture:
+            self.losses.add("export-texture", shape.texture)
+        etree.SubElement(element, "geom", attributes | _placed(pose * shape.pose))
+
+    def _mesh(self, shape: Shape) -> str | None:
+        key = shape.filename, shape.size
+        if key in self.used_meshes:
+            return self.used_meshes[key]
+        if shape.filename not in self.files:
+            self.losses.add("export-mesh-missing", shape.filename)
+            return None
+        file = self.mesh_ids[shape.filename]
+        if not _is_readable(file, self.files[shape.filename]):
+            self.losses.add("export-mesh-format", shape.filename)
+            return None
+        name = f"{PurePosixPath(file).stem}_{len(self.used_meshes)}"
+        self.used_meshes[key] = name
+        etree.SubElement(self.asset, "mesh", name=name, file=file, scale=numbers(shape.size))
+        return name
+
+    def _site(self, link: str, pose: Pose, name: str) -> str:
+        """Add a site at a pose in a link; returns its name."""
+        element, host = self.hosts[link]
+        name = self.sites.new(name)
+        etree.SubElement(element, "site", {"name": name, **_placed(host * pose)})
+        return name
+
+    def _exclusions(self) -> None:
+        """No contacts of bodies that a closure joins, nor of a fixed base and what moves on it.
+
+        MuJoCo itself excludes a body and its parent, unless the parent is fixed to the world.
+        """
+        mechanism = self.mechanism
+        root = mechanism.bodies[0].name
+        rigid = rigid_roots(root, mechanism.joints)
+        touching: dict[str, dict[str, None]] = {}
+        for body in mechanism.bodies:
+            if body.collisions:
+                name = self.hosts[body.name][0].get("name")
+                touching.setdefault(rigid[body.name], {})[_WORLD if name is None else name] = None
+        massless = {rigid[body.name] for body in mechanism.bodies} - {
+            rigid[body.name] for body in mechanism.bodies if body.inertia is not None and body.inertia.mass > LEAST
+        }
+        beside: dict[str, set[str]] = {}
+        joined = [(joint.parent, joint.child) for joint in mechanism.joints]
+        joined += [(closure.a.body, closure.b.body) for closure in mechanism.closures]
+        for a, b in joined:
+            one, other = rigid[a], rigid[b]
+            if one != other:
+                beside.setdefault(one, set()).add(other)
+                beside.setdefault(other, set()).add(one)
+        pairs = {frozenset(pair) for pair in ((one, other) for one in beside for other in beside[one])}
+        for group in massless - {root}:  # the joints on both sides of it are one joint of several axes
+            pairs |= {frozenset(pair) for pair in combinations(beside.get(group, ()), 2)}
+        contact = etree.SubElement(self.root, "contact")
+        order = {name: index for index, name in enumerate(dict.fromkeys(rigid.values()))}
+        for pair in sorted((sorted(pair, key=order.__getitem__) for pair in pairs), key=lambda two: [*map(order.__getitem__, two)]):
+            for one in touching.get(pair[0], ()):
+                for other in touching.get(pair[1], ()):
+                    etree.SubElement(contact, "exclude", body1=one, body2=other)
+
+    # -- constraints ------------------------------------------------------------------------------------------------
+
+    def _closure(self, closure: Closure, tendon: etree._Element, equality: etree._Element) -> None:
+        if closure.compliance.linear or closure.compliance.angular:
+            self.losses.add("export-compliance", closure.name)
+        name = self.equalities.new(closure.name)
+        ends = closure.a, closure.b
+
+        def sites(suffix: str = "", poses: tuple[Pose, Pose] = (IDENTITY, IDENTITY)) -> tuple[str, str]:
+            a, b = (
+                self._site(end.body, end.pose * pose, f"{closure.name}/{side}{suffix}")
+                for end, pose, side in zip(ends, poses, "ab", strict=True)
+            )
+            return a, b
+
+        match closure:
+            case PointClosure():
+                a, b = sites()
+                etree.SubElement(equality, "connect", name=name, site1=a, site2=b)
+                self.losses.add("export-soft-3d", closure.name)
+            case FrameClosure():
+                a, b = sites()
+                etree.SubElement(equality, "weld", name=name, site1=a, site2=b)
+                self.losses.add("export-soft-6d", closure.name)
+            case HingeClosure():
+                a, b = sites()
+                etree.SubElement(equality, "connect", name=name, site1=a, site2=b)
+                one, other = (Pose(_scaled(HINGE_WIDTH, direction(axis))) for axis in closure.axes)
+                a, b = sites("_axis", (one, other))
+                second = self.equalities.new(f"{closure.name}/axis")
+                etree.SubElement(equality, "connect", name=second, site1=a, site2=b)
+                self.losses.add("export-hinge-closure", closure.name)
+            case DistanceClosure():
+                a, b = sites()
+                path = self.tendons.new(closure.name)
+                spatial = etree.SubElement(tendon, "spatial", name=path)
+                for site in (a, b):
+                    etree.SubElement(spatial, "site", site=site)
+                # The equality is relative to the length at the reference configuration.
+                excess = closure.length - self._distance_at_rest(closure)
+                etree.SubElement(equality, "tendon", name=name, tendon1=path, polycoef=numbers((excess, 0, 0, 0, 0)))
+                self.losses.add("export-distance-closure", closure.name)
+            case _:
+                raise CannotExport(f"closure '{closure.name}' has the type {closure.type}, which MJCF does not have")
+
+    def _distance_at_rest(self, closure: DistanceClosure) -> float:
+        carried = {joint.child: joint for joint in self.mechanism.joints}
+
+        def origin(body: str, pose: Pose) -> Vector3:
+            while body in carried:
+                joint = carried[body]
+                pose, body = joint.placement * joint.offset * pose, joint.parent
+            return pose.xyz
+
+        return math.dist(*(origin(end.body, end.pose) for end in (closure.a, closure.b)))
+
+    def _coupling(self, coupling: Coupling, tendon: etree._Element, equality: etree._Element) -> None:
+        name = self.equalities.new(coupling.name)
+        self.losses.add("export-soft-coupling", coupling.name)
+        terms = [(self._scalar(joint), coefficient) for joint, coefficient in coupling.coefficients]
+        (first, c), *others = terms
+        if len(others) <= 1:
+            ratio = -others[0][1] / c if others else 0.0
+            more = {"joint2": others[0][0]} if others else {}
+            polycoef = numbers((coupling.offset / c, ratio, 0, 0, 0))
+            etree.SubElement(equality, "joint", {"name": name, "joint1": first, **more, "polycoef": polycoef})
+            return
+        fixed = self.tendons.new(coupling.name)
+        element = etree.SubElement(tendon, "fixed", name=fixed)
+        for joint, coefficient in terms:
+            etree.SubElement(element, "joint", joint=joint, coef=numbers((coefficient,)))
+        etree.SubElement(equality, "tendon", name=name, tendon1=fixed, polycoef=numbers((coupling.offset, 0, 0, 0, 0)))
+
+    def _joint_equalities(self, joint: Joint, equality: etree._Element) -> None:
+        """What holds between the MuJoCo joints of a joint, and those of its leader."""
+        pieces = self.pieces.get(joint.name, ())
+        if joint.type is JointType.HELICAL:
+            slide, hinge = (piece.name for piece in pieces)
+            self._equal(equality, slide, Mimic(hinge, _advance(joint)))
+            self.losses.add("export-helical-joint", joint.name)
+        mimic = self.mimics.get(joint.name)
+        if mimic is not None:
+            leader = self._scalar(mimic.joint)
+            self._equal(equality, pieces[0].name, Mimic(leader, mimic.multiplier, mimic.offset))
+            self.losses.add("export-mimic-joint", joint.name)
+        for piece in pieces:
+            if piece.coordinate is None:
+                continue
+            lower, upper = _range(joint, piece.coordinate)
+            if lower == upper:
+                polycoef = numbers((lower, 0, 0, 0, 0))
+                name = self.equalities.new(f"{piece.name}/locked")
+                etree.SubElement(equality, "joint", name=name, joint1=piece.name, polycoef=polycoef)
+                self.losses.add("export-equal-limits", joint.name)
+
+    def _equal(self, equality: etree._Element, follower: str, mimic: Mimic) -> None:
+        polycoef = numbers((mimic.offset, mimic.multiplier, 0, 0, 0))
+        name = self.equalities.new(f"{follower}/mimic")
+        etree.SubElement(equality, "joint", name=name, joint1=follower, joint2=mimic.joint, polycoef=polycoef)
+
+    def _scalar(self, joint: str) -> str:
+        """The MuJoCo joint with the one coordinate of a joint; the angle of a helical one."""
+        return self.pieces[joint][-1].name
+
+    # -- actuators --------------------------------------------------------------------------------------------------
+
+    def _actuator(self, name: str, actuator: etree._Element) -> None:
+        mechanism = self.mechanism
+        motor = mechanism.motors.get(name)
+        shown = name if motor is None else motor.name
+        if self.given.actuators == "none":
+            self.losses.add("export-no-actuator", shown)
+            return
+        (joint,) = (joint for joint in mechanism.joints if joint.name == name)
+        if any(ratio != 1.0 for ratio in joint.properties.gear_ratio) or any(joint.properties.rotor_inertia):
+            self.losses.add("export-gear-ratio", shown)
+        if joint.type in (JointType.PLANAR, JointType.FLOATING):
+            self.losses.add("export-force-axes", shown)
+        count = joint.coordinates.nv
+        control = None if motor is None else motor.control
+        for piece in self.pieces[name]:
+            for index in piece.velocities:
+                attributes = {"name": self.actuators.new(shown if count == 1 else f"{shown}_{index + 1}")}
+                attributes["joint"] = piece.name
+                effort = joint.properties.effort[index] if joint.properties.effort else math.inf
+                bounds = control or ((-effort, effort) if 0.0 < effort < math.inf else None)
+                if piece.kind == "ball":
+                    unit = Pose(quaternion=joint.offset.quaternion).inverse().rotate((_X, _Y, _Z)[index % 3])
+                    attributes["gear"] = numbers((*unit, 0.0, 0.0, 0.0))
+                if self.given.actuators == "motor" or piece.kind == "ball":
+                    if bounds is not None and bounds[0] < bounds[1]:
+                        attributes["ctrlrange"] = numbers(bounds)
+                    etree.SubElement(actuator, "motor", attributes)
+                    continue
+                gain = effort / FULL_EFFORT_AT if 0.0 < effort < math.inf else GAIN
+                attributes |= {"kp": numbers((gain,)), "dampratio": "1"}
+                if bounds is not None and bounds[0] < bounds[1]:
+                    attributes["forcerange"] = numbers(bounds)
+                if "range" in self._properties(joint, piece):
+                    attributes["inheritrange"] = "1"
+                etree.SubElement(actuator, "position", attributes)
+                self.losses.add("export-position-gain", shown, f"kp is {gain:g}, dampratio 1")
+
+
+def _placed(pose: Pose) -> dict[str, str]:
+    """The attributes of a pose; those at their default are left out."""
+    attributes = {}
+    if any(pose.xyz):
+        attributes["pos"] = numbers(pose.xyz)
+    x, y, z, w = pose.quaternion
+    if (x, y, z) != (0.0, 0.0, 0.0):
+        attributes["quat"] = numbers((w, x, y, z))
+    return attributes
+
+
+def _scaled(length: float, unit: Vector3) -> Vector3:
+    return length * unit[0], length * unit[1], length * unit[2]
+
+
+def _advance(joint: Joint) -> float:
+    """Of a helical joint, m/rad."""
+    return joint.pitch / (2.0 * math.pi)
+
+
+def _range(joint: Joint, coordinate: int) -> tuple[float, float]:
+    properties = joint.properties
+    return (
+        properties.lower[coordinate] if properties.lower else -math.inf,
+        properties.upper[coordinate] if properties.upper else math.inf,
+    )
+
+
+def _sharing(joint: Joint, piece: _Piece) -> Iterable[int]:
+    """The velocities of a joint that turn with the child, of which a piece has one: their numbers must be equal."""
+    if joint.type is JointType.PLANAR and piece.velocities[0] < 2:
+        return (0, 1)
+    if joint.type is JointType.FLOATING and piece.velocities[0] < 3:
+        return (0, 1, 2)
+    return piece.velocities
+
+
+def _is_readable(file: str, content: bytes) -> bool:
+    """Whether MuJoCo reads a mesh: a binary STL has 80 bytes, the number of triangles, and 50 bytes of each."""
+    suffix = PurePosixPath(file).suffix.lower()
+    if suffix == ".stl":
+        return len(content) >= 84 and len(content) == 84 + 50 * int.from_bytes(content[80:84], "little")
+    return suffix in (".obj", ".msh")
+
+
+FORMAT = Format("mjcf", "MJCF, for MuJoCo and what reads its format", write, LOSSES)
+

@@ -1,0 +1,130 @@
+"""What an export loses of a robot: the kinds of loss, and each one that was found."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Effect(StrEnum):
+    """How much of an element is left in the other format.
+
+    ``exact``: all that has an effect on the robot, in other terms. ``approximate``: it behaves almost as it should.
+    ``dropped``: nothing is left of it.
+    """
+
+    EXACT = "exact"
+    APPROXIMATE = "approximate"
+    DROPPED = "dropped"
+
+
+#: What a mechanism can contain: the rows of the table of losses.
+CONCEPTS = (
+    "revolute joint",
+    "continuous joint",
+    "prismatic joint",
+    "planar joint",
+    "floating joint",
+    "spherical joint",
+    "universal joint",
+    "cylindrical joint",
+    "helical joint",
+    "fixed joint",
+    "floating root",
+    "mimic joint",
+    "position limit",
+    "velocity limit",
+    "effort limit",
+    "damping",
+    "friction",
+    "armature",
+    "gear ratio",
+    "spring",
+    "3d closure",
+    "6d closure",
+    "hinge closure",
+    "distance closure",
+    "coupling",
+    "compliance",
+    "actuator",
+    "control range",
+    "inertia",
+    "link without mass",
+    "visual shape",
+    "collision shape",
+    "mesh",
+    "color",
+    "texture",
+    "frame",
+    "configuration",
+    "name",
+    "metadata",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class LossKind:
+    """A way in which a format cannot say what a mechanism says.
+
+    Attributes:
+        code: Its permanent name, ``export-`` and a few words.
+        concept: One of `CONCEPTS`.
+        effect: What is left.
+        title: What happens, as one sentence.
+        hint: What the user can do.
+    """
+
+    code: str
+    concept: str
+    effect: Effect
+    title: str
+    hint: str
+
+
+@dataclass(frozen=True, slots=True)
+class Loss:
+    """One loss of one export.
+
+    Attributes:
+        code: Name of its kind.
+        effect: What is left.
+        concept: Kind of the element, one of `CONCEPTS`.
+        name: Name of the element: of a joint, a link, a closure, an actuator.
+        message: What happened, with values.
+        hint: What the user can do.
+    """
+
+    code: str
+    effect: Effect
+    concept: str
+    name: str
+    message: str
+    hint: str
+
+    def __str__(self) -> str:
+        return f"{self.effect}: {self.concept} '{self.name}': {self.message} [{self.code}]"
+
+
+class Losses:
+    """The losses that an export finds, each of a kind that its format has registered."""
+
+    def __init__(self, kinds: tuple[LossKind, ...]) -> None:
+        self._kinds = {kind.code: kind for kind in kinds}
+        self._found: dict[tuple[str, str], Loss] = {}
+
+    def add(self, code: str, name: str, message: str = "") -> None:
+        """Record a loss; the second one of a kind for the same element is the same loss.
+
+        Args:
+            code: Of a registered kind.
+            name: Name of the element.
+            message: What happened; the title of the kind by default.
+        """
+        kind = self._kinds[code]
+        loss = Loss(code, kind.effect, kind.concept, name, message or kind.title, kind.hint)
+        self._found.setdefault((code, name), loss)
+
+    @property
+    def found(self) -> tuple[Loss, ...]:
+        """What was recorded, in order."""
+        return tuple(self._found.values())
