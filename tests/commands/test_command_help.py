@@ -12,7 +12,7 @@ from eurdf.commands.main import COMMANDS, main
 NAMES = [command.__name__.rpartition(".")[2] for command in COMMANDS]
 
 #: The commands that link a robot, and those that read a URDF alone.
-OF_ROBOTS = ("check", "info", "assemble", "migrate")
+OF_ROBOTS = ("check", "info", "assemble", "export", "migrate")
 OF_URDFS = ("generate", "schema")
 
 

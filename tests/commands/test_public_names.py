@@ -25,6 +25,7 @@ TAKE_NAMES = {
     "lock": lambda given: eurdf.lock(four_bar(), given).locked_joints,
     "check": lambda given: len(eurdf.check("four_bar", package_dirs=given).diagnostics),
     "load": lambda given: eurdf.load("four_bar", package_dirs=given).model.nq,
+    "export": lambda given: eurdf.export("four_bar", "mjcf", package_dirs=given).coordinates.nq,
 }
 
 

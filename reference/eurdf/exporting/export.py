@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import get_args
+from typing import cast, get_args
 
 from eurdf.diagnostics import did_you_mean
 from eurdf.exceptions import InvalidRobot
@@ -18,13 +18,16 @@ from eurdf.exporting.loss import Effect, Loss
 from eurdf.exporting.output_folder import write_files
 from eurdf.exporting.written import Actuators, Exportable
 from eurdf.kinematics.assembly import assemble
-from eurdf.linking.description import Unlinked, describe, find_meshes
+from eurdf.linking.description import Linked, Unlinked, describe, find_meshes
 from eurdf.mechanism.mechanism import ROOT_JOINT, Root
 from eurdf.pinocchio.robot import Robot, build_robot
 from eurdf.reading.given import Given
 
 #: The configuration to start from, unless another one is asked for.
 ASSEMBLED = "assembled"
+
+#: What actuators can become.
+ACTUATORS: tuple[str, ...] = get_args(Actuators)
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +70,7 @@ class Export:
 
 def export(
     robot: Given | Robot,
-    format: str,
+    to: str,
     *,
     urdf: Given | None = None,
     root: Root | None = None,
@@ -84,7 +87,7 @@ def export(
 
     Args:
         robot: What `eurdf.load` takes, or a robot that it returned, with the geometry that it was loaded with.
-        format: ``mjcf`` or ``urdf``.
+        to: Name of the format: ``mjcf``.
         urdf: As for `eurdf.load`; only if `robot` is not loaded yet, as all below but the next three.
         root: As for `eurdf.load`.
         configuration: Name of the configuration to start a simulation from. If the description has none of the name
@@ -105,30 +108,56 @@ def export(
         CannotExport: The robot cannot be written in this format, or, if `strict`, not without losses.
         ValueError: There is no such format, configuration or kind of actuator.
     """
-    if format not in FORMATS:
-        hint = did_you_mean(format, FORMATS) or f"the formats are: {', '.join(FORMATS)}"
-        raise ValueError(f"there is no format '{format}'; {hint}")
-    if actuators not in get_args(Actuators):
-        raise ValueError(f"actuators is {actuators!r}; it must be one of {', '.join(get_args(Actuators))}")
     if isinstance(robot, Robot):
-        meshes = _meshes_of(robot)
-    else:
-        description = describe(
-            robot, urdf, root, package_dirs=package_dirs, xacro_args=xacro_args, confined=confined
-        )
-        if isinstance(description, Unlinked) or description.diagnostics.refused:
-            raise InvalidRobot(description.path, tuple(description.diagnostics))
-        found, _ = find_meshes(description.urdf, package_dirs)
-        uris = {shape.filename for body in description.mechanism.bodies for shape in (*body.visuals, *body.collisions)}
-        meshes = {uri: Path(path) for uri, path in found.items() if uri in uris}
-        robot = build_robot(description.mechanism, geometry=False)
-    given = Exportable(robot.mechanism, _own_vectors(robot), _configurations(robot, configuration), meshes, actuators)
-    written = FORMATS[format].write(given)
+        return _export(robot, _meshes_of(robot), to, configuration, actuators, strict)
+    description = describe(robot, urdf, root, package_dirs=package_dirs, xacro_args=xacro_args, confined=confined)
+    if isinstance(description, Unlinked) or description.diagnostics.refused:
+        raise InvalidRobot(description.path, tuple(description.diagnostics))
+    return export_linked(
+        description,
+        to,
+        configuration=configuration,
+        actuators=actuators,
+        strict=strict,
+        package_dirs=package_dirs,
+    )
+
+
+def export_linked(
+    description: Linked,
+    to: str,
+    *,
+    configuration: str,
+    actuators: Actuators,
+    strict: bool,
+    package_dirs: Sequence[str | os.PathLike[str]],
+) -> Export:
+    """Export a robot that was read; see `export`."""
+    found, _ = find_meshes(description.urdf, package_dirs)
+    bodies = description.mechanism.bodies
+    uris = {shape.filename for body in bodies for shape in (*body.visuals, *body.collisions)}
+    meshes = {uri: Path(path) for uri, path in found.items() if uri in uris}
+    robot = build_robot(description.mechanism, geometry=False)
+    return _export(robot, meshes, to, configuration, actuators, strict)
+
+
+def _export(
+    robot: Robot, meshes: Mapping[str, Path], to: str, configuration: str, actuators: str, strict: bool
+) -> Export:
+    if to not in FORMATS:
+        hint = did_you_mean(to, FORMATS) or f"the formats are: {', '.join(FORMATS)}"
+        raise ValueError(f"there is no format '{to}'; {hint}")
+    if actuators not in ACTUATORS:
+        raise ValueError(f"actuators is {actuators!r}; it must be one of {', '.join(ACTUATORS)}")
+    configurations = _configurations(robot, configuration)
+    written = FORMATS[to].write(
+        Exportable(robot.mechanism, _own_vectors(robot), configurations, meshes, cast(Actuators, actuators))
+    )
     losses = written.losses
     if strict and (refused := tuple(loss for loss in losses if loss.effect is not Effect.EXACT)):
         more = f"; and {len(refused) - 1} more" if len(refused) > 1 else ""
-        raise CannotExport(f"'{robot.mechanism.name}' has losses in the format {format}: {refused[0]}{more}", refused)
-    return Export(format, MappingProxyType(dict(written.files)), losses, written.coordinates)
+        raise CannotExport(f"'{robot.mechanism.name}' has losses in the format {to}: {refused[0]}{more}", refused)
+    return Export(to, MappingProxyType(dict(written.files)), losses, written.coordinates)
 
 
 def _own_vectors(robot: Robot) -> OwnVectors:

@@ -146,6 +146,13 @@ LOSSES = (
         "give the axes of the joint one value",
     ),
     LossKind(
+        "export-turning-armature",
+        "armature",
+        Effect.APPROXIMATE,
+        "acts along the axes of the joint at rest, not along those of the child: centrifugal terms differ",
+        "leave out the armature of planar and floating joints",
+    ),
+    LossKind(
         "export-gear-ratio",
         "gear ratio",
         Effect.EXACT,
@@ -283,9 +290,7 @@ class _Writer:
         self.given, self.mechanism = given, given.mechanism
         self.losses = Losses(LOSSES)
         self.bodies = _Names(self.losses, _WORLD)
-        self.joints, self.sites, self.equalities, self.tendons, self.actuators = (
-            _Names(self.losses) for _ in range(5)
-        )
+        self.joints, self.sites, self.equalities, self.tendons, self.actuators = (_Names(self.losses) for _ in range(5))
         self.root = etree.Element("mujoco", model=representable(self.mechanism.name))
         self._head()
         self.asset = etree.SubElement(self.root, "asset")
@@ -328,7 +333,9 @@ class _Writer:
         keyframe = etree.SubElement(self.root, "keyframe")
         keys = _Names(self.losses)
         for name, configuration in self.given.configurations.items():
-            etree.SubElement(keyframe, "key", name=keys.new(name), qpos=numbers(coordinates.from_files(configuration)))
+            etree.SubElement(
+                keyframe, "key", name=keys.new(name), qpos=numbers(coordinates.from_files(configuration).tolist())
+            )
         if mechanism.constraints and not self.given.configurations:
             self.losses.add("export-no-configuration", "assembled")
         if mechanism.metadata or mechanism.own_data:
@@ -369,7 +376,7 @@ class _Writer:
         if joint.type is JointType.FIXED:
             self._fixed(body, host, pose * joint.offset)
             return
-        element = etree.SubElement(host, "body", name=self.bodies.new(body.name), **_placed(pose * joint.offset))
+        element = etree.SubElement(host, "body", {"name": self.bodies.new(body.name), **_placed(pose * joint.offset)})
         back = joint.offset.inverse()
         pieces = tuple(self._pieces(joint))
         self.pieces[joint.name] = pieces
@@ -391,7 +398,7 @@ class _Writer:
             if not body.virtual:
                 self._site(body.name, IDENTITY, body.name)
             return
-        element = etree.SubElement(host, "body", name=self.bodies.new(body.name), **_placed(pose))
+        element = etree.SubElement(host, "body", {"name": self.bodies.new(body.name), **_placed(pose)})
         self._content(body, element, IDENTITY)
 
     def _content(self, body: Body, element: etree._Element, pose: Pose, *, moving: bool = False) -> None:
@@ -420,13 +427,12 @@ class _Writer:
             moments, change = physical(about_centre(inertia), LEAST)
             if change > 0.0:
                 self.losses.add("export-inertia", body.name, f"a principal moment changes by {change:.1e} kg·m²")
-        xx, yy, zz, xy, xz, yz = (moments[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))
         etree.SubElement(
             element,
             "inertial",
             pos=numbers(centre),
             mass=numbers((mass,)),
-            fullinertia=numbers((xx, yy, zz, xy, xz, yz)),
+            fullinertia=numbers(moments[(0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2)].tolist()),
         )
 
     def _pieces(self, joint: Joint) -> Iterator[_Piece]:
@@ -484,6 +490,8 @@ class _Writer:
                     shown = ", ".join(f"{value:g}" for value in together)
                     self.losses.add("export-unequal-axes", joint.name, f"{attribute} {shown}: the mean is written")
                     mine = together
+                if attribute == "armature" and piece.kind == "slide" and len(together) > 1:
+                    self.losses.add("export-turning-armature", joint.name)
                 found[attribute] = numbers((math.fsum(mine) / len(mine),))
         for index in piece.velocities:
             if properties.velocity and math.isfinite(properties.velocity[index]):
@@ -580,9 +588,11 @@ class _Writer:
             pairs |= {frozenset(pair) for pair in combinations(beside.get(group, ()), 2)}
         contact = etree.SubElement(self.root, "contact")
         order = {name: index for index, name in enumerate(dict.fromkeys(rigid.values()))}
-        for pair in sorted((sorted(pair, key=order.__getitem__) for pair in pairs), key=lambda two: [*map(order.__getitem__, two)]):
-            for one in touching.get(pair[0], ()):
-                for other in touching.get(pair[1], ()):
+        ranks = sorted(sorted(order[group] for group in pair) for pair in pairs)
+        groups = list(order)
+        for first, second in ranks:
+            for one in touching.get(groups[first], ()):
+                for other in touching.get(groups[second], ()):
                     etree.SubElement(contact, "exclude", body1=one, body2=other)
 
     # -- constraints ------------------------------------------------------------------------------------------------
@@ -775,4 +785,3 @@ def _is_readable(file: str, content: bytes) -> bool:
 
 
 FORMAT = Format("mjcf", "MJCF, for MuJoCo and what reads its format", write, LOSSES)
-

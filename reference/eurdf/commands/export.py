@@ -1,0 +1,192 @@
+"""``eurdf export``: write a robot in the format of a simulator, and show what it loses."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import sys
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from eurdf.commands.cannot_run import CannotRun
+from eurdf.commands.migrate import print_notes, show_refusal
+from eurdf.commands.output import write_json, write_lines
+from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
+from eurdf.commands.selection import select_one
+
+if TYPE_CHECKING:
+    from eurdf.diagnostics import Place
+    from eurdf.diagnostics.text import Line
+    from eurdf.exporting.loss import Loss
+    from eurdf.linking.description import Linked
+
+_DESCRIPTION = """\
+Write a robot in the format of a simulator, with the closed loops that the format can state, and show every loss: what
+the format cannot say, or only approximately.
+
+The files are written to a folder, all of them or none.
+"""
+_EPILOG = ending(
+    "0 exported, 1 the robot has errors, or losses with --strict, 2 the command cannot run.",
+    "eurdf export my_robot --to mjcf",
+    "eurdf export my_robot --to mjcf -o simulation --actuators position",
+)
+
+#: Names of the formats and of what actuators become. They are checked against `eurdf.exporting` by the tests: importing
+#: it here would slow every command down.
+FORMATS = ("mjcf",)
+ACTUATORS = ("motor", "position", "none")
+
+# Elements that are shown of each kind of loss.
+_MOST_SHOWN = 4
+
+_STYLES = {"exact": "green", "approximate": "yellow", "dropped": "red"}
+
+
+def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the parser."""
+    parser = subparsers.add_parser(
+        "export",
+        help="write a robot in the format of a simulator, and show what it loses",
+        description=_DESCRIPTION,
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    add_robot_path(parser)
+    add_robot_options(parser)
+    parser.add_argument("--to", required=True, choices=FORMATS, metavar="FORMAT", help=", ".join(FORMATS))
+    parser.add_argument(
+        "-o", "--output", metavar="OUT", help="the folder to write to; default: the robot's name, _ and the format"
+    )
+    parser.add_argument(
+        "--configuration",
+        metavar="NAME",
+        default="assembled",
+        help="configuration to start simulations from; default: assembled, which is searched if there is none",
+    )
+    parser.add_argument(
+        "--actuators", choices=ACTUATORS, default="motor", help="what actuators become in MJCF; default: motor"
+    )
+    parser.add_argument("--strict", action="store_true", help="write nothing if a loss is not exact")
+    parser.add_argument("--force", action="store_true", help="replace existing files")
+    parser.add_argument("--format", choices=("text", "json"), default="text", help="format of the output")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Export, show the losses, and return the exit code."""
+    from eurdf.linking.description import Unlinked, describe
+
+    path = select_one(args.path)
+    options = robot_options(args)
+    description = describe(path, **options)
+    as_json = args.format == "json"
+    if isinstance(description, Unlinked) or description.diagnostics.refused:
+        show_refusal(description.path, tuple(description.diagnostics), as_json)
+        return 1
+
+    from eurdf.exporting.exceptions import CannotExport
+    from eurdf.exporting.export import export_linked
+
+    losses: tuple[Loss, ...]
+    refusal, paths = "", []
+    folder = args.output or f"{_file_name(description.mechanism.name)}_{args.to}"
+    try:
+        exported = export_linked(
+            description,
+            args.to,
+            configuration=args.configuration,
+            actuators=args.actuators,
+            strict=args.strict,
+            package_dirs=options["package_dirs"],
+        )
+    except CannotExport as reason:
+        losses = reason.losses
+        refusal = "nothing was written: --strict refuses losses" if losses else f"nothing was written: {reason}"
+    except ValueError as reason:
+        raise CannotRun(str(reason)) from None
+    else:
+        losses = exported.losses
+        try:
+            paths = [os.fspath(each) for each in exported.write(folder, force=args.force)]
+        except FileExistsError as error:
+            raise CannotRun(str(error).replace("; force replaces it", "; --force replaces it")) from None
+    if as_json:
+        write_json(_result(args, paths, losses, description, refusal))
+    else:
+        write_lines(_lines(losses, description), sys.stdout)
+        print_notes([refusal] if refusal else [f"wrote '{each}'" for each in paths])
+    return 1 if refusal else 0
+
+
+def _file_name(robot: str) -> str:
+    return re.sub(r"[^A-Za-z0-9._-]", "_", robot).strip(".") or "robot"
+
+
+def _lines(losses: tuple[Loss, ...], description: Linked) -> Iterator[Line]:
+    """The losses, by code."""
+    groups: dict[str, list[Loss]] = {}
+    for loss in losses:
+        groups.setdefault(loss.code, []).append(loss)
+    for code, group in groups.items():
+        first = group[0]
+        count = f"{len(group)} x " if len(group) > 1 else ""
+        effect = str(first.effect)
+        yield [(f"{count}{first.concept}: ", "bold"), (effect, _STYLES[effect]), (f" [{code}]", "dim")]
+        for loss in group[:_MOST_SHOWN]:
+            place = _place(loss, description)
+            where = f"{place.file}:{place.line}: " if place is not None and place.line else ""
+            yield [(f"    {where}'{_visible(loss.name)}': {_visible(loss.message)}", "")]
+        if len(group) > _MOST_SHOWN:
+            yield [(f"    and {len(group) - _MOST_SHOWN} more; --format json lists all", "dim")]
+        yield [("    = hint: ", "cyan"), (first.hint, "")]
+
+
+def _visible(text: str) -> str:
+    from eurdf.diagnostics.visible import visible
+
+    return visible(text)
+
+
+def _place(loss: Loss, description: Linked) -> Place | None:
+    """Where the element of a loss is stated, if it is in a file."""
+    from eurdf.linking.description import Described
+
+    name, urdf = loss.name, description.urdf
+    if any(constraint.name == name for constraint in description.mechanism.constraints):
+        if loss.concept.endswith(("closure", "coupling", "compliance")) and isinstance(description, Described):
+            return description.place_of_constraint(name)
+        return None
+    if loss.concept in ("inertia", "link without mass"):
+        return urdf.document.place(urdf.links[name].element, None) if name in urdf.links else None
+    if name in urdf.joints:
+        return urdf.document.place(urdf.joints[name].element, None)
+    return None
+
+
+def _result(
+    args: argparse.Namespace, paths: list[str], losses: tuple[Loss, ...], description: Linked, refusal: str
+) -> dict[str, Any]:
+    from eurdf.diagnostics.report import encodable
+
+    def entry(loss: Loss) -> dict[str, Any]:
+        place = _place(loss, description)
+        return {
+            "code": loss.code,
+            "effect": str(loss.effect),
+            "concept": loss.concept,
+            "name": encodable(loss.name),
+            "message": encodable(loss.message),
+            "hint": loss.hint,
+            "file": None if place is None else encodable(place.file),
+            "line": None if place is None else place.line,
+        }
+
+    return {
+        "path": encodable(description.path),
+        "format": args.to,
+        "files": [encodable(each) for each in paths],
+        "refused": refusal or None,
+        "losses": [entry(loss) for loss in losses],
+    }

@@ -1,0 +1,144 @@
+"""`eurdf export` and `eurdf.export`: files, losses, refusals."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from pathlib import Path
+
+import pytest
+
+import eurdf
+from eurdf.commands import export as command
+from eurdf.commands.main import main
+from eurdf.exporting.export import ACTUATORS
+from eurdf.exporting.formats import FORMATS
+from eurdf.exporting.loss import CONCEPTS
+from eurdf.exporting.output_folder import write_files
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_command_knows_all_formats_and_actuators() -> None:
+    assert tuple(FORMATS) == command.FORMATS
+    assert ACTUATORS == command.ACTUATORS
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_losses_are_registered_well(name: str) -> None:
+    codes = [kind.code for kind in FORMATS[name].losses]
+    assert len(set(codes)) == len(codes)
+    for kind in FORMATS[name].losses:
+        assert kind.concept in CONCEPTS
+        assert re.fullmatch("export(-[a-z0-9]+)+", kind.code)
+        assert kind.title
+        assert kind.hint
+
+
+def test_files_are_written_to_a_folder_named_after_the_robot(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["export", "four_bar", "--to", "mjcf"]) == 0
+    out, err = capsys.readouterr()
+    assert [path.name for path in here.rglob("*")] == ["four_bar_mjcf", "robot.xml"]
+    assert err == f"wrote '{Path('four_bar_mjcf/robot.xml')}'\n"
+    (closure,) = eurdf.load("four_bar", geometry=False).constraints
+    assert re.search(rf"robot\.yaml:\d+: '{closure.name}': becomes a 'connect'", out)
+    assert "3d closure: approximate [export-soft-3d]" in out
+
+
+def test_json_lists_every_loss_with_its_place(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["export", "kangaroo_leg", "--to", "mjcf", "--format", "json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    losses = eurdf.export("kangaroo_leg", "mjcf").losses
+    assert [(each["code"], each["name"]) for each in found["losses"]] == [(loss.code, loss.name) for loss in losses]
+    for each in found["losses"]:
+        if each["concept"] == "velocity limit":
+            assert f'<joint name="{each["name"]}"' in Path(each["file"]).read_text().splitlines()[each["line"] - 1]
+
+
+def test_existing_file_is_kept_without_force(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (here / "out").mkdir()
+    (here / "out" / "robot.xml").write_text("mine")
+    arguments = ["export", "four_bar", "--to", "mjcf", "-o", "out"]
+    assert main(arguments) == 2
+    assert "already exists; --force replaces it" in capsys.readouterr().err
+    assert (here / "out" / "robot.xml").read_text() == "mine"
+    assert main([*arguments, "--force"]) == 0
+    assert (here / "out" / "robot.xml").read_bytes() == eurdf.export("four_bar", "mjcf").main
+    assert os.listdir(here / "out") == ["robot.xml"]
+
+
+def test_strict_refuses_losses(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["export", "four_bar", "--to", "mjcf", "--strict"]) == 1
+    out, err = capsys.readouterr()
+    assert "export-soft-3d" in out
+    assert "nothing was written: --strict refuses losses" in err
+    assert not list(here.iterdir())
+    with pytest.raises(eurdf.CannotExport) as refused:
+        eurdf.export("four_bar", "mjcf", strict=True)
+    assert refused.value.losses
+
+
+def test_unknown_configuration_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["export", "four_bar", "--to", "mjcf", "--configuration", "asembled"]) == 2
+    assert "there is no configuration 'asembled'; did you mean 'assembled'?" in capsys.readouterr().err
+
+
+def test_unknown_format_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"there is no format 'mjfc'; did you mean 'mjcf'\?"):
+        eurdf.export("four_bar", "mjfc")
+
+
+def test_invalid_robot_is_refused(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (here / "robot.urdf").write_text('<robot name="r"><link name="a"/><link name="a"/></robot>')
+    assert main(["export", "robot.urdf", "--to", "mjcf"]) == 1
+    assert "urdf-duplicate-link" in capsys.readouterr().err
+    assert [path.name for path in here.iterdir()] == ["robot.urdf"]
+
+
+def test_name_of_the_robot_leads_to_no_other_folder(here: Path) -> None:
+    (here / "robot.urdf").write_text('<robot name="../../x y"><link name="a"/></robot>')
+    assert main(["export", "robot.urdf", "--to", "mjcf"]) == 0
+    assert (here / "_.._x_y_mjcf" / "robot.xml").is_file()
+
+
+def test_robot_without_assembled_gets_a_closed_keyframe(here: Path) -> None:
+    source = Path(eurdf.__file__).parents[2] / "robots" / "four_bar"
+    text = re.sub(r"(?m)^configurations:\n(  .*\n)+", "", (source / "robot.yaml").read_text())
+    assert "assembled" not in text
+    given = eurdf.load(text, urdf=(source / "robot.urdf").read_text())
+    export = eurdf.export(given, "mjcf")
+    (key,) = re.findall(rb'<key name="assembled" qpos="(.*?)"', export.main)
+    q = export.coordinates.from_q([float(value) for value in key.split()])
+    assert abs(eurdf.residual(given, q)).max() < 1e-9
+
+
+def test_nothing_is_written_if_one_file_exists(here: Path) -> None:
+    (here / "b").write_bytes(b"mine")
+    with pytest.raises(FileExistsError):
+        write_files(here, {"a": b"1", "b": b"2"})
+    assert os.listdir(here) == ["b"]
+
+
+def test_failed_write_restores_everything(here: Path) -> None:
+    (here / "a").write_bytes(b"mine")
+    (here / "c").write_bytes(b"a file, so no folder")
+    with pytest.raises(OSError):
+        write_files(here, {"a": b"1", "new/b": b"2", "c/d": b"3"}, force=True)
+    assert (here / "a").read_bytes() == b"mine"
+    assert sorted(os.listdir(here)) == ["a", "c"]
+
+
+@pytest.mark.parametrize("name", ["../a", "link/a"])
+def test_nothing_is_written_outside_the_folder(here: Path, name: str) -> None:
+    (here / "out").mkdir()
+    (here / "away").mkdir()
+    (here / "out" / "link").symlink_to(here / "away")
+    with pytest.raises(PermissionError, match="is outside the folder"):
+        write_files(here / "out", {name: b"1"}, force=True)
+    assert not list((here / "away").iterdir())
+    assert sorted(os.listdir(here)) == ["away", "out"]

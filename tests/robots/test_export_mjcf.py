@@ -1,0 +1,408 @@
+"""Robots exported to MJCF: MuJoCo finds what we find, and simulates them with their loops closed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+import pinocchio as pin
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import eurdf
+from eurdf.mechanism.constraint import Constraint, Coupling
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.pose import Pose
+from eurdf.pinocchio.robot import Robot, build_robot
+from support import by_hand
+from support.exported import InMuJoCo, random_robot
+from support.plain_urdf import inertial, joint_element, link_element
+from support.plain_urdf import robot as robot_element
+
+seeds = st.integers(0, 2**32 - 1)
+roots: Any = st.sampled_from(["fixed", "floating"])
+NAMES = eurdf.collection_names()
+
+
+def near(robot: Robot, q: Any, seed: int = 0) -> tuple[Any, Any]:
+    """A configuration near q, loops open, and a velocity."""
+    random = np.random.default_rng(seed)
+    return pin.integrate(robot.model, q, random.uniform(-0.3, 0.3, robot.model.nv)), random.uniform(
+        -1.0, 1.0, robot.model.nv
+    )
+
+
+def assert_same_poses(there: InMuJoCo, q: Any) -> None:
+    robot = there.robot
+    pin.framesForwardKinematics(robot.model, robot.data, q)
+    for name in [body.name for body in robot.mechanism.bodies] + [frame.name for frame in robot.mechanism.frames]:
+        R, p = there.pose(name)
+        oMf = robot.data.oMf[robot.model.getFrameId(name)]
+        np.testing.assert_allclose(p, oMf.translation, atol=1e-9)
+        np.testing.assert_allclose(R, oMf.rotation, atol=1e-9)
+
+
+def assert_same_dynamics(there: InMuJoCo, q: Any, v: Any) -> None:
+    """M, and M a + h for some a: the latter where velocities of both are related by a T that depends on q."""
+    robot, map_ = there.robot, there.coordinates
+    T = map_.rates(q)
+    M = eurdf.mass_matrix(robot, q)
+    scale = max(1.0, np.abs(M).max())
+    np.testing.assert_allclose(T.T @ np.array([there.times_mass(column) for column in T.T]).T, M, atol=1e-9 * scale)
+    h = pin.rnea(robot.model, robot.data, q, v, np.zeros(robot.model.nv))
+    drift = there.times_mass(map_.to_a(q, v, np.zeros(robot.model.nv)))
+    np.testing.assert_allclose(T.T @ (drift + there.data.qfrc_bias), h, rtol=1e-9, atol=1e-9 * scale)
+
+
+def in_our_terms(there: InMuJoCo, constraint: Constraint) -> tuple[Any, Any, int]:
+    """Residual and K of MuJoCo's rows, and how many of ours they are: all but the angular rows of a hinge.
+
+    MuJoCo's rows of a closure are A less B, in the world's axes. The angular ones of a weld are, along A's axes, the
+    vector of the quaternion of A in B: -sin(θ/2) u for a rotation θ u from A to B, or, as it is one of two quaternions,
+    minus that. Where θ is 0, their derivative is -ω/2.
+    """
+    residual, J = there.rows(constraint.name)
+    if not len(residual):  # MuJoCo leaves out what no joint moves
+        return np.zeros(0), J, 0
+    if isinstance(constraint, Coupling):
+        first = constraint.coefficients[0][1]
+        return first * residual, first * J, 1
+    if constraint.type == "distance":
+        return residual, J, 1
+    R, _ = there.pose(f"{constraint.name}/a")
+    linear, turning = -R.T @ residual[:3], -R.T @ J[:3]
+    if constraint.type != "6d":
+        return linear, turning, 3
+    half = np.linalg.norm(residual[3:])
+    scale = -there.quaternion_sign(f"{constraint.name}/a", f"{constraint.name}/b")
+    angle = scale * residual[3:] * (2.0 if half == 0.0 else 2.0 * np.arcsin(half) / half)
+    return np.concatenate([linear, angle]), np.vstack([turning, 2.0 * scale * J[3:]]), 6
+
+
+def assert_same_constraints(there: InMuJoCo, q: Any, *, closed: bool) -> None:
+    there.at(q)
+    residual, K = eurdf.residual_and_jacobian(there.robot, q)
+    at = 0
+    for constraint in there.robot.mechanism.constraints:
+        found, J, rows = in_our_terms(there, constraint)
+        if constraint.type == "6d" and rows and not closed:
+            # log6 is not the origin of B where the frames are turned against each other: its angular part alone is.
+            np.testing.assert_allclose(found[3:], residual[at + 3 : at + 6], atol=1e-9)
+        else:
+            np.testing.assert_allclose(found, residual[at : at + rows], atol=1e-9)
+        if closed or constraint.type in ("distance", "coupling"):
+            np.testing.assert_allclose(J, K[at : at + rows], atol=1e-9)
+        if not rows:
+            np.testing.assert_allclose(K[at : at + constraint.rows], 0.0, atol=1e-9)
+        at += constraint.rows
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_robot_of_the_collection_is_the_same_in_mujoco(name: str) -> None:
+    robot, export = eurdf.load(name, geometry=False), eurdf.export(name, "mjcf")
+    there = InMuJoCo(robot, export)
+    assembled = robot.configurations["assembled"]
+    assert tuple(there.model.joint(i).name for i in range(there.model.njnt)) == export.coordinates.names
+    q, v = near(robot, assembled)
+    there.at(q, v)
+    assert_same_poses(there, q)
+    assert_same_dynamics(there, q, v)
+    assert_same_constraints(there, q, closed=False)
+    assert_same_constraints(there, assembled, closed=True)
+    np.testing.assert_allclose(there.model.key("assembled").qpos, export.coordinates.to_q(assembled), atol=1e-12)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_loops_stay_closed_in_simulation(name: str) -> None:
+    there = InMuJoCo(eurdf.load(name, geometry=False), eurdf.export(name, "mjcf"))
+    mujoco.mj_resetDataKeyframe(there.model, there.data, there.model.key("assembled").id)
+    opening = 0.0
+    while there.data.time < 2.0:
+        mujoco.mj_step(there.model, there.data)
+        opening = max(opening, np.abs(there.data.efc_pos[: there.data.ne]).max())
+    assert opening < 1e-3
+    assert not any(warning.number for warning in there.data.warning)
+
+
+@given(seed=seeds, root=roots)
+@settings(max_examples=20)
+def test_random_robot_is_the_same_in_mujoco(seed: int, root: Any) -> None:
+    robot, q = random_robot(seed, root)
+    there = InMuJoCo(robot, eurdf.export(robot, "mjcf"))
+    assert_same_constraints(there, q, closed=True)
+    q, v = near(robot, q, seed)
+    there.at(q, v)
+    assert_same_poses(there, q)
+    assert_same_dynamics(there, q, v)
+    assert_same_constraints(there, q, closed=False)
+
+
+@given(seed=seeds, root=roots)
+@settings(max_examples=20)
+def test_coordinates_map_back(seed: int, root: Any) -> None:
+    robot, q = random_robot(seed, root)
+    map_ = eurdf.export(robot, "mjcf").coordinates
+    q, v = near(robot, q, seed)
+    there = map_.to_q(q)
+    assert there.shape == (map_.nq,)
+    np.testing.assert_allclose(pin.difference(robot.model, map_.from_q(there), q), 0.0, atol=1e-12)
+    np.testing.assert_allclose(map_.from_v(there, map_.to_v(q, v)), v, atol=1e-12)
+
+
+def test_acceleration_is_the_rate_of_the_velocity() -> None:
+    robot, q = random_robot(5, "floating")
+    map_ = eurdf.export(robot, "mjcf").coordinates
+    q, v = near(robot, q)
+    a, h = np.linspace(-1.0, 1.0, robot.model.nv), 1e-6
+    after, before = (map_.to_v(pin.integrate(robot.model, q, t * v), v + t * a) for t in (h, -h))
+    np.testing.assert_allclose(map_.to_a(q, v, a), (after - before) / (2 * h), atol=1e-7)
+
+
+def test_child_frame_away_from_the_joint_is_exported() -> None:
+    robot, q = random_robot(3, kinds=())
+    random = np.random.default_rng(0)
+    joints = tuple(replace(joint, offset=by_hand.some_pose(random)) for joint in robot.mechanism.joints)
+    robot = build_robot(replace(robot.mechanism, joints=joints), geometry=False)
+    there = InMuJoCo(robot, eurdf.export(robot, "mjcf"))
+    q, v = near(robot, q)
+    there.at(q, v)
+    assert_same_poses(there, q)
+    assert_same_dynamics(there, q, v)
+    np.testing.assert_allclose(there.coordinates.from_q(there.data.qpos), q, atol=1e-12)
+    np.testing.assert_allclose(there.coordinates.from_v(there.data.qpos, there.data.qvel), v, atol=1e-12)
+
+
+def test_coupling_of_three_joints_is_a_tendon() -> None:
+    robot, q = random_robot(4, kinds=())
+    names = {joint.type: joint.name for joint in robot.mechanism.joints if joint.mimic is None}
+    terms = tuple(
+        (names[kind], c) for kind, c in zip(("helical", "prismatic", "revolute"), (2.0, -1.5, 0.7), strict=True)
+    )
+    robot = build_robot(replace(robot.mechanism, couplings=(Coupling("mixed", terms, 0.3),)), geometry=False)
+    there = InMuJoCo(robot, eurdf.export(robot, "mjcf"))
+    there.at(q)
+    residual, K = eurdf.residual_and_jacobian(robot, q)
+    found, J = there.rows("mixed")
+    np.testing.assert_allclose(found, residual, atol=1e-12)
+    np.testing.assert_allclose(J, K, atol=1e-12)
+
+
+def test_hinge_allows_rotation_about_its_axis_alone() -> None:
+    robot, q = random_robot(1, kinds=("hinge",))
+    there = InMuJoCo(robot, eurdf.export(robot, "mjcf"))
+    there.at(q)
+    J = np.vstack([there.rows(name)[1] for name in ("hinge", "hinge/axis")])
+    K = eurdf.residual_and_jacobian(robot, q)[1]
+    assert (
+        np.linalg.matrix_rank(J, 1e-9)
+        == np.linalg.matrix_rank(K, 1e-9)
+        == np.linalg.matrix_rank(np.vstack([J, K]), 1e-9)
+        == 5
+    )
+
+
+def test_generalized_forces_of_motors_are_those_of_the_actuation() -> None:
+    robot, q = random_robot(8)
+    there = InMuJoCo(robot, eurdf.export(robot, "mjcf"))
+    u = np.linspace(0.5, 2.0, len(robot.actuation.idx_v))
+    there.data.ctrl[:] = u
+    there.at(q)
+    force = there.coordinates.rates(q).T @ there.data.qfrc_actuator
+    np.testing.assert_allclose(force, robot.actuation.selection @ u, atol=1e-12)
+
+
+def test_motors_of_a_ball_joint_act_along_its_axes() -> None:
+    robot, q = random_robot(8, kinds=())
+    (ball,) = (joint for joint in robot.mechanism.joints if joint.type is JointType.SPHERICAL)
+    turned = tuple(
+        replace(joint, offset=Pose.from_xyz_rpy((0.1, 0.2, 0.3), (0.4, 0.5, 0.6))) if joint is ball else joint
+        for joint in robot.mechanism.joints
+    )
+    robot = build_robot(replace(robot.mechanism, actuators=(ball.name,), joints=turned), geometry=False)
+    there = InMuJoCo(robot, eurdf.export(robot, "mjcf"))
+    there.data.ctrl[:] = 1.0, 2.0, 3.0
+    there.at(q)
+    force = there.coordinates.rates(q).T @ there.data.qfrc_actuator
+    np.testing.assert_allclose(force, robot.actuation.selection @ [1.0, 2.0, 3.0], atol=1e-12)
+
+
+BODY = inertial(1.5, '<origin xyz="0.1 0.2 0.3"/>')
+BALL = '<collision><geometry><sphere radius="0.05"/></geometry></collision>'
+LIMIT = '<limit lower="-1" upper="2" effort="7" velocity="3"/>'
+LOSSES = '<dynamics damping="0.2" friction="0.1"/>'
+PAIR = robot_element(
+    link_element("base", BALL),
+    link_element("arm", BODY + BALL),
+    link_element("tip"),
+    link_element("hand", BODY + BALL),
+    joint_element("shoulder", "revolute", "base", "arm", LIMIT + LOSSES),
+    joint_element("flange", "fixed", "arm", "tip"),
+    joint_element("wrist", "prismatic", "tip", "hand", LIMIT),
+)
+DESCRIPTION = """\
+extended_urdf: "2.1"
+joints:
+  shoulder: {stiffness: 30, rest: 0.4, armature: 0.3}
+actuators:
+  - {joint: shoulder, gear_ratio: 5, control: [-4, 6]}
+  - wrist
+"""
+
+
+def pair(**options: Any) -> tuple[eurdf.Export, Any]:
+    export = eurdf.export(DESCRIPTION, "mjcf", urdf=PAIR, **options)
+    return export, mujoco.MjModel.from_xml_string(export.main.decode())
+
+
+def test_properties_of_joints_are_exported() -> None:
+    _, model = pair()
+    shoulder = model.joint("shoulder")
+    at = shoulder.dofadr[0]
+    assert shoulder.range.tolist() == [-1.0, 2.0]
+    assert model.jnt_actfrcrange[shoulder.id].tolist() == [-7.0, 7.0]
+    assert (model.dof_armature[at], model.dof_frictionloss[at]) == (0.3, 0.1)
+    assert (np.ravel(shoulder.stiffness)[0], np.ravel(model.dof_damping[at])[0]) == (30.0, 0.2)
+    assert model.qpos_spring[shoulder.qposadr[0]] == 0.4
+
+
+def test_motor_has_the_control_range_of_the_description() -> None:
+    export, model = pair()
+    assert model.actuator("shoulder").ctrlrange.tolist() == [-4.0, 6.0]
+    assert model.actuator("wrist").ctrlrange.tolist() == [-7.0, 7.0]
+    assert [loss.effect for loss in export.losses if loss.code == "export-gear-ratio"] == ["exact"]
+
+
+def test_armature_of_a_planar_joint_is_a_loss() -> None:
+    urdf = PAIR.replace('"revolute"', '"planar"').replace(LIMIT + LOSSES, "")
+    description = 'extended_urdf: "2.0"\njoints: {shoulder: {armature: [1, 2, 3]}}\n'
+    export = eurdf.export(description, "mjcf", urdf=urdf)
+    codes = {loss.code: loss.message for loss in export.losses if loss.name == "shoulder"}
+    assert codes["export-unequal-axes"] == "armature 1, 2: the mean is written"
+    assert "export-turning-armature" in codes
+    model = mujoco.MjModel.from_xml_string(export.main.decode())
+    assert model.dof_armature[:3].tolist() == [1.5, 1.5, 3.0]
+
+
+def test_position_actuator_reaches_effort_limit_at_a_tenth() -> None:
+    export, model = pair(actuators="position")
+    wrist = model.actuator("wrist")
+    assert wrist.gainprm[0] == 70.0
+    assert wrist.ctrlrange.tolist() == [-1.0, 2.0]
+    assert {loss.name for loss in export.losses if loss.code == "export-position-gain"} == {"shoulder", "wrist"}
+
+
+def test_no_actuators_is_a_loss() -> None:
+    export, model = pair(actuators="none")
+    assert model.nu == 0
+    assert {loss.name for loss in export.losses if loss.code == "export-no-actuator"} == {"shoulder", "wrist"}
+
+
+def test_fixed_link_without_mass_is_a_site() -> None:
+    _, model = pair()
+    assert {model.site(i).name for i in range(model.nsite)} == {"base", "tip"}
+    assert {model.body(i).name for i in range(model.nbody)} == {"world", "arm", "hand"}
+
+
+def test_neighbours_do_not_collide() -> None:
+    _, model = pair()
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    assert [sorted(model.geom(g).bodyid[0] for g in contact.geom) for contact in data.contact] == [[0, 2]]  # base, hand
+
+
+@pytest.mark.parametrize("name", ["digit_2legs", "stewart_platform", "four_bar"])
+def test_pinocchio_reads_closures_and_masses(name: str, tmp_path: Path) -> None:
+    robot = eurdf.load(name, geometry=False)
+    (path,) = eurdf.export(robot, "mjcf").write(tmp_path)
+    model = pin.buildModelFromMJCF(str(path))
+    assert model.nv == robot.model.nv
+    assert pin.computeTotalMass(model) == pytest.approx(pin.computeTotalMass(robot.model), rel=1e-9)
+
+
+def test_massless_moving_link_is_a_loss() -> None:
+    urdf = PAIR.replace(link_element("hand", BODY + BALL), link_element("hand", BALL))
+    export = eurdf.export(urdf, "mjcf")
+    assert [loss.name for loss in export.losses if loss.code == "export-massless-link"] == ["hand"]
+    mujoco.MjModel.from_xml_string(export.main.decode())
+
+
+def test_unphysical_inertia_is_a_loss() -> None:
+    urdf = PAIR.replace(BODY, inertial(1.5, "", (1.0, 0, 0, 1.0, 0, 3.0)), 1)
+    export = eurdf.export(urdf, "mjcf")
+    (loss,) = (loss for loss in export.losses if loss.code == "export-inertia")
+    assert (loss.name, loss.message) == ("arm", "a principal moment changes by 5.0e-01 kg·m²")
+    mujoco.MjModel.from_xml_string(export.main.decode())
+
+
+def test_negative_mass_is_refused() -> None:
+    with pytest.raises(eurdf.CannotExport, match=r"link .arm. has the mass -1\.5 kg"):
+        eurdf.export(PAIR.replace(BODY, inertial(-1.5), 1), "mjcf")
+
+
+def test_equal_limits_hold_the_joint() -> None:
+    export = eurdf.export(PAIR.replace('lower="-1" upper="2"', 'lower="0.5" upper="0.5"'), "mjcf")
+    model = mujoco.MjModel.from_xml_string(export.main.decode())
+    assert [model.equality(i).data[0] for i in range(model.neq)] == [0.5, 0.5]
+    assert {loss.name for loss in export.losses if loss.code == "export-equal-limits"} == {"shoulder", "wrist"}
+
+
+def test_link_called_world_is_renamed() -> None:
+    urdf = PAIR.replace('"base"', '"world"').replace(link_element("world", BALL), link_element("world", BODY))
+    export = eurdf.export(urdf, "mjcf")
+    assert [loss.message for loss in export.losses if loss.code == "export-name"] == ["becomes 'world_'"]
+    mujoco.MjModel.from_xml_string(export.main.decode())
+
+
+STL = (
+    b"\0" * 80
+    + (4).to_bytes(4, "little")
+    + b"".join(
+        np.array([0, 0, 0, *a, *b, *c], "<f4").tobytes() + b"\0\0"
+        for a, b, c in (
+            ((0, 0, 0), (0, 1, 0), (1, 0, 0)),
+            ((0, 0, 0), (1, 0, 0), (0, 0, 1)),
+            ((0, 0, 0), (0, 0, 1), (0, 1, 0)),
+            ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
+        )
+    )
+)
+
+
+def with_mesh(folder: Path, name: str, content: bytes | None) -> Path:
+    """A robot with a mesh, with an odd file name."""
+    if content is not None:
+        (folder / name).write_bytes(content)
+    mesh = f'<visual><origin xyz="0 0 1"/><geometry><mesh filename="{name}" scale="2 2 2"/></geometry></visual>'
+    path = folder / "robot.urdf"
+    path.write_text(PAIR.replace(BODY + BALL, BODY + BALL + mesh, 1), encoding="utf-8")
+    return path
+
+
+@pytest.mark.parametrize("loaded", [False, True])
+def test_mesh_is_copied_under_a_plain_name(tmp_path: Path, loaded: bool) -> None:
+    path = with_mesh(tmp_path, "a $(b) c.STL", STL)
+    export = eurdf.export(eurdf.load(path) if loaded else path, "mjcf")
+    assert export.files["meshes/a___b__c.stl"] == STL
+    written = export.write(tmp_path / "out")
+    model = mujoco.MjModel.from_xml_path(str(written[0]))
+    assert model.nmesh == 1
+    assert np.ptp(model.mesh_vert, axis=0).max() == pytest.approx(2.0 * np.sqrt(2.0), rel=0.5)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "code"),
+    [
+        ("a.stl", None, "export-mesh-missing"),
+        ("a.stl", b"solid a\nendsolid a\n", "export-mesh-format"),
+        ("a.dae", b"<COLLADA/>", "export-mesh-format"),
+    ],
+)
+def test_mesh_that_mujoco_cannot_read_is_a_loss(tmp_path: Path, name: str, content: bytes | None, code: str) -> None:
+    export = eurdf.export(with_mesh(tmp_path, name, content), "mjcf")
+    assert [(loss.code, loss.name) for loss in export.losses if loss.concept == "mesh"] == [(code, name)]
+    assert list(export.files) == ["robot.xml"]
+    mujoco.MjModel.from_xml_string(export.main.decode())

@@ -1,0 +1,104 @@
+"""Random robots for exports, and an exported robot in MuJoCo."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import mujoco
+import numpy as np
+
+import eurdf
+from eurdf.mechanism.body import Inertia
+from eurdf.mechanism.joint import Joint, JointProperties
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mechanism import Root
+from eurdf.pinocchio.robot import Robot, build_robot
+from support import by_hand
+from support.closed_tree import closed_tree
+
+
+def real_inertia(random: np.random.Generator) -> Inertia:
+    """Of a few masses: the triangle inequality holds."""
+    points = random.uniform(-0.5, 0.5, (6, 3))
+    points -= points.mean(axis=0)
+    A = sum(p @ p * np.eye(3) - np.outer(p, p) for p in points)
+    moments = (A[0, 0], A[0, 1], A[0, 2], A[1, 1], A[1, 2], A[2, 2])
+    return Inertia(random.uniform(0.5, 2.0), by_hand.some_pose(random), tuple(map(float, moments)))
+
+
+def some_properties(joint: Joint, random: np.random.Generator) -> JointProperties:
+    """Armature, damping and friction, equal on all axes that one joint of MuJoCo has.
+
+    Planar and floating joints have no armature, which is exported with a loss.
+    """
+    if joint.type is JointType.FIXED:
+        return joint.properties
+    nv = joint.coordinates.nv
+    together = joint.type in (JointType.SPHERICAL, JointType.PLANAR, JointType.FLOATING)
+
+    def values() -> tuple[float, ...]:
+        return tuple(random.uniform(0.1, 1.0, 1).tolist() * nv if together else random.uniform(0.1, 1.0, nv).tolist())
+
+    armature = (0.0,) * nv if joint.type in (JointType.PLANAR, JointType.FLOATING) else values()
+    return replace(JointProperties.unlimited(joint.type), armature=armature, damping=values(), friction=values())
+
+
+def random_robot(seed: int, root: Root = "fixed", **options: Any) -> tuple[Robot, Any]:
+    """A tree of all joint types, closed by constraints of all kinds, and a configuration that closes it."""
+    random = np.random.default_rng(seed)
+    robot, q = closed_tree(random, root=root, **options)
+    mechanism = robot.mechanism
+    joints = tuple(replace(joint, properties=some_properties(joint, random)) for joint in mechanism.joints)
+    bodies = tuple(replace(body, inertia=real_inertia(random)) for body in mechanism.bodies)
+    coordinates = robot.coordinates(q)
+    mechanism = replace(
+        mechanism, version="2.1", joints=joints, bodies=bodies, configurations={"assembled": coordinates}
+    )
+    return build_robot(mechanism, geometry=False), q
+
+
+class InMuJoCo:
+    """An exported robot in MuJoCo."""
+
+    def __init__(self, robot: Robot, export: eurdf.Export) -> None:
+        self.robot, self.coordinates = robot, export.coordinates
+        meshes = {path.removeprefix("meshes/"): content for path, content in export.files.items()}
+        self.model = mujoco.MjModel.from_xml_string(export.main.decode(), meshes)
+        self.model.opt.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+        self.data = mujoco.MjData(self.model)
+
+    def at(self, q: Any, v: Any | None = None) -> None:
+        self.data.qpos[:] = self.coordinates.to_q(q)
+        self.data.qvel[:] = 0.0 if v is None else self.coordinates.to_v(q, v)
+        mujoco.mj_forward(self.model, self.data)
+
+    def pose(self, name: str) -> tuple[Any, Any]:
+        """Rotation and origin of a link or a frame."""
+        try:
+            found = self.data.body(name)
+        except KeyError:
+            found = self.data.site(name)
+        return found.xmat.reshape(3, 3), found.xpos
+
+    def quaternion_sign(self, site: str, other: str) -> float:
+        """1 if MuJoCo's quaternions of two sites are of the same one of the two hemispheres, else -1."""
+        found = []
+        for name in (site, other):
+            at, quaternion = self.model.site(name), np.zeros(4)
+            mujoco.mju_mulQuat(quaternion, self.data.xquat[at.bodyid[0]], at.quat)
+            found.append(quaternion)
+        return float(np.copysign(1.0, found[0] @ found[1]))
+
+    def times_mass(self, vector: Any) -> Any:
+        found = np.zeros(self.model.nv)
+        mujoco.mj_mulM(self.model, self.data, found, vector)
+        return found
+
+    def rows(self, equality: str) -> tuple[Any, Any]:
+        """Residual and Jacobian, for velocities of the robot, of an equality; of a configuration set by `at`."""
+        d, n = self.data, self.data.ne
+        mine = d.efc_id[:n] == self.model.equality(equality).id
+        q = self.coordinates.from_q(d.qpos)
+        J = d.efc_J.reshape(-1, self.model.nv)[:n][mine] @ self.coordinates.rates(q)
+        return d.efc_pos[:n][mine], J
