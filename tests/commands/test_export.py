@@ -16,6 +16,7 @@ from eurdf.exporting.export import ACTUATORS
 from eurdf.exporting.formats import FORMATS
 from eurdf.exporting.loss import CONCEPTS
 from eurdf.exporting.output_folder import write_files
+from eurdf.exporting.table import with_table
 
 
 @pytest.fixture(autouse=True)
@@ -142,3 +143,11 @@ def test_nothing_is_written_outside_the_folder(here: Path, name: str) -> None:
         write_files(here / "out", {name: b"1"}, force=True)
     assert not list((here / "away").iterdir())
     assert sorted(os.listdir(here)) == ["away", "out"]
+
+
+def test_table_of_losses_is_current() -> None:
+    page = (Path(eurdf.__file__).parents[2] / "docs" / "export.md").read_text(encoding="utf-8")
+    assert with_table(page) == page
+    for each in FORMATS.values():
+        for kind in each.losses:
+            assert f"`{kind.code}`" in page
