@@ -96,3 +96,13 @@ def test_residual_at_coordinates_that_overflow_is_an_error(function: Callable[..
     q[robot.model.joints[robot.model.getJointId("ball_rod1_start")].idx_q + 2] = size
     with pytest.raises(eurdf.NumericalOverflow):
         function(robot, q)
+
+
+@pytest.mark.parametrize("function", [eurdf.batch.residual, eurdf.batch.residual_and_jacobian])
+@pytest.mark.parametrize("size", [1e155, -1e155, 1e308])
+def test_overflow_in_a_batch_names_the_configuration(function: Callable[..., Any], size: float) -> None:
+    robot = eurdf.load("digit_leg", geometry=False)
+    q = np.tile(robot.configurations["assembled"], (3, 1))
+    q[1, robot.model.joints[robot.model.getJointId("ball_rod1_start")].idx_q + 2] = size
+    with pytest.raises(eurdf.NumericalOverflow, match=r"q\[1\]"):
+        function(robot, q)

@@ -11,6 +11,7 @@ from eurdf.kinematics.array import Matrix
 from eurdf.kinematics.batch.arguments import checked_rows
 from eurdf.kinematics.batch.blocks import Progress, blocks
 from eurdf.kinematics.batch.problem import Problem, problem
+from eurdf.kinematics.exceptions import NumericalOverflow
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -41,10 +42,12 @@ def residual(
     Raises:
         ValueError: An argument has a wrong shape or is not finite.
         NotImplementedError: A joint or constraint has a type that is not supported.
+        NumericalOverflow: A configuration is so large that its residual is not finite; the message names it.
     """
     model = problem(robot)
     rows = checked_rows("q", q, model.tree.nq)
     (r,) = blocks(model.whole.numbers, block, threads, executor, progress).map(_residual, model, (rows,))
+    _require_finite(r)
     return r
 
 
@@ -73,10 +76,12 @@ def residual_and_jacobian(
     Raises:
         ValueError: As in `residual`.
         NotImplementedError: As in `residual`.
+        NumericalOverflow: As in `residual`, also of the derivative.
     """
     model = problem(robot)
     rows = checked_rows("q", q, model.tree.nq)
     r, K = blocks(model.whole.numbers, block, threads, executor, progress).map(_residual_and_jacobian, model, (rows,))
+    _require_finite(r, K)
     return r, K
 
 
@@ -87,3 +92,9 @@ def _residual(model: Problem, q: Matrix) -> tuple[Matrix]:
 def _residual_and_jacobian(model: Problem, q: Matrix) -> tuple[Matrix, Matrix]:
     at = model.whole.at(q.T)
     return model.whole.residual(at).T, np.moveaxis(model.whole.jacobian(at), -1, 0)
+
+
+def _require_finite(*results: Matrix) -> None:
+    wrong = np.any([~np.isfinite(result).reshape(len(result), -1).all(axis=1) for result in results], axis=0)
+    if wrong.any():
+        raise NumericalOverflow(f"the residual at q[{int(wrong.argmax())}]")
