@@ -141,11 +141,11 @@ def test_random_robot_is_the_same_in_mujoco(seed: int, root: Any) -> None:
     assert_same_constraints(there, q, closed=False)
 
 
-@given(seed=seeds, root=roots)
+@given(seed=seeds, root=roots, to=st.sampled_from(["mjcf", "urdf"]))
 @settings(max_examples=20)
-def test_coordinates_map_back(seed: int, root: Any) -> None:
+def test_coordinates_map_back(seed: int, root: Any, to: str) -> None:
     robot, q = random_robot(seed, root)
-    map_ = eurdf.export(robot, "mjcf").coordinates
+    map_ = eurdf.export(robot, to).coordinates
     q, v = near(robot, q, seed)
     there = map_.to_q(q)
     assert there.shape == (map_.nq,)
@@ -153,9 +153,10 @@ def test_coordinates_map_back(seed: int, root: Any) -> None:
     np.testing.assert_allclose(map_.from_v(there, map_.to_v(q, v)), v, atol=1e-12)
 
 
-def test_acceleration_is_the_rate_of_the_velocity() -> None:
+@pytest.mark.parametrize("to", ["mjcf", "urdf"])
+def test_acceleration_is_the_rate_of_the_velocity(to: str) -> None:
     robot, q = random_robot(5, "floating")
-    map_ = eurdf.export(robot, "mjcf").coordinates
+    map_ = eurdf.export(robot, to).coordinates
     q, v = near(robot, q)
     a, h = np.linspace(-1.0, 1.0, robot.model.nv), 1e-6
     after, before = (map_.to_v(pin.integrate(robot.model, q, t * v), v + t * a) for t in (h, -h))

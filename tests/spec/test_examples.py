@@ -18,7 +18,13 @@ import eurdf
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from examples import follow_foot_trajectory, simulate_digit_leg, squat_torques
+from examples import (
+    export_digit_2legs,
+    follow_foot_trajectory,
+    mujoco_and_pinocchio,
+    simulate_digit_leg,
+    squat_torques,
+)
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
@@ -252,3 +258,14 @@ def test_derivative_claim_on_page_is_right() -> None:
     theirs[motors] = np.eye(len(motors))
     theirs[free] = -np.linalg.pinv(J[:, free]) @ J[:, motors]
     np.testing.assert_allclose(eurdf.dq_dq_actuated(robot, q), theirs, rtol=0.0, atol=1e-9)
+
+
+def test_exported_legs_land_with_their_loops_closed(tmp_path: Path) -> None:
+    found = export_digit_2legs.main(tmp_path)
+    assert found.actuators == 12
+    assert found.opening < 1e-3
+    assert found.height > 0.9
+
+
+def test_mujoco_and_pinocchio_see_the_same_robot() -> None:
+    assert max(mujoco_and_pinocchio.main()) < 1e-9

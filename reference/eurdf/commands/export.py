@@ -35,7 +35,7 @@ _EPILOG = ending(
 
 #: Names of the formats and of what actuators become. They are checked against `eurdf.exporting` by the tests: importing
 #: it here would slow every command down.
-FORMATS = ("mjcf",)
+FORMATS = ("mjcf", "urdf")
 ACTUATORS = ("motor", "position", "none")
 
 # Elements that are shown of each kind of loss.

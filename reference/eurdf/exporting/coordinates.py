@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import reduce
+from operator import mul
 
 import numpy as np
 import numpy.typing as npt
@@ -61,6 +63,7 @@ class Part:
         turn: Orientation O of the child's frame in the joint's moving frame. A ball joint of the model has the rotation
             O⁻¹ Q O for Q of the robot, and the angular velocity O⁻¹ ω.
         mimics: Whether ``joint`` is a leader: the way back ignores the part.
+        angles: Whether a spherical joint is three angles: R(x, a) R(y, b) R(z, c).
     """
 
     names: tuple[str, ...]
@@ -69,11 +72,12 @@ class Part:
     ratios: tuple[tuple[int, float, float], ...] = ()
     turn: Quaternion = _UPRIGHT
     mimics: bool = False
+    angles: bool = False
 
     @property
     def nq(self) -> int:
         """Number of coordinates in the model."""
-        return len(self.ratios) or len(COORDINATES[self.type].names)
+        return 3 if self.angles else len(self.ratios) or len(COORDINATES[self.type].names)
 
     @property
     def nv(self) -> int:
@@ -85,20 +89,22 @@ class Part:
 class Coordinates:
     """The map between the vectors of a robot, q (nq,) and v (nv,), and those of an exported model.
 
-    In the model, angles (rad) and lengths (m) are zero where those of the robot are: no offset of zero. The linear
-    velocity of planar and floating joints, and of a floating root, is along the axes of the joint's frame at rest (of
-    the world for a root), where that of the robot is along those of the child. Forces go the other way: τ = Tᵀ τ_model
-    with T of `rates`.
+    In the model, angles (rad) and lengths (m) are zero where those of the robot are: no offset of zero. Forces go the
+    other way: τ = Tᵀ τ_model with T of `rates`.
 
     Attributes:
         parts: In the order of the model.
         own: The vectors of the robot.
         quaternion: Order of the components of a quaternion in the model.
+        at_rest: Whether the linear velocity of planar and floating joints, and of a floating root, is along the axes of
+            the joint's frame at rest (of the world for a root) in the model; if not, along those of the child, as in
+            the robot.
     """
 
     parts: tuple[Part, ...]
     own: OwnVectors
     quaternion: str = "wxyz"
+    at_rest: bool = True
     _idx_q: tuple[int, ...] = field(init=False, repr=False)
     _idx_v: tuple[int, ...] = field(init=False, repr=False)
 
@@ -185,7 +191,8 @@ class Coordinates:
                 for value, (index, _, _) in zip(mine, part.ratios, strict=True):  # a helical joint: the angle is last
                     v[at + index] = value
             else:
-                v[at : at + part.nv] = self._block(part, q).T @ mine  # the block is a rotation
+                block = self._block(part, q)
+                v[at : at + part.nv] = np.linalg.solve(block, mine) if part.angles else block.T @ mine  # or a rotation
         return v
 
     def to_a(self, q: Vector, v: Vector, a: Vector) -> Vector:
@@ -193,9 +200,15 @@ class Coordinates:
         found = self.rates(q) @ _checked("a", a, self.own.nv)
         v = _checked("v", v, self.own.nv)
         for part, row in zip(self.parts, self._idx_v, strict=False):
-            if part.type not in (JointType.PLANAR, JointType.FLOATING):
-                continue
             at = self.own.places[part.joint].idx_v
+            if part.angles:
+                # ω = E ȧ, so ä = E⁻¹ (ω̇ - Ė ȧ); found has E⁻¹ ω̇.
+                inverse = self._block(part, q)
+                angles = _angles(self._own_coordinates(part, q))
+                rates = np.asarray(inverse @ v[at : at + 3])
+                found[row : row + 3] -= inverse @ (_rate_of_angle_axes(angles, rates.tolist()) @ rates)
+            if part.type not in (JointType.PLANAR, JointType.FLOATING) or not self.at_rest:
+                continue
             n = 2 if part.type is JointType.PLANAR else 3
             linear = np.zeros(3)
             linear[:n] = v[at : at + n]
@@ -217,6 +230,8 @@ class Coordinates:
         at = COORDINATES[part.type].quaternion
         if at is None:
             return own
+        if part.angles:
+            return _angles(own)
         turn = Pose(quaternion=part.turn)
         norm = math.hypot(*own[at:])
         x, y, z, w = (value / norm for value in own[at:])
@@ -234,6 +249,9 @@ class Coordinates:
         at = COORDINATES[part.type].quaternion
         if at is None:
             return given
+        if part.angles:
+            turns = (Pose(quaternion=_about(axis, angle)) for axis, angle in enumerate(given))
+            return list(reduce(mul, turns).quaternion)
         quaternion = given[at:]
         if self.quaternion == "wxyz":
             quaternion = [*quaternion[1:], quaternion[0]]
@@ -256,6 +274,10 @@ class Coordinates:
                 block[row, index] = multiplier
             return block
         own = self._own_coordinates(part, q)
+        if part.angles:
+            return np.asarray(np.linalg.inv(_angle_axes(_angles(own))))
+        if not self.at_rest:
+            return np.eye(part.nv)
         if part.type is JointType.PLANAR:
             c, s = math.cos(own[2]), math.sin(own[2])
             return np.array(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0)))
@@ -266,6 +288,44 @@ class Coordinates:
         block[:3, :3] = rotation_matrix(own[3:])
         block[3:, 3:] = turn
         return block
+
+
+def _about(axis: int, angle: float) -> Quaternion:
+    s, c = math.sin(angle / 2.0), math.cos(angle / 2.0)
+    return s * (axis == 0), s * (axis == 1), s * (axis == 2), c
+
+
+def _angles(quaternion: Sequence[float]) -> tuple[float, float, float]:
+    """a, b, c with R(x, a) R(y, b) R(z, c) the rotation of a quaternion; b is from -π/2 to π/2."""
+    R = rotation_matrix(quaternion)
+    a = math.atan2(-R[1, 2], R[2, 2])
+    s, c = math.sin(a), math.cos(a)
+    return (
+        a,
+        math.atan2(R[0, 2], c * R[2, 2] - s * R[1, 2]),
+        math.atan2(c * R[1, 0] + s * R[2, 0], c * R[1, 1] + s * R[2, 1]),
+    )
+
+
+def _angle_axes(angles: Sequence[float]) -> Matrix:
+    """E (3, 3): the angular velocity, along the axes of the child, of rates of `_angles` is E times these."""
+    _, b, c = angles
+    (sb, cb), (sc, cc) = ((math.sin(each), math.cos(each)) for each in (b, c))
+    return np.array(((cc * cb, sc, 0.0), (-sc * cb, cc, 0.0), (sb, 0.0, 1.0)))
+
+
+def _rate_of_angle_axes(angles: Sequence[float], rates: Sequence[float]) -> Matrix:
+    """Ė of `_angle_axes`."""
+    _, b, c = angles
+    _, db, dc = rates
+    (sb, cb), (sc, cc) = ((math.sin(each), math.cos(each)) for each in (b, c))
+    return np.array(
+        (
+            (-sc * cb * dc - cc * sb * db, cc * dc, 0.0),
+            (-cc * cb * dc + sc * sb * db, -sc * dc, 0.0),
+            (cb * db, 0.0, 0.0),
+        )
+    )
 
 
 def rotation_matrix(quaternion: Sequence[float]) -> Matrix:
