@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -407,3 +408,9 @@ def test_mesh_that_mujoco_cannot_read_is_a_loss(tmp_path: Path, name: str, conte
     assert [(loss.code, loss.name) for loss in export.losses if loss.concept == "mesh"] == [(code, name)]
     assert list(export.files) == ["robot.xml"]
     mujoco.MjModel.from_xml_string(export.main.decode())
+
+
+def test_pipe_is_not_read_as_a_mesh(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "a.stl")
+    export = eurdf.export(with_mesh(tmp_path, "a.stl", None), "mjcf")
+    assert [loss.code for loss in export.losses if loss.concept == "mesh"] == ["export-mesh-missing"]

@@ -136,7 +136,8 @@ def export_linked(
     found, _ = find_meshes(description.urdf, package_dirs)
     bodies = description.mechanism.bodies
     uris = {shape.filename for body in bodies for shape in (*body.visuals, *body.collisions)}
-    meshes = {uri: Path(path) for uri, path in found.items() if uri in uris}
+    # A pipe or a device may have no end.
+    meshes = {uri: Path(path) for uri, path in found.items() if uri in uris and Path(path).is_file()}
     robot = build_robot(description.mechanism, geometry=False)
     return _export(robot, meshes, to, configuration, actuators, strict)
 
