@@ -266,8 +266,9 @@ def test_distance_at_one_point_has_a_direction() -> None:
 REFERENCE = Path(eurdf.__file__).parent
 
 
-#: What states or suggests a constraint by its kind; and the batch, which evaluates each kind at many configurations.
-STATING = ("checking/", "format/", "linking/", "kinematics/batch/")
+#: What states, suggests or writes a constraint by its kind; and the batch, which evaluates each kind at many
+#: configurations.
+STATING = ("checking/", "exporting/", "format/", "linking/", "kinematics/batch/")
 
 
 def files_with(pattern: str, folder: str = "") -> set[str]:

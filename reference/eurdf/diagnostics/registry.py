@@ -217,7 +217,7 @@ x-angle-in-degrees         An angle is probably in degrees, because it is large.
 x-length-in-millimetres    A length is probably in millimetres, because it is large.
 x-quaternion-order         A quaternion is probably in the order w, x, y, z.
 x-no-actuator              A robot with closures has no actuator.
-x-shaky-loops              Loops can move to first order only, or it is not known whether they can move.
+x-shaky-loops              Loops can move to first order only; they are rigid.
 x-dependent-actuators      Actuators cannot move independently, or cannot move at all.
 x-uncontrolled-motion      A motion other than the spin of a rod remains when every actuator is held.
 x-closes-beyond-limits     The loops close only with joints beyond their limits.

@@ -60,7 +60,7 @@ def advise_on_actuation(description: Described, robot: Robot, q: Vector, diagnos
         place = _place_of_key(description, _closures_key(mechanism))
         diagnostics.report("x-loops-not-checked", analysis.left_out, place, "analyze parts of the robot separately")
         return
-    shaky = [loop for loop in analysis.loops if loop.mobility and loop.finite_mobility in (0, "unknown")]
+    shaky = [loop for loop in analysis.loops if loop.mobility and loop.finite_mobility == 0]
     if shaky:  # what actuators do there says little about another configuration
         for loop in shaky:
             _report_shaky(description, robot, loop, diagnostics)
@@ -74,13 +74,11 @@ def advise_on_actuation(description: Described, robot: Robot, q: Vector, diagnos
 
 
 def _report_shaky(description: Described, robot: Robot, loop: LoopAnalysis, diagnostics: Diagnostics) -> None:
-    """Report loops whose rank leaves motions that are not known to continue."""
+    """Report loops that are rigid although their rank leaves motions."""
     count = f"{loop.mobility} {'motion' if loop.mobility == 1 else 'motions'}"
-    rigid = loop.finite_mobility == 0
-    why = "but are rigid: no motion continues" if rigid else "and it is not known whether they continue"
     diagnostics.report(
         "x-shaky-loops",
-        f"the loops of {_constraints(robot.mechanism, loop)} have {count} to first order, {why}",
+        f"the loops of {_constraints(robot.mechanism, loop)} have {count} to first order, but are rigid",
         description.place_of_constraint(loop.closures[0]),
         "check the lengths at this configuration, or state another one as 'assembled'",
     )
