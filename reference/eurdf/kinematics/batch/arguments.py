@@ -15,16 +15,21 @@ if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 
+def shape_of(given: Any) -> tuple[int, ...]:
+    """The shape of the given numbers; () for lists of unequal length, which have none."""
+    try:
+        return np.shape(given)
+    except ValueError:
+        return ()
+
+
 def checked_rows(name: str, given: Any, width: int) -> Matrix:
     """The given numbers as an array (B, width).
 
     Raises:
         ValueError: It has another shape, or something in it is not a finite number.
     """
-    try:
-        shape = np.shape(given)
-    except ValueError:  # lists of unequal length
-        shape = ()
+    shape = shape_of(given)
     if len(shape) == 2 and shape[1] == width:
         return checked_array(name, given, shape)
     if shape == (0,):
@@ -58,7 +63,7 @@ def starts(robot: Robot, q0: Any, count: int) -> tuple[Matrix, bool]:
     Raises:
         ValueError: As in `checked_configurations`, or their number is not B.
     """
-    if q0 is None or np.ndim(q0) == 1:
+    if q0 is None or len(shape_of(q0)) == 1:
         q = start(robot, q0)
         return np.broadcast_to(q, (count, len(q))), True
     q = checked_configurations(robot, "q0", q0)

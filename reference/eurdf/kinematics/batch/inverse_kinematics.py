@@ -17,7 +17,7 @@ from pinocchio import SE3
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.batch import linear, rigid
-from eurdf.kinematics.batch.arguments import checked_rows, starts
+from eurdf.kinematics.batch.arguments import checked_rows, shape_of, starts
 from eurdf.kinematics.batch.blocks import Progress, blocks
 from eurdf.kinematics.batch.descent import clip, close, closes, room
 from eurdf.kinematics.batch.frames import BatchFrames
@@ -121,7 +121,7 @@ def inverse_kinematics(
     model, names = problem(robot), list(targets)
     frames = BatchFrames(robot, model.tree, names)
     goals = [_checked_target(name, target) for name, target in targets.items()]
-    count = len(goals[0].position) if goals else len(q0) if q0 is not None and np.ndim(q0) == 2 else 1
+    count = len(goals[0].position) if goals else len(q0) if q0 is not None and len(shape_of(q0)) == 2 else 1
     for name, goal in zip(names, goals, strict=True):
         if len(goal.position) != count:
             raise ValueError(f"targets['{name}'] has {len(goal.position)} elements; the first frame has {count}")
@@ -164,7 +164,7 @@ def _checked_target(name: str, target: Any) -> _Target:
     argument = f"targets['{name}']"
     if isinstance(target, Sequence) and len(target) and all(isinstance(each, SE3) for each in target):
         target = np.array([each.homogeneous for each in target])
-    shape = np.shape(target)
+    shape = shape_of(target)
     if len(shape) != 3 or shape[1:] != (4, 4):
         try:
             return _Target(checked_rows(argument, target, 3))
