@@ -95,6 +95,6 @@ def _residual_and_jacobian(model: Problem, q: Matrix) -> tuple[Matrix, Matrix]:
 
 
 def _require_finite(*results: Matrix) -> None:
-    wrong = np.any([~np.isfinite(result).reshape(len(result), -1).all(axis=1) for result in results], axis=0)
+    wrong = np.any([~np.isfinite(result).all(axis=tuple(range(1, result.ndim))) for result in results], axis=0)
     if wrong.any():
         raise NumericalOverflow(f"the residual at q[{int(wrong.argmax())}]")
