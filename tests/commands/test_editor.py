@@ -126,6 +126,7 @@ def test_robot_schema_completes_robot_names(tmp_path: Path) -> None:
     assert "free_rocker" in completed(tmp_path, "joints:\n  |\n", schema="four_bar.schema.json")
 
 
+@pytest.mark.slow
 def test_collection_opens_without_underlines() -> None:
     robots = sorted(ROOT.glob("robots/*/robot*.yaml"))
 

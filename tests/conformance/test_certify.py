@@ -117,6 +117,7 @@ def test_a_failure_is_shown_with_reason_and_command(shared_run: Run) -> None:
     assert done.stdout.endswith("always_accepted 1: Not certified at any level\n")
 
 
+@pytest.mark.slow
 def test_the_certificate_is_the_same_with_any_number_of_processes(folder: Path, shared_run: Run) -> None:
     alone = Path(shared_run("--parser", REJECTS, *SOME).certificate, "certificate.json")
     spread = certificate_of("--parser", REJECTS, *SOME[:-1], "2", "--certificate", "mine")
@@ -156,6 +157,7 @@ def test_a_smoke_run_that_passes_certifies_nothing(folder: Path) -> None:
     assert not any(level["certified"] for level in given["levels"])
 
 
+@pytest.mark.slow
 def test_a_smoke_run_works_in_a_terminal(folder: Path) -> None:
     code, seen = on_a_terminal(["-m", "eurdf", "certify", "--parser", REFERENCE, "--smoke"])
     assert (code, "certifying" in seen) == (0, True)
@@ -180,6 +182,7 @@ def known_failures(folder: Path, *ids: str) -> Path:
     return file
 
 
+@pytest.mark.slow
 def test_known_failures_are_counted_and_do_not_certify(folder: Path, shared_run: Run) -> None:
     certificate = read_certificate(Path(shared_run("--parser", REJECTS, *SOME).certificate))
     failed = [failure.id for failure in certificate.failures]
@@ -191,6 +194,7 @@ def test_known_failures_are_counted_and_do_not_certify(folder: Path, shared_run:
     assert f"known failures: {len(failed)}" in done.stdout
 
 
+@pytest.mark.slow
 def test_outdated_known_failure_is_reported(folder: Path) -> None:
     file = known_failures(folder, "version1/fewer-joint-types-than-names", "version1/aaaaaa")
     given = certificate_of("--parser", REJECTS, *SOME, "--known-failures", file)
@@ -217,6 +221,7 @@ def test_a_parser_that_does_not_start_gives_exit_code_2(folder: Path) -> None:
     assert "could not be started: crashed: ended with exit code 2" in done.stderr.splitlines()[1]
 
 
+@pytest.mark.slow
 def test_requested_but_unclaimed_level_is_not_certified(folder: Path) -> None:
     done = certify("--parser", REJECTS, "--level", "dynamics", "--jobs", "0")
     assert done.returncode == 1
@@ -243,6 +248,7 @@ def test_a_missing_suite_is_reported_with_how_to_install_it(
     assert "pip install" in said  # by a path, where the `pip` that a shell finds is another environment's
 
 
+@pytest.mark.slow
 def test_pytest_settings_of_the_user_have_no_effect(folder: Path) -> None:
     (folder / "pytest.ini").write_text("[pytest]\naddopts = --no-such-option\n", encoding="utf-8")
     (folder / "conftest.py").write_text("raise RuntimeError('not mine')\n", encoding="utf-8")
@@ -336,6 +342,7 @@ def test_a_wrong_value_of_an_option_is_refused(
 # --- again, and side by side -----------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_replay_by_another_parser_lists_differences(folder: Path, shared_run: Run) -> None:
     shutil.copytree(shared_run("--parser", REJECTS, *SOME).certificate, "mine")
     again = certify("--verify", "mine/certificate.json", "--parser", ACCEPTS, "--jobs", "0")
@@ -349,6 +356,7 @@ def test_replay_by_another_parser_lists_differences(folder: Path, shared_run: Ru
     assert value == {"same": False, "differences": again.stdout.splitlines()[:-1]}
 
 
+@pytest.mark.slow
 def test_replay_reports_changes_of_the_file(folder: Path) -> None:
     assert certify("--parser", REJECTS, "--smoke", "--certificate", "mine").returncode == 1
     again = certify("--verify", "mine")

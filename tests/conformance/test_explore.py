@@ -135,6 +135,7 @@ def test_a_family_is_explored_by_its_size(tmp_path: Path) -> None:
     assert len(found[0].mechanism.joints) == 10
 
 
+@pytest.mark.slow
 def test_a_crash_is_shrunk_to_a_smaller_crash(tmp_path: Path) -> None:
     class CrashesOnBalls(InProcess):
         def load(self, description: Path, urdf: Path) -> Outcome:
@@ -186,6 +187,7 @@ def test_the_misread_robot_is_blamed_not_the_last(tmp_path: Path) -> None:
     assert culprit(harness, Level.KINEMATICS) == harness.queries[0][0]
 
 
+@pytest.mark.slow
 def test_exploring_continues_after_a_frozen_example_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "files").mkdir()

@@ -40,6 +40,7 @@ def cases() -> dict[str, FreshCase]:
     return fresh_cases(0)
 
 
+@pytest.mark.slow
 def test_seed_decides_the_fresh_cases(cases: dict[str, FreshCase]) -> None:
     program = "from eurdf_conformance.fresh.case import drawn_hash; print(drawn_hash(0))"
     # In another process, which has imported other modules.

@@ -399,6 +399,7 @@ def test_a_failed_protocol_rule_names_its_files() -> None:
     assert {str(VALID.description), str(INVALID.urdf)} <= set(found.log.splitlines())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("code", [pytest.ExitCode.INTERRUPTED, pytest.ExitCode.INTERNAL_ERROR])
 def test_an_interrupted_run_writes_no_certificate(code: pytest.ExitCode, tmp_path: Path) -> None:
     config = SimpleNamespace(stash={OPTIONS: Options(certificate=tmp_path)})
@@ -476,6 +477,7 @@ def test_a_crash_is_not_a_rejection() -> None:
     )
 
 
+@pytest.mark.slow
 def test_unclaimed_level_is_skipped_and_unsupported_claim_fails() -> None:
     code, out = suite("-k", FEW, parser="Modest")
     assert code == 0
@@ -488,6 +490,7 @@ def test_unclaimed_level_is_skipped_and_unsupported_claim_fails() -> None:
     assert "frames/closure-at-unknown-frame/accept: skipped: it is Sunday" in out
 
 
+@pytest.mark.slow
 def test_levels_and_a_version_can_be_chosen() -> None:
     few = [item for item in planned_items(CASES.values()) if not item.id.startswith(("properties/", "fresh/"))]
     chosen = [item for item in few if item.version == "1" and item.level in ("structure", "diagnose")]
@@ -509,6 +512,7 @@ KNOWN = """
 """
 
 
+@pytest.mark.slow
 def test_fixed_known_failure_is_reported(tmp_path: Path) -> None:
     path = tmp_path / "known.yaml"
     path.write_text(KNOWN, encoding="utf-8")
@@ -590,6 +594,7 @@ def test_smoke_runs_three_cases_at_the_first_claimed_level(parser: str, asked: l
     assert sorted(re.findall(r"test_case\[([\w/-]+)\] PASSED", out)) == asked
 
 
+@pytest.mark.slow
 def test_run_without_claimed_levels_fails() -> None:
     code, out = suite("--smoke", parser="Silent")
     assert code == 1
@@ -605,6 +610,7 @@ def test_the_reference_is_tested_by_default() -> None:
     assert "eurdf " in out
 
 
+@pytest.mark.slow
 def test_the_suite_runs_as_an_installed_package() -> None:
     command = ["--pyargs", "eurdf_conformance.suite", "-p", "eurdf_conformance.suite.plugin"]
     code, out = suite("--noconftest", "-k", FEW, parser="Right", command=command)

@@ -38,6 +38,7 @@ def peak(function: Callable[[], object]) -> int:
         tracemalloc.stop()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("in_series", [False, True], ids=["side by side", "in series"])
 def test_memory_grows_linearly_with_four_bars(tmp_path: Path, in_series: bool) -> None:
     peaks = []
@@ -53,6 +54,7 @@ def test_memory_grows_linearly_with_four_bars(tmp_path: Path, in_series: bool) -
     assert peaks[2] < 16 * peaks[1]  # 8 where it is linear, 64 where it is quadratic
 
 
+@pytest.mark.slow
 def test_thousand_four_bars_need_small_data_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     made: list[int] = []
     create = pin.Model.createData
