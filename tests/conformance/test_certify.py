@@ -129,6 +129,7 @@ def test_the_certificate_is_the_same_with_any_number_of_processes(folder: Path, 
 # --- a first try -----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_first_try_distinguishes_wrong_adapter_from_wrong_parser(folder: Path) -> None:
     parser = certify("--parser", REJECTS, "--smoke")
     assert parser.returncode == 1
@@ -149,6 +150,7 @@ def test_a_smoke_run_names_the_verdict_before_the_reason() -> None:
     assert f"  {INVALID}/accept: skipped" in lines
 
 
+@pytest.mark.slow
 def test_a_smoke_run_that_passes_certifies_nothing(folder: Path) -> None:
     done = certify("--parser", REFERENCE, "--smoke", "--json")
     assert done.returncode == 0, done.stderr
@@ -301,6 +303,7 @@ def test_other_files_are_not_overwritten_by_a_certificate(
     assert "could not be started" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_an_earlier_certificate_is_replaced(folder: Path) -> None:
     for parser in (REJECTS, ACCEPTS):
         assert certify("--parser", parser, "--smoke", "--certificate", "mine").returncode == 1

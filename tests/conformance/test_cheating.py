@@ -160,6 +160,7 @@ for line in sys.stdin:
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("program", "undo"), [("pytest", "undo"), ("eurdf", "keep")])
 def test_run_with_a_changed_corpus_is_void(copied: Path, program: str, undo: str) -> None:
     (copied / "tampering.py").write_text(TAMPERING, encoding="utf-8")

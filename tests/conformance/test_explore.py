@@ -111,6 +111,7 @@ def test_of_two_differing_robots_the_misread_one_is_written(tmp_path: Path) -> N
     assert case.topic == "closures"
 
 
+@pytest.mark.slow
 def test_no_case_is_written_without_a_failure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     judgement = explored("moving-base", OracleParser(), tmp_path, 60)

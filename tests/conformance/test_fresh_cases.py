@@ -84,6 +84,7 @@ class KnowsTheCorpus:
         return rejected("known") if known and not known[0].case.valid else accepted()
 
 
+@pytest.mark.slow
 def test_parser_that_knows_all_stored_cases_is_not_certified(cases: dict[str, FreshCase]) -> None:
     conversation = Conversation(InProcess(KnowsTheCorpus()))  # type: ignore[arg-type]
     stored = [case for case in read_cases() if case.case.version in DRAWN_VERSIONS]

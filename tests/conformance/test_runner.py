@@ -319,6 +319,7 @@ def test_a_parser_gives_its_name_and_version() -> None:
         assert session.started.claims == {"2": ["accept"]}
 
 
+@pytest.mark.slow
 def test_a_parser_is_restarted_after_every_crash() -> None:
     with Session(fake("exits")) as session:
         assert [load(session, "trigger").word for _ in range(30)] == ["crashed"] * 30
@@ -326,6 +327,7 @@ def test_a_parser_is_restarted_after_every_crash() -> None:
         assert session.restarts == 30
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("names", [["trigger"], ["trigger_1", "sound_1", "trigger_2"]], ids=["all", "some"])
 def test_crashes_give_the_same_results_in_any_number_of_sessions(names: list[str]) -> None:
     asked = [f"{name}_{number}" for number in range(8) for name in names]

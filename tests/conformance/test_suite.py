@@ -443,6 +443,7 @@ def test_a_correct_parser_passes_and_gets_a_certificate(tmp_path: Path) -> None:
     assert json.loads((tmp_path / "certificate.json").read_text(encoding="utf-8"))["parser"]["name"] == "by_heart"
 
 
+@pytest.mark.slow
 def test_printed_command_reproduces_a_failure() -> None:
     code, out = suite("-k", FEW, parser="Misread")
     assert code == 1
@@ -468,6 +469,7 @@ def test_a_lenient_parser_fails_accept_and_diagnose() -> None:
     assert "this looks odd" in out
 
 
+@pytest.mark.slow
 def test_a_crash_is_not_a_rejection() -> None:
     code, out = suite("-k", FEW, parser="Crashing")
     assert code == 1
@@ -555,6 +557,7 @@ def test_impossible_requests_of_the_user_are_reported(tmp_path: Path) -> None:
         assert why in out
 
 
+@pytest.mark.slow
 def test_smoke_distinguishes_wrong_adapter_from_wrong_parser() -> None:
     code, out = suite("--smoke", parser="Right")
     assert code == 0
@@ -604,6 +607,7 @@ def test_run_without_claimed_levels_fails() -> None:
     assert "not claimed: dynamics of version 1, dynamics of version 2" in out
 
 
+@pytest.mark.slow
 def test_the_reference_is_tested_by_default() -> None:
     code, out = suite("--smoke")
     assert code == 0

@@ -106,6 +106,7 @@ def test_number_of_joints_is_bounded(tmp_path: Path) -> None:
     assert refusal(path) == "the robot has 10,001 joints; the maximum is 10,000"
 
 
+@pytest.mark.slow
 def test_number_of_rows_is_bounded(tmp_path: Path) -> None:
     at, beyond = (write(tmp_path / str(count), *shared(count, 200)) for count in (6666, 6667))
     assert eurdf.load(at, geometry=False).mechanism.nc == ROW_LIMIT - 2

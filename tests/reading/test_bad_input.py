@@ -107,6 +107,7 @@ def test_damaged_robot_gives_diagnostics_or_robot(request: pytest.FixtureRequest
         assert min(outcomes.count("refused"), outcomes.count("robot")) > len(outcomes) // 20
 
 
+@pytest.mark.slow
 def test_damaged_published_robot_gives_diagnostics_or_robot(request: pytest.FixtureRequest) -> None:
     folders = sorted(path.parent for path in WILD.glob("*/robot.urdf"))
     if not folders:
