@@ -1,4 +1,4 @@
-"""Version 2.1: what it adds to version 2.0, and what a file of version 2.0 is told that uses it."""
+"""Version 2.1: what it adds to version 2.0, and the errors of a 2.0 file that uses it."""
 
 from __future__ import annotations
 

@@ -39,9 +39,10 @@ class Example(Part):
 
 @cache
 def frozen_examples(version: Version) -> tuple[Example, ...]:
-    """The examples of every certification, of one version of the format."""
+    """The examples of every certification, of one version of the format; those of version 2 are also of version 2.1."""
     found = json.loads(FROZEN.read_text(encoding="utf-8"))
-    return tuple(Example.model_validate_json(json.dumps(each)) for each in found[version])
+    drawn = version if version in DRAWN_VERSIONS else "2"
+    return tuple(Example.model_validate_json(json.dumps(each)) for each in found[drawn])
 
 
 def frozen_text(examples: Mapping[Version, Iterable[Example]]) -> str:

@@ -81,6 +81,25 @@ class LossKind:
     hint: str
 
 
+#: Losses that a format may share with others.
+COMMON = (
+    LossKind(
+        "export-name",
+        "name",
+        Effect.EXACT,
+        "is changed: the format cannot contain it, or has it already",
+        "choose another name in the description",
+    ),
+    LossKind(
+        "export-metadata",
+        "metadata",
+        Effect.DROPPED,
+        "metadata and user data are left out",
+        "keep the description beside the file",
+    ),
+)
+
+
 @dataclass(frozen=True, slots=True)
 class Loss:
     """One loss of one export.

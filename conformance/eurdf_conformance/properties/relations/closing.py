@@ -12,7 +12,7 @@ from eurdf_conformance.oracle.coupling import COUPLED
 from eurdf_conformance.oracle.logarithm import log6, log6_derivative
 from eurdf_conformance.oracle.spatial import skew
 from eurdf_conformance.properties.chance import Chance
-from eurdf_conformance.properties.example import Example, frozen_examples
+from eurdf_conformance.properties.example import Example
 from eurdf_conformance.properties.mechanism import Coupling, Mechanism, Pose, Spot, Vector
 from eurdf_conformance.properties.pair import Pair, related
 from eurdf_conformance.properties.placement import Matrix, matrix_of
@@ -159,7 +159,6 @@ PROPERTIES = (
         related(hinges),
         versions=("2.1",),
         applies=has_6d,
-        examples=lambda version: frozen_examples("2"),
         closures=1,
     ),
     Property(
@@ -170,7 +169,6 @@ PROPERTIES = (
         related(distances),
         versions=("2.1",),
         applies=has_6d,
-        examples=lambda version: frozen_examples("2"),
         closures=1,
     ),
     Property(
@@ -181,6 +179,5 @@ PROPERTIES = (
         related(couplings),
         versions=("2.1",),
         applies=can_couple,
-        examples=lambda version: frozen_examples("2"),
     ),
 )

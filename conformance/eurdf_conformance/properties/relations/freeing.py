@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from eurdf_conformance.level import Level, Version
 from eurdf_conformance.properties.document import Document, document
-from eurdf_conformance.properties.example import Example, frozen_examples
+from eurdf_conformance.properties.example import Example
 from eurdf_conformance.properties.files import Files
 from eurdf_conformance.properties.mechanism import Joint, Mechanism, Mimic
 from eurdf_conformance.properties.pair import Pair, related
@@ -66,6 +66,5 @@ PROPERTIES = (
         related(freeing),
         versions=("2.1",),
         applies=applies,
-        examples=lambda version: frozen_examples("2"),
     ),
 )

@@ -19,8 +19,9 @@ from lxml import etree
 from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.exceptions import CannotExport
 from eurdf.exporting.inertia import about_centre, physical
-from eurdf.exporting.loss import Effect, Losses, LossKind
+from eurdf.exporting.loss import COMMON, Effect, Losses, LossKind
 from eurdf.exporting.mesh_file import mesh_names
+from eurdf.exporting.names import UniqueNames
 from eurdf.exporting.written import Exportable, Format, Written
 from eurdf.exporting.xml_text import file_content, numbers, representable
 from eurdf.mechanism.body import Body, Shape
@@ -222,20 +223,7 @@ LOSSES = (
         "no closed configuration was found, so there is no keyframe",
         "find one with `eurdf assemble`, and write it to the description as 'assembled'",
     ),
-    LossKind(
-        "export-name",
-        "name",
-        Effect.EXACT,
-        "is changed: the format cannot contain it, or has it already",
-        "choose another name in the description",
-    ),
-    LossKind(
-        "export-metadata",
-        "metadata",
-        Effect.DROPPED,
-        "metadata and user data are left out",
-        "keep the description beside the file",
-    ),
+    *COMMON,
 )
 
 
@@ -267,30 +255,16 @@ def write(given: Exportable) -> Written:
     return _Writer(given).write()
 
 
-class _Names:
-    """Unique names of the elements of one kind."""
-
-    def __init__(self, losses: Losses, *reserved: str) -> None:
-        self._losses, self._used = losses, set(reserved)
-
-    def new(self, name: str) -> str:
-        found = representable(name)
-        while found in self._used:
-            found += "_"
-        self._used.add(found)
-        if found != name:
-            self._losses.add("export-name", name, f"becomes '{found}'")
-        return found
-
-
 class _Writer:
     """A file while it is written."""
 
     def __init__(self, given: Exportable) -> None:
         self.given, self.mechanism = given, given.mechanism
         self.losses = Losses(LOSSES)
-        self.bodies = _Names(self.losses, _WORLD)
-        self.joints, self.sites, self.equalities, self.tendons, self.actuators = (_Names(self.losses) for _ in range(5))
+        self.bodies = UniqueNames(self.losses, _WORLD)
+        self.joints, self.sites, self.equalities, self.tendons, self.actuators = (
+            UniqueNames(self.losses) for _ in range(5)
+        )
         self.root = etree.Element("mujoco", model=representable(self.mechanism.name))
         self._head()
         self.asset = etree.SubElement(self.root, "asset")
@@ -331,7 +305,7 @@ class _Writer:
             self._actuator(name, actuator)
         coordinates = Coordinates(tuple(self.parts), self.given.own, "wxyz")
         keyframe = etree.SubElement(self.root, "keyframe")
-        keys = _Names(self.losses)
+        keys = UniqueNames(self.losses)
         for name, configuration in self.given.configurations.items():
             etree.SubElement(
                 keyframe, "key", name=keys.new(name), qpos=numbers(coordinates.from_files(configuration).tolist())

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 from lxml import etree
 
 from eurdf.exporting.coordinates import Coordinates, Part, rotation_matrix
-from eurdf.exporting.loss import Effect, Losses, LossKind
+from eurdf.exporting.loss import COMMON, Effect, Losses, LossKind
 from eurdf.exporting.mesh_file import mesh_names
+from eurdf.exporting.names import UniqueNames
 from eurdf.exporting.written import Exportable, Format, Written
 from eurdf.exporting.xml_text import file_content, numbers, representable
 from eurdf.mechanism.body import Body, Shape
@@ -119,20 +120,7 @@ LOSSES = (
         "give the folder of its package, --package-dir or package_dirs=",
     ),
     LossKind("export-texture", "texture", Effect.DROPPED, "is left out; the color is kept", "add it to the URDF"),
-    LossKind(
-        "export-name",
-        "name",
-        Effect.EXACT,
-        "is changed: the format cannot contain it, or has it already",
-        "choose another name in the description",
-    ),
-    LossKind(
-        "export-metadata",
-        "metadata",
-        Effect.DROPPED,
-        "metadata and user data are left out",
-        "keep the description beside the file",
-    ),
+    *COMMON,
 )
 
 
@@ -159,7 +147,8 @@ class _Writer:
         self.given, self.mechanism = given, given.mechanism
         self.losses = Losses(LOSSES)
         self.root = etree.Element("robot", name=representable(self.mechanism.name))
-        self.used = {body.name for body in self.mechanism.bodies} | {joint.name for joint in self.mechanism.joints}
+        links, joints = (body.name for body in self.mechanism.bodies), (joint.name for joint in self.mechanism.joints)
+        self.names = UniqueNames(self.losses, *links, *joints)
         self.contents, self.mesh_ids = mesh_names(given.meshes)
         self.copied: dict[str, bytes] = {}
         self.parts: list[Part] = []
@@ -171,9 +160,9 @@ class _Writer:
         for joint in mechanism.joints:
             self._joint(joint)
         for frame in mechanism.frames:
-            name = self._new(frame.name)
+            name = self.names.new(frame.name)
             etree.SubElement(self.root, "link", name=name)
-            self._element(self._new(f"{name}_fixed"), JointType.FIXED, frame.body, name, frame.pose)
+            self._element(self.names.new(f"{name}_fixed"), JointType.FIXED, frame.body, name, frame.pose)
             losses.add("export-frame", frame.name)
         for closure in mechanism.closures:
             losses.add(f"export-{closure.type}-dropped", closure.name)
@@ -191,15 +180,6 @@ class _Writer:
             losses.add("export-metadata", mechanism.name)
         coordinates = Coordinates(tuple(self.parts), self.given.own, "xyzw", at_rest=False)
         return Written({"robot.urdf": file_content(self.root), **self.copied}, losses.found, coordinates)
-
-    def _new(self, name: str) -> str:
-        found = representable(name)
-        while found in self.used:
-            found += "_"
-        self.used.add(found)
-        if found != name:
-            self.losses.add("export-name", name, f"becomes '{found}'")
-        return found
 
     # -- links ------------------------------------------------------------------------------------------------------
 
@@ -257,9 +237,9 @@ class _Writer:
         parent, placement = joint.parent, joint.placement
         names = []
         for number, step in enumerate(steps):
-            name = joint.name if not step.suffix else self._new(joint.name + step.suffix)
+            name = joint.name if not step.suffix else self.names.new(joint.name + step.suffix)
             last = number == len(steps) - 1 and joint.offset is IDENTITY
-            child = joint.child if last else self._new(f"{name}_link")
+            child = joint.child if last else self.names.new(f"{name}_link")
             if not last:
                 etree.SubElement(self.root, "link", name=child)
             element = self._element(name, step.type, parent, child, placement)
@@ -275,7 +255,7 @@ class _Writer:
         if joint.offset is not IDENTITY:
             offset = joint.placement * joint.offset if joint.type is JointType.FIXED else joint.offset
             at = joint.parent if joint.type is JointType.FIXED else parent
-            name = joint.name if joint.type is JointType.FIXED else self._new(f"{joint.name}_offset")
+            name = joint.name if joint.type is JointType.FIXED else self.names.new(f"{joint.name}_offset")
             self._element(name, JointType.FIXED, at, joint.child, offset)
         self._part(joint, steps, names)
 

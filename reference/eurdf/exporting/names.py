@@ -1,0 +1,23 @@
+"""Names of the elements of a file, unique and representable in XML."""
+
+from __future__ import annotations
+
+from eurdf.exporting.loss import Losses
+from eurdf.exporting.xml_text import representable
+
+
+class UniqueNames:
+    """Unique names of the elements of one kind; each name that had to change is a loss ``export-name``."""
+
+    def __init__(self, losses: Losses, *reserved: str) -> None:
+        self._losses, self._used = losses, set(reserved)
+
+    def new(self, name: str) -> str:
+        """The name, or one made of it that is not used yet."""
+        found = representable(name)
+        while found in self._used:
+            found += "_"
+        self._used.add(found)
+        if found != name:
+            self._losses.add("export-name", name, f"becomes '{found}'")
+        return found
