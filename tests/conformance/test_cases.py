@@ -24,12 +24,12 @@ from eurdf_conformance.corpus.expect import stale
 from eurdf_conformance.corpus.expected import Expected, expected_text
 from eurdf_conformance.corpus.lint import lint
 from eurdf_conformance.corpus.protocol_rule import OF_RUNNERS, RULES
-from eurdf_conformance.corpus.read import CorpusCase, NotACase, collection_folder, read_case, read_cases
+from eurdf_conformance.corpus.read import CorpusCase, NotACase, all_cases, collection_folder, read_case
 from eurdf_conformance.level import Level
 from eurdf_conformance.strict_yaml import load_strictly
 
 ROOT = Path(__file__).parents[2]
-CASES = read_cases()
+CASES = all_cases()
 VALID = [case for case in CASES if isinstance(case.case, ValidCase)]
 
 

@@ -36,7 +36,7 @@ from eurdf_conformance.command.replay import (
     suite_differences,
 )
 from eurdf_conformance.corpus.clause import read_clauses
-from eurdf_conformance.corpus.read import CASES, read_case, read_cases
+from eurdf_conformance.corpus.read import CASES, all_cases, read_case
 from eurdf_conformance.judging.known_failures import KnownFailure, KnownFailures
 from eurdf_conformance.judging.result import Result
 from eurdf_conformance.judging.verdict import Verdict
@@ -130,7 +130,7 @@ def test_the_hash_of_files_depends_on_names_and_bytes_alone() -> None:
 
 
 def test_the_hash_of_the_corpus_ignores_the_order_of_cases() -> None:
-    cases = read_cases()
+    cases = all_cases()
     assert corpus_hash(reversed(cases)) == corpus_hash(cases) == corpus_hash()
     assert corpus_hash(cases[1:]) != corpus_hash(cases)
 
@@ -392,7 +392,7 @@ def test_a_reformatted_certificate_is_detected(failed: Certificate, tmp_path: Pa
 
 
 #: A case of the suite, and what became of it in a run whose parser was expected to fail otherwise, or to pass.
-REAL = next(found.item for found in case_items(read_cases()) if found.item.level == Level.ACCEPT)
+REAL = next(found.item for found in case_items(all_cases()) if found.item.level == Level.ACCEPT)
 
 
 def with_known(verdict: Verdict, *known: tuple[str, Verdict], **options: Any) -> Certificate:

@@ -23,7 +23,7 @@ from eurdf_conformance.certificate.issue import issue
 from eurdf_conformance.command.output import show
 from eurdf_conformance.command.replay import replay_schema
 from eurdf_conformance.corpus.case import InvalidCase
-from eurdf_conformance.corpus.read import read_cases
+from eurdf_conformance.corpus.read import all_cases
 from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level
 from eurdf_conformance.suite.item import planned_items
@@ -43,7 +43,7 @@ MOST_SHOWN = 20
 
 #: What is tested where it does not matter what.
 SOME = ("--level", "accept", "--format-version", "1", "--seed", "0", "--jobs", "0")
-SOME_CASES = [case for case in read_cases() if case.case.version == "1"]
+SOME_CASES = [case for case in all_cases() if case.case.version == "1"]
 
 ACCEPTS, REJECTS = fake("always_accepted"), fake("always_rejected")
 
@@ -78,7 +78,7 @@ def test_the_reference_is_certified_at_every_level_of_all_versions(shared_run: R
     certificate = read_certificate(Path(done.certificate))
     assert (certificate.certified, certificate.failures, certificate.date) == (True, (), "2026-01-31")
     asked = {(level.version, level.level): level.items for level in certificate.levels}
-    planned = Counter((item.version, item.level) for item in planned_items(read_cases()))
+    planned = Counter((item.version, item.level) for item in planned_items(all_cases()))
     assert asked == planned
 
 

@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from eurdf_conformance.corpus.case import InvalidCase
-from eurdf_conformance.corpus.read import CASES, read_cases
+from eurdf_conformance.corpus.read import CASES, all_cases
 from eurdf_conformance.judging.conversation import Conversation
 from eurdf_conformance.judging.handout import Handout
 from eurdf_conformance.judging.judge import judge
@@ -30,7 +30,7 @@ from eurdf_conformance.suite.options import OPTIONS, Options
 from eurdf_conformance.suite.plugin import pytest_collection_modifyitems
 
 ROOT = Path(__file__).parents[2]
-ALL = read_cases()
+ALL = all_cases()
 
 
 class Peeking:

@@ -15,7 +15,7 @@ import eurdf
 from eurdf_conformance.adapters.reference import PARSER
 from eurdf_conformance.certificate.issue import issue
 from eurdf_conformance.command.replay import replay_differences
-from eurdf_conformance.corpus.read import read_cases
+from eurdf_conformance.corpus.read import all_cases
 from eurdf_conformance.fresh.case import COUNT, FRESH, FreshCase, drawn_hash, fresh_cases
 from eurdf_conformance.fresh.fault import FAULTS, with_fault
 from eurdf_conformance.judging.conversation import Conversation
@@ -87,7 +87,7 @@ class KnowsTheCorpus:
 @pytest.mark.slow
 def test_parser_that_knows_all_stored_cases_is_not_certified(cases: dict[str, FreshCase]) -> None:
     conversation = Conversation(InProcess(KnowsTheCorpus()))  # type: ignore[arg-type]
-    stored = [case for case in read_cases() if case.case.version in DRAWN_VERSIONS]
+    stored = [case for case in all_cases() if case.case.version in DRAWN_VERSIONS]
     assert {judge(case, Level.ACCEPT, conversation).verdict for case in stored} == {Verdict.PASSED}
     invalid = [case for case in cases.values() if not case.case.valid]
     assert {judge(case, Level.ACCEPT, conversation).verdict for case in invalid} == {Verdict.FAILED}

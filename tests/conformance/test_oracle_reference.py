@@ -18,7 +18,7 @@ from eurdf_conformance.adapters.reference_values import Quantities
 from eurdf_conformance.comparison.canonical import canonical_differences
 from eurdf_conformance.comparison.half_turn import is_half_turn
 from eurdf_conformance.corpus.case import ValidCase
-from eurdf_conformance.corpus.read import CorpusCase, read_cases
+from eurdf_conformance.corpus.read import CorpusCase, all_cases
 from eurdf_conformance.oracle import OracleRobot, read
 from eurdf_conformance.protocol.message import Accepted, Quantity, Values
 from support.random_files import mechanisms
@@ -28,7 +28,7 @@ from support.wild import FACTS, WILD
 QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
 ROBOTS = Path(__file__).parents[2] / "robots"
 COLLECTION = sorted(ROBOTS.glob("*/robot*.yaml")) + [WILD / name / "robot.yaml" for name in FACTS]
-VALID = [case for case in read_cases() if isinstance(case.case, ValidCase)]
+VALID = [case for case in all_cases() if isinstance(case.case, ValidCase)]
 CLOSING = [path for path in COLLECTION if path.parent.name not in FACTS or FACTS[path.parent.name]["closes"]]
 
 #: Relative to the size of the robot, or to the largest entry of M.

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from eurdf_conformance.corpus.protocol_rule import START, STOP
-from eurdf_conformance.corpus.read import read_cases
+from eurdf_conformance.corpus.read import all_cases
 from eurdf_conformance.judging.judge import Judgement, judge_outcome
 from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.protocol.message import Errored, Evaluated, Rejected, Started, Stopped
@@ -261,7 +261,7 @@ def test_parser_that_cannot_start_is_given_up_with_reason(way: str, kind: type[O
 
 def test_an_error_answer_to_start_makes_every_rule_errored() -> None:
     with Session(fake("refuses_to_start")) as session:
-        asked = Setup(session, lambda: Session(fake("refuses_to_start")), *read_cases()[:2])
+        asked = Setup(session, lambda: Session(fake("refuses_to_start")), *all_cases()[:2])
         for rule in (START, STOP):
             judgement = check(rule, asked)
             assert (judgement.verdict, judgement.reason) == (Verdict.ERRORED, "no licence")

@@ -14,7 +14,7 @@ import pytest
 from eurdf_conformance.corpus.case import ValidCase
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.protocol_rule import GOES_ON
-from eurdf_conformance.corpus.read import CorpusCase, read_cases
+from eurdf_conformance.corpus.read import CorpusCase, all_cases
 from eurdf_conformance.judging.conversation import Conversation
 from eurdf_conformance.judging.failure_text import failure_text
 from eurdf_conformance.judging.judge import Judgement, judge
@@ -57,7 +57,7 @@ from support.suite_runs import result, run, started
 from support.warm import run_module
 
 ROOT = Path(__file__).parents[2]
-CASES = {case.name: case for case in read_cases()}
+CASES = {case.name: case for case in all_cases()}
 VALID, INVALID, EITHER = (
     CASES["closures/parallelogram-3d-closure"],
     CASES["frames/closure-at-unknown-frame"],

@@ -12,7 +12,7 @@ import pytest
 
 from eurdf.commands.main import main
 from eurdf_conformance.corpus import archive
-from eurdf_conformance.corpus.read import read_cases
+from eurdf_conformance.corpus.read import all_cases
 from eurdf_conformance.judging.known_failures import read_known_failures
 from eurdf_conformance.suite.item import planned_items
 
@@ -51,7 +51,7 @@ def test_shown_known_failures_are_usable(tmp_path: Path) -> None:
     (tmp_path / "known.yaml").write_text(shown, encoding="utf-8")
     known = read_known_failures(tmp_path / "known.yaml")
     assert known.failures
-    assert known.unexpected([], planned_items(read_cases())) == []
+    assert known.unexpected([], planned_items(all_cases())) == []
 
 
 def test_linked_targets_exist() -> None:

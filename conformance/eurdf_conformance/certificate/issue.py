@@ -7,6 +7,7 @@ import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable
 from datetime import UTC, datetime
+from functools import cache
 from importlib.metadata import version
 
 from eurdf_conformance.certificate.certificate import (
@@ -32,8 +33,9 @@ _ID = re.compile(r'("id"\s*:\s*)-?\d+')
 _UNSTABLE = (Verdict.MISPLACED, Verdict.NOT_STARTED)
 
 
+@cache
 def installed_suite() -> Suite:
-    """The suite that is installed here."""
+    """The suite that is installed here, as this process read it."""
     return Suite(
         version=version(_DISTRIBUTION),
         protocol=PROTOCOL,
