@@ -12,9 +12,10 @@ import pytest
 
 import eurdf
 from eurdf.commands.robot_info import robot_info
+from eurdf.format.urdf.read import JOINT_LIMIT
 from eurdf.kinematics.assembly import Assembler
 from eurdf.kinematics.loop import Loop, find_loops, independent_groups, joints_of_loops
-from eurdf.linking.link import JOINT_LIMIT, ROW_LIMIT, VELOCITY_LIMIT
+from eurdf.linking.link import ROW_LIMIT, VELOCITY_LIMIT
 from eurdf.pinocchio.ancestry import Ancestry
 from support.hostile import VERSION2, chain, four_bars, joint, numbered, robot, shared, star
 

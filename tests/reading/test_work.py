@@ -15,7 +15,6 @@ from eurdf.format.urdf import read
 from eurdf.format.urdf.data import UrdfJoint
 from eurdf.format.urdf.elements import UrdfReader
 from eurdf.format.urdf.mimics import check_mimics
-from eurdf.linking.link import JOINT_LIMIT
 from eurdf.reading.reporter import XmlReporter
 from eurdf.reading.source import read_source
 from eurdf.reading.xml_reader import read_xml
@@ -47,16 +46,31 @@ def test_names_are_listed_for_listed_errors_only(tmp_path: Path) -> None:
     assert 0 < joints.listed <= LISTED
 
 
-def test_joints_beyond_any_merge_are_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert read.READ_JOINTS == 3 * JOINT_LIMIT
-    monkeypatch.setattr(read, "READ_JOINTS", 5)
+def test_joints_of_too_large_robot_are_not_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(read, "JOINT_LIMIT", 5)
     path = tmp_path / "robot.urdf"
     path.write_text(star(5), encoding="utf-8")
-    assert eurdf.check(path).ok or eurdf.check(path).errors[0].code == "leaf-without-inertia"
+    assert {found.code for found in eurdf.check(path).errors} == {"leaf-without-inertia"}
     path.write_text(chain(6), encoding="utf-8")
     monkeypatch.setattr(read, "read_link", None)
     (found,) = eurdf.check(path).diagnostics
     assert (found.code, found.line, found.column, found.pointer) == ("file-too-large", 1, 1, "/robot")
+    assert found.message == "the robot has 6 joints; the maximum is 5"
+
+
+def test_merging_leaves_number_of_joints(tmp_path: Path) -> None:
+    axes = ("1 0 0", "0 1 0", "0 0 1")
+    joints = [joint(f"j{i}", f"l{i}", f"l{i + 1}", content=f'<axis xyz="{axis}"/>') for i, axis in enumerate(axes)]
+    (tmp_path / "robot.urdf").write_text(robot(numbered(4), joints), encoding="utf-8")
+    (tmp_path / "robot.yaml").write_text(
+        'extended_urdf: "2.0"\njoints: {ball: {type: spherical, merges: [j0, j1, j2]}}\n', encoding="utf-8"
+    )
+    mechanism = eurdf.load(tmp_path, geometry=False).mechanism
+    assert [(joint.name, joint.type) for joint in mechanism.joints] == [
+        ("ball", "spherical"),
+        ("j0", "fixed"),
+        ("j1", "fixed"),
+    ]
 
 
 def test_file_is_opened_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

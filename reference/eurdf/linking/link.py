@@ -9,6 +9,7 @@ from types import MappingProxyType
 from eurdf.diagnostics import Diagnostics
 from eurdf.format.extension import Extension, FrameReference
 from eurdf.format.urdf.data import Urdf
+from eurdf.format.urdf.read import JOINT_LIMIT
 from eurdf.linking.actuators import link_actuators, with_motor
 from eurdf.linking.closures import link_closures
 from eurdf.linking.configurations import link_configurations
@@ -28,9 +29,6 @@ from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.spanning_tree import depth_first, rigid_roots
 from eurdf.reading.reporter import YamlReporter
 from eurdf.reading.yaml_node import json_pointer
-
-#: Joints that a robot may have, fixed ones too.
-JOINT_LIMIT = 10_000
 
 #: Velocities that the joints of a robot may have. The memory of a model grows with the square of their number.
 VELOCITY_LIMIT = 4_000

@@ -17,9 +17,9 @@ from eurdf.reading.xml_reader import XmlDocument
 #: Elements by which other dialects state a closure or a coupling; a parser of this format would ignore them.
 _CLOSURE_DIALECTS = frozenset({"loop", "loop_joint", "constraint", "coupling"})
 
-#: Joints of a URDF that are read (EU-FIL-002): a merge makes one joint of three, so that of more than these, more than
-#: a robot may have are left.
-READ_JOINTS = 30_000
+#: Joints that a robot may have, fixed ones too (EU-FIL-002). A description adds joints to those of the URDF, where it
+#: splits one in two, and removes none: of three merged joints, two become fixed.
+JOINT_LIMIT = 10_000
 
 
 def read_urdf(
@@ -63,9 +63,8 @@ def _read_robot(reader: UrdfReader, root: Element, materials: Materials | None) 
         elif isinstance(tag, str) and not _is_of_other_dialect(reader, element):
             reader.unknown(root, element)
     count = sum(element.tag == "joint" for element in elements)
-    if count > READ_JOINTS:
-        message = f"the URDF has {count:,} joints; the maximum is {READ_JOINTS:,}, and fewer unless joints are merged"
-        reader.report("file-too-large", message, root)
+    if count > JOINT_LIMIT:
+        reader.report("file-too-large", f"the robot has {count:,} joints; the maximum is {JOINT_LIMIT:,}", root)
         return None
     links: list[UrdfLink] = []
     joints: list[UrdfJoint] = []
