@@ -15,7 +15,6 @@ from eurdf.exporting.coordinates import Coordinates as Coordinates
 from eurdf.exporting.exceptions import CannotExport as CannotExport
 from eurdf.exporting.export import Export as Export
 from eurdf.exporting.export import export as export
-from eurdf.exporting.loss import Loss as Loss
 from eurdf.kinematics.analysis import Analysis as Analysis
 from eurdf.kinematics.analysis import LoopAnalysis as LoopAnalysis
 from eurdf.kinematics.analysis import Motion as Motion
@@ -69,6 +68,7 @@ from eurdf.kinematics.springs import spring_force as spring_force
 from eurdf.kinematics.sweep import MotionPath as MotionPath
 from eurdf.kinematics.sweep import Sweep as Sweep
 from eurdf.kinematics.sweep import sweep as sweep
+from eurdf.loss import Loss as Loss
 from eurdf.mechanism.mechanism import Mechanism as Mechanism
 from eurdf.pinocchio.constraint import NoConstraintModel as NoConstraintModel
 from eurdf.pinocchio.robot import Robot as Robot

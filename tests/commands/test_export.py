@@ -14,9 +14,9 @@ from eurdf.commands import export as command
 from eurdf.commands.main import main
 from eurdf.exporting.export import ACTUATORS
 from eurdf.exporting.formats import FORMATS
-from eurdf.exporting.loss import CONCEPTS
-from eurdf.exporting.output_folder import write_files
 from eurdf.exporting.table import with_table
+from eurdf.loss import CONCEPTS
+from eurdf.writing.output_folder import write_files
 
 
 @pytest.fixture(autouse=True)

@@ -13,10 +13,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-from eurdf.exporting.formats.urdf import rpy_of
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import Robot, build_robot
+from eurdf.writing.angles import rpy_of
 from support import by_hand
 from support.exported import random_robot
 

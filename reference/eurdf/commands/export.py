@@ -18,8 +18,8 @@ from eurdf.commands.selection import select_one
 if TYPE_CHECKING:
     from eurdf.diagnostics import Place
     from eurdf.diagnostics.text import Line
-    from eurdf.exporting.loss import Loss
     from eurdf.linking.description import Linked
+    from eurdf.loss import Loss
 
 _DESCRIPTION = """\
 Write a robot in the format of a simulator, with the closed loops that the format can state, and show every loss: what

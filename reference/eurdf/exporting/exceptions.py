@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from eurdf.exceptions import EurdfError
 
 if TYPE_CHECKING:
-    from eurdf.exporting.loss import Loss
+    from eurdf.loss import Loss
 
 
 class CannotExport(EurdfError, ValueError):  # noqa: N818 - part of the public interface

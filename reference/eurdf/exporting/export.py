@@ -14,14 +14,14 @@ from eurdf.exceptions import InvalidRobot
 from eurdf.exporting.coordinates import Coordinates, OwnVectors, Place
 from eurdf.exporting.exceptions import CannotExport
 from eurdf.exporting.formats import FORMATS
-from eurdf.exporting.loss import Effect, Loss
-from eurdf.exporting.output_folder import write_files
 from eurdf.exporting.written import Actuators, Exportable
 from eurdf.kinematics.assembly import assemble
 from eurdf.linking.description import Linked, Unlinked, describe, find_meshes
+from eurdf.loss import Effect, Loss
 from eurdf.mechanism.mechanism import ROOT_JOINT, Root
 from eurdf.pinocchio.robot import Robot, build_robot
 from eurdf.reading.given import Given
+from eurdf.writing.output_folder import write_files
 
 #: The configuration to start from, unless another one is asked for.
 ASSEMBLED = "assembled"

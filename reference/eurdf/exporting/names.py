@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from eurdf.exporting.loss import Losses
-from eurdf.exporting.xml_text import representable
+from eurdf.loss import Losses
+from eurdf.writing.xml_text import representable
 
 
 class UniqueNames:

@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 from eurdf.exporting.formats import FORMATS
-from eurdf.exporting.loss import CONCEPTS
+from eurdf.loss import CONCEPTS
 
 _PLACE = re.compile(r"(<!-- table: [^\n]*-->\n).*?(<!-- end of table -->)", re.DOTALL)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from eurdf.exporting.coordinates import Coordinates, OwnVectors
-from eurdf.exporting.loss import Loss, LossKind
+from eurdf.loss import Loss, LossKind
 from eurdf.mechanism.mechanism import Mechanism
 
 #: What actuators become.

@@ -9,18 +9,19 @@ from dataclasses import dataclass
 
 from lxml import etree
 
-from eurdf.exporting.coordinates import Coordinates, Part, rotation_matrix
-from eurdf.exporting.loss import COMMON, Effect, Losses, LossKind
+from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.mesh_file import mesh_names
 from eurdf.exporting.names import UniqueNames
 from eurdf.exporting.written import Exportable, Format, Written
-from eurdf.exporting.xml_text import file_content, numbers, representable
+from eurdf.loss import COMMON, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
+from eurdf.writing.angles import rpy_of
+from eurdf.writing.xml_text import file_content, numbers, representable
 
 _AXES: tuple[tuple[str, Vector3], ...] = (("_x", (1.0, 0.0, 0.0)), ("_y", (0.0, 1.0, 0.0)), ("_z", (0.0, 0.0, 1.0)))
 _LARGEST = sys.float_info.max
@@ -342,23 +343,6 @@ def _origin(element: etree._Element, pose: Pose) -> None:
     rpy = rpy_of(pose)
     attributes = {"xyz": numbers(pose.xyz)} | ({"rpy": numbers(rpy)} if any(rpy) else {})
     etree.SubElement(element, "origin", attributes)
-
-
-def rpy_of(pose: Pose) -> Vector3:
-    """Roll, pitch and yaw of an orientation, rad: the shortest numbers that give exactly its quaternion, if any do.
-
-    Pitch is from -π/2 to π/2. The roll is found from the yaw, so that rounding is not amplified near these two.
-    """
-    R = rotation_matrix(pose.quaternion)
-    yaw = math.atan2(R[1, 0], R[0, 0])
-    s, c = math.sin(yaw), math.cos(yaw)
-    pitch = math.atan2(-R[2, 0], c * R[0, 0] + s * R[1, 0])
-    roll = math.atan2(s * R[0, 2] - c * R[1, 2], c * R[1, 1] - s * R[0, 1])
-    for digits in range(17):
-        rounded = round(roll, digits), round(pitch, digits), round(yaw, digits)
-        if Pose.from_xyz_rpy(pose.xyz, rounded).quaternion == pose.quaternion:
-            return rounded
-    return roll, pitch, yaw
 
 
 FORMAT = Format("urdf", "the plain URDF of the spanning tree", write, LOSSES)

@@ -1,4 +1,4 @@
-"""What an export loses of a robot: the kinds of loss, and each one that was found."""
+"""What is lost between a robot and a file of another format: the kinds of loss, and each one that was found."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from enum import StrEnum
 
 
 class Effect(StrEnum):
-    """How much of an element is left in the other format.
+    """How much of an element is left in what is written.
 
     ``exact``: all that has an effect on the robot, in other terms. ``approximate``: it behaves almost as it should.
     ``dropped``: nothing is left of it.
@@ -64,10 +64,10 @@ CONCEPTS = (
 
 @dataclass(frozen=True, slots=True)
 class LossKind:
-    """A way in which a format cannot say what a mechanism says.
+    """A way in which an export or an import cannot say what it is given.
 
     Attributes:
-        code: Its permanent name, ``export-`` and a few words.
+        code: Its permanent name, ``export-`` or ``import-`` and a few words.
         concept: One of `CONCEPTS`.
         effect: What is left.
         title: What happens, as one sentence.
@@ -81,7 +81,7 @@ class LossKind:
     hint: str
 
 
-#: Losses that a format may share with others.
+#: Losses that a format to export to may share with others.
 COMMON = (
     LossKind(
         "export-name",
@@ -102,7 +102,7 @@ COMMON = (
 
 @dataclass(frozen=True, slots=True)
 class Loss:
-    """One loss of one export.
+    """One loss of one export or import.
 
     Attributes:
         code: Name of its kind.
@@ -125,7 +125,7 @@ class Loss:
 
 
 class Losses:
-    """The losses that an export finds, each of a kind that its format has registered."""
+    """The losses that an export or an import finds, each of a kind that its format has registered."""
 
     def __init__(self, kinds: tuple[LossKind, ...]) -> None:
         self._kinds = {kind.code: kind for kind in kinds}
