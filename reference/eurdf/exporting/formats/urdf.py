@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -19,12 +18,11 @@ from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.mimic import Mimic
-from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
-from eurdf.writing.angles import rpy_of
-from eurdf.writing.xml_text import file_content, numbers, representable
+from eurdf.mechanism.pose import IDENTITY, Vector3
+from eurdf.writing.urdf_elements import add_dynamics, add_inertial, add_joint, add_limit, add_mimic, add_shape
+from eurdf.writing.xml_text import file_content, representable
 
 _AXES: tuple[tuple[str, Vector3], ...] = (("_x", (1.0, 0.0, 0.0)), ("_y", (0.0, 1.0, 0.0)), ("_z", (0.0, 0.0, 1.0)))
-_LARGEST = sys.float_info.max
 
 
 def _closure(kind: str) -> LossKind:
@@ -163,7 +161,8 @@ class _Writer:
         for frame in mechanism.frames:
             name = self.names.new(frame.name)
             etree.SubElement(self.root, "link", name=name)
-            self._element(self.names.new(f"{name}_fixed"), JointType.FIXED, frame.body, name, frame.pose)
+            fixed = self.names.new(f"{name}_fixed")
+            add_joint(self.root, fixed, JointType.FIXED, frame.body, name, frame.pose, None)
             losses.add("export-frame", frame.name)
         for closure in mechanism.closures:
             losses.add(f"export-{closure.type}-dropped", closure.name)
@@ -187,41 +186,22 @@ class _Writer:
     def _link(self, body: Body) -> None:
         link = etree.SubElement(self.root, "link", name=body.name)
         if body.inertia is not None:
-            inertial = etree.SubElement(link, "inertial")
-            _origin(inertial, body.inertia.pose)
-            etree.SubElement(inertial, "mass", value=numbers((body.inertia.mass,)))
-            names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
-            moments = {name: numbers((value,)) for name, value in zip(names, body.inertia.moments, strict=True)}
-            etree.SubElement(inertial, "inertia", moments)
+            add_inertial(link, body.inertia)
         for tag, shapes in (("visual", body.visuals), ("collision", body.collisions)):
             for shape in shapes:
-                self._shape(etree.SubElement(link, tag), shape)
+                self._shape(link, tag, shape)
 
-    def _shape(self, element: etree._Element, shape: Shape) -> None:
-        _origin(element, shape.pose)
-        geometry = etree.SubElement(element, "geometry")
-        size = shape.size
-        match shape.kind:
-            case "box":
-                etree.SubElement(geometry, "box", size=numbers(size))
-            case "cylinder" | "capsule":
-                etree.SubElement(geometry, shape.kind, radius=numbers(size[:1]), length=numbers(size[1:]))
-            case "sphere":
-                etree.SubElement(geometry, "sphere", radius=numbers(size))
-            case "mesh":
-                name = shape.filename
-                if name in self.contents:
-                    path = f"meshes/{self.mesh_ids[name]}"
-                    self.copied[path] = self.contents[name]
-                    name = path
-                else:
-                    self.losses.add("export-mesh-missing", name)
-                etree.SubElement(geometry, "mesh", filename=representable(name), scale=numbers(size))
+    def _shape(self, link: etree._Element, use: str, shape: Shape) -> None:
+        name = shape.filename
+        if shape.kind == "mesh":
+            if name in self.contents:
+                name = f"meshes/{self.mesh_ids[name]}"
+                self.copied[name] = self.contents[shape.filename]
+            else:
+                self.losses.add("export-mesh-missing", name)
         if shape.texture:
             self.losses.add("export-texture", shape.texture)
-        if shape.color is not None and element.tag == "visual":
-            material = etree.SubElement(element, "material", name=f"color {numbers(shape.color)}")
-            etree.SubElement(material, "color", rgba=numbers(shape.color))
+        add_shape(link, use, shape, name)
 
     # -- joints -----------------------------------------------------------------------------------------------------
 
@@ -243,29 +223,19 @@ class _Writer:
             child = joint.child if last else self.names.new(f"{name}_link")
             if not last:
                 etree.SubElement(self.root, "link", name=child)
-            element = self._element(name, step.type, parent, child, placement)
-            if step.axis is not None:
-                etree.SubElement(element, "axis", xyz=numbers(step.axis))
+            element = add_joint(self.root, name, step.type, parent, child, placement, step.axis)
             self._properties(joint, step, element)
             mimic = step.mimic or (joint.mimic if len(steps) == 1 else None)
             if mimic is not None:
-                numbers_ = {"multiplier": numbers((mimic.multiplier,)), "offset": numbers((mimic.offset,))}
-                etree.SubElement(element, "mimic", {"joint": mimic.joint, **numbers_})
+                add_mimic(element, mimic)
             names.append(name)
             parent, placement = child, IDENTITY
         if joint.offset is not IDENTITY:
             offset = joint.placement * joint.offset if joint.type is JointType.FIXED else joint.offset
             at = joint.parent if joint.type is JointType.FIXED else parent
             name = joint.name if joint.type is JointType.FIXED else self.names.new(f"{joint.name}_offset")
-            self._element(name, JointType.FIXED, at, joint.child, offset)
+            add_joint(self.root, name, JointType.FIXED, at, joint.child, offset, None)
         self._part(joint, steps, names)
-
-    def _element(self, name: str, type_: JointType, parent: str, child: str, pose: Pose) -> etree._Element:
-        element = etree.SubElement(self.root, "joint", name=name, type=str(type_))
-        _origin(element, pose)
-        etree.SubElement(element, "parent", link=parent)
-        etree.SubElement(element, "child", link=child)
-        return element
 
     def _part(self, joint: Joint, steps: Sequence[_Step], names: Sequence[str]) -> None:
         if joint.mimic is not None or joint.type is JointType.FIXED:
@@ -284,28 +254,25 @@ class _Writer:
         at = step.index
         if at is None:
             if step.type is JointType.PRISMATIC:  # of a helical joint
-                bound = numbers((_LARGEST,))
-                etree.SubElement(element, "limit", lower=f"-{bound}", upper=bound, effort=bound, velocity=bound)
+                add_limit(element, (-math.inf, math.inf), math.inf, math.inf)
             if joint.type not in (JointType.PLANAR, JointType.FLOATING):
                 return
             at = 0
             several = (properties.velocity, properties.effort, properties.damping, properties.friction)
             if any(len(set(values)) > 1 for values in several):
                 self.losses.add("export-unequal-properties", joint.name)
-        limit = {}
+        position = None
         if step.type in (JointType.REVOLUTE, JointType.PRISMATIC):
             lower = properties.lower[at] if properties.lower else -math.inf
             upper = properties.upper[at] if properties.upper else math.inf
-            limit = {"lower": numbers((max(lower, -_LARGEST),)), "upper": numbers((min(upper, _LARGEST),))}
+            position = lower, upper
         velocity = properties.velocity[at] if properties.velocity else math.inf
         effort = properties.effort[at] if properties.effort else math.inf
-        if limit or math.isfinite(velocity) or math.isfinite(effort):
-            limit["effort"], limit["velocity"] = (numbers((min(each, _LARGEST),)) for each in (effort, velocity))
-            etree.SubElement(element, "limit", limit)
+        if position or math.isfinite(velocity) or math.isfinite(effort):
+            add_limit(element, position, effort, velocity)
         damping = properties.damping[at] if properties.damping else 0.0
         friction = properties.friction[at] if properties.friction else 0.0
-        if damping or friction:
-            etree.SubElement(element, "dynamics", damping=numbers((damping,)), friction=numbers((friction,)))
+        add_dynamics(element, damping, friction)
 
 
 def _steps(joint: Joint) -> list[_Step]:
@@ -335,14 +302,6 @@ def _steps(joint: Joint) -> list[_Step]:
             slide = _Step("_slide", JointType.PRISMATIC, joint.axes[0], mimic=advance)
             return [_Step("", turning(0), joint.axes[0], 0), slide]
     return [_Step("", joint.type, joint.axes[0], 0)]
-
-
-def _origin(element: etree._Element, pose: Pose) -> None:
-    if pose == IDENTITY:
-        return
-    rpy = rpy_of(pose)
-    attributes = {"xyz": numbers(pose.xyz)} | ({"rpy": numbers(rpy)} if any(rpy) else {})
-    etree.SubElement(element, "origin", attributes)
 
 
 FORMAT = Format("urdf", "the plain URDF of the spanning tree", write, LOSSES)

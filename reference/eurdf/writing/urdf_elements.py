@@ -1,0 +1,107 @@
+"""The elements of a URDF, from the parts of a mechanism. Numbers are read back to the last bit."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+
+from lxml import etree
+
+from eurdf.mechanism.body import Inertia, Shape
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mimic import Mimic
+from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
+from eurdf.writing.angles import rpy_of
+from eurdf.writing.xml_text import numbers, representable
+
+#: What is written where there is no limit, but URDF wants a number: rad, m, their rates, N·m or N.
+LARGEST = sys.float_info.max
+
+_MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+
+
+def add_inertial(link: etree._Element, inertia: Inertia) -> None:
+    """Add the inertia of a link."""
+    inertial = etree.SubElement(link, "inertial")
+    add_origin(inertial, inertia.pose)
+    etree.SubElement(inertial, "mass", value=numbers((inertia.mass,)))
+    moments = {name: numbers((value,)) for name, value in zip(_MOMENTS, inertia.moments, strict=True)}
+    etree.SubElement(inertial, "inertia", moments)
+
+
+def add_shape(link: etree._Element, use: str, shape: Shape, filename: str = "") -> None:
+    """Add a shape, with its color if it is visual; its texture is left out.
+
+    Args:
+        link: The link.
+        use: ``visual`` or ``collision``.
+        shape: The shape.
+        filename: URI of the file of a mesh.
+    """
+    element = etree.SubElement(link, use)
+    add_origin(element, shape.pose)
+    geometry = etree.SubElement(element, "geometry")
+    size = shape.size
+    match shape.kind:
+        case "box":
+            etree.SubElement(geometry, "box", size=numbers(size))
+        case "cylinder" | "capsule":
+            etree.SubElement(geometry, shape.kind, radius=numbers(size[:1]), length=numbers(size[1:]))
+        case "sphere":
+            etree.SubElement(geometry, "sphere", radius=numbers(size))
+        case "mesh":
+            etree.SubElement(geometry, "mesh", filename=representable(filename), scale=numbers(size))
+    if shape.color is not None and use == "visual":
+        material = etree.SubElement(element, "material", name=f"color {numbers(shape.color)}")
+        etree.SubElement(material, "color", rgba=numbers(shape.color))
+
+
+def add_joint(
+    robot: etree._Element, name: str, kind: JointType, parent: str, child: str, placement: Pose, axis: Vector3 | None
+) -> etree._Element:
+    """Add a joint of a type that URDF has; returns its element."""
+    element = etree.SubElement(robot, "joint", name=name, type=str(kind))
+    add_origin(element, placement)
+    etree.SubElement(element, "parent", link=parent)
+    etree.SubElement(element, "child", link=child)
+    if axis is not None:
+        etree.SubElement(element, "axis", xyz=numbers(axis))
+    return element
+
+
+def add_limit(joint: etree._Element, position: tuple[float, float] | None, effort: float, velocity: float) -> None:
+    """Add the limits of a joint, each of which may be infinite.
+
+    Args:
+        joint: The element of the joint.
+        position: Lower and upper limit, rad or m; None for a continuous joint.
+        effort: N·m or N.
+        velocity: rad/s or m/s.
+    """
+    limit = {}
+    if position is not None:
+        lower, upper = (min(max(each, -LARGEST), LARGEST) for each in position)
+        limit = {"lower": numbers((lower,)), "upper": numbers((upper,))}
+    limit["effort"], limit["velocity"] = (numbers((min(each, LARGEST),)) for each in (effort, velocity))
+    etree.SubElement(joint, "limit", limit)
+
+
+def add_dynamics(joint: etree._Element, damping: float, friction: float) -> None:
+    """Add the losses of a joint, unless there are none."""
+    if damping or friction:
+        etree.SubElement(joint, "dynamics", damping=numbers((damping,)), friction=numbers((friction,)))
+
+
+def add_mimic(joint: etree._Element, mimic: Mimic) -> None:
+    """Add the leader of a joint."""
+    ratio = {"multiplier": numbers((mimic.multiplier,)), "offset": numbers((mimic.offset,))}
+    etree.SubElement(joint, "mimic", {"joint": mimic.joint, **ratio})
+
+
+def add_origin(element: etree._Element, pose: Pose) -> None:
+    """Add the pose of a joint, a shape or an inertia, unless it is the identity."""
+    if pose == IDENTITY:
+        return
+    rpy: Sequence[float] = rpy_of(pose)
+    attributes = {"xyz": numbers(pose.xyz)} | ({"rpy": numbers(rpy)} if any(rpy) else {})
+    etree.SubElement(element, "origin", attributes)
