@@ -24,17 +24,20 @@ YAML_VALUES = (
     "null", "true", "no", "[]", "{}", "[[]]", "{x: {}}", "0x10", "0o17", "1_000", "12:30", "1e3", "-1", "1e308",
     "1e-320", "9999999999999999999999999", ".inf", ".nan", "!!str 1", "!!int x", "!!binary aGk=", "!own x",
     "*nowhere", "&here x", "<<", "'3d'", "6D", "x-belt", "spherical", "universal", "helical", "cylindrical", "fixed",
-    "floating", '"2.0"', "2.0", "1", "[0, 0, 0]", "[0, 0, 0, 1]", "[1e200, 0, 0]", "[1, 2]", "[0, 0, 0, 0]", '"\\0"',
+    "floating", "hinge", "distance", '"2.0"', '"2.1"', "2.0", "1", "[0, 0, 0]", "[0, 0, 0, 1]", "[1e200, 0, 0]",
+    "[1, 2]", "[0, 0, 0, 0]", '"\\0"',
     '"\\ud800"', "'2001-01-01'", "2001-01-01", "{type: universal, axes: xy}",
     "{type: universal, axes: [[1e200, 0, 0], [0, 1e-9, 0]]}", "{type: helical, pitch: 1e-320}",
     "{type: helical, pitch: 1e308}", "{type: spherical}", "{type: cylindrical}",
-    "{limits: {lower: -1e308, upper: 1e308}}", "{armature: 1e308}", "{link: base, xyz: [1e308, -1e308, 1e308]}",
-    "{link: base, rpy: [1e308, 0, 1e308]}",
+    "{limits: {lower: -1e308, upper: 1e308}}", "{armature: 1e308}", "{mimic: false}",
+    "{stiffness: 1e308, rest: 1e308}", "{linear: 0}", "{motor: 1e308, grip: 1e-320}",
+    "{link: base, xyz: [1e308, -1e308, 1e308]}", "{link: base, rpy: [1e308, 0, 1e308]}",
 )  # fmt: skip
 YAML_KEYS = """
     extended_urdf urdf root closures joints actuators frames configurations metadata name type link joint xyz
     rpy axes merges pitch limits lower upper velocity effort damping friction armature gear_ratio rotor_inertia
-    assembled closed_loop name_mot joint_name joint_type
+    assembled axis length compliance linear angular couplings offset stiffness rest mimic control closed_loop
+    name_mot joint_name joint_type
 """.split()  # noqa: SIM905
 TAGS = """
     robot link joint inertial origin mass inertia visual collision geometry box sphere cylinder capsule mesh

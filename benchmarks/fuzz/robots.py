@@ -33,6 +33,7 @@ def seeds(folders: Sequence[Path] = ()) -> list[Seed]:
         ]
     found = []
     data = ROOT / "tests" / "data"
+    workbench = (data / "workbench.urdf").read_bytes()
     for folder, stem in (
         (data, "workbench"),
         *((ROOT / "robots" / name, "robot") for name in ("digit_leg", "four_bar")),
@@ -40,7 +41,8 @@ def seeds(folders: Sequence[Path] = ()) -> list[Seed]:
         urdf = (folder / f"{stem}.urdf").read_bytes()
         for ending in (".yaml", ".v1.yaml"):
             found.append(Seed(f"{folder.name}/{stem}{ending}", urdf, (folder / f"{stem}{ending}").read_bytes()))
-    found.append(Seed("bare workbench", (data / "workbench.urdf").read_bytes(), None))
+    found.append(Seed("workbench.2.1.yaml", workbench, (data / "workbench.2.1.yaml").read_bytes()))
+    found.append(Seed("bare workbench", workbench, None))
     return found
 
 

@@ -314,6 +314,7 @@ ERRORS = [
     ("closures: {rod: 3d}", "wrong-type", "/closures", 11, "must be a list, not a mapping"),
     ("closures: [rod]", "wrong-type", "/closures/0", 12, "must be a mapping, not 'rod'"),
     ("actuators: motor", "wrong-type", "/actuators", 12, "write it as a list: [motor]"),
+    ("frames: [{name: tip, link: rod, xyz: 0 0 1}]", "wrong-type", "/frames/0/xyz", 38, "write three numbers"),
     ("actuators: [3]", "wrong-type", "/actuators/0", 13, "quote a name"),
     ("actuators: [{joint: a, gear_ratio: 0}]", "out-of-range", "/actuators/0/gear_ratio", 36, "must not be 0"),
     ("actuators: [{joint: a, gear_ratio: -0.0}]", "out-of-range", "/actuators/0/gear_ratio", 36, "must not be 0"),

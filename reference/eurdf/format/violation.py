@@ -334,6 +334,8 @@ def _type_hint(must: str, pointer: Pointer, value: Any) -> str | None:
     if must == "must be a list" and isinstance(value, dict):
         return "begin each item with '- '"
     if must == "must be a list" and isinstance(value, str | int | float) and len(str(value)) <= 60:
+        if pointer[-1] in ("xyz", "rpy", "axis"):
+            return "write three numbers in brackets, like [0, 0, 1]"
         return f"write it as a list: [{value}]"
     if "number" in must and isinstance(value, str):
         try:
