@@ -72,5 +72,10 @@ from eurdf.loss import Loss as Loss
 from eurdf.mechanism.mechanism import Mechanism as Mechanism
 from eurdf.pinocchio.constraint import NoConstraintModel as NoConstraintModel
 from eurdf.pinocchio.robot import Robot as Robot
+from eurdf.transmissions.exceptions import DependentVelocities as DependentVelocities
+from eurdf.transmissions.exceptions import NoTransmission as NoTransmission
+from eurdf.transmissions.transmission import Transmission as Transmission
+from eurdf.transmissions.transmission import Transmissions as Transmissions
+from eurdf.transmissions.transmission import transmission as transmission
 
 __version__: str

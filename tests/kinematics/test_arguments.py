@@ -62,6 +62,7 @@ CALLS: dict[str, dict[str, Any]] = {
     "spring_force": {"q": "q"},
     "split_configuration": {"q": "q"},
     "split_velocity": {"v": "v"},
+    "transmission": {"joints": "free_rocker", "q": "q"},
     "sweep": {"actuator": "motor_crank", "q0": "q"},
 }
 

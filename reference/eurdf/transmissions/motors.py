@@ -1,0 +1,99 @@
+"""The motors that joints depend on."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from eurdf.kinematics.array import Indices, Mask
+from eurdf.kinematics.assembly import Assembler, start
+from eurdf.kinematics.batch.problem import problem
+from eurdf.kinematics.derived import borrowed, derived
+from eurdf.kinematics.loop import find_loops, independent_groups, joints_of_loops
+from eurdf.transmissions.maps import MOVES, Task, motions, pseudoinverse
+from eurdf.transmissions.selection import Selection, selection
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+# Number of configurations near the assembled one at which dependence is tested, and how far (rad, or characteristic
+# lengths) random motions lead to them. A derivative that is zero at a dead point is not zero at all of them.
+_TESTS = 3
+_FAR = 0.02
+
+
+def motors_of(robot: Robot, joints: Selection) -> Selection:
+    """The actuated joints that move the given joints, in the order of the actuation.
+
+    An actuated joint that is among the joints is its own motor. Others are moved by the actuators of their loops,
+    except those that do not move them anywhere near the `assembled` configuration.
+
+    Args:
+        robot: The robot.
+        joints: The joints.
+
+    Raises:
+        ValueError: No actuator moves the joints.
+    """
+    found: dict[tuple[str, ...], Selection] = derived(robot, _found)
+    if joints.joints not in found:
+        found[joints.joints] = _motors_of(robot, joints)
+    return found[joints.joints]
+
+
+def _found(robot: Robot) -> dict[tuple[str, ...], Selection]:
+    """The motors by the names of joints, as far as they were looked for."""
+    return {}
+
+
+def _motors_of(robot: Robot, joints: Selection) -> Selection:
+    actuated = robot.actuation.idx_v
+    by = np.isin(actuated, joints.velocities)
+    others = np.setdiff1d(joints.velocities, actuated)
+    candidates = _in_loops_of(robot, others) & ~by
+    if candidates.any():
+        by |= candidates & _moved(robot, others)
+    owner = {slot.idx_v + k: name for name, slot in robot.slots.items() for k in range(slot.nv)}
+    names = dict.fromkeys(owner[velocity] for velocity in actuated[by].tolist())
+    if not names:
+        listed = ", ".join(f"'{name}'" for name in joints.joints)
+        raise ValueError(f"no actuator moves {listed}; `eurdf.analyze(robot).motions` lists uncontrolled motions")
+    return selection(robot, names, "motors")
+
+
+def springs_of(robot: Robot) -> Indices:
+    """Indices in v of the joints with springs."""
+    return np.unique(robot.tree.springs.idx_v)
+
+
+def _in_loops_of(robot: Robot, velocities: Indices) -> Mask:
+    """Which actuated velocities (nu,) move loops that these velocities close while the actuators are held."""
+    tree, loops, actuated = robot.tree, find_loops(robot), robot.actuation.idx_v
+    found = np.zeros(len(actuated), dtype=bool)
+    for group in independent_groups(robot, actuated.tolist()):
+        if np.isin(group.velocities, velocities).any():
+            joints = joints_of_loops(robot, [loops[index] for index in group.closures])
+            moving = [velocity for joint in joints for velocity in tree.moving_velocities[joint]]
+            found |= np.isin(actuated, moving)
+    return found
+
+
+def _moved(robot: Robot, velocities: Indices) -> Mask:
+    """Which actuated velocities (nu,) move these velocities at some configurations."""
+    model, actuated = problem(robot), robot.actuation.idx_v
+    task = Task(model, actuated, velocities, actuated, springs_of(robot))
+    random = np.random.default_rng(0)
+    found = np.zeros(len(actuated), dtype=bool)
+    with borrowed(robot, Assembler) as assembler:
+        assembler.tolerance, assembler.limits = 1e-10, None
+        q = assembler.assemble(start(robot)).q
+        for _ in range(_TESTS):
+            Q = motions(task, q)
+            step = Q @ random.uniform(-1.0, 1.0, Q.shape[1])
+            step *= _FAR / max(np.abs(step).max(initial=0.0), _FAR)
+            near = assembler.closed(robot.tree.integrate(q, model.scale * step))
+            Q = motions(task, q if near is None else near)
+            inverse, _ = pseudoinverse(Q[None, actuated])
+            found |= (np.abs(Q[velocities] @ inverse[0]) > MOVES).any(axis=0)
+    return found
