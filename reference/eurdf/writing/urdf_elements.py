@@ -29,14 +29,15 @@ def add_inertial(link: etree._Element, inertia: Inertia) -> None:
     etree.SubElement(inertial, "inertia", moments)
 
 
-def add_shape(link: etree._Element, use: str, shape: Shape, filename: str = "") -> None:
-    """Add a shape, with its color if it is visual; its texture is left out.
+def add_shape(link: etree._Element, use: str, shape: Shape, filename: str = "", texture: str = "") -> None:
+    """Add a shape, with its color if it is visual.
 
     Args:
         link: The link.
         use: ``visual`` or ``collision``.
         shape: The shape.
         filename: URI of the file of a mesh.
+        texture: URI of the file of its texture; empty for none.
     """
     element = etree.SubElement(link, use)
     add_origin(element, shape.pose)
@@ -51,9 +52,13 @@ def add_shape(link: etree._Element, use: str, shape: Shape, filename: str = "") 
             etree.SubElement(geometry, "sphere", radius=numbers(size))
         case "mesh":
             etree.SubElement(geometry, "mesh", filename=representable(filename), scale=numbers(size))
-    if shape.color is not None and use == "visual":
-        material = etree.SubElement(element, "material", name=f"color {numbers(shape.color)}")
-        etree.SubElement(material, "color", rgba=numbers(shape.color))
+    if use == "visual" and (shape.color is not None or texture):
+        color = "" if shape.color is None else f"color {numbers(shape.color)}"
+        material = etree.SubElement(element, "material", name=representable(f"{color} {texture}".strip()))
+        if shape.color is not None:
+            etree.SubElement(material, "color", rgba=numbers(shape.color))
+        if texture:
+            etree.SubElement(material, "texture", filename=representable(texture))
 
 
 def add_joint(

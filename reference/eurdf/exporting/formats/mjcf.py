@@ -20,7 +20,6 @@ from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.exceptions import CannotExport
 from eurdf.exporting.inertia import about_centre, physical
 from eurdf.exporting.mesh_file import mesh_names
-from eurdf.exporting.names import UniqueNames
 from eurdf.exporting.written import Exportable, Format, Written
 from eurdf.loss import COMMON, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Shape
@@ -38,6 +37,7 @@ from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic, drivers
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.mechanism.spanning_tree import rigid_roots
+from eurdf.writing.names import UniqueNames
 from eurdf.writing.xml_text import file_content, numbers, representable
 
 #: kg and kg·m² that a moving body without inertia gets: above MuJoCo's least, 1e-15, and far below any of a robot.

@@ -10,7 +10,6 @@ from lxml import etree
 
 from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.mesh_file import mesh_names
-from eurdf.exporting.names import UniqueNames
 from eurdf.exporting.written import Exportable, Format, Written
 from eurdf.loss import COMMON, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Shape
@@ -19,6 +18,7 @@ from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Vector3
+from eurdf.writing.names import UniqueNames
 from eurdf.writing.urdf_elements import add_dynamics, add_inertial, add_joint, add_limit, add_mimic, add_shape
 from eurdf.writing.xml_text import file_content, representable
 

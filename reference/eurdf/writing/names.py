@@ -7,10 +7,10 @@ from eurdf.writing.xml_text import representable
 
 
 class UniqueNames:
-    """Unique names of the elements of one kind; each name that had to change is a loss ``export-name``."""
+    """Unique names of the elements of one kind; each name that had to change is a loss."""
 
-    def __init__(self, losses: Losses, *reserved: str) -> None:
-        self._losses, self._used = losses, set(reserved)
+    def __init__(self, losses: Losses, *reserved: str, code: str = "export-name") -> None:
+        self._losses, self._used, self._code = losses, set(reserved), code
 
     def new(self, name: str) -> str:
         """The name, or one made of it that is not used yet."""
@@ -19,5 +19,5 @@ class UniqueNames:
             found += "_"
         self._used.add(found)
         if found != name:
-            self._losses.add("export-name", name, f"becomes '{found}'")
+            self._losses.add(self._code, name, f"becomes '{found}'")
         return found

@@ -1,0 +1,442 @@
+"""A mechanism as the two files that describe it: a URDF, and a YAML file in the lowest version that suffices.
+
+Numbers are read back to the last bit, and the order is that of the mechanism. What URDF can say is in the URDF; the
+YAML file has the rest.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, cast
+
+from lxml import etree
+
+from eurdf.format.field import is_own_key
+from eurdf.format.yaml_text import Entry, Value, lines_of, lines_of_item, modeline, section, text_of
+from eurdf.mechanism.body import Body
+from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, HingeClosure
+from eurdf.mechanism.frame import Anchor
+from eurdf.mechanism.joint import Joint, JointProperties
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
+from eurdf.mechanism.same_model import with_universal_joints
+from eurdf.writing.angles import rpy_of
+from eurdf.writing.urdf_elements import (
+    LARGEST,
+    add_dynamics,
+    add_inertial,
+    add_joint,
+    add_limit,
+    add_mimic,
+    add_shape,
+)
+from eurdf.writing.xml_text import file_content, representable
+
+_Z: Vector3 = (0.0, 0.0, 1.0)
+_LETTERS = {(1.0, 0.0, 0.0): "x", (0.0, 1.0, 0.0): "y", _Z: "z"}
+
+#: Types that URDF has, with an axis.
+_AXIAL = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
+
+#: Types whose limits and losses are not read from a URDF.
+_WITHOUT_URDF_PROPERTIES = (JointType.PLANAR, JointType.FLOATING)
+
+
+class NotWritable(ValueError):  # noqa: N818 - named as the other refusals are
+    """The two files cannot say what a mechanism says; the text says what."""
+
+
+@dataclass(frozen=True, slots=True)
+class DescriptionFiles:
+    """The two files of a robot.
+
+    Attributes:
+        urdf: Content of the URDF.
+        yaml: Text of the YAML file.
+        version: Version of the YAML file, the lowest that can say what the mechanism says.
+    """
+
+    urdf: bytes
+    yaml: str
+    version: Literal["2.0", "2.1"]
+
+
+def version_needed(mechanism: Mechanism) -> Literal["2.0", "2.1"]:
+    """The lowest version that can describe a mechanism."""
+    later = bool(
+        mechanism.couplings
+        or mechanism.motors
+        or any(closure.type not in ("3d", "6d") or _compliance(closure) for closure in mechanism.closures)
+        or any(
+            any(joint.properties.stiffness)
+            or (joint.mimic and (any(joint.properties.armature) or any(joint.properties.rest)))
+            for joint in mechanism.joints
+        )
+    )
+    return "2.1" if later else "2.0"
+
+
+def describe_mechanism(
+    mechanism: Mechanism,
+    *,
+    urdf_path: str = "robot.urdf",
+    schema: str | None = None,
+    comments: Sequence[str] = (),
+) -> DescriptionFiles:
+    """The two files of a mechanism. Read again, they are the same mechanism, but for what follows.
+
+    A limit that is infinite beside one that is not is the largest double. Where a child's frame is not that of its
+    joint (`Joint.offset`), the joint carries a link without mass, to which the child is fixed. User data whose place
+    does not exist in the new file are in ``x-own-data``, by their JSON pointer.
+
+    Args:
+        mechanism: The robot.
+        urdf_path: Path of the URDF from the folder of the YAML file.
+        schema: Path of the schema from there, for the first line; None for no such line.
+        comments: Lines of text to put at the head of both files.
+
+    Raises:
+        NotWritable: A name cannot be in such a file, or a joint has properties that its type does not have.
+    """
+    joined = with_universal_joints(mechanism)
+    if {joint.name for joint in joined.joints}.issuperset(joined.actuators):
+        mechanism = joined
+    version = version_needed(mechanism)
+    for kind, names in (
+        ("link", [body.name for body in mechanism.bodies]),
+        ("joint", [joint.name for joint in mechanism.joints]),
+        ("robot", [mechanism.name]),
+    ):
+        for name in names:
+            if representable(name) != name or not name:
+                raise NotWritable(f"the {kind} {name!r} has a name that XML cannot contain; give it another one")
+    urdf = _Urdf(mechanism)
+    content = {
+        "extended_urdf": version,
+        "urdf": urdf_path,
+        **({"root": "floating"} if mechanism.root == "floating" else {}),
+        **_content(mechanism),
+    }
+    _place_own_data(content, mechanism)
+    head = [modeline(schema)] if schema is not None else []
+    head += [f"# {line}".rstrip() for line in comments]
+    text = "".join(f"{line}\n" for line in head) + text_of(_entries(content))
+    return DescriptionFiles(urdf.content(comments), text, version)
+
+
+class _Urdf:
+    """The URDF of a mechanism: each joint just before the link that it carries."""
+
+    def __init__(self, mechanism: Mechanism) -> None:
+        self.mechanism = mechanism
+        self.links = {body.name for body in mechanism.bodies}
+        self.joints = {joint.name for joint in mechanism.joints}
+        self.robot = etree.Element("robot", name=mechanism.name)
+        self._link(mechanism.bodies[0])
+        for joint, body in zip(mechanism.joints, mechanism.bodies[1:], strict=True):
+            self._joint(joint)
+            self._link(body)
+
+    def content(self, comments: Sequence[str]) -> bytes:
+        """The bytes of the file."""
+        for line in reversed(comments):
+            self.robot.insert(0, etree.Comment(f" {representable(line).replace('--', '- -')} "))
+        return file_content(self.robot)
+
+    def _link(self, body: Body) -> None:
+        link = etree.SubElement(self.robot, "link", name=body.name)
+        if body.inertia is not None:
+            add_inertial(link, body.inertia)
+        for use, shapes in (("visual", body.visuals), ("collision", body.collisions)):
+            for shape in shapes:
+                add_shape(link, use, shape, shape.filename, shape.texture)
+
+    def _joint(self, joint: Joint) -> None:
+        kind, axis = _in_urdf(joint)
+        placement, child = joint.placement, joint.child
+        if joint.offset != IDENTITY:
+            if joint.type is JointType.FIXED:
+                placement = placement * joint.offset
+            else:
+                child = _new(f"{joint.child}_joint", self.links)
+                fixed = _new(f"{joint.name}_offset", self.joints)
+        element = add_joint(self.robot, joint.name, kind, joint.parent, child, placement, axis)
+        if joint.mimic is not None:
+            add_mimic(element, joint.mimic)
+        if kind in _AXIAL:
+            self._properties(joint, kind, element)
+        if child != joint.child:
+            etree.SubElement(self.robot, "link", name=child)
+            add_joint(self.robot, fixed, JointType.FIXED, child, joint.child, joint.offset, None)
+
+    def _properties(self, joint: Joint, kind: JointType, element: etree._Element) -> None:
+        properties = joint.properties
+        index = _limited_in_urdf(joint)
+        position = None
+        if kind is not JointType.CONTINUOUS:
+            position = (-math.inf, math.inf)
+            if index is not None and properties.lower:
+                position = properties.lower[index], properties.upper[index]
+        effort, velocity = _common(properties.effort, math.inf), _common(properties.velocity, math.inf)
+        if position is not None or math.isfinite(effort) or math.isfinite(velocity):
+            add_limit(element, position, effort, velocity)
+        add_dynamics(element, _common(properties.damping, 0.0), _common(properties.friction, 0.0))
+
+
+def _new(name: str, taken: set[str]) -> str:
+    while name in taken:
+        name += "_"
+    taken.add(name)
+    return name
+
+
+def _common(values: Sequence[float], default: float) -> float:
+    """The value that all velocities of a joint have; the default if they have several."""
+    return values[0] if values and len(set(values)) == 1 else default
+
+
+def _in_urdf(joint: Joint) -> tuple[JointType, Vector3 | None]:
+    """The type and axis that a joint has in the URDF."""
+    match joint.type:
+        case JointType.FIXED | JointType.FLOATING:
+            return joint.type, None
+        case JointType.PLANAR:
+            return joint.type, _Z
+        case JointType.SPHERICAL:
+            return JointType.CONTINUOUS, _Z
+    if joint.type in _AXIAL:
+        return joint.type, joint.axes[0]
+    index = _limited_in_urdf(joint)
+    if index is None:
+        return JointType.CONTINUOUS, joint.axes[0]
+    return JointType.PRISMATIC if joint.coordinates.names[index] == "length" else JointType.REVOLUTE, joint.axes[0]
+
+
+def _limited_in_urdf(joint: Joint) -> int | None:
+    """The one coordinate of a joint whose limits are in the URDF; those of several are in the YAML file."""
+    if joint.type in (JointType.REVOLUTE, JointType.PRISMATIC):
+        return 0
+    if joint.type not in (JointType.CYLINDRICAL, JointType.HELICAL):
+        return None
+    limited = _limited(joint.properties)
+    return limited[0] if len(limited) == 1 else None
+
+
+def _limited(properties: JointProperties) -> list[int]:
+    bounds = zip(properties.lower, properties.upper, strict=True)
+    return [index for index, pair in enumerate(bounds) if any(map(math.isfinite, pair))]
+
+
+# -- the YAML file ----------------------------------------------------------------------------------------------------
+
+
+def _content(mechanism: Mechanism) -> dict[str, Any]:
+    """The keys of the YAML file behind its head, without those that have nothing to say."""
+    anchors = _Anchors(mechanism)
+    joints = {joint.name: entry for joint in mechanism.joints if (entry := _joint(joint, mechanism))}
+    for name in joints:
+        if is_own_key(name):
+            raise NotWritable(f"joint '{name}' needs an entry in the YAML file, where x- begins user data; rename it")
+    content: dict[str, Any] = {
+        "closures": [_closure(closure, anchors) for closure in mechanism.closures],
+        "couplings": [_coupling(coupling) for coupling in mechanism.couplings],
+        "joints": joints,
+        "actuators": [_actuator(name, mechanism) for name in mechanism.actuators],
+        "frames": [{"name": frame.name, **_placed(frame.body, frame.pose)} for frame in mechanism.frames],
+        "configurations": {
+            name: {joint: list(values) if len(values) != 1 else values[0] for joint, values in coordinates.items()}
+            for name, coordinates in mechanism.configurations.items()
+        },
+        "metadata": dict(mechanism.metadata),
+    }
+    return {key: value if key == "metadata" else _short(value) for key, value in content.items() if value}
+
+
+def _short(value: Any) -> Any:
+    """The same values, with whole numbers as integers."""
+    if isinstance(value, dict):
+        return {key: _short(inner) for key, inner in value.items()}
+    if isinstance(value, list):
+        return [_short(inner) for inner in value]
+    return int(value) if isinstance(value, float) and value.is_integer() and abs(value) < 1e15 else value
+
+
+def _joint(joint: Joint, mechanism: Mechanism) -> Value:
+    """What the URDF does not say of a joint; empty where it says all."""
+    kind, properties = joint.type, joint.properties
+    entry: dict[str, Any] = {}
+    if kind not in (*_AXIAL, *_WITHOUT_URDF_PROPERTIES, JointType.FIXED):
+        entry["type"] = str(kind)
+    if kind is JointType.UNIVERSAL:
+        letters = "".join(_LETTERS.get(axis, "") for axis in joint.axes)
+        entry["axes"] = letters if len(letters) == 2 else [list(axis) for axis in joint.axes]
+    if kind is JointType.HELICAL:
+        entry["pitch"] = joint.pitch
+    if kind is JointType.FIXED:
+        return entry
+    in_urdf = kind not in _WITHOUT_URDF_PROPERTIES
+    limits: dict[str, Any] = {}
+    if kind not in _AXIAL and _limited(properties) and _limited_in_urdf(joint) is None:
+        limits = {"lower": _each(properties.lower), "upper": _each(properties.upper)}
+    for key in ("velocity", "effort"):
+        values = getattr(properties, key)
+        if any(map(math.isfinite, values)) and not (in_urdf and len(set(values)) == 1):
+            limits[key] = _each(values)
+    if limits:
+        entry["limits"] = limits
+    for key in ("damping", "friction"):
+        values = getattr(properties, key)
+        if any(values) and not (in_urdf and len(set(values)) == 1):
+            entry[key] = _each(values)
+    if properties.armature != _armature_of_motor(joint, mechanism):
+        entry["armature"] = _each(properties.armature)
+    if any(properties.stiffness):
+        entry["stiffness"] = _each(properties.stiffness)
+        if any(properties.rest):
+            entry["rest"] = _each(properties.rest)
+    return str(kind) if list(entry) == ["type"] and kind is not JointType.HELICAL else entry
+
+
+def _armature_of_motor(joint: Joint, mechanism: Mechanism) -> tuple[float, ...]:
+    """EU-ACT-006: the armature that a joint has where none is stated."""
+    properties = joint.properties
+    if not properties.armature or joint.name not in mechanism.actuators or not _is_geared(joint):
+        return (0.0,) * len(properties.armature)
+    return tuple(
+        ratio * ratio * rotor for ratio, rotor in zip(properties.gear_ratio, properties.rotor_inertia, strict=True)
+    )
+
+
+def _is_geared(joint: Joint) -> bool:
+    return any(ratio != 1.0 for ratio in joint.properties.gear_ratio) or any(joint.properties.rotor_inertia)
+
+
+def _each(values: Sequence[float]) -> Any:
+    """One number if all are equal, else a list; infinite ones are the largest double."""
+    finite = [min(max(value, -LARGEST), LARGEST) for value in values]
+    return finite[0] if len(set(finite)) == 1 else finite
+
+
+def _actuator(name: str, mechanism: Mechanism) -> Value:
+    (joint,) = (joint for joint in mechanism.joints if joint.name == name)
+    entry: dict[str, Any] = {"joint": name}
+    motor = mechanism.motors.get(name)
+    if motor is not None and motor.name != name:
+        entry["name"] = motor.name
+    if motor is not None and motor.control is not None:
+        entry["control"] = list(motor.control)
+    if _is_geared(joint):
+        if len(set(joint.properties.gear_ratio)) > 1 or len(set(joint.properties.rotor_inertia)) > 1:
+            raise NotWritable(f"the axes of joint '{name}' have different gears; a joint has one")
+        entry["gear_ratio"] = joint.properties.gear_ratio[0]
+        if joint.properties.rotor_inertia[0]:
+            entry["rotor_inertia"] = joint.properties.rotor_inertia[0]
+    return entry if len(entry) > 1 else name
+
+
+def _coupling(coupling: Coupling) -> Value:
+    entry: dict[str, Any] = {"name": coupling.name, "joints": dict(coupling.coefficients)}
+    if coupling.offset:
+        entry["offset"] = coupling.offset
+    return entry
+
+
+def _compliance(closure: Closure) -> dict[str, Any]:
+    stated = {"linear": closure.compliance.linear, "angular": closure.compliance.angular}
+    return {key: value for key, value in stated.items() if value}
+
+
+def _closure(closure: Closure, anchors: _Anchors) -> Value:
+    entry: dict[str, Any] = {
+        "name": closure.name,
+        "type": closure.type,
+        "frames": [anchors.reference(closure.a), anchors.reference(closure.b)],
+    }
+    if isinstance(closure, HingeClosure):
+        one, other = closure.axes
+        if one != other:
+            entry["axes"] = [list(one), list(other)]
+        elif one != _Z:
+            entry["axis"] = list(one)
+    if isinstance(closure, DistanceClosure):
+        entry["length"] = closure.length
+    compliance = _compliance(closure)
+    if compliance:
+        entry["compliance"] = compliance
+    return entry
+
+
+class _Anchors:
+    """How the frames of closures are written: by name where the name means that frame, else as poses on links."""
+
+    def __init__(self, mechanism: Mechanism) -> None:
+        self.named = {frame.name: (frame.body, frame.pose) for frame in mechanism.frames}
+        for joint in mechanism.joints:
+            if joint.offset == IDENTITY or joint.type is JointType.FIXED:
+                self.named[joint.name] = joint.child, IDENTITY
+        bodies = {body.name for body in mechanism.bodies}
+        for name in bodies:
+            both = name in self.named and self.named[name] != (name, IDENTITY)
+            # A name that means two frames is an error (EU-FRM-002).
+            self.named[name] = ("", IDENTITY) if both else (name, IDENTITY)
+
+    def reference(self, anchor: Anchor) -> Value:
+        if anchor.frame and self.named.get(anchor.frame) == (anchor.body, anchor.pose):
+            return anchor.frame
+        return _placed(anchor.body, anchor.pose)
+
+
+def _placed(link: str, pose: Pose) -> dict[str, Any]:
+    entry: dict[str, Any] = {"link": link}
+    if any(pose.xyz):
+        entry["xyz"] = list(pose.xyz)
+    rpy = rpy_of(pose)
+    if any(rpy):
+        entry["rpy"] = list(rpy)
+    return entry
+
+
+def _place_own_data(content: dict[str, Any], mechanism: Mechanism) -> None:
+    """Put the user data where they were, as far as their place exists."""
+    left: dict[str, object] = {}
+    for pointer, value in mechanism.own_data.items():
+        *keys, last = (key.replace("~1", "/").replace("~0", "~") for key in pointer.removeprefix("/").split("/"))
+        if mechanism.version == "1" and not is_own_key(last):
+            last = f"x-{last}"
+        place: Any = content
+        for key in keys:
+            place = _inside(place, key)
+        if isinstance(place, dict) and last not in place:
+            place[last] = value
+        else:
+            left[pointer] = value
+    if left:
+        content["x-own-data"] = left
+
+
+def _inside(place: Any, key: str) -> Any:
+    """What is at a key or an index; an actuator or a joint that is a name alone becomes a mapping."""
+    if isinstance(place, dict):
+        value = place.get(key)
+        if isinstance(value, str) and value in ("spherical", "cylindrical"):
+            place[key] = value = {"type": value}
+        return value
+    if isinstance(place, list) and key.isdigit() and int(key) < len(place):
+        value = place[int(key)]
+        if isinstance(value, str):
+            place[int(key)] = value = {"joint": value}
+        return value
+    return None
+
+
+def _entries(content: Mapping[str, Any]) -> Iterator[Entry]:
+    for key, value in content.items():
+        if key in ("closures", "couplings", "frames"):
+            yield section(key, [Entry(lines_of_item(cast(Value, item))) for item in value])
+        elif key in ("joints", "configurations", "metadata"):
+            yield section(key, [Entry(lines_of(name, cast(Value, item))) for name, item in value.items()])
+        else:
+            yield Entry(lines_of(key, cast(Value, value)))
