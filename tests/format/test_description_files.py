@@ -126,10 +126,9 @@ def test_limit_of_one_side_is_kept() -> None:
 
 
 def test_shapes_with_textures_are_the_same() -> None:
+    color = (0.1, 0.2, 0.3, 1.0)
     shapes = (
-        Shape(
-            "mesh", (1.0, -1.0, 0.001), Pose((1.0, 2.0, 3.0)), "package://a b/c&d.stl", (0.1, 0.2, 0.3, 1.0), "t.png"
-        ),
+        Shape("mesh", (1.0, -1.0, 0.001), Pose((1.0, 2.0, 3.0)), "package://a b/c&d.stl", color, "t.png"),
         Shape("capsule", (0.1, 0.25), texture="other.png"),
         Shape("box", (0.1, 0.2, 0.3), color=color),
     )
