@@ -72,6 +72,8 @@ class LossKind:
         effect: What is left.
         title: What happens, as one sentence.
         hint: What the user can do.
+        error: Of an approximate one: how large the error is.
+        sayable: Whether the format could say it: it is dropped because of an option or of the robot's files.
     """
 
     code: str
@@ -79,9 +81,11 @@ class LossKind:
     effect: Effect
     title: str
     hint: str
+    error: str = ""
+    sayable: bool = False
 
 
-#: Losses that a format to export to may share with others.
+#: Losses that all formats to export to share.
 COMMON = (
     LossKind(
         "export-name",
@@ -96,6 +100,41 @@ COMMON = (
         Effect.DROPPED,
         "metadata and user data are left out",
         "keep the description beside the file",
+    ),
+    LossKind(
+        "export-mesh-path",
+        "mesh",
+        Effect.EXACT,
+        "its package:// address becomes a path: other programs do not know the package",
+        "write the file to a package, and change the path there, if you need the address",
+    ),
+    LossKind(
+        "export-mesh-missing",
+        "mesh",
+        Effect.DROPPED,
+        "its file was not found",
+        "give the folder of its package, --package-dir or package_dirs=",
+        sayable=True,
+    ),
+)
+
+#: Losses of meshes that a program cannot read.
+CONVERSION = (
+    LossKind(
+        "export-mesh-converted",
+        "mesh",
+        Effect.APPROXIMATE,
+        "its format is not one that the program reads: becomes an OBJ file",
+        "convert the mesh with its materials, and name the new file in the URDF",
+        error="none in the triangles; materials, textures and normals in the file are left out",
+    ),
+    LossKind(
+        "export-mesh-format",
+        "mesh",
+        Effect.DROPPED,
+        "its format is not one that the program reads, and it cannot be converted",
+        "convert the mesh, and name the new file in the URDF",
+        sayable=True,
     ),
 )
 

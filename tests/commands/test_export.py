@@ -12,10 +12,10 @@ import pytest
 import eurdf
 from eurdf.commands import export as command
 from eurdf.commands.main import main
-from eurdf.exporting.export import ACTUATORS
+from eurdf.exporting.export import ACTUATORS, MESH_FILES
 from eurdf.exporting.formats import FORMATS
 from eurdf.exporting.table import with_table
-from eurdf.loss import CONCEPTS
+from eurdf.loss import CONCEPTS, Effect
 from eurdf.writing.output_folder import write_files
 
 
@@ -25,9 +25,10 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_command_knows_all_formats_and_actuators() -> None:
+def test_command_knows_all_choices() -> None:
     assert tuple(FORMATS) == command.FORMATS
     assert ACTUATORS == command.ACTUATORS
+    assert MESH_FILES == command.MESH_FILES
 
 
 @pytest.mark.parametrize("name", FORMATS)
@@ -39,6 +40,7 @@ def test_losses_are_registered_well(name: str) -> None:
         assert re.fullmatch("export(-[a-z0-9]+)+", kind.code)
         assert kind.title
         assert kind.hint
+        assert bool(kind.error) == (kind.effect is Effect.APPROXIMATE)
 
 
 def test_files_are_written_to_a_folder_named_after_the_robot(here: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -395,6 +395,48 @@ def test_mesh_is_copied_under_a_plain_name(tmp_path: Path, loaded: bool) -> None
     assert np.ptp(model.mesh_vert, axis=0).max() == pytest.approx(2.0 * np.sqrt(2.0), rel=0.5)
 
 
+def ascii_stl() -> bytes:
+    """The solid of `STL` as text."""
+    triangles = np.frombuffer(STL[84:], [("normal", "<f4", 3), ("vertices", "<f4", (3, 3)), ("end", "<u2")])["vertices"]
+    facets = "".join(
+        "facet normal 0 0 0\nouter loop\n"
+        + "".join("vertex {:g} {:g} {:g}\n".format(*v) for v in t)
+        + "endloop\nendfacet\n"
+        for t in triangles
+    )
+    return f"solid a\n{facets}endsolid a\n".encode()
+
+
+def test_mesh_that_mujoco_cannot_read_is_converted(tmp_path: Path) -> None:
+    export = eurdf.export(with_mesh(tmp_path, "a.stl", ascii_stl()), "mjcf")
+    assert [loss.code for loss in export.losses if loss.concept == "mesh"] == ["export-mesh-converted"]
+    (path,) = set(export.files) - {"robot.xml"}
+    lines = export.files[path].decode().split("\n")
+    vertices = {tuple(map(float, line[2:].split())) for line in lines if line.startswith("v ")}
+    assert (path, vertices) == ("meshes/a.stl.obj", {(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)})
+    model = mujoco.MjModel.from_xml_path(str(export.write(tmp_path / "out")[0]))
+    assert model.mesh_facenum.tolist() == [4]
+
+
+@pytest.mark.parametrize("to", ["mjcf", "urdf"])
+def test_mesh_can_stay_where_it_is(tmp_path: Path, to: str) -> None:
+    export = eurdf.export(with_mesh(tmp_path, "a.stl", STL), to, mesh_files="reference")
+    assert list(export.files) == [next(iter(export.files))]
+    assert str(tmp_path / "a.stl").encode() in export.main
+    assert not [loss for loss in export.losses if loss.concept == "mesh"]
+
+
+@pytest.mark.parametrize("to", ["mjcf", "urdf"])
+def test_mesh_of_a_package_gets_a_path(tmp_path: Path, to: str) -> None:
+    (tmp_path / "arm_description").mkdir()
+    (tmp_path / "arm_description" / "a.stl").write_bytes(STL)
+    path = with_mesh(tmp_path, "package://arm_description/a.stl", None)
+    export = eurdf.export(path, to, package_dirs=[tmp_path])
+    (loss,) = (loss for loss in export.losses if loss.concept == "mesh")
+    assert (loss.code, loss.message) == ("export-mesh-path", "becomes 'meshes/a.stl'")
+    assert b"package://" not in export.main
+
+
 @pytest.mark.parametrize(
     ("name", "content", "code"),
     [

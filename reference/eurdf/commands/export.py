@@ -33,10 +33,11 @@ _EPILOG = ending(
     "eurdf export my_robot --to mjcf -o simulation --actuators position",
 )
 
-#: Names of the formats and of what actuators become. They are checked against `eurdf.exporting` by the tests: importing
-#: it here would slow every command down.
+#: Names of the formats, and of what actuators and mesh files become. They are checked against `eurdf.exporting` by the
+#: tests: importing it here would slow every command down.
 FORMATS = ("mjcf", "urdf")
 ACTUATORS = ("motor", "position", "none")
+MESH_FILES = ("copy", "reference")
 
 # Elements that are shown of each kind of loss.
 _MOST_SHOWN = 4
@@ -68,6 +69,12 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "--actuators", choices=ACTUATORS, default="motor", help="what actuators become in MJCF; default: motor"
     )
+    parser.add_argument(
+        "--mesh-files",
+        choices=MESH_FILES,
+        default="copy",
+        help="copy mesh files to meshes/, or reference them where they are by absolute paths; default: copy",
+    )
     parser.add_argument("--strict", action="store_true", help="write nothing if a loss is not exact")
     parser.add_argument("--force", action="store_true", help="replace existing files")
     parser.add_argument("--format", choices=("text", "json"), default="text", help="format of the output")
@@ -87,20 +94,14 @@ def run(args: argparse.Namespace) -> int:
         return 1
 
     from eurdf.exporting.exceptions import CannotExport
-    from eurdf.exporting.export import export_linked
+    from eurdf.exporting.export import Choices, export_linked
 
     losses: tuple[Loss, ...]
     refusal, paths = "", []
     folder = args.output or f"{_file_name(description.mechanism.name)}_{args.to}"
     try:
-        exported = export_linked(
-            description,
-            args.to,
-            configuration=args.configuration,
-            actuators=args.actuators,
-            strict=args.strict,
-            package_dirs=options["package_dirs"],
-        )
+        choices = Choices(args.to, args.configuration, args.actuators, args.mesh_files, args.strict)
+        exported = export_linked(description, choices, options["package_dirs"])
     except CannotExport as reason:
         losses = reason.losses
         refusal = "nothing was written: --strict refuses losses" if losses else f"nothing was written: {reason}"

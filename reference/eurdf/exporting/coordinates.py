@@ -7,12 +7,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import reduce
 from operator import mul
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from eurdf.mechanism.joint_type import COORDINATES, JointType
 from eurdf.mechanism.pose import Pose, Quaternion
+from eurdf.writing.angles import rpy_of
 
 Vector = npt.NDArray[np.float64]
 Matrix = npt.NDArray[np.float64]
@@ -60,24 +62,33 @@ class Part:
         type: Type of the joint. Its coordinates in the model are those of files, but for ``ratios`` and ``turn``.
         ratios: Where all coordinates are angles and lengths: for each one of the model, the index of the coordinate
             of ``joint`` that it follows, multiplier and offset.
+        zero: Where some coordinates are not zero where the robot's are: those of the robot at which the model's are
+            zero, as in files. Only where there are no ``ratios``.
         turn: Orientation O of the child's frame in the joint's moving frame. A ball joint of the model has the rotation
             O⁻¹ Q O for Q of the robot, and the angular velocity O⁻¹ ω.
         mimics: Whether ``joint`` is a leader: the way back ignores the part.
-        angles: Whether a spherical joint is three angles: R(x, a) R(y, b) R(z, c).
+        rotation: What an orientation is: a quaternion; ``xyz``, the angles of three joints, R(x, a) R(y, b) R(z, c),
+            whose rates are the velocities; or ``rpy``, the angles of one, R(z, c) R(y, b) R(x, a), whose velocity is
+            the angular velocity along the axes of the joint's frame at rest.
+        orientation_first: Whether the orientation, and the angular velocity along the axes at rest, come before the
+            position and the linear velocity.
     """
 
     names: tuple[str, ...]
     joint: str
     type: JointType
     ratios: tuple[tuple[int, float, float], ...] = ()
+    zero: tuple[float, ...] = ()
     turn: Quaternion = _UPRIGHT
     mimics: bool = False
-    angles: bool = False
+    rotation: Literal["quaternion", "xyz", "rpy"] = "quaternion"
+    orientation_first: bool = False
 
     @property
     def nq(self) -> int:
         """Number of coordinates in the model."""
-        return 3 if self.angles else len(self.ratios) or len(COORDINATES[self.type].names)
+        n = len(self.ratios) or len(COORDINATES[self.type].names)
+        return n if self.rotation == "quaternion" else n - 1
 
     @property
     def nv(self) -> int:
@@ -89,8 +100,8 @@ class Part:
 class Coordinates:
     """The map between the vectors of a robot, q (nq,) and v (nv,), and those of an exported model.
 
-    In the model, angles (rad) and lengths (m) are zero where those of the robot are: no offset of zero. Forces go the
-    other way: τ = Tᵀ τ_model with T of `rates`.
+    In the model, angles (rad) and lengths (m) are zero where those of the robot are, unless `Part` states another zero.
+    Forces go the other way: τ = Tᵀ τ_model with T of `rates`.
 
     Attributes:
         parts: In the order of the model.
@@ -188,11 +199,11 @@ class Coordinates:
             mine = given[row : row + part.nv]
             at = self.own.places[part.joint].idx_v
             if part.ratios:
-                for value, (index, _, _) in zip(mine, part.ratios, strict=True):  # a helical joint: the angle is last
-                    v[at + index] = value
+                for value, (index, multiplier, _) in zip(mine, part.ratios, strict=True):
+                    if multiplier:  # of a helical joint, the angle is last
+                        v[at + index] = value / multiplier
             else:
-                block = self._block(part, q)
-                v[at : at + part.nv] = np.linalg.solve(block, mine) if part.angles else block.T @ mine  # or a rotation
+                v[at : at + part.nv] = np.linalg.solve(self._block(part, q), mine)
         return v
 
     def to_a(self, q: Vector, v: Vector, a: Vector) -> Vector:
@@ -201,19 +212,21 @@ class Coordinates:
         v = _checked("v", v, self.own.nv)
         for part, row in zip(self.parts, self._idx_v, strict=False):
             at = self.own.places[part.joint].idx_v
-            if part.angles:
+            if part.rotation == "xyz":
                 # ω = E ȧ, so ä = E⁻¹ (ω̇ - Ė ȧ); found has E⁻¹ ω̇.
                 inverse = self._block(part, q)
                 angles = _angles(self._own_coordinates(part, q))
                 rates = np.asarray(inverse @ v[at : at + 3])
                 found[row : row + 3] -= inverse @ (_rate_of_angle_axes(angles, rates.tolist()) @ rates)
             if part.type not in (JointType.PLANAR, JointType.FLOATING) or not self.at_rest:
-                continue
+                continue  # an angular velocity has the same rate along the axes at rest: ω × ω = 0
             n = 2 if part.type is JointType.PLANAR else 3
             linear = np.zeros(3)
             linear[:n] = v[at : at + n]
             angular = np.array((0.0, 0.0, v[at + 2])) if n == 2 else v[at + 3 : at + 6]
-            found[row : row + n] += self._block(part, q)[:n, :n] @ np.cross(angular, linear)[:n]
+            turning = np.zeros(part.nv)
+            turning[:n] = np.cross(angular, linear)[:n]
+            found[row : row + part.nv] += self._block(part, q) @ turning
         return np.asarray(found)
 
     def _own_coordinates(self, part: Part, q: Vector) -> tuple[float, ...]:
@@ -229,37 +242,49 @@ class Coordinates:
             return [multiplier * own[index] + offset for index, multiplier, offset in part.ratios]
         at = COORDINATES[part.type].quaternion
         if at is None:
-            return own
-        if part.angles:
-            return _angles(own)
-        turn = Pose(quaternion=part.turn)
+            return [value - zero for value, zero in zip(own, part.zero or (0.0,) * len(own), strict=True)]
+        position = [value - zero for value, zero in zip(own[:at], part.zero[:at] or (0.0,) * at, strict=True)]
         norm = math.hypot(*own[at:])
         x, y, z, w = (value / norm for value in own[at:])
         turned = (x, y, z, w)
+        if part.zero:
+            turned = (_pose(part.zero[at:]).inverse() * Pose(quaternion=turned)).quaternion
         if part.turn != _UPRIGHT:
+            turn = Pose(quaternion=part.turn)
             turned = (turn.inverse() * Pose(quaternion=turned) * turn).quaternion
-        return (*own[:at], *self._ordered(turned))
+        if part.rotation == "quaternion":
+            orientation: Sequence[float] = self._ordered(turned)
+        else:
+            orientation = _angles(turned) if part.rotation == "xyz" else rpy_of(Pose(quaternion=turned))
+        return [*orientation, *position] if part.orientation_first else [*position, *orientation]
 
     def _from_model(self, part: Part, given: list[float]) -> list[float]:
         if part.ratios:
             own = [0.0] * len(COORDINATES[part.type].names)
-            for value, (index, _, _) in zip(given, part.ratios, strict=True):
-                own[index] = value
+            for value, (index, multiplier, offset) in zip(given, part.ratios, strict=True):
+                if multiplier:
+                    own[index] = (value - offset) / multiplier
             return own
         at = COORDINATES[part.type].quaternion
         if at is None:
-            return given
-        if part.angles:
-            turns = (Pose(quaternion=_about(axis, angle)) for axis, angle in enumerate(given))
-            return list(reduce(mul, turns).quaternion)
-        quaternion = given[at:]
-        if self.quaternion == "wxyz":
-            quaternion = [*quaternion[1:], quaternion[0]]
-        x, y, z, w = quaternion
+            return [value + zero for value, zero in zip(given, part.zero or (0.0,) * len(given), strict=True)]
+        position, orientation = given[:at], given[at:]
+        if part.orientation_first:
+            orientation, position = given[: len(given) - at], given[len(given) - at :]
+        if part.rotation == "quaternion":
+            if self.quaternion == "wxyz":
+                orientation = [*orientation[1:], orientation[0]]
+            turned = _pose(orientation)
+        else:
+            turns = [Pose(quaternion=_about(axis, angle)) for axis, angle in enumerate(orientation)]
+            turned = reduce(mul, turns if part.rotation == "xyz" else reversed(turns))
         if part.turn != _UPRIGHT:
             turn = Pose(quaternion=part.turn)
-            x, y, z, w = (turn * Pose(quaternion=(x, y, z, w)) * turn.inverse()).quaternion
-        return [*given[:at], x, y, z, w]
+            turned = turn * turned * turn.inverse()
+        if part.zero:
+            turned = _pose(part.zero[at:]) * turned
+            position = [value + zero for value, zero in zip(position, part.zero, strict=False)]
+        return [*position, *turned.quaternion]
 
     def _ordered(self, quaternion: Quaternion) -> Quaternion:
         x, y, z, w = quaternion
@@ -274,7 +299,7 @@ class Coordinates:
                 block[row, index] = multiplier
             return block
         own = self._own_coordinates(part, q)
-        if part.angles:
+        if part.rotation == "xyz":
             return np.asarray(np.linalg.inv(_angle_axes(_angles(own))))
         if not self.at_rest:
             return np.eye(part.nv)
@@ -283,11 +308,17 @@ class Coordinates:
             return np.array(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0)))
         turn = rotation_matrix(Pose(quaternion=part.turn).inverse().quaternion)
         if part.type is JointType.SPHERICAL:
-            return turn
+            return turn if part.rotation == "quaternion" else rotation_matrix(own)
         block = np.zeros((6, 6))
         block[:3, :3] = rotation_matrix(own[3:])
-        block[3:, 3:] = turn
-        return block
+        along_child = part.rotation == "quaternion" and not part.orientation_first
+        block[3:, 3:] = turn if along_child else block[:3, :3]
+        return np.roll(block, 3, axis=0) if part.orientation_first else block
+
+
+def _pose(quaternion: Sequence[float]) -> Pose:
+    x, y, z, w = quaternion
+    return Pose(quaternion=(x, y, z, w))
 
 
 def _about(axis: int, angle: float) -> Quaternion:

@@ -7,18 +7,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import cast, get_args
+from typing import get_args
 
 from eurdf.diagnostics import did_you_mean
 from eurdf.exceptions import InvalidRobot
 from eurdf.exporting.coordinates import Coordinates, OwnVectors, Place
 from eurdf.exporting.exceptions import CannotExport
 from eurdf.exporting.formats import FORMATS
-from eurdf.exporting.written import Actuators, Exportable
+from eurdf.exporting.written import Actuators, Exportable, MeshFileChoice, Triangles
 from eurdf.kinematics.assembly import assemble
 from eurdf.linking.description import Linked, Unlinked, describe, find_meshes
 from eurdf.loss import Effect, Loss
 from eurdf.mechanism.mechanism import ROOT_JOINT, Root
+from eurdf.pinocchio.meshes import read_meshes
 from eurdf.pinocchio.robot import Robot, build_robot
 from eurdf.reading.given import Given
 from eurdf.writing.output_folder import write_files
@@ -28,6 +29,20 @@ ASSEMBLED = "assembled"
 
 #: What actuators can become.
 ACTUATORS: tuple[str, ...] = get_args(Actuators)
+
+#: What can be done with mesh files.
+MESH_FILES: tuple[str, ...] = get_args(MeshFileChoice)
+
+
+@dataclass(frozen=True, slots=True)
+class Choices:
+    """What a user chooses of an export; see `export`."""
+
+    to: str
+    configuration: str
+    actuators: Actuators
+    mesh_files: MeshFileChoice
+    strict: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +91,7 @@ def export(
     root: Root | None = None,
     configuration: str = ASSEMBLED,
     actuators: Actuators = "motor",
+    mesh_files: MeshFileChoice = "copy",
     strict: bool = False,
     package_dirs: Sequence[str | os.PathLike[str]] = (),
     xacro_args: Mapping[str, str] | None = None,
@@ -88,12 +104,14 @@ def export(
     Args:
         robot: What `eurdf.load` takes, or a robot that it returned, with the geometry that it was loaded with.
         to: Name of the format: ``mjcf`` or ``urdf``.
-        urdf: As for `eurdf.load`; only if `robot` is not loaded yet, as all below but the next three.
+        urdf: As for `eurdf.load`; only if `robot` is not loaded yet, as all below but the next four.
         root: As for `eurdf.load`.
         configuration: Name of the configuration to start a simulation from. If the description has none of the name
             ``assembled``, one is searched.
         actuators: What actuators become, in a format that distinguishes: ``motor`` (a force or torque on the joint),
             ``position`` or ``none``.
+        mesh_files: ``copy`` writes them to ``meshes/`` beside the file; with ``reference`` the file names them where
+            they are, by their absolute paths.
         strict: Whether to refuse losses that are not exact.
         package_dirs: As for `eurdf.load`.
         xacro_args: As for `eurdf.load`.
@@ -108,30 +126,16 @@ def export(
         CannotExport: The robot cannot be written in this format, or, if `strict`, not without losses.
         ValueError: There is no such format, configuration or kind of actuator.
     """
+    choices = Choices(to, configuration, actuators, mesh_files, strict)
     if isinstance(robot, Robot):
-        return _export(robot, _meshes_of(robot), to, configuration, actuators, strict)
+        return _export(robot, _meshes_of(robot), choices)
     description = describe(robot, urdf, root, package_dirs=package_dirs, xacro_args=xacro_args, confined=confined)
     if isinstance(description, Unlinked) or description.diagnostics.refused:
         raise InvalidRobot(description.path, tuple(description.diagnostics))
-    return export_linked(
-        description,
-        to,
-        configuration=configuration,
-        actuators=actuators,
-        strict=strict,
-        package_dirs=package_dirs,
-    )
+    return export_linked(description, choices, package_dirs)
 
 
-def export_linked(
-    description: Linked,
-    to: str,
-    *,
-    configuration: str,
-    actuators: Actuators,
-    strict: bool,
-    package_dirs: Sequence[str | os.PathLike[str]],
-) -> Export:
+def export_linked(description: Linked, choices: Choices, package_dirs: Sequence[str | os.PathLike[str]]) -> Export:
     """Export a robot that was read; see `export`."""
     found, _ = find_meshes(description.urdf, package_dirs)
     bodies = description.mechanism.bodies
@@ -139,26 +143,41 @@ def export_linked(
     # A pipe or a device may have no end.
     meshes = {uri: Path(path) for uri, path in found.items() if uri in uris and Path(path).is_file()}
     robot = build_robot(description.mechanism, geometry=False)
-    return _export(robot, meshes, to, configuration, actuators, strict)
+    return _export(robot, meshes, choices)
 
 
-def _export(
-    robot: Robot, meshes: Mapping[str, Path], to: str, configuration: str, actuators: str, strict: bool
-) -> Export:
+def _export(robot: Robot, meshes: Mapping[str, Path], choices: Choices) -> Export:
+    to = choices.to
     if to not in FORMATS:
         hint = did_you_mean(to, FORMATS) or f"the formats are: {', '.join(FORMATS)}"
         raise ValueError(f"there is no format '{to}'; {hint}")
-    if actuators not in ACTUATORS:
-        raise ValueError(f"actuators is {actuators!r}; it must be one of {', '.join(ACTUATORS)}")
-    configurations = _configurations(robot, configuration)
+    for name, value, allowed in (
+        ("actuators", choices.actuators, ACTUATORS),
+        ("mesh_files", choices.mesh_files, MESH_FILES),
+    ):
+        if value not in allowed:
+            raise ValueError(f"{name} is {value!r}; it must be one of {', '.join(allowed)}")
     written = FORMATS[to].write(
-        Exportable(robot.mechanism, _own_vectors(robot), configurations, meshes, cast(Actuators, actuators))
+        Exportable(
+            robot.mechanism,
+            _own_vectors(robot),
+            _configurations(robot, choices.configuration),
+            meshes,
+            choices.actuators,
+            choices.mesh_files,
+            _triangles,
+        )
     )
     losses = written.losses
-    if strict and (refused := tuple(loss for loss in losses if loss.effect is not Effect.EXACT)):
+    if choices.strict and (refused := tuple(loss for loss in losses if loss.effect is not Effect.EXACT)):
         more = f"; and {len(refused) - 1} more" if len(refused) > 1 else ""
         raise CannotExport(f"'{robot.mechanism.name}' has losses in the format {to}: {refused[0]}{more}", refused)
     return Export(to, MappingProxyType(dict(written.files)), losses, written.coordinates)
+
+
+def _triangles(path: Path) -> Triangles | None:
+    meshes, _ = read_meshes([("", (1.0, 1.0, 1.0))], {"": os.fspath(path)})
+    return meshes.get(os.fspath(path))
 
 
 def _own_vectors(robot: Robot) -> OwnVectors:

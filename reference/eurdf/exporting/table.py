@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 from eurdf.exporting.formats import FORMATS
-from eurdf.loss import CONCEPTS
+from eurdf.loss import CONCEPTS, Effect, LossKind
 
 _PLACE = re.compile(r"(<!-- table: [^\n]*-->\n).*?(<!-- end of table -->)", re.DOTALL)
 
@@ -20,13 +20,17 @@ def table() -> str:
     lines = [f"| concept | {' | '.join(FORMATS)} |", "| --- |" + " --- |" * len(FORMATS)]
     for concept in CONCEPTS:
         cells = [
-            "<br>".join(
-                f"**{kind.effect}**: {kind.title} (`{kind.code}`)" for kind in each.losses if kind.concept == concept
-            )
+            "<br>".join(_cell(kind) for kind in each.losses if kind.concept == concept) or "exact"
             for each in FORMATS.values()
         ]
         lines.append(f"| {concept} | {' | '.join(cells)} |")
     return "\n".join(lines) + "\n"
+
+
+def _cell(kind: LossKind) -> str:
+    effect = "impossible" if kind.effect is Effect.DROPPED and not kind.sayable else str(kind.effect)
+    error = f"; error: {kind.error}" if kind.error else ""
+    return f"**{effect}**: {kind.title}{error} (`{kind.code}`)"
 
 
 def with_table(page: str) -> str:

@@ -5,7 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import Literal, Protocol
+
+import numpy as np
+import numpy.typing as npt
 
 from eurdf.exporting.coordinates import Coordinates, OwnVectors
 from eurdf.loss import Loss, LossKind
@@ -13,6 +16,23 @@ from eurdf.mechanism.mechanism import Mechanism
 
 #: What actuators become.
 Actuators = Literal["motor", "position", "none"]
+
+#: Whether mesh files are copied beside the file, or the file names them where they are.
+MeshFileChoice = Literal["copy", "reference"]
+
+
+class Triangles(Protocol):
+    """The triangles of a mesh file: vertices (n, 3), in the unit of the file, and their indices (m, 3)."""
+
+    @property
+    def vertices(self) -> npt.NDArray[np.float64]: ...  # noqa: D102
+
+    @property
+    def triangles(self) -> npt.NDArray[np.int64]: ...  # noqa: D102
+
+
+def _unread(path: Path) -> None:
+    """No reader of meshes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +45,8 @@ class Exportable:
         configurations: Closed configurations by name, the one to start from first; coordinates as in files.
         meshes: Path of the file of each mesh, by URI; a mesh that was not found is left out.
         actuators: What actuators become.
+        mesh_files: What is done with the mesh files.
+        read_mesh: Reads a mesh file of any format; None where it cannot.
     """
 
     mechanism: Mechanism
@@ -32,6 +54,8 @@ class Exportable:
     configurations: Mapping[str, Mapping[str, tuple[float, ...]]] = field(default_factory=dict)
     meshes: Mapping[str, Path] = field(default_factory=dict)
     actuators: Actuators = "motor"
+    mesh_files: MeshFileChoice = "copy"
+    read_mesh: Callable[[Path], Triangles | None] = _unread
 
 
 @dataclass(frozen=True, slots=True)

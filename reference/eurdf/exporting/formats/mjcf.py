@@ -19,9 +19,9 @@ from lxml import etree
 from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.exceptions import CannotExport
 from eurdf.exporting.inertia import about_centre, physical
-from eurdf.exporting.mesh_file import mesh_names
+from eurdf.exporting.mesh_file import MeshFiles
 from eurdf.exporting.written import Exportable, Format, Written
-from eurdf.loss import COMMON, Effect, Losses, LossKind
+from eurdf.loss import COMMON, CONVERSION, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.constraint import (
     Closure,
@@ -58,6 +58,9 @@ FULL_EFFORT_AT, GAIN = 0.1, 100.0
 #: The bound of a side without limit, where the other side has one: rad or m.
 _UNLIMITED = 1e10
 
+# What the tests hold robots to that have these elements.
+_OPENING = "less than 1e-3 m or rad in 2 s under gravity, on the robots of the tests"
+
 _X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 _WORLD = "world"
 
@@ -68,6 +71,7 @@ LOSSES = (
         Effect.APPROXIMATE,
         "becomes a slide and a hinge that a soft equality couples",
         "let the simulation start at a keyframe, which meets the equality",
+        error=_OPENING,
     ),
     LossKind(
         "export-mimic-joint",
@@ -75,6 +79,7 @@ LOSSES = (
         Effect.APPROXIMATE,
         "becomes a free joint that a soft equality couples to its leader",
         "let the simulation start at a keyframe, which meets the equality",
+        error=_OPENING,
     ),
     LossKind(
         "export-soft-3d",
@@ -82,6 +87,7 @@ LOSSES = (
         Effect.APPROXIMATE,
         "becomes a 'connect', which is soft",
         "for loops that open less, shorten option/timestep and solref together",
+        error=_OPENING,
     ),
     LossKind(
         "export-soft-6d",
@@ -89,6 +95,7 @@ LOSSES = (
         Effect.APPROXIMATE,
         "becomes a 'weld', which is soft",
         "for loops that open less, shorten option/timestep and solref together",
+        error=_OPENING,
     ),
     LossKind(
         "export-hinge-closure",
@@ -96,6 +103,7 @@ LOSSES = (
         Effect.APPROXIMATE,
         "becomes two 'connect' on the axis: 6 soft rows of rank 5",
         "for loops that open less, shorten option/timestep and solref together",
+        error=_OPENING,
     ),
     LossKind(
         "export-distance-closure",
@@ -103,6 +111,7 @@ LOSSES = (
         Effect.APPROXIMATE,
         "becomes the soft equality of a spatial tendon",
         "for loops that open less, shorten option/timestep and solref together",
+        error=_OPENING,
     ),
     LossKind(
         "export-soft-coupling",
@@ -110,6 +119,7 @@ LOSSES = (
         Effect.APPROXIMATE,
         "becomes a soft equality of two joints, or of a fixed tendon of three or more",
         "let the simulation start at a keyframe, which meets the equality",
+        error=_OPENING,
     ),
     LossKind(
         "export-compliance",
@@ -138,6 +148,7 @@ LOSSES = (
         Effect.APPROXIMATE,
         "both limits are equal, which MuJoCo refuses: becomes a soft equality",
         "make the joint 'fixed' in the description",
+        error=_OPENING,
     ),
     LossKind(
         "export-unequal-axes",
@@ -145,6 +156,7 @@ LOSSES = (
         Effect.APPROXIMATE,
         "the axes of the joint have different values: their mean is written",
         "give the axes of the joint one value",
+        error="difference of the values to their mean",
     ),
     LossKind(
         "export-turning-armature",
@@ -152,6 +164,7 @@ LOSSES = (
         Effect.APPROXIMATE,
         "acts along the axes of the joint at rest, not along those of the child: centrifugal terms differ",
         "leave out the armature of planar and floating joints",
+        error="up to armature · (joint velocity)² in the force; none at rest",
     ),
     LossKind(
         "export-gear-ratio",
@@ -166,6 +179,7 @@ LOSSES = (
         Effect.APPROXIMATE,
         "acts along the axes of the joint at rest, not along those of the child",
         "turn the forces with Export.coordinates.rates",
+        error="none at the joint's zero; elsewhere the force is turned by the joint's angle",
     ),
     LossKind(
         "export-position-gain",
@@ -173,6 +187,7 @@ LOSSES = (
         Effect.APPROXIMATE,
         "the description has no gain",
         "set 'kp' and 'dampratio' of the actuator",
+        error="gain and damping are this export's choice",
     ),
     LossKind(
         "export-no-actuator",
@@ -180,6 +195,7 @@ LOSSES = (
         Effect.DROPPED,
         "is left out, as asked for",
         "export with actuators 'motor' or 'position'",
+        sayable=True,
     ),
     LossKind(
         "export-massless-link",
@@ -187,6 +203,7 @@ LOSSES = (
         Effect.APPROXIMATE,
         f"moves without inertia, which MuJoCo refuses: gets {LEAST:g} kg and kg·m²",
         "give the link its mass, or merge its joints into one of a type with several axes",
+        error=f"{LEAST:g} kg and kg·m² in the mass matrix",
     ),
     LossKind(
         "export-inertia",
@@ -194,20 +211,7 @@ LOSSES = (
         Effect.APPROXIMATE,
         "is not that of a body with volume, which MuJoCo asks for: principal moments are raised",
         "correct the inertia in the URDF; `eurdf check` reports those that no body has",
-    ),
-    LossKind(
-        "export-mesh-missing",
-        "mesh",
-        Effect.DROPPED,
-        "is left out: its file was not found",
-        "give the folder of its package, --package-dir or package_dirs=",
-    ),
-    LossKind(
-        "export-mesh-format",
-        "mesh",
-        Effect.DROPPED,
-        "is left out: MuJoCo reads binary STL, OBJ and MSH files",
-        "convert the mesh, and name the new file in the URDF",
+        error="the message gives the change of a principal moment; none in mass and centre of mass",
     ),
     LossKind(
         "export-texture",
@@ -222,7 +226,9 @@ LOSSES = (
         Effect.DROPPED,
         "no closed configuration was found, so there is no keyframe",
         "find one with `eurdf assemble`, and write it to the description as 'assembled'",
+        sayable=True,
     ),
+    *CONVERSION,
     *COMMON,
 )
 
@@ -274,7 +280,7 @@ class _Writer:
         #: The MuJoCo joints of each joint.
         self.pieces: dict[str, tuple[_Piece, ...]] = {}
         self.parts: list[Part] = []
-        self.files, self.mesh_ids = mesh_names(given.meshes)
+        self.meshes = MeshFiles(given, self.losses, _is_readable)
         self.used_meshes: dict[tuple[str, tuple[float, ...]], str] = {}
         self.mimics = drivers(
             {
@@ -316,9 +322,7 @@ class _Writer:
             self.losses.add("export-metadata", mechanism.name)
         for section in [each for each in self.root if len(each) == 0 and each.tag not in ("compiler", "option")]:
             self.root.remove(section)
-        used = {uri for uri, _ in self.used_meshes}
-        meshes = {f"meshes/{self.mesh_ids[uri]}": self.files[uri] for uri in used}
-        return Written({"robot.xml": file_content(self.root), **meshes}, self.losses.found, coordinates)
+        return Written({"robot.xml": file_content(self.root), **self.meshes.files}, self.losses.found, coordinates)
 
     def _head(self) -> None:
         etree.SubElement(
@@ -514,15 +518,12 @@ class _Writer:
         key = shape.filename, shape.size
         if key in self.used_meshes:
             return self.used_meshes[key]
-        if shape.filename not in self.files:
-            self.losses.add("export-mesh-missing", shape.filename)
+        file = self.meshes.path(shape.filename)
+        if file is None:
             return None
-        file = self.mesh_ids[shape.filename]
-        if not _is_readable(file, self.files[shape.filename]):
-            self.losses.add("export-mesh-format", shape.filename)
-            return None
-        name = f"{PurePosixPath(file).stem}_{len(self.used_meshes)}"
+        name = f"{representable(PurePosixPath(file).stem)}_{len(self.used_meshes)}"
         self.used_meshes[key] = name
+        file = representable(file.removeprefix("meshes/"))
         etree.SubElement(self.asset, "mesh", name=name, file=file, scale=numbers(shape.size))
         return name
 
