@@ -74,6 +74,10 @@ from eurdf.pinocchio.constraint import NoConstraintModel as NoConstraintModel
 from eurdf.pinocchio.robot import Robot as Robot
 from eurdf.transmissions.exceptions import DependentVelocities as DependentVelocities
 from eurdf.transmissions.exceptions import NoTransmission as NoTransmission
+from eurdf.transmissions.exceptions import OutOfReach as OutOfReach
+from eurdf.transmissions.positions import Positions as Positions
+from eurdf.transmissions.positions import actuator_values as actuator_values
+from eurdf.transmissions.positions import joint_values as joint_values
 from eurdf.transmissions.transmission import Transmission as Transmission
 from eurdf.transmissions.transmission import Transmissions as Transmissions
 from eurdf.transmissions.transmission import transmission as transmission

@@ -62,6 +62,8 @@ CALLS: dict[str, dict[str, Any]] = {
     "spring_force": {"q": "q"},
     "split_configuration": {"q": "q"},
     "split_velocity": {"v": "v"},
+    "actuator_values": {"joints": {"free_rocker": -0.1}, "q0": "q"},
+    "joint_values": {"motors": {"motor_crank": 1}, "q0": "q"},
     "transmission": {"joints": "free_rocker", "q": "q"},
     "sweep": {"actuator": "motor_crank", "q0": "q"},
 }

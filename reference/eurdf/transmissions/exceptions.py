@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from eurdf.exceptions import EurdfError
+from eurdf.kinematics.exceptions import NotClosable
 
 if TYPE_CHECKING:
     from eurdf.kinematics.array import Vector
+    from eurdf.kinematics.opening import Opening
 
 
 class NoTransmission(EurdfError, ValueError):  # noqa: N818 - part of the public interface
@@ -39,3 +42,35 @@ class DependentVelocities(EurdfError, ValueError):  # noqa: N818 - part of the p
         self.nearest = nearest
         numbers = ", ".join(f"{name} {value:.6g}" for name, value in zip(names, nearest.tolist(), strict=True))
         super().__init__(f"the loops do not allow these velocities together; the nearest that they allow: {numbers}")
+
+
+class OutOfReach(NotClosable):
+    """Positions cannot be reached on a straight path.
+
+    Attributes:
+        wanted: The positions, by joint, rad or m.
+        reached: The farthest positions on the path, as far as they are known.
+        part: The part of the path that leads to them, from 0 to 1.
+        openings: How far each closure is open at the least open configuration found at ``wanted``.
+        q: That configuration (nq,).
+    """
+
+    def __init__(
+        self,
+        wanted: Mapping[str, float],
+        reached: Mapping[str, float],
+        part: float,
+        openings: tuple[Opening, ...],
+        q: Vector,
+    ) -> None:
+        self.wanted = dict(wanted)
+        self.reached = dict(reached)
+        self.part = part
+        asked, farthest = (
+            ", ".join(f"{name} {value:.6g}" for name, value in each.items()) for each in (wanted, reached)
+        )
+        reason = (
+            f"{asked} cannot be reached on a straight path from the start, which leads to {farthest} "
+            f"({100.0 * part:.1f} %); give values nearer to the start, or values in between one after the other"
+        )
+        super().__init__(reason, openings, q)

@@ -67,15 +67,30 @@ def springs_of(robot: Robot) -> Indices:
     return np.unique(robot.tree.springs.idx_v)
 
 
+def passive_joints_of(robot: Robot, motors: Selection) -> tuple[str, ...]:
+    """The joints, not actuated, in loops that these motors move."""
+    found: set[int] = set()
+    for own, by in _driven_loops(robot):
+        if by & set(motors.velocities.tolist()):
+            found |= own
+    return tuple(name for name, slot in robot.slots.items() if slot.idx_v in found)
+
+
 def _in_loops_of(robot: Robot, velocities: Indices) -> Mask:
     """Which actuated velocities (nu,) move loops that these velocities close while the actuators are held."""
-    tree, loops, actuated = robot.tree, find_loops(robot), robot.actuation.idx_v
-    found = np.zeros(len(actuated), dtype=bool)
-    for group in independent_groups(robot, actuated.tolist()):
-        if np.isin(group.velocities, velocities).any():
-            joints = joints_of_loops(robot, [loops[index] for index in group.closures])
-            moving = [velocity for joint in joints for velocity in tree.moving_velocities[joint]]
-            found |= np.isin(actuated, moving)
+    wanted = set(velocities.tolist())
+    found = {velocity for own, by in _driven_loops(robot) if own & wanted for velocity in by}
+    return np.isin(robot.actuation.idx_v, sorted(found))
+
+
+def _driven_loops(robot: Robot) -> list[tuple[set[int], set[int]]]:
+    """Groups of loops while the actuators are held: the velocities that close each, and the actuated ones in it."""
+    tree, loops, actuated = robot.tree, find_loops(robot), set(robot.actuation.idx_v.tolist())
+    found = []
+    for group in independent_groups(robot, actuated):
+        joints = joints_of_loops(robot, [loops[index] for index in group.closures])
+        moving = {velocity for joint in joints for velocity in tree.moving_velocities[joint]}
+        found.append((set(group.velocities.tolist()), moving & actuated))
     return found
 
 

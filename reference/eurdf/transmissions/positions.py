@@ -1,0 +1,191 @@
+"""Positions of motors for positions of joints, and back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from eurdf.kinematics.array import Vector
+from eurdf.kinematics.assembly import Assembler, assemble, start
+from eurdf.kinematics.derived import borrowed, derived
+from eurdf.kinematics.exceptions import NotClosable
+from eurdf.kinematics.forward_kinematics import forward_kinematics
+from eurdf.kinematics.position_limit import BEYOND, position_limits
+from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.pinocchio.arguments import checked_array
+from eurdf.transmissions.exceptions import NoTransmission, OutOfReach
+from eurdf.transmissions.motors import motors_of, passive_joints_of
+from eurdf.transmissions.selection import Selection, selection
+from eurdf.transmissions.transmission import Transmission, at_one
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+# Steps along a path that ends early, as parts of it, and the bound of the motion in one of them (rad, or characteristic
+# lengths).
+_FIRST_STEP = 2.0**-4
+_SHORTEST_STEP = 2.0**-12
+_LONGEST_MOTION = 0.5
+
+
+class Positions(NamedTuple):
+    """The result of `actuator_values` and `joint_values`.
+
+    Attributes:
+        values: The positions, by joint, rad or m.
+        q: The closed configuration (nq,) they belong to: where to start for the next values.
+        beyond: Joints whose coordinate there is beyond a position limit.
+    """
+
+    values: dict[str, float]
+    q: Vector
+    beyond: tuple[str, ...]
+
+
+def actuator_values(robot: Robot, joints: Mapping[str, float], q0: Vector | None = None) -> Positions:
+    """Positions of the motors at which joints have the given positions.
+
+    The joints move from q0 along a straight path, and the motors follow on the branch of q0; other actuators stay where
+    they are. Position limits do not stop them; the result names the joints beyond theirs.
+
+    Args:
+        robot: The robot.
+        joints: By joint, its position, rad or m. The joints decide the positions of the motors that move them.
+        q0: Where to start (nq,). The default is the `assembled` configuration, or the neutral one if there is none.
+
+    Returns:
+        The positions of these motors, in the order of ``robot.actuation``, and the configuration.
+
+    Raises:
+        OutOfReach: The loops cannot be closed at these positions, or not on a straight path to them.
+        NotClosable: The loops cannot be closed at q0.
+        NoTransmission: The motors decide more than these joints; the error names joints to add.
+        ValueError: A name or a value is not right.
+    """
+    given = _single(robot, joints, "joints")
+    motors = motors_of(robot, given)
+    q = _moved(robot, given, motors, joints, q0)
+    _refuse_more(at_one(robot, given, q, motors))
+    return _positions(robot, motors.joints, q)
+
+
+def joint_values(
+    robot: Robot,
+    motors: Mapping[str, float],
+    q0: Vector | None = None,
+    joints: str | Iterable[str] | None = None,
+) -> Positions:
+    """Positions of joints at which the motors have the given positions; the inverse of `actuator_values`.
+
+    The motors move from q0 along a straight path, and the joints follow on the branch of q0; other actuators stay where
+    they are.
+
+    Args:
+        robot: The robot.
+        motors: By actuated joint, its position, rad or m.
+        q0: As in `actuator_values`.
+        joints: Joints to return, each with one coordinate. By default all passive ones in the loops of these motors
+            whose position the actuators decide.
+
+    Raises:
+        OutOfReach: As in `actuator_values`.
+        NotClosable: As in `actuator_values`.
+        NoTransmission: The actuators do not decide the position of one of ``joints``.
+        ValueError: A name or a value is not right.
+    """
+    given = _single(robot, motors, "motors")
+    passive = next((name for name in given.joints if name not in robot.actuation.joints), None)
+    if passive is not None:
+        actuated = ", ".join(robot.actuation.joints)
+        raise ValueError(f"'{passive}' is not an actuated joint; these are: {actuated}")
+    q = _moved(robot, given, given, motors, q0)
+    if joints is None:
+        return _positions(robot, _decided(robot, passive_joints_of(robot, given), q), q)
+    names = selection(robot, joints).joints
+    chosen = _single(robot, dict.fromkeys(names, 0.0), "joints")
+    at = at_one(robot, chosen, q, _all_motors(robot))
+    if at.undetermined:
+        raise NoTransmission("B_J", at.inverse_reason or "")
+    return _positions(robot, names, q)
+
+
+def _single(robot: Robot, values: Mapping[str, float], argument: str) -> Selection:
+    """The joints that values are given for, each with one coordinate."""
+    chosen = selection(robot, tuple(values), argument)
+    several = next((name for name in chosen.joints if robot.slots[name].nv > 1), None)
+    if several is not None:
+        raise ValueError(f"joint '{several}' has {robot.slots[several].nv} coordinates; give joints with one")
+    return chosen
+
+
+def _all_motors(robot: Robot) -> Selection:
+    single = [name for name in robot.actuation.joints if robot.slots[name].nv == 1]
+    return selection(robot, single, "motors")
+
+
+def _moved(robot: Robot, given: Selection, motors: Selection, values: Mapping[str, float], q0: Vector | None) -> Vector:
+    """The configuration (nq,) with these values, and the actuators that are not ``motors`` where they are at q0."""
+    wanted = {name: checked_array(f"the value of '{name}'", values[name], (), (1,)).item() for name in given.joints}
+    closed = assemble(robot, start(robot, q0))
+    if not closed.closes:
+        raise NotClosable("no closed configuration was found near the start", closed.open, closed.q)
+    first = closed.q
+    at = robot.coordinates(first)
+    still: dict[str, Sequence[float]] = {
+        name: at[name] for name in robot.actuation.joints if name not in motors.joints and name not in wanted
+    }
+    try:
+        return forward_kinematics(robot, {**still, **wanted}, first)
+    except NotClosable as error:
+        before = {name: at[name][0] for name in wanted}
+        reached, q = _farthest(robot, first, {**still, **before}, {**still, **wanted})
+        nearest = {name: robot.coordinates(q)[name][0] for name in wanted}
+        raise OutOfReach(wanted, nearest, reached, error.openings, error.q) from error
+
+
+def _farthest(robot: Robot, q: Vector, before: Mapping[str, Any], wanted: Mapping[str, Any]) -> tuple[float, Vector]:
+    """The part of the straight path that can be reached from q (nq,), and the configuration there."""
+    one, other = (robot.configuration({**robot.coordinates(q), **_listed(each)}) for each in (before, wanted))
+    path, given = robot.tree.difference(one, other), [robot.slots[name] for name in before]
+    coordinates = [slot.idx_q + k for slot in given for k in range(slot.nq)]
+    scale = derived(robot, TangentSpaces).scale
+    reached, step = 0.0, _FIRST_STEP
+    with borrowed(robot, Assembler, tuple(before)) as assembler:
+        assembler.tolerance, assembler.limits = 1e-10, None
+        while step >= _SHORTEST_STEP and reached + step <= 1.0:
+            guess = np.array(q)
+            guess[coordinates] = robot.tree.integrate(one, (reached + step) * path)[coordinates]
+            closed = assembler.closed(guess)
+            if closed is not None and np.abs(robot.tree.difference(guess, closed) / scale).max() <= _LONGEST_MOTION:
+                reached, q = reached + step, closed
+            else:
+                step *= 0.5
+    return reached, q
+
+
+def _listed(values: Mapping[str, Any]) -> dict[str, Sequence[float]]:
+    return {name: np.atleast_1d(value).tolist() for name, value in values.items()}
+
+
+def _refuse_more(at: Transmission) -> None:
+    if at.G is None and at.missing:
+        raise NoTransmission("the position of the motors", at.reason or "")
+
+
+def _decided(robot: Robot, candidates: Iterable[str], q: Vector) -> tuple[str, ...]:
+    """Those of the joints with one coordinate that the actuators decide."""
+    names = tuple(name for name in candidates if robot.slots[name].nv == 1)
+    if not names:
+        return ()
+    at = at_one(robot, selection(robot, names), q, _all_motors(robot))
+    return tuple(name for name in names if name not in at.undetermined)
+
+
+def _positions(robot: Robot, names: Iterable[str], q: Vector) -> Positions:
+    at, limits = robot.coordinates(q), position_limits(robot)
+    own = q[limits.coordinates]
+    outside = (own < limits.lower - BEYOND) | (own > limits.upper + BEYOND)
+    beyond = dict.fromkeys(limits.joints[index] for index in np.flatnonzero(outside).tolist())
+    return Positions({name: at[name][0] for name in names}, q, tuple(beyond))
