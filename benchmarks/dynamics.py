@@ -1,9 +1,10 @@
 """`eurdf.forward_dynamics` against `pin.constraintDynamics`, and `eurdf.inverse_dynamics` against plain NumPy.
 
+Both forward dynamics take motor torques and return the acceleration and the forces of the closures.
 `pin.constraintDynamics` runs to 1e-14 with μ = 1e-8, its memory made beforehand; it judges neither ranks nor its
 solution. The plain inverse dynamics take Pinocchio's Jacobian and bias, a basis of the free motions from a singular
-value decomposition of K, and pseudoinverses; they check nothing. States are twenty closed ones
-along a path. Then the time and memory of 100 four-bars, where a `pin.Data` would take 1.7 GB.
+value decomposition of K, and pseudoinverses; they check nothing. States are twenty closed ones along a path. Then the
+time and memory of 100 four-bars, where a `pin.Data` would take 1.7 GB.
 """
 
 from __future__ import annotations
@@ -57,12 +58,11 @@ class Peers:
         self._S = robot.actuation.selection
         pin.initConstraintDynamics(self._model, self._data, self._models, self._datas)
 
-    def forward(self, q: Vector, v: Vector, tau: Vector) -> Vector:
-        """Acceleration (nv,)."""
+    def forward(self, q: Vector, v: Vector, u: Vector) -> tuple[Vector, Vector]:
+        """Acceleration (nv,) and λ (nc,)."""
         model, data = self._model, self._data
-        return np.array(
-            pin.constraintDynamics(model, data, q, v, tau, self._models, self._datas, self._settings), dtype=np.float64
-        )
+        a = pin.constraintDynamics(model, data, q, v, self._S @ u, self._models, self._datas, self._settings)
+        return np.array(a), -data.lambda_c
 
     def inverse(self, q: Vector, v: Vector, a: Vector) -> tuple[Vector, Vector]:
         """Motor torques (nu,) and λ (nc,)."""
@@ -88,16 +88,16 @@ def compare(name: str) -> None:
     """Print a row."""
     robot = eurdf.load(name, geometry=False)
     peers, data, u = Peers(robot), robot.model.createData(), np.ones(len(robot.actuation.idx_v))
-    tau, given = robot.actuation.selection @ u, states(robot)
+    given = states(robot)
     motions = []
     for q, v in given:
         a = eurdf.forward_dynamics(robot, q, v, u).a
-        np.testing.assert_allclose(a, peers.forward(q, v, tau), atol=1e-9 * np.abs(a).max())
+        np.testing.assert_allclose(a, peers.forward(q, v, u)[0], atol=1e-9 * np.abs(a).max())
         motions.append((robot, q, v, a))
     calls = (
         (lambda q, v: eurdf.forward_dynamics(robot, q, v, u, data=data), given),
         (lambda q, v: eurdf.forward_dynamics(robot, q, v, u), given),
-        (peers.forward, [(*state, tau) for state in given]),
+        (peers.forward, [(*state, u) for state in given]),
         (eurdf.inverse_dynamics, motions),
         (peers.inverse, [motion[1:] for motion in motions]),
     )

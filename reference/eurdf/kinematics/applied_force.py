@@ -37,6 +37,7 @@ class AppliedForce:
         self._idx_v = robot.actuation.idx_v
         self._tree = robot.tree
         self._dissipation = dissipation
+        self._has_springs = len(robot.tree.springs) > 0
         self._external: tuple[FramePairs, Matrix] | None = None
         if external is not None and not isinstance(external, Mapping):
             raise ValueError(f"external must map names of frames to forces (6,), not {type(external).__name__}")
@@ -59,9 +60,15 @@ class AppliedForce:
         Raises:
             ValueError: ``u`` or ``tau`` has another shape or is not finite.
         """
-        force = np.zeros(self._tree.nv) if tau is None else np.array(checked_array("tau", tau, (self._tree.nv,)))
-        if u is not None:
-            force[self._idx_v] += checked_array("u", u, self._idx_v.shape)
+        idx_v = self._idx_v
+        if tau is None:
+            force: Vector = np.zeros(self._tree.nv)
+            if u is not None:
+                force[idx_v] = checked_array("u", u, idx_v.shape)
+        else:
+            force = np.array(checked_array("tau", tau, (self._tree.nv,)))
+            if u is not None:
+                force[idx_v] += checked_array("u", u, idx_v.shape)
         if self._external is not None:
             force += self._at_frames(*self._external, q)
         if self._dissipation:
@@ -70,7 +77,8 @@ class AppliedForce:
 
     def total(self, q: Vector, v: Vector, u: Vector | None = None, tau: Vector | None = None) -> Vector:
         """The same with that of the springs."""
-        return self.with_springs(q, self.at(q, v, u, tau))
+        force = self.at(q, v, u, tau)
+        return self.with_springs(q, force) if self._has_springs else force
 
     def with_springs(self, q: Vector, force: Vector) -> Vector:
         """A generalized force (nv,) plus that of the springs at q (nq,)."""

@@ -43,6 +43,9 @@ _MOST_WORK = 1e10
 # certain: how far a closure is open differs from its rows by a factor below 10.
 _WELL_CLOSED = 0.1 * CLOSED
 
+# A quaternion whose length differs from 1 by no more is normalized.
+_ROUNDING = 1e-15
+
 # Distance of the restarts from the first start (rad, or characteristic lengths); the last one is repeated.
 _SPREADS = (0.1, 0.3, 1.0, 2.0, 3.0)
 
@@ -148,8 +151,12 @@ def start(robot: Robot, q0: Vector | None = None, name: str = "q0") -> Vector:
         q0 = robot.configurations.get("assembled")
     if q0 is None:
         return robot.tree.neutral()
-    q = robot.tree.normalized(checked_array(name, q0, (robot.tree.nq,)))
-    if not robot.tree.is_normalized(q):  # NaN is not
+    tree = robot.tree
+    given = checked_array(name, q0, (tree.nq,))
+    if tree.is_normalized(given, _ROUNDING):
+        return np.array(given)
+    q = tree.normalized(given)
+    if not tree.is_normalized(q):  # NaN is not
         raise ValueError(f"{name} has a quaternion, or a (cos, sin) pair, whose length is zero or overflows")
     return q
 

@@ -34,14 +34,20 @@ class borrowed(Generic[_T]):  # noqa: N801 - used like a function
     Results must not depend on what it was used for before. After an error it is not kept.
     """
 
-    __slots__ = ("_kept", "_key", "_memory")
+    __slots__ = ("_idle", "_memory")
 
     def __init__(self, robot: Robot, make: Callable[..., _T], *key: Hashable) -> None:
-        kept: dict[tuple[Hashable, ...], list[_T]] = robot.derived.setdefault((borrowed, make), {})
-        self._kept, self._key = kept, key
         try:
-            memory = kept[key].pop()
-        except (KeyError, IndexError):
+            idle: list[_T] = robot.derived[borrowed, make][key]
+        except KeyError:
+            kept = robot.derived.setdefault((borrowed, make), {})
+            if len(kept) >= _MOST_KEYS:
+                kept.clear()
+            idle = kept.setdefault(key, [])
+        self._idle = idle
+        try:
+            memory = idle.pop()
+        except IndexError:
             memory = make(robot, *key)
         self._memory = memory
 
@@ -49,11 +55,5 @@ class borrowed(Generic[_T]):  # noqa: N801 - used like a function
         return self._memory
 
     def __exit__(self, kind: Any, error: BaseException | None, trace: TracebackType | None) -> None:
-        if error is not None:
-            return
-        kept = self._kept
-        if self._key not in kept and len(kept) >= _MOST_KEYS:
-            kept.clear()
-        idle = kept.setdefault(self._key, [])
-        if len(idle) < _MOST_IDLE:
-            idle.append(self._memory)
+        if error is None and len(self._idle) < _MOST_IDLE:
+            self._idle.append(self._memory)

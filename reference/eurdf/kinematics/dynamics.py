@@ -100,9 +100,9 @@ def forward_dynamics(
         UndeterminedMotion: A joint without inertia can move.
         NumericalOverflow: The result is not finite.
     """
-    with overflow_refused("the acceleration"), borrowed(robot, ForwardSolver) as solver:
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"), borrowed(robot, ForwardSolver) as solver:
         q, v = start(robot, q, "q"), checked_array("v", v, (robot.tree.nv,))
-        data = None if data is None else robot.tree.memory(data)
+        data = None if data is None else solver.checked(data)
         force = AppliedForce(robot, external, dissipation).total(q, v, u, tau)
         if gains is None:
             each = solver.gains.now()
@@ -229,7 +229,7 @@ def _motion(
 ) -> tuple[EquationOfMotion, Vector]:
     """The equation of motion at q and v, and the acceleration, all checked."""
     q, v = start(robot, q, "q"), checked_array("v", v, (robot.tree.nv,))
-    data = solver.data if data is None else robot.tree.memory(data)
+    data = solver.data if data is None else solver.checked(data)
     return EquationOfMotion(robot, q, v, data), checked_array("a", a, (robot.tree.nv,))
 
 

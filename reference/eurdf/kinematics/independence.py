@@ -30,18 +30,20 @@ class Independence:
     def __init__(self, row_scale: Vector, velocity_scale: Vector) -> None:
         """Take the factors (nc,) of the rows and (nv,) of the columns that make K dimensionless."""
         self._row_scale = row_scale
-        scale = self._scale = row_scale[:, None] * velocity_scale
-        self._largest_scale = float(scale.max(initial=0.0))
+        self._scale = row_scale[:, None] * velocity_scale
+        self._largest_scale = float(self._scale.max(initial=0.0))
         # A matrix K, the norm of its dimensionless A, and a bound of the smallest singular value of A from below.
         self._kept: tuple[Matrix, float, float] | None = None
 
     def is_shown(self, K: Matrix) -> bool:
         """Whether ‖A Aᵀ‖ ‖(A Aᵀ)⁻¹‖ is at most `INDEPENDENT`, with A the dimensionless K (nc, nv)."""
         if self._kept is not None:
-            other, size, bound = self._kept
-            change = self._largest_scale * norm((K - other).ravel())
-            least, most = bound - change, size + change
-            if least > 0.0 and math.sqrt(len(K)) * most * most <= INDEPENDENT * least * least:
+            change = K - self._kept[0]
+            # A bound of the norm of the scaled change, and only if that does not suffice the norm itself.
+            if self._is_near(self._largest_scale * norm(change.ravel())):
+                return True
+            change *= self._scale
+            if self._is_near(norm(change.ravel())):
                 return True
         A = K * self._scale
         square = A @ A.T
@@ -53,6 +55,13 @@ class Independence:
             return False
         self._kept = np.array(K), norm(A.ravel()), 1.0 / math.sqrt(inverse)
         return True
+
+    def _is_near(self, change: float) -> bool:
+        """Whether a change of so much of the kept A, in Frobenius' norm, leaves its rows independent beyond doubt."""
+        assert self._kept is not None
+        K, size, bound = self._kept
+        least, most = bound - change, size + change
+        return least > 0.0 and math.sqrt(len(K)) * most * most <= INDEPENDENT * least * least
 
     def least_forces(self, K: Matrix, lambdas: Vector) -> Vector | None:
         """The λ (nc,) of least norm, in units of the characteristic length, with the same Kᵀ λ.

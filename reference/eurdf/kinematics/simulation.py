@@ -13,7 +13,7 @@ from eurdf.kinematics.applied_force import AppliedForce, External
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import assemble, start
 from eurdf.kinematics.derived import borrowed, derived
-from eurdf.kinematics.exceptions import NotClosable, NumericalOverflow, SimulationDiverged, StepTooLongWarning
+from eurdf.kinematics.exceptions import NotClosable, SimulationDiverged, StepTooLongWarning
 from eurdf.kinematics.finite import overflow_refused
 from eurdf.kinematics.forward_solver import ForwardSolver
 from eurdf.kinematics.independence import norm
@@ -170,11 +170,8 @@ class _Motion:
         u = None if self._control is None else self._control(t, q, v)
         applied = self._applied.at(q, v, u)
         force = self._applied.with_springs(q, applied)
-        try:
-            # Between the steps, any smooth drift will do that equals K̇ v where the loops are closed.
-            a, _ = self._solver.solve(self._robot, q, v, force, self._gains, nearly_closed=True)
-        except np.linalg.LinAlgError:
-            raise NumericalOverflow("the acceleration") from None
+        # Between the steps, any smooth drift will do that equals K̇ v where the loops are closed.
+        a, _ = self._solver.solve(self._robot, q, v, force, self._gains, nearly_closed=True)
         # The derivative of x = q ⊖ begin is the inverse of that of begin ⊕ x.
         rate = self._tree.difference_derivative(begin, q) @ v if moved else v
         return rate, a, float(applied @ v)

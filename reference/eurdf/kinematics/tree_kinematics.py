@@ -211,8 +211,8 @@ class TreeKinematics(Protocol):
     def normalized(self, q: Vector) -> Vector:
         """The configuration with its quaternions, and cosines and sines, of unit length."""
 
-    def is_normalized(self, q: Vector) -> bool:
-        """Whether they are of unit length, to 1e-9."""
+    def is_normalized(self, q: Vector, tolerance: float = 1e-9) -> bool:
+        """Whether they are of unit length, to the tolerance."""
 
     def inverse_dynamics(self, q: Vector, v: Vector, a: Vector, data: Any) -> Vector:
         """The generalized force (nv,) M a + h that the acceleration a (nv,) takes; with a = 0 the bias h."""
@@ -254,8 +254,8 @@ class ConstrainedMotion(Protocol):
     def bias(self) -> Vector:
         """The h (nv,) of the equation."""
 
-    def closed_to(self, position: float, velocity: float) -> bool:
-        """Whether each row of the residual is at most ``position``, m or rad, and its rate at most ``velocity``."""
+    def closed_to(self, position: float) -> bool:
+        """Whether each row of the residual is at most ``position``, m or rad."""
 
 
 class ConstrainedDynamics(Protocol):
@@ -265,7 +265,7 @@ class ConstrainedDynamics(Protocol):
     """
 
     def solve(
-        self, q: Vector, v: Vector, force: Vector, gains: list[tuple[float, float]], data: Any
+        self, q: Vector, v: Vector, force: Vector, gains: list[tuple[float, float]], data: Any, is_own: bool
     ) -> ConstrainedMotion:
         """The solution at q (nq,) and v (nv,), which may be not finite.
 
@@ -275,6 +275,7 @@ class ConstrainedDynamics(Protocol):
             force: Generalized force τ (nv,).
             gains: Baumgarte gains of each constraint: kp, 1/s², and kd, 1/s.
             data: Memory of the whole tree.
+            is_own: Whether no other solver of constrained dynamics uses this memory.
         """
 
     def closures(self, q: Vector, data: Any) -> tuple[Vector, Matrix]:

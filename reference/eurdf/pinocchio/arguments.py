@@ -5,6 +5,7 @@ Pinocchio's Python interface does not check every size: a wrong one can read mem
 
 from __future__ import annotations
 
+import math
 import operator
 import reprlib
 from typing import Any
@@ -47,7 +48,8 @@ def checked_array(name: str, given: Any, *shapes: tuple[int, ...]) -> npt.NDArra
 
 
 def _all_finite(values: npt.NDArray[np.float64]) -> bool:
-    return bool(np.count_nonzero(np.isfinite(values)) == values.size)  # sooner than by all()
+    # Sooner than by isfinite; unlike dot, vdot does not warn. If the squares overflow, slower steps follow.
+    return math.isfinite(np.vdot(values, values))
 
 
 def checked_count(name: str, given: Any, least: int) -> int:

@@ -37,19 +37,16 @@ class ConstrainedMotion(NamedTuple):
     J: Matrix
     target: Vector
     data: pin.Data
-    each: list[pin.RigidConstraintData]
+    open_by: list[pin.Motion]
 
     @property
     def bias(self) -> Vector:
         """The h (nv,) of the equation."""
         return np.asarray(self.data.nle)
 
-    def closed_to(self, position: float, velocity: float) -> bool:
-        """Whether each row of the residual is at most ``position``, m or rad, and its rate at most ``velocity``."""
-        return all(
-            found.contact_placement_error.isZero(position) and found.contact_velocity_error.isZero(velocity)
-            for found in self.each
-        )
+    def closed_to(self, position: float) -> bool:
+        """Whether each row of the residual is at most ``position``, m or rad."""
+        return all(open_by.isZero(position) for open_by in self.open_by)
 
 
 class ConstrainedDynamics:
@@ -66,15 +63,19 @@ class ConstrainedDynamics:
         for constraint_model in constraint_models:
             self._models.append(constraint_model)
             self._datas.append(constraint_model.createData())
-        self._each = list(self._datas)
+        # References to what the solver writes, since each attribute takes time.
+        self._open_by = [data.contact_placement_error for data in self._datas]
         self._pairs = [
             (constraint_model, data, constraint_model.type == pin.ContactType.CONTACT_3D)
             for constraint_model, data in zip(self._models, self._datas, strict=True)
         ]
         self._settings = pin.ProximalSettings(_ACCURACY, _ACCURACY, _MU, _MOST_STEPS)
         self._gains: list[Gains] = []
+        self._prepared: pin.Data | None = None
 
-    def solve(self, q: Vector, v: Vector, force: Vector, gains: list[Gains], data: pin.Data) -> ConstrainedMotion:
+    def solve(
+        self, q: Vector, v: Vector, force: Vector, gains: list[Gains], data: pin.Data, is_own: bool
+    ) -> ConstrainedMotion:
         """See `eurdf.kinematics.tree_kinematics.ConstrainedDynamics`."""
         model, models, datas = self._model, self._models, self._datas
         if gains != self._gains:
@@ -82,12 +83,16 @@ class ConstrainedDynamics:
             for constraint_model, (kp, kd) in zip(models, gains, strict=True):
                 parameters = constraint_model.m_baumgarte_parameters
                 parameters.Kp, parameters.Kd = kp, kd
-        pin.initConstraintDynamics(model, data, models, datas)
+        if not is_own:
+            pin.initConstraintDynamics(model, data, models, datas)
+        elif self._prepared is not data:
+            pin.initConstraintDynamics(model, data, models, datas)
+            self._prepared = data
         a = np.array(pin.constraintDynamics(model, data, q, v, force, models, datas, self._settings))
         J = pin.getConstraintsJacobian(model, data, models, datas)
         if model.nv == 1:
             J = J.reshape(-1, 1)
-        return ConstrainedMotion(a, data.lambda_c, J, data.primal_rhs_contact, data, self._each)
+        return ConstrainedMotion(a, data.lambda_c, J, data.primal_rhs_contact, data, self._open_by)
 
     def closures(self, q: Vector, data: pin.Data) -> tuple[Vector, Matrix]:
         """See `eurdf.kinematics.tree_kinematics.ConstrainedDynamics`."""

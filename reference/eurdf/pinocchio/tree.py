@@ -219,9 +219,9 @@ class PinocchioTree:
         """The configuration with its quaternions, and cosines and sines, of unit length."""
         return np.asarray(pin.normalize(self.model, q))
 
-    def is_normalized(self, q: Vector) -> bool:
-        """Whether they are of unit length, to 1e-9."""
-        return bool(pin.isNormalized(self.model, q, 1e-9))
+    def is_normalized(self, q: Vector, tolerance: float = 1e-9) -> bool:
+        """Whether they are of unit length, to the tolerance."""
+        return bool(pin.isNormalized(self.model, q, tolerance))
 
     def inverse_dynamics(self, q: Vector, v: Vector, a: Vector, data: pin.Data | TreeRecursion) -> Vector:
         """The generalized force (nv,) M a + h that the acceleration a (nv,) takes; with a = 0 the bias h."""
