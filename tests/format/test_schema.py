@@ -16,8 +16,10 @@ from jsonschema import Draft202012Validator
 from pydantic import BaseModel, ValidationError
 
 from eurdf.diagnostics import Diagnostics
+from eurdf.format.conforms import compiled, conforms, schema_of
 from eurdf.format.read_extension import read_extension
 from eurdf.format.schema import FILES, Names, SchemaVersion, json_schema, main, schema_text
+from eurdf.format.version import Version
 from eurdf.format.version1 import Version1
 from eurdf.format.version2 import Version2
 from eurdf.format.version2_1 import Version2_1
@@ -28,6 +30,8 @@ ROOT = Path(__file__).parents[2]
 VERSIONS: tuple[SchemaVersion, ...] = ("1", "2", "2.1")
 MODELS: dict[str, type[BaseModel]] = {"1": Version1, "2": Version2, "2.1": Version2_1}
 VALIDATORS = {version: Draft202012Validator(json_schema(version)) for version in VERSIONS}
+
+VERSION_OF: dict[str, Version] = {"1": "1", "2": "2.0", "2.1": "2.1"}
 
 NAMES = Names(links=["base", "rod", "foot"], joints=["hip", "knee", "weld"], movable_joints=["hip", "knee"])
 
@@ -122,7 +126,8 @@ def accepted(version: str, document: Any) -> bool:
         refusal = ""
     except ValidationError as error:
         refusal = str(error)
-    assert VALIDATORS[version].is_valid(document) == (not refusal), f"{document}\nmodel: {refusal or 'accepts it'}"
+    verdicts = VALIDATORS[version].is_valid(document), conforms(VERSION_OF[version])(document)
+    assert verdicts == (not refusal, not refusal), f"{document}\nmodel: {refusal or 'accepts it'}"
     return not refusal
 
 
@@ -441,6 +446,28 @@ def test_reading_reports_what_schema_rejects() -> None:
             assert found.phase == "schema"
             seen += 1
     assert seen > 200
+
+
+def test_own_keys_are_no_joints_of_coupling() -> None:
+    joints = {"knee": 1, "x-note": 2}
+    document = {"extended_urdf": "2.1", "couplings": [{"name": "gear", "joints": joints}]}
+    assert not conforms("2.1")(document)
+    joints["hip"] = 1
+    assert conforms("2.1")(document)
+
+
+def test_schema_is_generated_where_its_file_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+    written = [schema_of(version) for version in VERSION_OF.values()]
+    monkeypatch.setattr("eurdf.format.conforms.schema_folder", lambda: None)
+    assert [schema_of.__wrapped__(version) for version in VERSION_OF.values()] == written
+
+
+@pytest.mark.parametrize(
+    "schema", [{"type": "string", "maxLength": 3}, {"type": "array", "items": {"if": {}}}, {"pattern": "^a"}]
+)
+def test_unsupported_keyword_of_schema_is_refused(schema: dict[str, Any]) -> None:
+    with pytest.raises(ValueError, match="is not supported"):
+        compiled(schema)
 
 
 def robot_errors(version: SchemaVersion, text: str) -> list[str]:

@@ -360,9 +360,16 @@ def test_joint_named_like_a_keyword_has_right_place() -> None:
     ]
 
 
-def test_reading_loads_no_simulator() -> None:
-    code = "import sys, eurdf.format.read_extension; sys.exit('pinocchio' in sys.modules or 'numpy' in sys.modules)"
-    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+def test_reading_loads_neither_simulator_nor_models() -> None:
+    code = (
+        "import sys; from eurdf.format.read_extension import *; from eurdf.reading.yaml_reader import read_yaml;"
+        "from eurdf.reading.source import Source; from eurdf.diagnostics import Diagnostics;"
+        "text = open(0).read(); source = Source('robot.yaml', text, text.encode());"
+        "assert read_extension(read_yaml(source), Diagnostics());"
+        "sys.exit(not sys.modules.keys().isdisjoint({'pinocchio', 'numpy', 'pydantic', 'rich'}))"
+    )
+    for text in (FULL, "name_mot: [knee]\n"):
+        assert subprocess.run([sys.executable, "-c", code], input=text.encode(), check=False).returncode == 0
 
 
 def test_long_or_unprintable_name_is_escaped() -> None:

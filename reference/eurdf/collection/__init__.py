@@ -36,6 +36,12 @@ def collection_folder() -> Path | None:
     return None
 
 
+def schema_folder() -> Path | None:
+    """The folder of the schema files, beside that of the collection."""
+    robots = collection_folder()
+    return None if robots is None else robots.parent / "schema"
+
+
 def collection_names() -> list[str]:
     """Names of the robots that come with the package."""
     folder = collection_folder()

@@ -10,19 +10,13 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 from typing_extensions import TypeAliasType
 
-#: What user-defined keys begin with, at any level of a version 2 file (EU-EXT-002).
-OWN_KEY = "^x-"
+from eurdf.format.own_key import OWN_KEY, is_own_key
 
 #: Strict: no string is a number, a bool is no number, an int is one. Built at first use, since one run mostly
 #: reads one version.
 STRICT = ConfigDict(strict=True, allow_inf_nan=False, frozen=True, defer_build=True)
 
 _OWN_DATA = {"title": "Own data", "description": "User data: kept, not interpreted."}
-
-
-def is_own_key(key: str) -> bool:
-    """Whether a key of a version 2 file is user-defined."""
-    return key.startswith("x-")
 
 
 class StrictMapping(BaseModel):

@@ -1,11 +1,11 @@
-"""Both versions in one form: a file that a model has accepted, as an `Extension`."""
+"""Both versions in one form: a file that conforms to its schema, as an `Extension`."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
+from typing import Any, Literal
 
-from eurdf.format import actuator2_1, compliance, joint2_1, version2, version2_1
+from eurdf.format.conforms import keys_of
 from eurdf.format.extension import (
     ActuatorEntry,
     ClosureEntry,
@@ -16,24 +16,28 @@ from eurdf.format.extension import (
     FrameReference,
     JointEntry,
 )
-from eurdf.format.field import is_own_key
-from eurdf.format.version1 import Version1
-from eurdf.format.version2 import Version2
+from eurdf.format.own_key import is_own_key
 from eurdf.mechanism.constraint import Compliance
 from eurdf.mechanism.pose import Vector3
 from eurdf.reading.yaml_node import Pointer
 from eurdf.reading.yaml_reader import YamlDocument
 
+_HERE: Vector3 = (0.0, 0.0, 0.0)
 _UNIT = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
+#: A part of the file, as plain data.
+_Mapping = Mapping[str, Any]
 
-def from_version1(model: Version1, document: YamlDocument) -> Extension:
+
+def from_version1(document: YamlDocument) -> Extension:
     """The description in a file of version 1, whose parallel lists are of equal length.
 
     Keys other than the five are kept (EU-ONE-008). Closures are named ``closure_1``, ``closure_2``, … in file order
     (EU-ONE-005), and are 6d where the key ``type`` is left out (EU-ONE-004).
     """
-    types = model.type if "type" in model.model_fields_set else ["6d"] * len(model.closed_loop)
+    data = document.data
+    closed_loop = data.get("closed_loop", ())
+    types = data.get("type", ["6d"] * len(closed_loop))
     closures = tuple(
         ClosureEntry(
             pointer=("closed_loop", index),
@@ -42,19 +46,24 @@ def from_version1(model: Version1, document: YamlDocument) -> Extension:
             a=FrameReference(("closed_loop", index, 0), name=a),
             b=FrameReference(("closed_loop", index, 1), name=b),
         )
-        for index, ((a, b), closure_type) in enumerate(zip(model.closed_loop, types, strict=True))
+        for index, ((a, b), closure_type) in enumerate(zip(closed_loop, types, strict=True))
     )
     joints = tuple(
         _version1_joint(("joint_name", index), name, joint_type)
-        for index, (name, joint_type) in enumerate(zip(model.joint_name, model.joint_type, strict=True))
+        for index, (name, joint_type) in enumerate(
+            zip(data.get("joint_name", ()), data.get("joint_type", ()), strict=True)
+        )
     )
+    known = keys_of("1")
     return Extension(
         document,
         version="1",
         closures=closures,
         joints=joints,
-        actuators=tuple(ActuatorEntry(("name_mot", index), name) for index, name in enumerate(model.name_mot)),
-        own_data={(key,): value for key, value in (model.model_extra or {}).items()},
+        actuators=tuple(
+            ActuatorEntry(("name_mot", index), name) for index, name in enumerate(data.get("name_mot", ()))
+        ),
+        own_data={(key,): value for key, value in data.items() if key not in known},
     )
 
 
@@ -66,136 +75,153 @@ def _version1_joint(pointer: Pointer, name: str, joint_type: str) -> JointEntry:
     return JointEntry(pointer, name, type="universal", split=joint_type.removeprefix("UJOINT_"))
 
 
-def from_version2(model: Version2, document: YamlDocument) -> Extension:
-    """The description in a file of version 2.0 or 2.1.
-
-    Args:
-        model: The file, accepted.
-        document: The file as written, which is searched for user-defined keys.
-    """
+def from_version2(version: Literal["2.0", "2.1"], document: YamlDocument) -> Extension:
+    """The description in a file of version 2.0 or 2.1."""
+    data = document.data
     return Extension(
         document,
-        version=model.extended_urdf,
-        urdf=model.urdf,
-        root=model.root,
-        closures=tuple(_closure(("closures", index), closure) for index, closure in enumerate(model.closures)),
-        couplings=tuple(_couplings(model)),
-        joints=tuple(_joint(name, joint) for name, joint in model.joints.items()),
-        actuators=tuple(_actuator(("actuators", index), actuator) for index, actuator in enumerate(model.actuators)),
+        version=version,
+        urdf=data.get("urdf", "robot.urdf"),
+        root=data.get("root", "fixed"),
+        closures=tuple(
+            [_closure(("closures", index), closure) for index, closure in enumerate(data.get("closures", ()))]
+        ),
+        couplings=tuple(
+            [_coupling(("couplings", index), coupling) for index, coupling in enumerate(data.get("couplings", ()))]
+        ),
+        joints=tuple([_joint(name, joint) for name, joint in _named(data.get("joints", {}))]),
+        actuators=tuple(
+            [_actuator(("actuators", index), actuator) for index, actuator in enumerate(data.get("actuators", ()))]
+        ),
         frames=tuple(
-            FrameEntry(("frames", index), frame.name, _reference(("frames", index), frame))
-            for index, frame in enumerate(model.frames)
+            [
+                FrameEntry(("frames", index), frame["name"], _reference(("frames", index), frame))
+                for index, frame in enumerate(data.get("frames", ()))
+            ]
         ),
         configurations=tuple(
-            ConfigurationEntry(
-                ("configurations", name),
-                name,
-                {joint: tuple(q) if isinstance(q, list) else (q,) for joint, q in joints.items()},
-            )
-            for name, joints in model.configurations.items()
+            [
+                ConfigurationEntry(
+                    ("configurations", name),
+                    name,
+                    {joint: q if type(q) is tuple else (q,) for joint, q in _numbers_by_name(joints)},
+                )
+                for name, joints in _named(data.get("configurations", {}))
+            ]
         ),
-        metadata=model.metadata,
-        own_data=dict(_own_data(document.data, ())),
+        metadata=data.get("metadata", {}),
+        own_data=dict(_own_data(data, ())),
     )
 
 
-def _reference(pointer: Pointer, frame: str | version2.PoseOnLink | version2.PoseOnJoint) -> FrameReference:
+def _named(entries: _Mapping) -> Iterator[tuple[str, Any]]:
+    """EU-EXT-004: the entries by name, without user-defined keys."""
+    return ((name, entry) for name, entry in entries.items() if not is_own_key(name))
+
+
+def _numbers_by_name(entries: _Mapping) -> Iterator[tuple[str, Any]]:
+    return ((name, _numbers(value)) for name, value in _named(entries))
+
+
+def _reference(pointer: Pointer, frame: str | _Mapping) -> FrameReference:
     if isinstance(frame, str):
         return FrameReference(pointer, name=frame)
-    xyz, rpy = _vector(frame.xyz), _vector(frame.rpy)
-    if isinstance(frame, version2.PoseOnLink):
-        return FrameReference(pointer, frame.link, "link", xyz=xyz, rpy=rpy)
-    return FrameReference(pointer, frame.joint, "joint", xyz=xyz, rpy=rpy)
+    xyz, rpy = _vector(frame.get("xyz", _HERE)), _vector(frame.get("rpy", _HERE))
+    if "link" in frame:
+        return FrameReference(pointer, frame["link"], "link", xyz=xyz, rpy=rpy)
+    return FrameReference(pointer, frame["joint"], "joint", xyz=xyz, rpy=rpy)
 
 
-def _closure(pointer: Pointer, closure: version2.Closure | version2_1.AnyClosure) -> ClosureEntry:
-    a, b = closure.frames
+def _closure(pointer: Pointer, closure: _Mapping) -> ClosureEntry:
+    a, b = closure["frames"]
+    kind = closure["type"]
     axes: tuple[Vector3, Vector3] | None = None
     axes_pointer: Pointer = ()
-    if isinstance(closure, version2_1.HingeAboutTwo):
-        axes = _vector(closure.axes[0]), _vector(closure.axes[1])
+    if "axes" in closure:
+        axes = _vector(closure["axes"][0]), _vector(closure["axes"][1])
         axes_pointer = (*pointer, "axes")
-    elif isinstance(closure, version2_1.Hinge):
-        axes = _vector(closure.axis), _vector(closure.axis)
-        axes_pointer = (*pointer, "axis")
+    elif kind == "hinge":
+        axis = _vector(closure.get("axis", _UNIT["z"]))
+        axes, axes_pointer = (axis, axis), (*pointer, "axis")
     return ClosureEntry(
         pointer,
-        closure.name,
-        closure.type,
+        closure["name"],
+        kind,
         _reference((*pointer, "frames", 0), a),
         _reference((*pointer, "frames", 1), b),
         axes,
         axes_pointer,
-        closure.length if isinstance(closure, version2_1.Distance) else None,
-        _compliance(closure.compliance) if isinstance(closure, compliance.Compliant) else None,
+        float(closure["length"]) if "length" in closure else None,
+        _compliance(closure["compliance"]) if "compliance" in closure else None,
     )
 
 
-def _compliance(written: compliance.Compliance | None) -> Compliance | None:
-    return None if written is None else Compliance(written.linear or 0.0, written.angular or 0.0)
+def _compliance(written: _Mapping) -> Compliance:
+    return Compliance(float(written.get("linear", 0.0)), float(written.get("angular", 0.0)))
 
 
-def _couplings(model: Version2) -> Iterator[CouplingEntry]:
-    for index, coupling in enumerate(model.couplings if isinstance(model, version2_1.Version2_1) else ()):
-        yield CouplingEntry(("couplings", index), coupling.name, coupling.joints, coupling.offset)
+def _coupling(pointer: Pointer, coupling: _Mapping) -> CouplingEntry:
+    joints = {name: float(coefficient) for name, coefficient in _named(coupling["joints"])}
+    return CouplingEntry(pointer, coupling["name"], joints, float(coupling.get("offset", 0.0)))
 
 
-def _joint(name: str, joint: version2.Joint) -> JointEntry:
+def _joint(name: str, joint: Any) -> JointEntry:
     pointer = ("joints", name)
     if isinstance(joint, str):
-        return JointEntry(pointer, name, type=joint)
-    limits = joint.limits or version2.Limits.model_construct()
-    axes: tuple[Vector3, ...] = ()
-    if isinstance(joint, version2.Universal):
-        written = joint.axes
-        axes = tuple(_UNIT[axis] if isinstance(axis, str) else _vector(axis) for axis in written)
+        return JointEntry(pointer, name, type=joint)  # type: ignore[arg-type]
+    limits = joint.get("limits", {})
+    axes = joint.get("axes", ())
     return JointEntry(
         pointer,
         name,
-        type=None if isinstance(joint, version2.Overridden) else joint.type,
-        axes=axes,
-        pitch=joint.pitch if isinstance(joint, version2.Helical) else 0.0,
-        merges=tuple(joint.merges or ()) if isinstance(joint, version2.Spherical) else (),
-        lower=_numbers(limits.lower),
-        upper=_numbers(limits.upper),
-        velocity=_numbers(limits.velocity),
-        effort=_numbers(limits.effort),
-        damping=_numbers(joint.damping),
-        friction=_numbers(joint.friction),
-        armature=_numbers(joint.armature),
-        stiffness=_numbers(joint.stiffness) if isinstance(joint, joint2_1.Added) else None,
-        rest=_numbers(joint.rest) if isinstance(joint, joint2_1.Added) else None,
-        freed=isinstance(joint, joint2_1.Added) and joint.mimic is False,
+        type=joint.get("type"),
+        axes=tuple(_UNIT[axis] if isinstance(axis, str) else _vector(axis) for axis in axes),
+        pitch=float(joint.get("pitch", 0.0)),
+        merges=tuple(joint.get("merges", ())),
+        lower=_numbers(limits.get("lower")),
+        upper=_numbers(limits.get("upper")),
+        velocity=_numbers(limits.get("velocity")),
+        effort=_numbers(limits.get("effort")),
+        damping=_numbers(joint.get("damping")),
+        friction=_numbers(joint.get("friction")),
+        armature=_numbers(joint.get("armature")),
+        stiffness=_numbers(joint.get("stiffness")),
+        rest=_numbers(joint.get("rest")),
+        freed=joint.get("mimic") is False,
     )
 
 
-def _actuator(pointer: Pointer, actuator: str | version2.Geared) -> ActuatorEntry:
+def _actuator(pointer: Pointer, actuator: str | _Mapping) -> ActuatorEntry:
     if isinstance(actuator, str):
         return ActuatorEntry(pointer, actuator)
-    entry = ActuatorEntry(pointer, actuator.joint, actuator.gear_ratio, actuator.rotor_inertia)
-    if not isinstance(actuator, actuator2_1.Geared):
-        return entry
-    control = None if actuator.control is None else (actuator.control[0], actuator.control[1])
-    return replace(entry, name=actuator.name, control=control)
+    control = actuator.get("control")
+    return ActuatorEntry(
+        pointer,
+        actuator["joint"],
+        _number(actuator.get("gear_ratio")),
+        _number(actuator.get("rotor_inertia")),
+        actuator.get("name"),
+        None if control is None else (float(control[0]), float(control[1])),
+    )
 
 
-def _vector(numbers: Sequence[float]) -> Vector3:
+def _vector(numbers: Any) -> Vector3:
     x, y, z = numbers
-    return (x, y, z)
+    return (float(x), float(y), float(z))
+
+
+def _number(value: float | None) -> float | None:
+    return None if value is None else float(value)
 
 
 def _numbers(value: float | list[float] | None) -> float | tuple[float, ...] | None:
-    return tuple(value) if isinstance(value, list) else value
+    return tuple(map(float, value)) if isinstance(value, list) else _number(value)
 
 
-def _own_data(value: object, pointer: Pointer) -> Iterator[tuple[Pointer, object]]:
+def _own_data(value: Any, pointer: Pointer) -> Iterator[tuple[Pointer, object]]:
     """EU-EXT-002: the value of a key ``x-…``, at any level; its content is ignored."""
-    if isinstance(value, Mapping):
-        for key, inner in value.items():
-            if is_own_key(key):
-                yield (*pointer, key), inner
-            else:
-                yield from _own_data(inner, (*pointer, key))
-    elif isinstance(value, list):
-        for index, inner in enumerate(value):
-            yield from _own_data(inner, (*pointer, index))
+    for key, inner in value.items() if type(value) is dict else enumerate(value):
+        if type(key) is str and is_own_key(key):
+            yield (*pointer, key), inner
+        elif type(inner) is dict or type(inner) is list:
+            yield from _own_data(inner, (*pointer, key))

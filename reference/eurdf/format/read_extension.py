@@ -4,29 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from pydantic import ValidationError
-
 from eurdf.diagnostics import Diagnostics
+from eurdf.format.conforms import conforms, keys_of
+from eurdf.format.described import described, quoted
 from eurdf.format.extension import Extension
-from eurdf.format.field import is_own_key
 from eurdf.format.near import near
 from eurdf.format.normal_form import from_version1, from_version2
-from eurdf.format.version1 import Version1
-from eurdf.format.version2 import VERSION, Version2
-from eurdf.format.version2_1 import VERSION as VERSION2_1
-from eurdf.format.version2_1 import Version2_1
-from eurdf.format.violation import described, quoted, violations
+from eurdf.format.own_key import is_own_key
+from eurdf.format.version import VERSION2_0, VERSION2_1, VERSION_KEY, Version
 from eurdf.reading.reporter import YamlReporter
 
 if TYPE_CHECKING:
     from eurdf.reading.yaml_reader import YamlDocument
-
-VERSION_KEY = "extended_urdf"
-
-_VERSION1_KEYS = tuple(Version1.model_fields)
-
-#: Keys of version 2; ``metadata`` is likely a user-defined key in a file of version 1.
-_VERSION2_KEYS = tuple(key for key in Version2_1.model_fields if key not in (VERSION_KEY, "metadata"))
 
 
 def read_extension(document: YamlDocument, diagnostics: Diagnostics) -> Extension | None:
@@ -44,33 +33,34 @@ def read_extension(document: YamlDocument, diagnostics: Diagnostics) -> Extensio
     version = _version(reporter)
     if version is None:
         return None
-    known = True
-    try:
-        if version == "1":
-            _warn_of_near_misses(reporter)
-            one = Version1.model_validate(data)
-            return from_version1(one, document) if _lengths_agree(one, reporter) else None
-        if data[VERSION_KEY] != version:  # already reported; report other errors too
-            known, data = False, {**data, VERSION_KEY: version}
-        two = (Version2_1 if version == VERSION2_1 else Version2).model_validate(data)
-    except ValidationError as error:
-        for diagnostic in violations(error, document):
+    if version == "1":
+        _warn_of_near_misses(reporter)
+    elif data[VERSION_KEY] != version:  # already reported; report other errors too
+        data = {**data, VERSION_KEY: version}
+    if not conforms(version)(data):
+        from eurdf.format.violation import violations
+
+        found = violations(version, data, document)
+        for diagnostic in found:
             diagnostics.add(diagnostic)
-        return None
-    return from_version2(two, document) if known else None
+        if found:
+            return None
+    if version == "1":
+        return from_version1(document) if _lengths_agree(reporter) else None
+    return from_version2(version, document) if data is document.data else None
 
 
-def version_of(document: YamlDocument) -> Literal["1", "2.0", "2.1"] | None:
+def version_of(document: YamlDocument) -> Version | None:
     """The version of a file; None if it has an error that leaves this unknown."""
     return _version(YamlReporter(document, Diagnostics()))
 
 
-def _version(reporter: YamlReporter) -> Literal["1", "2.0", "2.1"] | None:
+def _version(reporter: YamlReporter) -> Version | None:
     """The version of a file (EU-VER-002, EU-VER-003); None if unknown."""
     data = reporter.document.data
     if VERSION_KEY in data:
         return _written_version(reporter)
-    if any(key in data for key in _VERSION1_KEYS):
+    if any(key in data for key in keys_of("1")):
         return "1"
     misspelt = next((key for key in data if not is_own_key(key) and near(key, [VERSION_KEY])), None)
     if misspelt is not None:
@@ -82,7 +72,7 @@ def _version(reporter: YamlReporter) -> Literal["1", "2.0", "2.1"] | None:
             key=True,
         )
         return None
-    version2_key = next((key for key in data if key in (*_VERSION2_KEYS, "metadata")), None)
+    version2_key = next((key for key in data if key in keys_of(VERSION2_1)), None)
     if version2_key is not None:
         version = _first_version_with(version2_key)
         reporter.report(
@@ -98,23 +88,23 @@ def _version(reporter: YamlReporter) -> Literal["1", "2.0", "2.1"] | None:
 
 def _first_version_with(key: str) -> str:
     """The first version that has a key of the whole file."""
-    return VERSION if key in Version2.model_fields else VERSION2_1
+    return VERSION2_0 if key in keys_of(VERSION2_0) else VERSION2_1
 
 
 def _written_version(reporter: YamlReporter) -> Literal["2.0", "2.1"] | None:
     """Version 2.0 or 2.1, or None if the file states another (EU-VER-001)."""
     value = reporter.document.data[VERSION_KEY]
     pointer = (VERSION_KEY,)
-    meant: Literal["2.0", "2.1"] = VERSION2_1 if value == float(VERSION2_1) else VERSION
+    meant: Literal["2.0", "2.1"] = VERSION2_1 if value == float(VERSION2_1) else VERSION2_0
     quoted = f'write {VERSION_KEY}: "{meant}", in quotes'
-    if value in (VERSION, VERSION2_1):
-        return VERSION if value == VERSION else VERSION2_1
+    if value in (VERSION2_0, VERSION2_1):
+        return VERSION2_0 if value == VERSION2_0 else VERSION2_1
     if value in ("1", "1.0"):
         message = f"'{VERSION_KEY}' cannot be {described(value)}: a file of version 1 does not state its version"
         reporter.report("unsupported-version", message, pointer, f"leave '{VERSION_KEY}' out")
         return None
     if isinstance(value, str):
-        hint = f"the known versions are {VERSION} and {VERSION2_1}: {quoted}"
+        hint = f"the known versions are {VERSION2_0} and {VERSION2_1}: {quoted}"
         reporter.report(
             "unsupported-version", f"version {described(value)} of Extended URDF is not known", pointer, hint
         )
@@ -131,14 +121,15 @@ def _written_version(reporter: YamlReporter) -> Literal["2.0", "2.1"] | None:
 
 def _warn_of_near_misses(reporter: YamlReporter) -> None:
     """Warn of keys that are read as user-defined, but look like keys of the format (EU-ONE-002)."""
+    known = keys_of("1")
     for key in reporter.document.data:
-        if key in _VERSION1_KEYS or is_own_key(key):
+        if key in known or is_own_key(key):
             continue
-        if key in _VERSION2_KEYS:
+        if key != "metadata" and key in keys_of(VERSION2_1):  # ``metadata`` is likely the user's own
             version = _first_version_with(key)
             message = f"'{key}' is a key of version {version}; in this file of version 1 it is your own data"
             hint = f'a file of version {version} begins with {VERSION_KEY}: "{version}" and has no key of version 1'
-        elif meant := near(key, (*_VERSION1_KEYS, VERSION_KEY)):
+        elif meant := near(key, (*known, VERSION_KEY)):
             message = f"{quoted(key)} is similar to '{meant}', but is read as your own data"
             hint = f"did you mean '{meant}'?"
         else:
@@ -152,16 +143,17 @@ def _warn_of_near_misses(reporter: YamlReporter) -> None:
         )
 
 
-def _lengths_agree(model: Version1, reporter: YamlReporter) -> bool:
+def _lengths_agree(reporter: YamlReporter) -> bool:
     """Whether the lists of version 1 that belong together have the same length (EU-ONE-003)."""
+    data = reporter.document.data
     agree = True
     for first, second in (("closed_loop", "type"), ("joint_name", "joint_type")):
-        if second not in model.model_fields_set:
+        if second not in data:
             continue
-        lengths = {key: len(getattr(model, key)) for key in (first, second)}
+        lengths = {key: len(data.get(key, ())) for key in (first, second)}
         if lengths[first] != lengths[second]:
             agree = False
-            shorter = min((key for key in lengths if key in model.model_fields_set), key=lambda key: lengths[key])
+            shorter = min((key for key in lengths if key in data), key=lambda key: lengths[key])
             counts = f"{lengths[first]} and {lengths[second]}"
             message = f"'{first}' and '{second}' must have the same number of items, not {counts}"
             reporter.report(

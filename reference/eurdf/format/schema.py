@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel
 
-from eurdf.format.field import OWN_KEY, is_own_key
+from eurdf.format.own_key import OWN_KEY, is_own_key
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.version1 import Version1
 from eurdf.format.version2 import Version2

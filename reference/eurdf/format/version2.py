@@ -23,8 +23,6 @@ from eurdf.format.field import (
     refuse_zero,
 )
 
-VERSION: Literal["2.0"] = "2.0"
-
 Name = Annotated[str, Field(min_length=1)]
 NonNegative = Annotated[float, Field(ge=0)]
 

@@ -12,8 +12,6 @@ from eurdf.format.compliance import Compliance, Compliant
 from eurdf.format.field import AtLeastTwoByName, ByName, StrictMapping, either, refuse_zero
 from eurdf.format.version2 import FrameReference, Name, Vector, Version2
 
-VERSION: Literal["2.1"] = "2.1"
-
 #: Smallest length of a distance closure, m.
 LEAST_LENGTH = 1e-4
 
@@ -203,7 +201,7 @@ EXCLUDED: Mapping[str, Mapping[str, str]] = {
 }
 
 #: Types of closure in each version, beside user-defined ones.
-CLOSURE_TYPES: Mapping[str, tuple[str, ...]] = {"2.0": ("3d", "6d"), VERSION: ("3d", "6d", "hinge", "distance")}
+CLOSURE_TYPES: Mapping[str, tuple[str, ...]] = {"2.0": ("3d", "6d"), "2.1": ("3d", "6d", "hinge", "distance")}
 
 #: Keys that version 2.1 adds, by the last field or tag on the way to their mapping.
 ADDED_KEYS: Mapping[str, tuple[str, ...]] = {

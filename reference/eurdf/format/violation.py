@@ -13,18 +13,24 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from pydantic import BaseModel, ValidationError
+
 from eurdf.diagnostics import Diagnostic, did_you_mean
+from eurdf.format.described import described, quoted
 from eurdf.format.misplaced import Indentation, another_entry_hint, key_of_the_file_hint, key_outside_hint
 from eurdf.format.near import near
-from eurdf.format.version2 import FROM_VERSION1, JOINT_TYPES
-from eurdf.format.version2_1 import ADDED_KEYS, CLOSURE_TYPES, EXCLUDED, KEYS, TAGS, VERSION
+from eurdf.format.version import VERSION2_1, Version
+from eurdf.format.version1 import Version1
+from eurdf.format.version2 import FROM_VERSION1, JOINT_TYPES, Version2
+from eurdf.format.version2_1 import ADDED_KEYS, CLOSURE_TYPES, EXCLUDED, KEYS, TAGS, Version2_1
 from eurdf.reading.yaml_node import Pointer
 
 if TYPE_CHECKING:
-    from pydantic import ValidationError
     from pydantic_core import ErrorDetails
 
     from eurdf.reading.yaml_reader import YamlDocument
+
+_MODELS: Mapping[Version, type[BaseModel]] = {"1": Version1, "2.0": Version2, "2.1": Version2_1}
 
 #: Maximum number of reported errors per file; a file with more is not a description.
 MOST = 100
@@ -76,14 +82,20 @@ class _Violation:
     mapping: str
 
 
-def violations(error: ValidationError, document: YamlDocument) -> list[Diagnostic]:
-    """The errors that a model found in a file, in file order, each reported once.
+def violations(version: Version, data: Mapping[str, Any], document: YamlDocument) -> list[Diagnostic]:
+    """The errors that the model of a version finds in a file, in file order, each reported once.
 
     Args:
-        error: What pydantic raised.
+        version: The version.
+        data: The content of the file, with this version.
         document: The file that was read.
     """
-    details = error.errors(include_url=False)
+    try:
+        _MODELS[version].model_validate(data)
+    except ValidationError as error:
+        details = error.errors(include_url=False)
+    else:
+        return []
     found = [_located(detail, document.data) for detail in details[:MOST]]
     mistyped = {
         each.pointer[:2] for each in found if each.pointer[:1] == ("closures",) and each.pointer[2:] == ("type",)
@@ -128,7 +140,7 @@ def _is_later_type(violation: _Violation, document: YamlDocument) -> bool:
     return (
         violation.pointer[:1] == ("closures",)
         and violation.pointer[2:] == ("type",)
-        and violation.value in CLOSURE_TYPES[VERSION]
+        and violation.value in CLOSURE_TYPES[VERSION2_1]
         and violation.value not in _closure_types(document)
     )
 
@@ -142,7 +154,7 @@ def _closure_types(document: YamlDocument) -> Sequence[str]:
 def _version_hint(what: str, document: YamlDocument) -> str:
     """Which line to change so that a file may have what version 2.1 adds."""
     line = document.place(("extended_urdf",)).line
-    return f'{what} is of version {VERSION}: write extended_urdf: "{VERSION}" on line {line}'
+    return f'{what} is of version {VERSION2_1}: write extended_urdf: "{VERSION2_1}" on line {line}'
 
 
 def subject(pointer: Pointer) -> str:
@@ -153,27 +165,6 @@ def subject(pointer: Pointer) -> str:
         return f"item {pointer[-1] + 1} of {subject(pointer[:-1])}"
     noun = {("joints",): "joint ", ("configurations",): "configuration "}.get(pointer[:-1], "")  # type: ignore[arg-type]
     return f"{noun}{quoted(pointer[-1])}"
-
-
-def quoted(text: str) -> str:
-    """A text as a message quotes it: shortened if it is long, with control characters escaped."""
-    shown = text if text.isprintable() else repr(text)[1:-1]
-    return f"'{shown}'" if len(shown) <= 60 else f"'{shown[:57]}…'"
-
-
-def described(value: Any) -> str:
-    """What a value is, as a message describes it."""
-    if value is None:
-        return "null"
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, str):
-        return quoted(value)
-    if isinstance(value, int | float):
-        return repr(value) if abs(value) < 1e15 else f"{value:g}"
-    if isinstance(value, list):
-        return "a list of names" if value and all(isinstance(item, str) for item in value) else "a list"
-    return "a mapping"
 
 
 def _located(detail: ErrorDetails, data: Any) -> _Violation:
@@ -306,7 +297,7 @@ def _unknown_key(violation: _Violation, meant: str | None, document: YamlDocumen
         return Diagnostic("conflicting-keys", f"{subject(mapping)}: {excluded[key]}", place)
     keys = KEYS[violation.mapping]
     likely = meant or _likeliest_key(key, (*keys, *excluded))
-    later = () if document.data.get("extended_urdf") == VERSION else ADDED_KEYS.get(violation.mapping, ())
+    later = () if document.data.get("extended_urdf") == VERSION2_1 else ADDED_KEYS.get(violation.mapping, ())
     if meant is None and (outside := key_of_the_file_hint(violation.pointer)):
         hint = outside
     elif not mapping and key in FROM_VERSION1:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from eurdf.diagnostics import Diagnostics
-from eurdf.format.field import is_own_key
+from eurdf.format.own_key import is_own_key
 from eurdf.format.urdf.data import Urdf
 from eurdf.linking.merging import find_chains
 from eurdf.linking.rereading import reread

@@ -11,12 +11,11 @@ from typing import Literal
 from eurdf.diagnostics import FileError
 from eurdf.diagnostics.lines import BREAK
 from eurdf.format.extension import Extension, FrameReference, JointEntry
-from eurdf.format.field import is_own_key
+from eurdf.format.own_key import is_own_key
 from eurdf.format.schema import FILES
 from eurdf.format.urdf.data import Urdf
+from eurdf.format.version import VERSION2_0, VERSION2_1
 from eurdf.format.version1 import Version1
-from eurdf.format.version2 import VERSION
-from eurdf.format.version2_1 import VERSION as VERSION2_1
 from eurdf.format.yaml_text import (
     WIDTH,
     Entry,
@@ -156,7 +155,7 @@ class _Migration:
             "actuators": list(self.actuators(attached)),
         }
         entries = [
-            Entry(lines_of("extended_urdf", VERSION if self.version == "2" else VERSION2_1), (*line, *head)),
+            Entry(lines_of("extended_urdf", VERSION2_0 if self.version == "2" else VERSION2_1), (*line, *head)),
             Entry(lines_of("urdf", self.urdf_path)),
         ]
         foot = attached[()].beside

@@ -8,9 +8,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal, cast
 
-from eurdf.format.field import is_own_key
+from eurdf.format.own_key import is_own_key
 from eurdf.format.urdf.data import Urdf
-from eurdf.format.version2 import VERSION
+from eurdf.format.version import VERSION2_0
 from eurdf.format.yaml_text import Entry, Value, item_of_mapping, lines_of, modeline, section, text_of
 from eurdf.linking.merging import MASSLESS
 from eurdf.mechanism.joint_type import JointType
@@ -365,7 +365,7 @@ def version2_text(
         schema: Path of the schema from the folder of the description, for editors; no line names it where it is None.
     """
     entries = [
-        Entry(lines_of("extended_urdf", VERSION), _schema_line(schema)),
+        Entry(lines_of("extended_urdf", VERSION2_0), _schema_line(schema)),
         Entry(lines_of("urdf", urdf_path)),
     ]
     if root != "fixed":
