@@ -10,16 +10,17 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import combinations
 from pathlib import PurePosixPath
 
 import numpy as np
 from lxml import etree
 
+from eurdf.exporting.contacts import neighbours
 from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.exceptions import CannotExport
 from eurdf.exporting.inertia import about_centre, physical
 from eurdf.exporting.mesh_file import MeshFiles
+from eurdf.exporting.servo import position_gain
 from eurdf.exporting.written import Exportable, Format, Written
 from eurdf.loss import COMMON, CONVERSION, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Shape
@@ -36,7 +37,6 @@ from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic, drivers
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
-from eurdf.mechanism.spanning_tree import rigid_roots
 from eurdf.writing.names import UniqueNames
 from eurdf.writing.xml_text import file_content, numbers, representable
 
@@ -51,9 +51,6 @@ SOLREF, SOLIMP = (2.0 * TIMESTEP, 1.0), (0.9999, 0.9999, 0.001, 0.5, 2.0)
 
 #: Distance of the two points that hold a hinge, m.
 HINGE_WIDTH = 0.1
-
-#: Error at which a position actuator reaches the effort limit, rad or m; and its gain without such a limit.
-FULL_EFFORT_AT, GAIN = 0.1, 100.0
 
 #: The bound of a side without limit, where the other side has one: rad or m.
 _UNLIMITED = 1e10
@@ -539,36 +536,10 @@ class _Writer:
 
         MuJoCo itself excludes a body and its parent, unless the parent is fixed to the world.
         """
-        mechanism = self.mechanism
-        root = mechanism.bodies[0].name
-        rigid = rigid_roots(root, mechanism.joints)
-        touching: dict[str, dict[str, None]] = {}
-        for body in mechanism.bodies:
-            if body.collisions:
-                name = self.hosts[body.name][0].get("name")
-                touching.setdefault(rigid[body.name], {})[_WORLD if name is None else name] = None
-        massless = {rigid[body.name] for body in mechanism.bodies} - {
-            rigid[body.name] for body in mechanism.bodies if body.inertia is not None and body.inertia.mass > LEAST
-        }
-        beside: dict[str, set[str]] = {}
-        joined = [(joint.parent, joint.child) for joint in mechanism.joints]
-        joined += [(closure.a.body, closure.b.body) for closure in mechanism.closures]
-        for a, b in joined:
-            one, other = rigid[a], rigid[b]
-            if one != other:
-                beside.setdefault(one, set()).add(other)
-                beside.setdefault(other, set()).add(one)
-        pairs = {frozenset(pair) for pair in ((one, other) for one in beside for other in beside[one])}
-        for group in massless - {root}:  # the joints on both sides of it are one joint of several axes
-            pairs |= {frozenset(pair) for pair in combinations(beside.get(group, ()), 2)}
+        hosts = {body: element.get("name", _WORLD) for body, (element, _) in self.hosts.items()}
         contact = etree.SubElement(self.root, "contact")
-        order = {name: index for index, name in enumerate(dict.fromkeys(rigid.values()))}
-        ranks = sorted(sorted(order[group] for group in pair) for pair in pairs)
-        groups = list(order)
-        for first, second in ranks:
-            for one in touching.get(groups[first], ()):
-                for other in touching.get(groups[second], ()):
-                    etree.SubElement(contact, "exclude", body1=one, body2=other)
+        for one, other in dict.fromkeys((hosts[a], hosts[b]) for a, b in neighbours(self.mechanism, LEAST)):
+            etree.SubElement(contact, "exclude", body1=one, body2=other)
 
     # -- constraints ------------------------------------------------------------------------------------------------
 
@@ -704,7 +675,7 @@ class _Writer:
                         attributes["ctrlrange"] = numbers(bounds)
                     etree.SubElement(actuator, "motor", attributes)
                     continue
-                gain = effort / FULL_EFFORT_AT if 0.0 < effort < math.inf else GAIN
+                gain = position_gain(effort)
                 attributes |= {"kp": numbers((gain,)), "dampratio": "1"}
                 if bounds is not None and bounds[0] < bounds[1]:
                     attributes["forcerange"] = numbers(bounds)
