@@ -57,6 +57,7 @@ CONCEPTS = (
     "texture",
     "frame",
     "configuration",
+    "number",
     "name",
     "metadata",
 )

@@ -23,6 +23,7 @@ from support import by_hand
 from support.exported import InMuJoCo, random_robot
 from support.plain_urdf import inertial, joint_element, link_element
 from support.plain_urdf import robot as robot_element
+from support.stl import TETRAHEDRON
 
 seeds = st.integers(0, 2**32 - 1)
 roots: Any = st.sampled_from(["fixed", "floating"])
@@ -359,21 +360,6 @@ def test_link_called_world_is_renamed() -> None:
     mujoco.MjModel.from_xml_string(export.main.decode())
 
 
-STL = (
-    b"\0" * 80
-    + (4).to_bytes(4, "little")
-    + b"".join(
-        np.array([0, 0, 0, *a, *b, *c], "<f4").tobytes() + b"\0\0"
-        for a, b, c in (
-            ((0, 0, 0), (0, 1, 0), (1, 0, 0)),
-            ((0, 0, 0), (1, 0, 0), (0, 0, 1)),
-            ((0, 0, 0), (0, 0, 1), (0, 1, 0)),
-            ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
-        )
-    )
-)
-
-
 def with_mesh(folder: Path, name: str, content: bytes | None) -> Path:
     """A robot with a mesh, with an odd file name."""
     if content is not None:
@@ -386,9 +372,9 @@ def with_mesh(folder: Path, name: str, content: bytes | None) -> Path:
 
 @pytest.mark.parametrize("loaded", [False, True])
 def test_mesh_is_copied_under_a_plain_name(tmp_path: Path, loaded: bool) -> None:
-    path = with_mesh(tmp_path, "a $(b) c.STL", STL)
+    path = with_mesh(tmp_path, "a $(b) c.STL", TETRAHEDRON)
     export = eurdf.export(eurdf.load(path) if loaded else path, "mjcf")
-    assert export.files["meshes/a___b__c.stl"] == STL
+    assert export.files["meshes/a___b__c.stl"] == TETRAHEDRON
     written = export.write(tmp_path / "out")
     model = mujoco.MjModel.from_xml_path(str(written[0]))
     assert model.nmesh == 1
@@ -396,8 +382,10 @@ def test_mesh_is_copied_under_a_plain_name(tmp_path: Path, loaded: bool) -> None
 
 
 def ascii_stl() -> bytes:
-    """The solid of `STL` as text."""
-    triangles = np.frombuffer(STL[84:], [("normal", "<f4", 3), ("vertices", "<f4", (3, 3)), ("end", "<u2")])["vertices"]
+    """The solid of `TETRAHEDRON` as text."""
+    triangles = np.frombuffer(TETRAHEDRON[84:], [("normal", "<f4", 3), ("vertices", "<f4", (3, 3)), ("end", "<u2")])[
+        "vertices"
+    ]
     facets = "".join(
         "facet normal 0 0 0\nouter loop\n"
         + "".join("vertex {:g} {:g} {:g}\n".format(*v) for v in t)
@@ -420,7 +408,7 @@ def test_mesh_that_mujoco_cannot_read_is_converted(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("to", ["mjcf", "urdf"])
 def test_mesh_can_stay_where_it_is(tmp_path: Path, to: str) -> None:
-    export = eurdf.export(with_mesh(tmp_path, "a.stl", STL), to, mesh_files="reference")
+    export = eurdf.export(with_mesh(tmp_path, "a.stl", TETRAHEDRON), to, mesh_files="reference")
     assert list(export.files) == [next(iter(export.files))]
     assert str(tmp_path / "a.stl").encode() in export.main
     assert not [loss for loss in export.losses if loss.concept == "mesh"]
@@ -429,7 +417,7 @@ def test_mesh_can_stay_where_it_is(tmp_path: Path, to: str) -> None:
 @pytest.mark.parametrize("to", ["mjcf", "urdf"])
 def test_mesh_of_a_package_gets_a_path(tmp_path: Path, to: str) -> None:
     (tmp_path / "arm_description").mkdir()
-    (tmp_path / "arm_description" / "a.stl").write_bytes(STL)
+    (tmp_path / "arm_description" / "a.stl").write_bytes(TETRAHEDRON)
     path = with_mesh(tmp_path, "package://arm_description/a.stl", None)
     export = eurdf.export(path, to, package_dirs=[tmp_path])
     (loss,) = (loss for loss in export.losses if loss.concept == "mesh")

@@ -35,7 +35,7 @@ _EPILOG = ending(
 
 #: Names of the formats, and of what actuators and mesh files become. They are checked against `eurdf.exporting` by the
 #: tests: importing it here would slow every command down.
-FORMATS = ("mjcf", "urdf")
+FORMATS = ("mjcf", "urdf", "usd")
 ACTUATORS = ("motor", "position", "none")
 MESH_FILES = ("copy", "reference")
 
@@ -67,7 +67,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="configuration to start simulations from; default: assembled, which is searched if there is none",
     )
     parser.add_argument(
-        "--actuators", choices=ACTUATORS, default="motor", help="what actuators become in MJCF; default: motor"
+        "--actuators", choices=ACTUATORS, default="motor", help="what actuators become in MJCF and USD; default: motor"
     )
     parser.add_argument(
         "--mesh-files",

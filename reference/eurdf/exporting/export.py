@@ -103,7 +103,7 @@ def export(
 
     Args:
         robot: What `eurdf.load` takes, or a robot that it returned, with the geometry that it was loaded with.
-        to: Name of the format: ``mjcf`` or ``urdf``.
+        to: Name of the format: ``mjcf``, ``urdf`` or ``usd``.
         urdf: As for `eurdf.load`; only if `robot` is not loaded yet, as all below but the next four.
         root: As for `eurdf.load`.
         configuration: Name of the configuration to start a simulation from. If the description has none of the name
@@ -124,6 +124,7 @@ def export(
         InvalidRobot: The robot cannot be built without guessing.
         RobotNotFound: There are no such files.
         CannotExport: The robot cannot be written in this format, or, if `strict`, not without losses.
+        MissingExtra: The format is ``usd``, and the extra ``usd`` is not installed.
         ValueError: There is no such format, configuration or kind of actuator.
     """
     choices = Choices(to, configuration, actuators, mesh_files, strict)
