@@ -20,6 +20,7 @@ from benchmarks import (
     load,
     loops,
     simulation,
+    transmission,
 )
 from benchmarks.fuzz import campaign
 
@@ -36,6 +37,7 @@ MEASUREMENTS: dict[str, Callable[[], None]] = {
     "dynamics": dynamics.main,
     "simulation": simulation.main,
     "batch": batch.main,
+    "transmission": transmission.main,
     "conformance": conformance.main,
 }
 

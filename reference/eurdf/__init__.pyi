@@ -78,6 +78,8 @@ from eurdf.transmissions.exceptions import OutOfReach as OutOfReach
 from eurdf.transmissions.positions import Positions as Positions
 from eurdf.transmissions.positions import actuator_values as actuator_values
 from eurdf.transmissions.positions import joint_values as joint_values
+from eurdf.transmissions.prepared import PreparedTransmission as PreparedTransmission
+from eurdf.transmissions.prepared import prepare_transmission as prepare_transmission
 from eurdf.transmissions.transmission import Transmission as Transmission
 from eurdf.transmissions.transmission import Transmissions as Transmissions
 from eurdf.transmissions.transmission import transmission as transmission

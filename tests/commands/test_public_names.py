@@ -28,6 +28,7 @@ TAKE_NAMES = {
     "export": lambda given: eurdf.export("four_bar", "mjcf", package_dirs=given).coordinates.nq,
     "joint_values": lambda given: len(eurdf.joint_values(four_bar(), {"motor_crank": 1.0}, joints=given).values),
     "transmission": lambda given: eurdf.transmission(four_bar(), given).joints == ("motor_crank",),
+    "prepare_transmission": lambda given: eurdf.prepare_transmission(four_bar(), given).joints == ("motor_crank",),
 }
 
 

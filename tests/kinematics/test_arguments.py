@@ -64,6 +64,7 @@ CALLS: dict[str, dict[str, Any]] = {
     "split_velocity": {"v": "v"},
     "actuator_values": {"joints": {"free_rocker": -0.1}, "q0": "q"},
     "joint_values": {"motors": {"motor_crank": 1}, "q0": "q"},
+    "prepare_transmission": {"joints": "free_rocker", "q": "q"},
     "transmission": {"joints": "free_rocker", "q": "q"},
     "sweep": {"actuator": "motor_crank", "q0": "q"},
 }

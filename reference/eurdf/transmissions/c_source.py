@@ -1,0 +1,499 @@
+"""The transmission as dependency-free C99, for controllers that run no Python."""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from eurdf.kinematics.array import Vector
+from eurdf.kinematics.constraint_stack import all_constraints
+from eurdf.kinematics.derived import derived
+from eurdf.kinematics.loop import find_loops
+from eurdf.kinematics.tangent_space import TangentSpaces
+from eurdf.mechanism.constraint import (
+    Constraint,
+    Coupling,
+    DistanceClosure,
+    FrameClosure,
+    HingeClosure,
+    PointClosure,
+)
+from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mimic import Mimic
+from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
+from eurdf.pinocchio.mimic import following
+from eurdf.transmissions.drive import LEAST_CORRECTION, LONGEST_MOTION, MOST_CORRECTION, Drive
+from eurdf.writing.output_folder import write_files
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+_KINDS: Mapping[type[Constraint], str] = {
+    PointClosure: "POINT",
+    FrameClosure: "FRAME",
+    HingeClosure: "HINGE",
+    DistanceClosure: "DISTANCE",
+    Coupling: "COUPLING",
+}
+
+_X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+_HERE = (0.0, 0.0, 0.0)
+
+# Bound of each row of the residual, m or rad, at the last of the steps, whose correction then leaves rounding.
+_CLOSED = 1e-11
+# A pivot below this fraction of the first one means a singular pose.
+_SINGULAR = 1e-6
+# Given velocities are independent if none of them opens the loops by more, dimensionless.
+_DETERMINED = 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class CSource:
+    """The transmission in C.
+
+    Attributes:
+        files: The content of the header and of the source, by file name.
+    """
+
+    files: Mapping[str, bytes]
+
+    def write(self, folder: str | os.PathLike[str], *, force: bool = False) -> tuple[Path, ...]:
+        """Write the files to a folder: all of them or none.
+
+        Raises:
+            FileExistsError: A file exists, and ``force`` is False.
+            OSError: A file cannot be written.
+        """
+        return write_files(folder, self.files, force=force)
+
+
+def c_source(
+    robot: Robot, by_joints: Drive, by_motors: Drive | None, q: Vector, prefix: str | None, steps: int
+) -> CSource:
+    """The source; see `eurdf.transmissions.prepared.PreparedTransmission.c_source`."""
+    name = _identifier(f"{robot.mechanism.name}_transmission") if prefix is None else prefix
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name):
+        raise ValueError(f"prefix is {name!r}; it must be an identifier of C: letters, digits and _")
+    if not isinstance(steps, int) or steps < 1:
+        raise ValueError(f"steps is {steps!r}; it must be a positive integer")
+    drives = [by_joints] if by_motors is None else [by_joints, by_motors]
+    tables = _Tables(robot, drives, q)
+    header = _header(tables, name, by_joints, by_motors is not None)
+    source = _source(tables, name, drives, steps)
+    return CSource({f"{name}.h": header.encode(), f"{name}.c": source.encode()})
+
+
+@dataclass(frozen=True, slots=True)
+class _Screw:
+    """A joint with one coordinate, or a ball joint, which has four.
+
+    Attributes:
+        parent: Number of its parent; 0 is what carries the loops.
+        placement: Pose of its frame at rest in its parent's moving frame.
+        axis: Unit vector that it turns about; None for a ball.
+        turns: Whether it turns by its coordinate.
+        advance: Translation for each unit of its coordinate, m.
+        coordinate: Index of its first coordinate.
+        velocity: Index of its first velocity.
+        multiplier: Of the leader's coordinate; 1 for a joint with its own.
+        offset: Added to it.
+    """
+
+    parent: int
+    placement: Pose
+    axis: Vector3 | None
+    turns: bool
+    advance: Vector3
+    coordinate: int
+    velocity: int
+    multiplier: float = 1.0
+    offset: float = 0.0
+
+
+class _Tables:
+    """The joints and constraints of some drives as numbers.
+
+    Attributes:
+        joints: Joint number 0, which is at rest, and the others, parents first.
+        start: Coordinates at the pose.
+        units: Unit of each velocity.
+        coordinates: For each velocity its coordinate; -1 for the first of a ball, -2 for the others.
+        balls: For each velocity the first coordinate of its ball; -1 if it has none.
+        velocity: Index here of a velocity of the robot's model.
+        constraints: Indices of the constraints.
+    """
+
+    def __init__(self, robot: Robot, drives: Sequence[Drive], q: Vector) -> None:
+        mechanism = robot.mechanism
+        self.robot = robot
+        self.constraints = sorted({index for drive in drives for index in drive.closures})
+        chosen = [robot.constraints[index] for index in self.constraints]
+        self._above = {joint.child: joint for joint in mechanism.joints}
+        relevant = {body for constraint in chosen for body in self._between(constraint)}
+        alone = {name for constraint in chosen for name in constraint.joints}
+        alone |= {name for drive in drives for name in (*drive.given.of.joints, *drive.asked.of.joints)}
+        mimics = following(mechanism).mimics
+        self.velocity: dict[int, int] = {}
+        self.start: list[float] = []
+        self.units: list[float] = []
+        self.coordinates: list[int] = []
+        self.balls: list[int] = []
+        own = {joint.name: mimics.get(joint.name) for joint in mechanism.joints if joint.child in relevant}
+        needed = {name if mimic is None else mimic.joint for name, mimic in own.items()} | alone
+        first: dict[str, tuple[int, int]] = {}
+        values = robot.coordinates(q)
+        scale = derived(robot, TangentSpaces).scale
+        for name, slot in robot.slots.items():
+            if name not in needed:
+                continue
+            first[name] = len(self.start), len(self.units)
+            quaternion = slot.joint.coordinates.quaternion
+            for k in range(slot.nv):
+                self.velocity[slot.idx_v + k] = len(self.units)
+                self.units.append(float(scale[slot.idx_v + k]))
+                of_ball = quaternion is not None and k >= quaternion
+                self.coordinates.append((-1 if k == quaternion else -2) if of_ball else len(self.start) + k)
+                self.balls.append(len(self.start) + (quaternion or 0) if of_ball else -1)
+            self.start += values[name]
+        self.joints: list[_Screw] = []
+        self.places: dict[str, tuple[int, Pose]] = {}
+        self.of_body: dict[str, range] = {}
+        self.of_joint: dict[str, int] = {}
+        for joint in mechanism.joints:
+            if joint.child in relevant:
+                self._add(joint, mimics.get(joint.name), first)
+            elif joint.name in alone:
+                self.of_joint[joint.name] = len(self.joints) + 1
+                self.joints += _screws(joint, 0, IDENTITY, *first[joint.name], None, len(self.joints) + 1)
+
+    def _add(self, joint: Joint, mimic: Mimic | None, first: Mapping[str, tuple[int, int]]) -> None:
+        parent, pose = self.places.get(joint.parent, (0, IDENTITY))
+        pose = pose * joint.placement
+        if joint.type is JointType.FIXED:
+            self.places[joint.child] = parent, pose * joint.offset
+            self.of_body[joint.child] = range(0)
+            return
+        start = len(self.joints) + 1
+        leader = joint.name if mimic is None else mimic.joint
+        self.joints += _screws(joint, parent, pose, *first[leader], mimic, start)
+        self.of_joint[joint.name] = start
+        self.of_body[joint.child] = range(start, len(self.joints) + 1)
+        self.places[joint.child] = len(self.joints), joint.offset
+
+    def _way_up(self, body: str) -> list[str]:
+        """The body and what is above it."""
+        way = [body]
+        while way[-1] in self._above:
+            way.append(self._above[way[-1]].parent)
+        return way
+
+    def _between(self, constraint: Constraint) -> set[str]:
+        """The bodies on the way from one anchor to the other, without the one where they meet."""
+        ends = [set(self._way_up(anchor.body)) for anchor in constraint.anchors]
+        return ends[0] ^ ends[1] if ends else set()
+
+    def anchors(self, constraint: Constraint) -> list[tuple[int, Pose]]:
+        """The joints that carry the anchors of a constraint, and their poses there."""
+        found = []
+        for anchor in constraint.anchors:
+            joint, pose = self.places.get(anchor.body, (0, IDENTITY))
+            found.append((joint, pose * anchor.pose))
+        return found
+
+    def path(self, constraint: Constraint) -> list[tuple[int, float]]:
+        """The joints that move a constraint, with +1 for those that move B and -1 for A, or with coefficients."""
+        if isinstance(constraint, Coupling):
+            return [(self.of_joint[name], coefficient) for name, coefficient in constraint.coefficients]
+        between, found = self._between(constraint), []
+        for anchor, sign in zip(constraint.anchors, (-1.0, 1.0), strict=True):
+            for body in self._way_up(anchor.body):
+                if body in between:
+                    found += [(joint, sign) for joint in self.of_body[body]]
+        return found
+
+
+def _screws(
+    joint: Joint, parent: int, pose: Pose, coordinate: int, velocity: int, mimic: Mimic | None, number: int
+) -> list[_Screw]:
+    """A joint as joints of one coordinate and balls in a row; ``number`` is that of the first of them."""
+    axes = [direction(axis) for axis in joint.axes]
+    factor, offset = (1.0, 0.0) if mimic is None else (mimic.multiplier, mimic.offset)
+    parts: list[tuple[Vector3 | None, bool, Vector3]]  # axis, whether it turns, advance
+    match joint.type:
+        case JointType.REVOLUTE | JointType.CONTINUOUS:
+            parts = [(axes[0], True, _HERE)]
+        case JointType.PRISMATIC:
+            parts = [(axes[0], False, axes[0])]
+        case JointType.HELICAL:
+            x, y, z = axes[0]
+            lead = joint.pitch / (2.0 * math.pi)
+            parts = [(axes[0], True, (lead * x, lead * y, lead * z))]
+        case JointType.UNIVERSAL:
+            parts = [(axis, True, _HERE) for axis in axes]
+        case JointType.CYLINDRICAL:
+            parts = [(axes[0], False, axes[0]), (axes[0], True, _HERE)]
+        case JointType.PLANAR:
+            parts = [(_X, False, _X), (_Y, False, _Y), (_Z, True, _HERE)]
+        case JointType.SPHERICAL:
+            parts = [(None, True, _HERE)]
+        case JointType.FLOATING:
+            parts = [(_X, False, _X), (_Y, False, _Y), (_Z, False, _Z), (None, True, _HERE)]
+        case _:
+            raise ValueError(f"joint '{joint.name}' is {joint.type}, which the generated C does not support")
+    return [
+        _Screw(
+            parent if k == 0 else number + k - 1,
+            pose if k == 0 else IDENTITY,
+            axis,
+            turns,
+            advance,
+            coordinate + k,
+            velocity + k,
+            factor,
+            offset,
+        )
+        for k, (axis, turns, advance) in enumerate(parts)
+    ]
+
+
+def _header(tables: _Tables, name: str, by_joints: Drive, both: bool) -> str:
+    joints, motors = by_joints.given, by_joints.asked
+    guard = f"{name.upper()}_H"
+    listed = "".join(
+        f" *   {role}[{index}]: {_comment(label)}, {unit}\n"
+        for role, side in (("joints", joints), ("motors", motors))
+        for index, (label, unit) in enumerate(zip(side.of.names, side.units, strict=True))
+    )
+    nj, nm, big = len(joints), len(motors), name.upper()
+    inverse = f"""
+/* The joints at positions of the motors, and B (row by row): the velocities are v_J = B v_m. */
+int {name}_at_motors({name}_pose *pose, const double motors[{nm}], double joints[{nj}], double B[{nj * nm}]);
+"""
+    return f"""/* The transmission of '{_comment(tables.robot.mechanism.name)}', generated by eurdf:
+ * C99, which needs libm alone.
+ *
+{listed} *
+ * Set a pose with {name}_start, then call a function at each cycle: it starts from the last pose and stays on
+ * its branch of closed loops. Unless it returns {big}_OK it changes neither the pose nor its results. Threads
+ * may use poses of their own. Position limits are not checked.
+ */
+#ifndef {guard}
+#define {guard}
+
+#ifdef __cplusplus
+extern "C" {{
+#endif
+
+enum {{
+    {big}_OK = 0,
+    {big}_NOT_CLOSED = 1,  /* the loops do not close at these positions */
+    {big}_TOO_FAR = 2,     /* too far from the last pose to be sure of the branch: give positions in between */
+    {big}_SINGULAR = 3,    /* the given positions do not determine the others */
+    {big}_NOT_FINITE = 4   /* a position is not a finite number */
+}};
+
+typedef struct {{
+    double x[{len(tables.start)}];
+}} {name}_pose;
+
+/* The pose that the files were generated at. */
+void {name}_start({name}_pose *pose);
+
+/* The motors at positions of the joints, and G (row by row): v_m = G v_J, and the torques are tau_J = G' tau_m. */
+int {name}_at_joints({name}_pose *pose, const double joints[{nj}], double motors[{nm}], double G[{nm * nj}]);
+{inverse if both else ""}
+#ifdef __cplusplus
+}}
+#endif
+
+#endif
+"""
+
+
+def _source(tables: _Tables, name: str, drives: Sequence[Drive], steps: int) -> str:
+    robot = tables.robot
+    scale = all_constraints(robot).scale(derived(robot, TangentSpaces).length)
+    rows = {index: loop.rows for index, loop in enumerate(find_loops(robot))}
+    path: list[str] = []
+    constraints: list[str] = []
+    for index in tables.constraints:
+        constraint, of_rows = robot.constraints[index], rows[index]
+        if type(constraint) not in _KINDS:
+            raise ValueError(
+                f"constraint '{constraint.name}' is {constraint.type}, which the generated C does not support"
+            )
+        first = len(path)
+        path += [f"{{{joint}, {_number(factor)}}}" for joint, factor in tables.path(constraint)]
+        constraints.append(_constraint(constraint, tables, first, len(path), scale[of_rows]))
+    joints = [
+        f"{{{j.parent}, {int(j.axis is None)}, {int(j.turns)}, {j.coordinate}, {j.velocity}, {_number(j.multiplier)}, "
+        f"{_number(j.offset)}, {_rotation(j.placement)}, {_vector(j.placement.xyz)}, {_vector(j.axis or _Z)}, "
+        f"{_vector(j.advance)}}}"
+        for j in tables.joints
+    ]
+    place = {index: number for number, index in enumerate(tables.constraints)}
+    calls = [_call(name, drive, number) for number, drive in enumerate(drives)]
+    most_rows = max(_rows_of(rows, drive) for drive in drives)
+    limits = {
+        "JOINTS": len(joints) + 1,
+        "COORDINATES": len(tables.start),
+        "VELOCITIES": len(tables.units),
+        "ROWS": max(1, most_rows),
+        "SIDES": 1 + max(len(drive.given) for drive in drives),
+        "STEPS": steps,
+        "BALLS": int(-1 in tables.coordinates),
+    }
+    bounds = {
+        "CLOSED": _CLOSED,
+        "SINGULAR": _SINGULAR,
+        "DETERMINED": _DETERMINED,
+        "LONGEST_MOTION": LONGEST_MOTION,
+        "MOST_CORRECTION": MOST_CORRECTION,
+        "LEAST_CORRECTION": LEAST_CORRECTION,
+    }
+    big = name.upper()
+    parts = [
+        f'/* See {name}.h. */\n#include "{name}.h"\n\n#include <math.h>\n',
+        "\n".join(f"#define {key} {value}" for key, value in limits.items()),
+        "\n".join(f"#define {key} {_number(value)}" for key, value in bounds.items()),
+        "#define BALL (-1)",
+        f"#define CLOSED_POSE {big}_OK\n#define NOT_CLOSED {big}_NOT_CLOSED\n#define TOO_FAR {big}_TOO_FAR\n"
+        f"#define AT_SINGULARITY {big}_SINGULAR\n#define NOT_FINITE {big}_NOT_FINITE",
+        _TYPES,
+        "static const double start[] = {" + ", ".join(map(_number, tables.start)) + "};",
+        "static const double units[] = {" + ", ".join(map(_number, tables.units)) + "};",
+        "static const int coordinates[] = {" + ", ".join(map(str, tables.coordinates)) + "};",
+        "static const int ball_coordinates[] = {" + ", ".join(map(str, tables.balls)) + "};",
+        _table("joint", "joints", ["{0, 0, 0, 0, 0, 0, 0, {0}, {0}, {0}, {0}}", *joints]),
+        _table("step", "path", path or ["{0, 0}"]),
+        _table("constraint", "constraints", constraints or ["{0}"]),
+        *(_drive(number, drive, tables, place, rows) for number, drive in enumerate(drives)),
+        (files("eurdf.transmissions") / "kernel.c").read_text(encoding="utf-8").rstrip(),
+        f"void {name}_start({name}_pose *pose) {{\n"
+        "    for (int k = 0; k < COORDINATES; ++k) pose->x[k] = start[k];\n}",
+        *calls,
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+_TYPES = """\
+enum { POINT, FRAME, HINGE, DISTANCE, COUPLING };
+
+/* A joint with one coordinate, or a ball with a quaternion x, y, z, w; R and p are those of its frame at rest. */
+typedef struct {
+    int parent, ball, turns, coordinate, velocity;
+    double multiplier, offset, R[9], p[3], axis[3], advance[3];
+} joint;
+
+/* A joint that moves a constraint: +1 if it moves B, -1 if it moves A; the coefficient of a coupling. */
+typedef struct {
+    int joint;
+    double factor;
+} step;
+
+/* Frames A and B in the joints that carry them, and the part of the path from first to last. */
+typedef struct {
+    int kind, rows, first, last, joint_a, joint_b;
+    double R_a[9], p_a[3], R_b[9], p_b[3], length, axis_a[3], axis_b[3], across[2][3], scale[6];
+} constraint;
+
+typedef struct {
+    int given, asked, own, rows, rank, constraints;
+    const int *given_velocity, *given_circular, *asked_velocity, *asked_own, *own_velocity, *constraint;
+} drive;"""
+
+
+def _constraint(constraint: Constraint, tables: _Tables, first: int, last: int, scale: Vector) -> str:
+    ends = tables.anchors(constraint) or [(0, IDENTITY), (0, IDENTITY)]
+    a, b, length = _Z, _Z, 0.0
+    if isinstance(constraint, HingeClosure):
+        a, b = (direction(axis) for axis in constraint.axes)
+    elif isinstance(constraint, DistanceClosure):
+        length = constraint.length
+    elif isinstance(constraint, Coupling):
+        length = constraint.offset
+    frames = ", ".join(f"{_rotation(pose)}, {_vector(pose.xyz)}" for _, pose in ends)
+    return (
+        f"{{{_KINDS[type(constraint)]}, {constraint.rows}, {first}, {last}, {ends[0][0]}, {ends[1][0]}, {frames}, "
+        f"{_number(length)}, {_vector(a)}, {_vector(b)}, {{{', '.join(map(_vector, _across(a)))}}}, {_vector(scale)}}}"
+    )
+
+
+def _across(a: Vector3) -> tuple[Vector3, Vector3]:
+    """Two unit vectors across a unit vector and each other."""
+    least = min(range(3), key=lambda k: abs(a[k]))
+    first = direction(_cross(a, (_X, _Y, _Z)[least]))
+    return first, _cross(a, first)
+
+
+def _cross(u: Vector3, v: Vector3) -> Vector3:
+    return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
+
+
+def _drive(number: int, drive: Drive, tables: _Tables, place: Mapping[int, int], rows: Mapping[int, slice]) -> str:
+    own = [tables.velocity[v] for v in drive.own.tolist()]
+    asked = [tables.velocity[v] for v in drive.asked.of.velocities.tolist()]
+    position = {velocity: index for index, velocity in enumerate(own)}
+    lists = {
+        "given_velocity": [tables.velocity[v] for v in drive.given.of.velocities.tolist()],
+        "given_circular": [int(circular) for circular in drive.given.circular],
+        "asked_velocity": asked,
+        "asked_own": [position.get(velocity, -1) for velocity in asked],
+        "own_velocity": own or [0],
+        "constraint": [place[index] for index in drive.closures] or [0],
+    }
+    arrays = "\n".join(
+        f"static const int {key}_{number}[] = {{{', '.join(map(str, values))}}};" for key, values in lists.items()
+    )
+    counts = (len(drive.given), len(drive.asked), len(own), _rows_of(rows, drive), drive.rank, len(drive.closures))
+    names = ", ".join(f"{key}_{number}" for key in lists)
+    return f"{arrays}\nstatic const drive drive_{number} = {{{', '.join(map(str, counts))}, {names}}};"
+
+
+def _call(name: str, drive: Drive, number: int) -> str:
+    given, asked = ("joints", "motors") if number == 0 else ("motors", "joints")
+    matrix = "G" if number == 0 else "B"
+    n, m = len(drive.given), len(drive.asked)
+    return (
+        f"int {name}_at_{given}({name}_pose *pose, const double {given}[{n}], double {asked}[{m}], "
+        f"double {matrix}[{m * n}]) {{\n    return follow(&drive_{number}, pose->x, {given}, {asked}, {matrix});\n}}"
+    )
+
+
+def _rows_of(rows: Mapping[int, slice], drive: Drive) -> int:
+    return sum(rows[index].stop - rows[index].start for index in drive.closures)
+
+
+def _table(type_: str, name: str, entries: Sequence[str]) -> str:
+    lines = ",\n".join(f"    {entry}" for entry in entries)
+    return f"static const {type_} {name}[] = {{\n{lines},\n}};"
+
+
+def _identifier(name: str) -> str:
+    made = re.sub(r"[^A-Za-z0-9_]", "_", name).lstrip("_0123456789").lower()
+    return made or "transmission"
+
+
+def _comment(text: str) -> str:
+    """A name in a comment of C: visible, and unable to end it."""
+    return re.sub(r"[^ -~]|[*/\\?]", "_", text)
+
+
+def _number(value: float) -> str:
+    return repr(float(value))
+
+
+def _vector(values: Iterable[float]) -> str:
+    return "{" + ", ".join(map(_number, values)) + "}"
+
+
+def _rotation(pose: Pose) -> str:
+    columns = [pose.rotate(axis) for axis in (_X, _Y, _Z)]
+    return _vector(columns[column][row] for row in range(3) for column in range(3))

@@ -1,0 +1,293 @@
+/* Newton's method on the constraints of the loops, from the last pose. Tables above describe the mechanism. */
+
+typedef struct {
+    double R[9], p[3];
+} pose;
+
+static void times(const double A[9], const double B[9], double C[9]) {
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            C[3 * i + j] = A[3 * i] * B[j] + A[3 * i + 1] * B[3 + j] + A[3 * i + 2] * B[6 + j];
+}
+
+static void turned(const double A[9], const double u[3], double v[3]) {
+    for (int i = 0; i < 3; ++i) v[i] = A[3 * i] * u[0] + A[3 * i + 1] * u[1] + A[3 * i + 2] * u[2];
+}
+
+static void turned_back(const double A[9], const double u[3], double v[3]) {
+    for (int i = 0; i < 3; ++i) v[i] = A[i] * u[0] + A[3 + i] * u[1] + A[6 + i] * u[2];
+}
+
+static void cross(const double u[3], const double v[3], double w[3]) {
+    w[0] = u[1] * v[2] - u[2] * v[1];
+    w[1] = u[2] * v[0] - u[0] * v[2];
+    w[2] = u[0] * v[1] - u[1] * v[0];
+}
+
+static double dot(const double u[3], const double v[3]) { return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]; }
+
+/* The rotation about a unit axis. */
+static void about(const double a[3], double angle, double R[9]) {
+    const double c = cos(angle), s = sin(angle), d = 1.0 - c;
+    R[0] = c + d * a[0] * a[0], R[1] = d * a[0] * a[1] - s * a[2], R[2] = d * a[0] * a[2] + s * a[1];
+    R[3] = d * a[0] * a[1] + s * a[2], R[4] = c + d * a[1] * a[1], R[5] = d * a[1] * a[2] - s * a[0];
+    R[6] = d * a[0] * a[2] - s * a[1], R[7] = d * a[1] * a[2] + s * a[0], R[8] = c + d * a[2] * a[2];
+}
+
+/* The rotation of a unit quaternion x, y, z, w. */
+static void of_quaternion(const double q[4], double R[9]) {
+    const double x = q[0], y = q[1], z = q[2], w = q[3];
+    R[0] = 1.0 - 2.0 * (y * y + z * z), R[1] = 2.0 * (x * y - w * z), R[2] = 2.0 * (x * z + w * y);
+    R[3] = 2.0 * (x * y + w * z), R[4] = 1.0 - 2.0 * (x * x + z * z), R[5] = 2.0 * (y * z - w * x);
+    R[6] = 2.0 * (x * z - w * y), R[7] = 2.0 * (y * z + w * x), R[8] = 1.0 - 2.0 * (x * x + y * y);
+}
+
+/* The pose of a frame that is fixed in another one. */
+static void fixed_in(const pose *a, const double R[9], const double p[3], pose *b) {
+    times(a->R, R, b->R);
+    turned(a->R, p, b->p);
+    for (int i = 0; i < 3; ++i) b->p[i] += a->p[i];
+}
+
+/* The moving frames of all joints; number 0 is what carries the loops. */
+static void place(const double x[], pose at[]) {
+    at[0] = (pose){{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
+    for (int j = 1; j < JOINTS; ++j) {
+        const joint *own = &joints[j];
+        pose rest;
+        double R[9], along[3];
+        fixed_in(&at[own->parent], own->R, own->p, &rest);
+        if (BALLS && own->ball) {
+            of_quaternion(&x[own->coordinate], R);
+        } else {
+            const double amount = own->multiplier * x[own->coordinate] + own->offset;
+            turned(rest.R, own->advance, along);
+            for (int i = 0; i < 3; ++i) rest.p[i] += amount * along[i];
+            about(own->axis, own->turns ? amount : 0.0, R);
+        }
+        times(rest.R, R, at[j].R);
+        for (int i = 0; i < 3; ++i) at[j].p[i] = rest.p[i];
+    }
+}
+
+/* Adds a velocity of a joint to the rows of a closure: J (6, .) has the velocity of B's origin, and the turn, in A. */
+static void add_twist(const pose *a, const double p_b[3], const pose *j, const double turn[3], const double advance[3],
+                      double factor, double J[6][VELOCITIES], int velocity) {
+    double w[3], v[3], lever[3], moved[3], seen[3];
+    turned(j->R, turn, w);
+    turned(j->R, advance, v);
+    for (int i = 0; i < 3; ++i) lever[i] = p_b[i] - j->p[i];
+    cross(w, lever, moved);
+    for (int i = 0; i < 3; ++i) v[i] += moved[i];
+    turned_back(a->R, v, seen);
+    for (int i = 0; i < 3; ++i) J[i][velocity] += factor * seen[i];
+    turned_back(a->R, w, seen);
+    for (int i = 0; i < 3; ++i) J[3 + i][velocity] += factor * seen[i];
+}
+
+/* s * angle / sin(angle), where s = sin(angle) * axis and c = cos(angle). */
+static void rotation_vector(const double s[3], double c, double out[3]) {
+    const double sine = sqrt(dot(s, s)), scale = sine > 0.0 ? atan2(sine, c) / sine : 1.0;
+    for (int i = 0; i < 3; ++i) out[i] = scale * s[i];
+}
+
+/* The residual of a constraint, m and rad, and its derivative, which is exact where it is closed. */
+static void constrain(const constraint *own, const double x[], const pose at[], double r[6],
+                      double K[6][VELOCITIES]) {
+    static const double unit[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, none[3] = {0, 0, 0};
+    double J[6][VELOCITIES] = {{0}}, p[3], R[9], apart[3], s[3], turn[3];
+    pose a, b;
+    if (own->kind == COUPLING) {
+        r[0] = -own->length;
+        for (int v = 0; v < VELOCITIES; ++v) K[0][v] = 0.0;
+        for (int k = own->first; k < own->last; ++k) {
+            r[0] += path[k].factor * x[joints[path[k].joint].coordinate];
+            K[0][joints[path[k].joint].velocity] += path[k].factor;
+        }
+        return;
+    }
+    fixed_in(&at[own->joint_a], own->R_a, own->p_a, &a);
+    fixed_in(&at[own->joint_b], own->R_b, own->p_b, &b);
+    for (int i = 0; i < 3; ++i) apart[i] = b.p[i] - a.p[i];
+    turned_back(a.R, apart, p);
+    for (int k = own->first; k < own->last; ++k) {
+        const joint *j = &joints[path[k].joint];
+        const pose *here = &at[path[k].joint];
+        if (BALLS && j->ball)
+            for (int i = 0; i < 3; ++i) add_twist(&a, b.p, here, unit[i], none, path[k].factor, J, j->velocity + i);
+        else
+            add_twist(&a, b.p, here, j->turns ? j->axis : none, j->advance, path[k].factor * j->multiplier, J,
+                      j->velocity);
+    }
+    if (own->kind == DISTANCE) {
+        const double length = sqrt(dot(p, p));
+        r[0] = length - own->length;
+        for (int v = 0; v < VELOCITIES; ++v) K[0][v] = (p[0] * J[0][v] + p[1] * J[1][v] + p[2] * J[2][v]) / length;
+        return;
+    }
+    for (int i = 0; i < 3; ++i) {
+        r[i] = p[i];
+        for (int v = 0; v < VELOCITIES; ++v) K[i][v] = J[i][v];
+    }
+    if (own->kind == POINT) return;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            R[3 * i + j] = a.R[i] * b.R[j] + a.R[3 + i] * b.R[3 + j] + a.R[6 + i] * b.R[6 + j];
+    if (own->kind == FRAME) {
+        s[0] = 0.5 * (R[7] - R[5]), s[1] = 0.5 * (R[2] - R[6]), s[2] = 0.5 * (R[3] - R[1]);
+        rotation_vector(s, 0.5 * (R[0] + R[4] + R[8] - 1.0), turn);
+        for (int i = 0; i < 3; ++i) {
+            r[3 + i] = turn[i];
+            for (int v = 0; v < VELOCITIES; ++v) K[3 + i][v] = J[3 + i][v];
+        }
+        return;
+    }
+    double axis[3]; /* HINGE: b's axis seen from A, and the plane across a's */
+    turned(R, own->axis_b, axis);
+    cross(own->axis_a, axis, s);
+    rotation_vector(s, dot(own->axis_a, axis), turn);
+    for (int i = 0; i < 2; ++i) {
+        r[3 + i] = dot(own->across[i], turn);
+        for (int v = 0; v < VELOCITIES; ++v)
+            K[3 + i][v] = own->across[i][0] * J[3][v] + own->across[i][1] * J[4][v] + own->across[i][2] * J[5][v];
+    }
+}
+
+/* The constraints at a pose: A (rows, own) and, as right sides, -r and -K of the given velocities; dimensionless. */
+static double constraints_at(const drive *by, const double x[], double A[ROWS][VELOCITIES], double b[ROWS][SIDES]) {
+    pose at[JOINTS];
+    double r[6], K[6][VELOCITIES], largest = 0.0;
+    int row = 0;
+    place(x, at);
+    for (int c = 0; c < by->constraints; ++c) {
+        const constraint *own = &constraints[by->constraint[c]];
+        constrain(own, x, at, r, K);
+        for (int i = 0; i < own->rows; ++i, ++row) {
+            const double scale = own->scale[i];
+            if (!(fabs(r[i]) <= largest)) largest = fabs(r[i]);
+            b[row][0] = -scale * r[i];
+            for (int k = 0; k < by->own; ++k) A[row][k] = scale * units[by->own_velocity[k]] * K[i][by->own_velocity[k]];
+            for (int k = 0; k < by->given; ++k)
+                b[row][1 + k] = -scale * units[by->given_velocity[k]] * K[i][by->given_velocity[k]];
+        }
+    }
+    return largest;
+}
+
+/* A y = b by Householder reflections with column pivoting, for a matrix of known rank; 0 if its rank is lower. */
+static int solve(const drive *by, double A[ROWS][VELOCITIES], double b[ROWS][SIDES], double y[VELOCITIES][SIDES]) {
+    const int m = by->rows, n = by->own, sides = 1 + by->given;
+    int order[VELOCITIES];
+    double first = 0.0;
+    for (int k = 0; k < n; ++k) order[k] = k;
+    for (int k = 0; k < by->rank; ++k) {
+        int best = k;
+        double most = -1.0;
+        for (int j = k; j < n; ++j) {
+            double square = 0.0;
+            for (int i = k; i < m; ++i) square += A[i][j] * A[i][j];
+            if (square > most) most = square, best = j;
+        }
+        const double length = sqrt(most);
+        if (k == 0) first = length;
+        if (!(length > SINGULAR * first)) return 0;
+        for (int i = 0; i < m && best != k; ++i) {
+            const double kept = A[i][k];
+            A[i][k] = A[i][best], A[i][best] = kept;
+        }
+        const int which = order[k];
+        order[k] = order[best], order[best] = which;
+        const double pivot = A[k][k] > 0.0 ? -length : length;
+        A[k][k] -= pivot; /* the reflection is that along column k, from here down */
+        double square = 0.0;
+        for (int i = k; i < m; ++i) square += A[i][k] * A[i][k];
+        for (int j = k + 1; j < n; ++j) {
+            double sum = 0.0;
+            for (int i = k; i < m; ++i) sum += A[i][k] * A[i][j];
+            for (int i = k; i < m; ++i) A[i][j] -= 2.0 * sum / square * A[i][k];
+        }
+        for (int j = 0; j < sides; ++j) {
+            double sum = 0.0;
+            for (int i = k; i < m; ++i) sum += A[i][k] * b[i][j];
+            for (int i = k; i < m; ++i) b[i][j] -= 2.0 * sum / square * A[i][k];
+        }
+        A[k][k] = pivot;
+    }
+    for (int k = 0; k < n; ++k)
+        for (int j = 0; j < sides; ++j) y[k][j] = 0.0;
+    for (int k = by->rank - 1; k >= 0; --k)
+        for (int j = 0; j < sides; ++j) {
+            double sum = b[k][j];
+            for (int i = k + 1; i < by->rank; ++i) sum -= A[k][i] * y[order[i]][j];
+            y[order[k]][j] = sum / A[k][k];
+        }
+    return 1;
+}
+
+/* Whether the loops let the given velocities move independently: what the reflections left of their right sides. */
+static int consistent(const drive *by, double b[ROWS][SIDES]) {
+    for (int i = by->rank; i < by->rows; ++i)
+        for (int j = 1; j <= by->given; ++j)
+            if (!(fabs(b[i][j]) <= DETERMINED)) return 0;
+    return 1;
+}
+
+static void move(const drive *by, double y[VELOCITIES][SIDES], double x[]) {
+    for (int k = 0; k < by->own; ++k) {
+        const int velocity = by->own_velocity[k], coordinate = coordinates[velocity];
+        if (coordinate >= 0) {
+            x[coordinate] += units[velocity] * y[k][0];
+            continue;
+        }
+        if (!BALLS || coordinate != BALL) continue; /* the second and third velocity of a ball come with the first */
+        const double w[3] = {0.5 * y[k][0], 0.5 * y[k + 1][0], 0.5 * y[k + 2][0]};
+        const double half = sqrt(dot(w, w)), scale = half > 0.0 ? sin(half) / half : 1.0, c = cos(half);
+        double *q = &x[ball_coordinates[velocity]], v[3], turned_by[3], norm;
+        for (int i = 0; i < 3; ++i) v[i] = scale * w[i];
+        cross(q, v, turned_by);
+        const double real = q[3] * c - dot(q, v);
+        for (int i = 0; i < 3; ++i) q[i] = q[i] * c + q[3] * v[i] + turned_by[i];
+        q[3] = real;
+        norm = sqrt(dot(q, q) + q[3] * q[3]);
+        for (int i = 0; i < 4; ++i) q[i] /= norm;
+    }
+}
+
+static int follow(const drive *by, double pose_kept[], const double given[], double asked[], double derivative[]) {
+    double x[COORDINATES], A[ROWS][VELOCITIES], b[ROWS][SIDES], y[VELOCITIES][SIDES];
+    double correction[VELOCITIES] = {0}, square = 0.0, corrected = 0.0, open;
+    for (int k = 0; k < COORDINATES; ++k) x[k] = pose_kept[k];
+    for (int k = 0; k < by->given; ++k) {
+        const int velocity = by->given_velocity[k];
+        if (!isfinite(given[k])) return NOT_FINITE;
+        double step = given[k] - x[coordinates[velocity]];
+        if (by->given_circular[k]) step = remainder(step, 6.283185307179586);
+        x[coordinates[velocity]] += step;
+        step /= units[velocity];
+        if (fabs(step) > LONGEST_MOTION) return TOO_FAR;
+        square += step * step;
+    }
+    for (int step = 0; step <= STEPS; ++step) {
+        open = constraints_at(by, x, A, b);
+        if (!solve(by, A, b, y)) return isfinite(open) ? AT_SINGULARITY : NOT_FINITE;
+        for (int k = 0; k < by->own; ++k) {
+            if (step > 0) correction[k] += y[k][0];
+            else square += y[k][0] * y[k][0];
+            if (step == 0 && fabs(y[k][0]) > LONGEST_MOTION) return TOO_FAR;
+        }
+        move(by, y, x);
+    }
+    if (!(open <= CLOSED)) return NOT_CLOSED;
+    if (!consistent(by, b)) return AT_SINGULARITY;
+    for (int k = 0; k < by->own; ++k) corrected += correction[k] * correction[k];
+    if (sqrt(corrected) > fmax(MOST_CORRECTION * sqrt(square), LEAST_CORRECTION)) return TOO_FAR;
+    for (int i = 0; i < by->asked; ++i) {
+        const int velocity = by->asked_velocity[i], own = by->asked_own[i];
+        for (int k = 0; k < by->given; ++k)
+            derivative[i * by->given + k] = own < 0 ? (velocity == by->given_velocity[k] ? 1.0 : 0.0)
+                                                    : units[velocity] * y[own][1 + k] / units[by->given_velocity[k]];
+        asked[i] = x[coordinates[velocity]];
+    }
+    for (int k = 0; k < COORDINATES; ++k) pose_kept[k] = x[k];
+    return CLOSED_POSE;
+}

@@ -1,0 +1,204 @@
+"""The transmission prepared once, for control loops: positions and their derivatives both ways at each cycle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from eurdf.kinematics.array import Matrix, Vector
+from eurdf.kinematics.assembly import Assembler, start
+from eurdf.kinematics.derived import borrowed
+from eurdf.kinematics.exceptions import NotClosable
+from eurdf.transmissions.c_source import CSource, c_source
+from eurdf.transmissions.drive import CLOSED, Drive
+from eurdf.transmissions.exceptions import NoTransmission
+from eurdf.transmissions.joint_coordinates import JointCoordinates, coordinates_of
+from eurdf.transmissions.motors import motors_of
+from eurdf.transmissions.selection import selection
+from eurdf.transmissions.transmission import Transmission, at_one
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+
+class MotorSide(NamedTuple):
+    """The motors at positions of the serial joints.
+
+    Attributes:
+        positions: Positions (nm,) of the motors, rad or m.
+        G: (nm, nJ) with v_m = G v_J and τ_J = Gᵀ τ_m.
+    """
+
+    positions: Vector
+    G: Matrix
+
+
+class SerialSide(NamedTuple):
+    """The serial joints at positions of the motors.
+
+    Attributes:
+        positions: Positions (nJ,) of the serial joints, rad or m.
+        B: (nJ, nm) with v_J = B v_m; G⁻¹ where G is square.
+    """
+
+    positions: Vector
+    B: Matrix
+
+
+class PreparedTransmission:
+    """Positions and velocities of motors and serial joints, pose after pose, each near the one before.
+
+    Each call starts from the pose of the call before and stays on its branch. A call with an error keeps that pose. Use
+    one object for each thread.
+
+    Attributes:
+        joints: Names of the serial joints.
+        motors: Names of the motors.
+    """
+
+    def __init__(self, at: Transmission, joints: JointCoordinates, motors: JointCoordinates) -> None:
+        self._at, self._joints, self._motors = at, joints, motors
+        self.joints, self.motors = at.joints, at.motors
+        self._q = at.q
+        self._by_joints = Drive(at, joints, motors)
+        self._by_motors: Drive | None = None
+        # Last positions of joints without limits, whose turns are counted from call to call.
+        self._angles: dict[Drive, Vector] = {}
+
+    @property
+    def q(self) -> Vector:
+        """The last pose (nq,), closed. Joints that the transmission does not move are as at the beginning."""
+        return np.array(self._q)
+
+    def reset(self, q: Vector) -> None:
+        """Start from another closed pose (nq,), which can be on another branch.
+
+        Raises:
+            NotClosable: The loops cannot be closed near q.
+            ValueError: ``q`` is not a configuration.
+        """
+        self._q = _closed(self._at.robot, q)
+        self._angles.clear()
+
+    def at_joints(self, positions: Vector) -> MotorSide:
+        """The motors at positions of the serial joints.
+
+        Args:
+            positions: Positions (nJ,) of the serial joints, rad or m.
+
+        Returns:
+            Positions of the motors and G. An angle without limits counts turns: it is within half a turn of that of the
+            call before.
+
+        Raises:
+            NotClosable: The serial joints cannot reach the positions, on the straight path from the last pose.
+            NoTransmission: The joints do not determine the motors there.
+            ValueError: ``positions`` does not fit.
+        """
+        return MotorSide(*self._move(self._by_joints, positions))
+
+    def at_motors(self, positions: Vector) -> SerialSide:
+        """The serial joints at positions of the motors.
+
+        Args:
+            positions: Positions (nm,) of the motors, rad or m.
+
+        Returns:
+            Positions of the serial joints and B; as to angles without limits, see `at_joints`.
+
+        Raises:
+            NotClosable: The motors cannot reach the positions, on the straight path from the last pose.
+            NoTransmission: The motors do not determine the joints there.
+            ValueError: ``positions`` does not fit.
+        """
+        return SerialSide(*self._move(self._drive_of_motors, positions))
+
+    def c_source(self, prefix: str | None = None, *, steps: int = 4) -> CSource:
+        """The same as dependency-free C99: a header and a source file.
+
+        Each call takes a fixed number of Newton steps from the last pose, allocates nothing, and returns a status. The
+        function from motors to joints is left out where the motors cannot be given, since they depend on each other.
+        There is no division of long motions: call it often enough, or for positions in between.
+
+        Args:
+            prefix: Of the names in C, and name of the files. By default the robot's name and ``_transmission``.
+            steps: Number of Newton steps.
+
+        Returns:
+            The files; they start at the last pose.
+
+        Raises:
+            ValueError: An argument does not fit; or a joint or constraint is of a type that C does not support.
+        """
+        return c_source(self._at.robot, self._by_joints, self._inverse(), self._q, prefix, steps)
+
+    def _inverse(self) -> Drive | None:
+        """What moves the motors; None if that is not possible."""
+        try:
+            return self._drive_of_motors
+        except NoTransmission:
+            return None
+
+    @property
+    def _drive_of_motors(self) -> Drive:
+        if self._by_motors is None:
+            self._by_motors = Drive(self._at, self._motors, self._joints)
+        return self._by_motors
+
+    def _move(self, drive: Drive, positions: Vector) -> tuple[Vector, Matrix]:
+        q, derivative = drive.move(self._q, positions)
+        found = drive.asked.read(q)
+        if drive.asked.circular.any():
+            before = self._angles.get(drive, drive.asked.read(self._q))
+            found = self._angles[drive] = drive.asked.nearest(found, before)
+        self._q = q
+        return found, derivative
+
+
+def prepare_transmission(
+    robot: Robot, joints: str | Iterable[str], q: Vector | None = None, motors: str | Iterable[str] | None = None
+) -> PreparedTransmission:
+    """Prepare the transmission between serial joints and motors for a control loop.
+
+    Newton's method starts from the pose of the call before: with r(q) = 0 the constraints, x the other joints of the
+    loops and g the given ones, K_x Δx = -r with g held, and dx/dg = -K_x⁺ K_g at the solution. Where the motion since
+    then is long, or the correction is not small against the tangent, `eurdf.forward_kinematics` follows the path.
+    Springs are held as in `eurdf.transmission`.
+
+    Args:
+        robot: The robot.
+        joints: Names of the serial joints.
+        q: A pose to start from (nq,); it decides on the branch. The loops are closed first if they are open. The
+            default is the `assembled` configuration, or the neutral one if there is none.
+        motors: Names of the motors. By default the actuated joints that move the joints, as in `eurdf.transmission`.
+
+    Raises:
+        NotClosable: The loops cannot be closed near q.
+        NoTransmission: The joints do not determine the motors, or depend on each other.
+        ValueError: An argument does not fit.
+    """
+    serial = selection(robot, joints)
+    side = motors_of(robot, serial) if motors is None else selection(robot, motors, "motors")
+    at = at_one(robot, serial, _closed(robot, q), side)
+    return PreparedTransmission(at, coordinates_of(robot, serial), coordinates_of(robot, side))
+
+
+def _closed(robot: Robot, q: Vector | None) -> Vector:
+    """A configuration, with its loops closed.
+
+    Raises:
+        NotClosable: They cannot be closed there.
+        ValueError: It is not a configuration.
+    """
+    first = start(robot, q, "q")
+    with borrowed(robot, Assembler) as assembler:
+        assembler.tolerance, assembler.limits = CLOSED, None
+        closed = assembler.closed(first)
+        if closed is not None:
+            return closed
+        assembly = assembler.assemble(first)
+    if not assembly.closes:
+        raise NotClosable("no closed configuration was found near q", assembly.open, assembly.q)
+    return assembly.q

@@ -1,0 +1,64 @@
+"""Generated C, compiled and called."""
+
+from __future__ import annotations
+
+import ctypes
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from eurdf.transmissions.prepared import PreparedTransmission
+
+Vector = npt.NDArray[np.float64]
+
+OK, NOT_CLOSED, TOO_FAR, SINGULAR, NOT_FINITE = range(5)
+
+
+class Compiled:
+    """The C of a prepared transmission, at the pose that it was generated at."""
+
+    def __init__(self, prepared: PreparedTransmission, folder: Path) -> None:
+        compiler = shutil.which("cc")
+        if compiler is None:
+            pytest.skip("no C compiler: install one as `cc`")
+        prepared.c_source("t").write(folder, force=True)
+        strict = ["-std=c99", "-O2", "-Wall", "-Wextra", "-pedantic", "-Werror"]
+        library = folder / "t.so"
+        subprocess.run(
+            [compiler, *strict, "-shared", "-fPIC", "-o", str(library), str(folder / "t.c"), "-lm"], check=True
+        )
+        self._library = ctypes.CDLL(str(library))
+        self._joints, self._motors = len(prepared.joints), len(prepared.motors)
+        self.pose = np.zeros(200)
+        self.start()
+
+    def start(self) -> None:
+        """Go to the pose that it was generated at."""
+        self._library.t_start(_pointer(self.pose))
+
+    @property
+    def both_ways(self) -> bool:
+        """Whether there is a function from motors to joints."""
+        return hasattr(self._library, "t_at_motors")
+
+    def at_joints(self, positions: Vector) -> tuple[int, Vector, Vector]:
+        """Status, positions of the motors and G."""
+        return self._call(self._library.t_at_joints, positions, self._motors)
+
+    def at_motors(self, positions: Vector) -> tuple[int, Vector, Vector]:
+        """Status, positions of the joints and B."""
+        return self._call(self._library.t_at_motors, positions, self._joints)
+
+    def _call(self, function: ctypes._CFuncPtr, positions: Vector, count: int) -> tuple[int, Vector, Vector]:
+        given = np.array(positions, dtype=np.float64)
+        found, derivative = np.full(count, np.nan), np.full((count, len(given)), np.nan)
+        status = function(*map(_pointer, (self.pose, given, found, derivative)))
+        return status, found, derivative
+
+
+def _pointer(array: Vector) -> ctypes._Pointer[ctypes.c_double]:
+    return array.ctypes.data_as(ctypes.POINTER(ctypes.c_double))

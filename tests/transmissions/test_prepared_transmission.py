@@ -1,0 +1,172 @@
+"""The transmission prepared for control loops, in Python and in generated C."""
+
+from __future__ import annotations
+
+import itertools
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import eurdf
+from support.compiled import NOT_CLOSED, NOT_FINITE, OK, SINGULAR, TOO_FAR, Compiled
+from support.one_loop import one_loop
+
+ANKLE = ("free_pitch", "free_roll")
+
+
+def grid(lower: tuple[float, float], upper: tuple[float, float], n: int) -> list[tuple[float, float]]:
+    """Points of a grid, each next to the one before."""
+    rows = np.linspace(lower[0], upper[0], n)
+    columns = np.linspace(lower[1], upper[1], n)
+    return [(a, b) for i, a in enumerate(rows) for b in (columns if i % 2 == 0 else columns[::-1])]
+
+
+@pytest.mark.parametrize(
+    ("name", "lower", "upper"),
+    [
+        ("unitree_g1_ankle", (-0.6, -0.2), (0.4, 0.2)),
+        ("tesla_optimus_ankle", (-0.5, -0.2), (0.4, 0.2)),
+    ],
+)
+def test_positions_and_derivatives_agree_with_c_over_the_workspace(
+    name: str, lower: tuple[float, float], upper: tuple[float, float], tmp_path: Path
+) -> None:
+    robot = eurdf.load(name, geometry=False)
+    prepared = eurdf.prepare_transmission(robot, ANKLE)
+    compiled = Compiled(prepared, tmp_path)
+    index = [robot.slots[motor].idx_q for motor in prepared.motors]
+    before = np.zeros(2)
+    for point in grid(lower, upper, 11):
+        motors, G = prepared.at_joints(point)
+        for way in np.linspace(before, point, 21 if not before.any() else 4)[1:]:
+            status, c_motors, c_G = compiled.at_joints(way)
+            assert status == OK
+        before = np.array(point)
+        assert c_motors == pytest.approx(motors, abs=1e-9)
+        assert c_G == pytest.approx(G, abs=1e-9)
+        q = eurdf.forward_kinematics(robot, dict(zip(ANKLE, point, strict=True)), prepared.q)
+        assert motors == pytest.approx(q[index], abs=1e-9)
+        joints, B = prepared.at_motors(motors)
+        assert joints == pytest.approx(point, abs=1e-9)
+        assert pytest.approx(np.eye(2), abs=1e-9) == B @ G
+        status, c_joints, c_B = compiled.at_motors(motors)
+        assert (status, c_joints) == (OK, pytest.approx(point, abs=1e-9))
+        assert c_B == pytest.approx(B, abs=1e-9)
+
+
+def loop(*types: str, closure: str, seed: int, slow: bool = True, **options: bool) -> Any:
+    title = ", ".join((*types, *options)) + f" in {closure}"
+    return pytest.param((types, closure, seed, options), id=title, marks=[pytest.mark.slow] if slow else [])
+
+
+@pytest.mark.parametrize(
+    "described",
+    [
+        loop("revolute", "helical", "planar", "cylindrical", closure="6d", seed=1, slow=False),
+        loop("continuous", "prismatic", "spherical", "universal", closure="6d", seed=16),
+        loop("revolute", "continuous", "spherical", "revolute", closure="hinge", seed=3, slow=False),
+        loop("universal", "revolute", "revolute", "revolute", closure="3d", seed=4),
+        loop("cylindrical", "revolute", "revolute", "prismatic", closure="3d", seed=14),
+        loop("revolute", "revolute", closure="distance", seed=6, slow=False),
+        loop("revolute", "revolute", "floating", closure="6d", seed=7, coupled=True),
+        loop("revolute", "revolute", "spherical", "universal", closure="6d", seed=23, follower=True),
+    ],
+)
+def test_every_joint_and_constraint_agrees_with_c(described: Any, tmp_path: Path) -> None:
+    types, closure, seed, options = described
+    robot = one_loop(types, closure, seed, **options)
+    prepared = eurdf.prepare_transmission(robot, ["j0"])
+    compiled = Compiled(prepared, tmp_path)
+    slot = robot.slots["j0"]
+    start = np.array(robot.mechanism.configurations["assembled"]["j0"])
+    along = np.array([0.03, -0.02])[: slot.nv]
+    for k in range(40):
+        point = start + np.sin(0.1 * k) * along
+        motors, G = prepared.at_joints(point)
+        assert np.abs(eurdf.residual(robot, prepared.q)).max() < 1e-11
+        status, c_motors, c_G = compiled.at_joints(point)
+        assert (status, c_motors) == (OK, pytest.approx(motors, abs=1e-9))
+        assert c_G == pytest.approx(G, abs=1e-9, rel=1e-9)
+        h = 1e-6
+        for column, unit in enumerate(h * np.eye(slot.nv)):
+            ahead, behind = prepared.at_joints(point + unit).positions, prepared.at_joints(point - unit).positions
+            assert G[:, column] == pytest.approx((ahead - behind) / (2.0 * h), rel=1e-5, abs=1e-6)
+
+
+def test_long_motions_follow_the_path() -> None:
+    robot = eurdf.load("unitree_g1_ankle", geometry=False)
+    prepared = eurdf.prepare_transmission(robot, ANKLE)
+    far = prepared.at_joints([-0.8, 0.02]).positions
+    near = eurdf.prepare_transmission(robot, ANKLE)
+    for pitch in np.linspace(0.0, -0.8, 81):
+        found = near.at_joints([pitch, 0.02]).positions
+    assert far == pytest.approx(found, abs=1e-9)
+
+
+def test_an_error_keeps_the_pose(tmp_path: Path) -> None:
+    robot = eurdf.load("slider_crank", geometry=False)
+    prepared = eurdf.prepare_transmission(robot, ["free_slider"])
+    compiled = Compiled(prepared, tmp_path)
+    q, pose = prepared.q, compiled.pose.copy()
+    with pytest.raises(eurdf.NotClosable, match="cannot be closed at the given coordinates"):
+        prepared.at_joints([5.0])
+    with pytest.raises(ValueError, match="not finite"):
+        prepared.at_joints([np.nan])
+    assert np.array_equal(prepared.q, q)
+    assert compiled.at_joints(np.array([5.0]))[0] == TOO_FAR
+    assert compiled.at_joints(np.array([np.nan]))[0] == NOT_FINITE
+    assert np.array_equal(compiled.pose, pose)
+
+
+def test_c_refuses_what_the_loops_do_not_reach(tmp_path: Path) -> None:
+    robot = eurdf.load("slider_crank", geometry=False)
+    prepared = eurdf.prepare_transmission(robot, ["free_slider"])
+    compiled = Compiled(prepared, tmp_path)
+    statuses, slider = [], prepared.at_motors(prepared._motors.read(prepared.q)).positions
+    for step in itertools.count():
+        status, _, _ = compiled.at_joints(slider + 1e-3 * step)
+        statuses.append(status)
+        if status != OK:
+            break
+    assert statuses[-1] in (NOT_CLOSED, TOO_FAR, SINGULAR)
+    prepared.at_joints(slider + 1e-3 * (step - 1))
+    with pytest.raises(eurdf.NotClosable, match="cannot be closed"):
+        prepared.at_joints(slider + 1e-3 * (step + 1))
+
+
+def test_turns_of_a_motor_are_counted(tmp_path: Path) -> None:
+    robot = eurdf.load("bennett", geometry=False)
+    prepared = eurdf.prepare_transmission(robot, ["free_b"])
+    compiled = Compiled(prepared, tmp_path)
+    start = prepared.at_joints([0.0]).positions
+    for angle in np.linspace(0.0, 4.0 * np.pi, 200):
+        motor, G = prepared.at_joints([angle])
+        status, c_motor, _ = compiled.at_joints(np.array([angle]))
+        assert (status, c_motor) == (OK, pytest.approx(motor, abs=1e-9))
+    assert motor - start == pytest.approx(np.sign(G[0]) * 4.0 * np.pi, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("name", "joints", "message"),
+    [
+        ("unitree_g1_ankle", ["free_pitch"], "motors decide more than these joints: .* add 'free_roll' to the joints"),
+        ("unitree_g1_ankle", ["free_pich"], "did you mean 'free_pitch'"),
+        ("unitree_g1_ankle", ["motor_a", "motor_b", "free_pitch"], "cannot move independently"),
+        ("digit_leg", ["ball_rod1_end"], "is spherical"),
+        ("unitree_g1_ankle", [], "empty"),
+    ],
+)
+def test_joints_that_do_not_fit_are_named(name: str, joints: list[str], message: str) -> None:
+    robot = eurdf.load(name, geometry=False)
+    with pytest.raises(ValueError, match=message):
+        eurdf.prepare_transmission(robot, joints)
+
+
+def test_motors_in_the_chain_are_their_own() -> None:
+    robot = eurdf.load("talos_leg", geometry=False)
+    prepared = eurdf.prepare_transmission(robot, ["motor_knee", "free_ankle"])
+    motors, G = prepared.at_joints([0.4, 0.1])
+    assert prepared.motors[0] == "motor_knee"
+    assert (motors[0], G[0].tolist()) == (0.4, [1.0, 0.0])
