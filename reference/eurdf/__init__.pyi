@@ -75,6 +75,10 @@ from eurdf.pinocchio.robot import Robot as Robot
 from eurdf.transmissions.exceptions import DependentVelocities as DependentVelocities
 from eurdf.transmissions.exceptions import NoTransmission as NoTransmission
 from eurdf.transmissions.exceptions import OutOfReach as OutOfReach
+from eurdf.transmissions.limits import CommonLimits as CommonLimits
+from eurdf.transmissions.limits import SerialLimits as SerialLimits
+from eurdf.transmissions.limits import serial_limits as serial_limits
+from eurdf.transmissions.polytope import Polytope as Polytope
 from eurdf.transmissions.positions import Positions as Positions
 from eurdf.transmissions.positions import actuator_values as actuator_values
 from eurdf.transmissions.positions import joint_values as joint_values

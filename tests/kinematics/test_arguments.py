@@ -57,6 +57,7 @@ CALLS: dict[str, dict[str, Any]] = {
     "project_velocity": {"q": "q", "v": "v", "weights": "v"},
     "residual": {"q": "q"},
     "residual_and_jacobian": {"q": "q"},
+    "serial_limits": {"joints": "free_rocker", "q": "q", "torque_ratio": 1, "velocity_ratio": 1},
     "simulate": {"q": "q", "v": "v", "external": {"coupler": 6}, "duration": 0.002},
     "spring_energy": {"q": "q"},
     "spring_force": {"q": "q"},
@@ -98,7 +99,8 @@ def array(parameter: str, given: Any) -> Any:
     if given == "q":
         return np.array(robot().configurations["assembled"])
     size = sizes()[given] if isinstance(given, str) else given
-    return np.ones(size) if parameter in ("weights", "gains", "twist") else np.zeros(size)
+    ones = ("weights", "gains", "twist", "torque_ratio", "velocity_ratio")
+    return np.ones(size) if parameter in ones else np.zeros(size)
 
 
 def functions() -> dict[str, Callable[..., Any]]:

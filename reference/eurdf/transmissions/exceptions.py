@@ -24,7 +24,7 @@ class NoTransmission(EurdfError, ValueError):  # noqa: N818 - part of the public
     def __init__(self, of: str, reason: str) -> None:
         self.map = of
         self.reason = reason
-        super().__init__(f"{of} does not exist here: {reason}")
+        super().__init__(f"{of} does not exist: {reason}")
 
 
 class DependentVelocities(EurdfError, ValueError):  # noqa: N818 - part of the public interface
