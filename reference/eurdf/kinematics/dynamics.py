@@ -25,6 +25,7 @@ from eurdf.kinematics.equation_of_motion import MASSLESS, EquationOfMotion, by_j
 from eurdf.kinematics.exceptions import UnderactuatedMotion
 from eurdf.kinematics.finite import finite, overflow_refused
 from eurdf.kinematics.forward_solver import SOLVED, ForwardSolver
+from eurdf.kinematics.inverse_solver import InverseSolver
 from eurdf.pinocchio.arguments import checked_array, checked_tolerance
 
 if TYPE_CHECKING:
@@ -157,11 +158,20 @@ def inverse_dynamics(
         UnderactuatedMotion: The motors cannot produce this motion.
         NumericalOverflow: The result is not finite.
     """
-    with overflow_refused("the motor torques"), borrowed(robot, ForwardSolver) as solver:
-        motion, a = _motion(robot, q, v, a, solver, data)
-        S, norm = robot.actuation.selection, _norm(robot, weights)
-        motion.refuse_open(a, checked_tolerance(tolerance))
-        force = motion.bias - AppliedForce(robot, external, dissipation).total(motion.q, motion.v, None, tau)
+    with (
+        overflow_refused("the motor torques"),
+        borrowed(robot, ForwardSolver) as solver,
+        borrowed(robot, InverseSolver) as inverse_solver,
+    ):
+        q, v, a, data = _state(robot, q, v, a, solver, data)
+        norm, tolerance = _norm(robot, weights), checked_tolerance(tolerance)
+        applied = AppliedForce(robot, external, dissipation).total(q, v, None, tau)
+        found = inverse_solver.solve(solver, q, v, a, applied, tolerance, data)
+        if found is not None:
+            return InverseDynamics(found.u, tuple([found.lambdas[rows] for rows in solver.rows]))
+        motion, S = EquationOfMotion(robot, q, v, solver.data if data is None else data), robot.actuation.selection
+        motion.refuse_open(a, tolerance)
+        force = motion.bias - applied
         inertial = motion.mass(a)
         deviation, missing = _uncontrolled(motion, inertial, force)
         _refuse_uncontrolled(motion, a, deviation, missing, tolerance)
@@ -213,7 +223,8 @@ def achievable_acceleration(
         NumericalOverflow: The result is not finite.
     """
     with overflow_refused("the acceleration"), borrowed(robot, ForwardSolver) as solver:
-        motion, a = _motion(robot, q, v, a, solver, data)
+        q, v, a, data = _state(robot, q, v, a, solver, data)
+        motion = EquationOfMotion(robot, q, v, solver.data if data is None else data)
         motion.refuse_open(a, checked_tolerance(tolerance))
         force = motion.bias - AppliedForce(robot, external, dissipation).total(motion.q, motion.v, None, tau)
         deviation, missing = _uncontrolled(motion, motion.mass(a), force)
@@ -224,13 +235,12 @@ def achievable_acceleration(
     return achievable
 
 
-def _motion(
+def _state(
     robot: Robot, q: Vector, v: Vector, a: Vector, solver: ForwardSolver, data: Any
-) -> tuple[EquationOfMotion, Vector]:
-    """The equation of motion at q and v, and the acceleration, all checked."""
-    q, v = start(robot, q, "q"), checked_array("v", v, (robot.tree.nv,))
-    data = solver.data if data is None else solver.checked(data)
-    return EquationOfMotion(robot, q, v, data), checked_array("a", a, (robot.tree.nv,))
+) -> tuple[Vector, Vector, Vector, Any]:
+    """Configuration, velocity, acceleration and memory, all checked."""
+    nv, data = (robot.tree.nv,), None if data is None else solver.checked(data)
+    return start(robot, q, "q"), checked_array("v", v, nv), checked_array("a", a, nv), data
 
 
 def _uncontrolled(motion: EquationOfMotion, inertial: Vector, force: Vector) -> tuple[Vector, Vector]:

@@ -91,23 +91,45 @@ class ForwardSolver:
             UndeterminedMotion: A joint without inertia can move.
             NumericalOverflow: The result is not finite.
         """
+        solution = self.beyond_doubt(q, v, force, gains, data, nearly_closed=nearly_closed)
+        if solution is None:
+            with overflow_refused("the acceleration"):
+                motion = EquationOfMotion(robot, q, v, self.data if data is None else data)
+                solution = motion.eliminate(force, gains)
+            finite("the acceleration", *solution)
+        return solution
+
+    def beyond_doubt(
+        self,
+        q: Vector,
+        v: Vector,
+        force: Vector,
+        gains: list[tuple[float, float]],
+        data: Any = None,
+        *,
+        nearly_closed: bool = False,
+    ) -> Acceleration | None:
+        """The solution by the tree's own solver; None if it has none, or if the solution is in doubt.
+
+        For the arguments see `solve`.
+        """
+        if self._solver is None:
+            return None
         is_own = data is None
         data = self.data if is_own else data
-        if self._solver is not None:
-            found = self._solver.solve(q, v, force, gains, data, is_own)
-            on_a = self._forces_beyond_doubt(found, q, v, force, data, nearly_closed)
-            if on_a is not None:
-                return Acceleration(found.a, -on_a)
-        with overflow_refused("the acceleration"):
-            solution = EquationOfMotion(robot, q, v, data).eliminate(force, gains)
-        finite("the acceleration", *solution)
-        return solution
+        found = self._solver.solve(q, v, force, gains, data, is_own)
+        on_a = self._forces_beyond_doubt(found, q, v, force, data, nearly_closed)
+        return None if on_a is None else Acceleration(found.a, -on_a)
 
     def closures(self, robot: Robot, q: Vector) -> tuple[Vector, Matrix]:
         """The residual (nc,) at q (nq,), and K (nc, nv), which is its derivative where the closures are closed."""
-        if self._solver is not None:
-            return self._solver.closures(q, self.data)
-        return residual_and_jacobian(robot, q)
+        return self.closures_of_tree(q) or residual_and_jacobian(robot, q)
+
+    def closures_of_tree(self, q: Vector, data: Any = None) -> tuple[Vector, Matrix] | None:
+        """The same by the tree's own solver; None if it has none."""
+        if self._solver is None:
+            return None
+        return self._solver.closures(q, self.data if data is None else data)
 
     def _forces_beyond_doubt(
         self, found: ConstrainedMotion, q: Vector, v: Vector, force: Vector, data: Any, nearly_closed: bool

@@ -220,6 +220,9 @@ class TreeKinematics(Protocol):
     def mass_times(self, q: Vector, motions: Matrix, data: Any) -> Matrix:
         """The mass matrix at q (nq,), the armature included, times the columns (nv, n) of accelerations."""
 
+    def inverse_mass_diagonal(self, q: Vector, data: Any) -> Vector:
+        """The diagonal (nv,) of the inverse of the mass matrix at q (nq,), of a tree without mimic joints."""
+
     def kinetic_energy(self, q: Vector, v: Vector, data: Any) -> float:
         """The kinetic energy at q (nq,) and v (nv,), J, that of the armature included."""
 

@@ -244,6 +244,10 @@ class PinocchioTree:
         columns = [self.inverse_dynamics(q, still, a, data) - gravity for a in motions.T]
         return np.array(columns).reshape(motions.T.shape).T
 
+    def inverse_mass_diagonal(self, q: Vector, data: pin.Data) -> Vector:
+        """The diagonal (nv,) of the inverse of the mass matrix at q (nq,), of a tree without mimic joints."""
+        return np.array(pin.computeMinverse(self.model, data, q).diagonal())
+
     def kinetic_energy(self, q: Vector, v: Vector, data: pin.Data | TreeRecursion) -> float:
         """The kinetic energy at q (nq,) and v (nv,), J, that of the armature included.
 

@@ -1,0 +1,125 @@
+"""Motor torques of a closed mechanism whose constraints and motors are independent beyond doubt.
+
+With the motors locked, K_o are the columns of K of the other velocities. If its rows are independent, the equation
+
+    M a + h - τ = S u + Kᵀ λ
+
+has one solution in the least-squares sense: the rows of the other velocities give λ, and those of the motors then u. It
+is that of the slower way by a basis of the free motions, whether or not the motion is possible: the remainder lies in
+the motions that no motor controls. Whether it is possible, forward dynamics decide: with these torques they return a.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from eurdf.kinematics.array import Vector
+from eurdf.kinematics.derived import derived
+from eurdf.kinematics.forward_solver import CLOSED, ForwardSolver
+from eurdf.kinematics.independence import norm
+from eurdf.kinematics.least_solution import certain_inverse
+from eurdf.kinematics.tangent_space import TangentSpaces
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+# Bounds of the deviations up to this fraction of the tolerance are below it beyond doubt.
+_CERTAIN = 0.5
+
+
+class Torques(NamedTuple):
+    """Motor torques u (nu,), N·m and N, and the forces λ (nc,) of all constraints."""
+
+    u: Vector
+    lambdas: Vector
+
+
+class InverseSolver:
+    """Solves the equation of motion of one robot for the motor torques, at one state after the other."""
+
+    def __init__(self, robot: Robot) -> None:
+        # No reference to the robot: the cache would keep it alive.
+        self._tree, spaces = robot.tree, derived(robot, TangentSpaces)
+        self._scale, self._row_scale, self._dimensionless = spaces.scale, spaces.row_scale, spaces.dimensionless
+        self._driven = robot.actuation.idx_v
+        self._others = np.setdiff1d(np.arange(self._tree.nv), self._driven)
+        self._no_gains = [(0.0, 0.0)] * len(robot.constraints)
+        # How many motions are left with the motors locked, if the rows of K_o are independent.
+        self._uncontrolled = len(self._others) - len(self._row_scale)
+        self._is_possible = self._uncontrolled >= 0 and len(self._others) + len(self._driven) == self._tree.nv
+
+    def solve(
+        self, solver: ForwardSolver, q: Vector, v: Vector, a: Vector, force: Vector, tolerance: float, data: Any
+    ) -> Torques | None:
+        """Solve M a + h = S u + τ + Kᵀ λ; None if the rank of K_o or the possibility of the motion is in doubt.
+
+        Args:
+            solver: Solves forward dynamics.
+            q: Normalized configuration (nq,).
+            v: Velocity (nv,).
+            a: Acceleration (nv,).
+            force: τ (nv,).
+            tolerance: Accepted difference of v and a from the nearest possible ones, as in `inverse_dynamics`.
+            data: Memory of the whole tree; by default that of the solver.
+        """
+        if not self._is_possible:
+            return None
+        closures = solver.closures_of_tree(q, data)
+        if closures is None:
+            return None
+        memory = solver.data if data is None else data
+        r, K = closures
+        opening = K.dot(v)
+        if not (norm(r) <= CLOSED and norm(opening) <= CLOSED * (1.0 + norm(v))):
+            return None
+        A = K * self._dimensionless
+        locked = A[:, self._others]
+        inverse = certain_inverse(locked @ locked.T, norm(A.ravel()))
+        if inverse is None:
+            return None
+        taken = self._tree.inverse_dynamics(q, v, a, memory)
+        required = taken - force
+        needed = self._scale * required
+        others = needed[self._others]
+        multipliers = inverse.dot(locked.dot(others))
+        multipliers += inverse.dot(locked.dot(others - multipliers.dot(locked)))  # what rounding left
+        lambdas = self._row_scale * multipliers
+        u = required[self._driven] - lambdas.dot(K[:, self._driven])
+        applied = np.array(force)
+        applied[self._driven] += u
+        forward = solver.beyond_doubt(q, v, applied, self._no_gains, data)
+        if forward is None:
+            return None
+        # The motion with the motors at rest that closes what v opens: the least one that does is no longer.
+        opened = norm(inverse.dot(self._row_scale * opening).dot(locked))
+        change = forward.a - a
+        accepted = self._accepted(a, tolerance)
+        if not (opened <= self._accepted(v, tolerance) and norm(change / self._scale) <= accepted):
+            return None
+        if self._uncontrolled and not self._uncontrolled_part(q, v, forward.a, change, taken, memory) <= accepted:
+            return None
+        return Torques(u, lambdas)
+
+    def _uncontrolled_part(self, q: Vector, v: Vector, a: Vector, change: Vector, before: Vector, data: Any) -> float:
+        """A bound of the part of a change of the acceleration along motions that no motor controls.
+
+        That part is a projection in the metric of the mass matrix, so that its energy is at most that of the change.
+
+        Args:
+            q: Configuration (nq,).
+            v: Velocity (nv,).
+            a: Acceleration (nv,) after the change.
+            change: Change (nv,).
+            before: M a + h (nv,) before the change.
+            data: Memory of the whole tree.
+        """
+        energy = change.dot(self._tree.inverse_dynamics(q, v, a, data) - before)
+        lightest = (self._tree.inverse_mass_diagonal(q, data) / self._scale**2).max()
+        return math.sqrt(abs(energy) * lightest)
+
+    def _accepted(self, given: Vector, tolerance: float) -> float:
+        """What a velocity or acceleration (nv,) may differ by beyond doubt."""
+        return _CERTAIN * tolerance * (1.0 + float(np.abs(given / self._scale).max()))
