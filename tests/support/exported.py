@@ -58,6 +58,15 @@ def random_robot(seed: int, root: Root = "fixed", **options: Any) -> tuple[Robot
     return build_robot(mechanism, geometry=False), q
 
 
+def without_armature(robot: Robot) -> Robot:
+    """The robot without armatures and rotors, which some formats do not have."""
+    joints = tuple(
+        replace(joint, properties=replace(joint.properties, armature=(), rotor_inertia=(), gear_ratio=()))
+        for joint in robot.mechanism.joints
+    )
+    return build_robot(replace(robot.mechanism, joints=joints), geometry=False)
+
+
 class InMuJoCo:
     """An exported robot in MuJoCo."""
 

@@ -2,8 +2,17 @@
 
 from __future__ import annotations
 
-from eurdf.exporting.formats import mjcf, urdf, usd
+from eurdf.exporting.formats import drake, loop_joint, mjcf, urdf, usd
 from eurdf.exporting.written import Format
 
 #: Every format, by name. A new one is a file here and its line.
-FORMATS: dict[str, Format] = {each.name: each for each in (mjcf.FORMAT, urdf.FORMAT, usd.FORMAT)}
+FORMATS: dict[str, Format] = {
+    each.name: each
+    for each in (
+        mjcf.FORMAT,
+        usd.FORMAT,
+        drake.FORMAT,
+        loop_joint.FORMAT,
+        urdf.FORMAT,
+    )
+}

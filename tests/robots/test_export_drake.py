@@ -1,0 +1,169 @@
+"""Robots exported for Drake: it finds the poses, the dynamics and the constraints that we find."""
+
+from __future__ import annotations
+
+from typing import Any
+from xml.etree import ElementTree as ET
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import eurdf
+from eurdf.pinocchio.robot import Robot
+from support.drake_witness import InDrake
+from support.exported import random_robot, without_armature
+from support.plain_urdf import inertial, joint_element, link_element
+from support.plain_urdf import robot as robot_element
+
+NAMES = eurdf.collection_names()
+#: Constraints that a closure or coupling is in Drake.
+CONSTRAINTS = {"3d": 1, "6d": 3, "hinge": 2, "distance": 0, "coupling": 1}
+
+_DRAKE = "{http://drake.mit.edu}"
+
+
+def assert_same_in_drake(robot: Robot, export: eurdf.Export, q: Any) -> None:
+    there, map_ = InDrake(robot, export), export.coordinates
+    root = [robot.mechanism.bodies[0].name] if robot.mechanism.root == "floating" else []
+    assert there.names == [*root, *(name for part in map_.parts[len(root) :] for name in part.names)]
+    mimics = sum(joint.mimic is not None for joint in robot.mechanism.joints)
+    expected = sum(CONSTRAINTS[constraint.type] for constraint in robot.mechanism.constraints)
+    assert there.plant.num_constraints() == expected + mimics
+    v = np.linspace(-1.0, 1.0, robot.model.nv)
+    there.at(q, v)
+    pin.framesForwardKinematics(robot.model, robot.data, q)
+    for name in [body.name for body in robot.mechanism.bodies] + [frame.name for frame in robot.mechanism.frames]:
+        expected_pose = robot.data.oMf[robot.model.getFrameId(name)].homogeneous
+        np.testing.assert_allclose(there.pose(name), expected_pose, atol=1e-9)
+    T, M = map_.rates(q), eurdf.mass_matrix(robot, q)
+    scale = max(1.0, np.abs(M).max())
+    np.testing.assert_allclose(T.T @ there.mass_matrix @ T, M, atol=1e-9 * scale)
+    h = pin.rnea(robot.model, robot.data, q, v, np.zeros(robot.model.nv))
+    drift = there.mass_matrix @ map_.to_a(q, v, np.zeros(robot.model.nv))
+    np.testing.assert_allclose(T.T @ (drift + there.bias), h, rtol=1e-9, atol=1e-9 * scale)
+    np.testing.assert_allclose(pin.difference(robot.model, map_.from_q(map_.to_q(q)), q), 0.0, atol=1e-12)
+    np.testing.assert_allclose(map_.from_v(map_.to_q(q), map_.to_v(q, v)), v, atol=1e-12)
+
+
+def assert_balls_are_closed(robot: Robot, export: eurdf.Export, q: Any) -> None:
+    there = InDrake(robot, export)
+    there.at(q)
+    balls = ET.fromstring(export.main).findall(f"{_DRAKE}ball_constraint")
+    for ball in balls:
+        link_a, link_b, p, r = (
+            ball.find(f"{_DRAKE}ball_constraint_{each}") for each in ("body_A", "body_B", "p_AP", "p_BQ")
+        )
+        ends = [
+            there.pose(link.get("name")) @ [*map(float, point.get("value").split()), 1.0]
+            for link, point in ((link_a, p), (link_b, r))
+        ]
+        np.testing.assert_allclose(ends[0], ends[1], atol=1e-6)
+    assert len(balls) == sum(CONSTRAINTS[each.type] for each in robot.mechanism.closures)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", NAMES)
+def test_robot_of_the_collection_is_the_same_in_drake(name: str) -> None:
+    robot = without_armature(eurdf.load(name, geometry=False))
+    export = eurdf.export(robot, "drake")
+    q = robot.configurations["assembled"]
+    assert_balls_are_closed(robot, export, q)
+    v = np.random.default_rng(0).uniform(-0.3, 0.3, robot.model.nv)
+    assert_same_in_drake(robot, export, pin.integrate(robot.model, q, v))
+
+
+@given(seed=st.integers(0, 2**32 - 1), root=st.sampled_from(["fixed", "floating"]))
+@settings(max_examples=10)
+def test_random_robot_is_the_same_in_drake(seed: int, root: Any) -> None:
+    robot, q = random_robot(seed, root)
+    robot = without_armature(robot)
+    export = eurdf.export(robot, "drake")
+    assert_balls_are_closed(robot, export, q)
+    assert_same_in_drake(robot, export, q)
+
+
+LIMIT = '<limit lower="-1" upper="2" effort="7" velocity="3"/>'
+BODY = inertial(1.5, '<origin xyz="0.1 0.2 0.3"/>')
+ARM = robot_element(
+    link_element("world"),
+    link_element("upper", BODY),
+    link_element("fore", BODY),
+    joint_element("shoulder", "revolute", "world", "upper", LIMIT + '<dynamics damping="0.2" friction="0.1"/>'),
+    joint_element("elbow", "revolute", "upper", "fore", LIMIT),
+)
+DESCRIPTION = """\
+extended_urdf: "2.1"
+joints:
+  elbow: {type: spherical}
+  shoulder: {stiffness: 30}
+actuators:
+  - {joint: shoulder, gear_ratio: 5, rotor_inertia: 0.01, control: [-4, 6]}
+  - elbow
+"""
+
+
+def test_motor_has_rotor_gear_and_effort_limit() -> None:
+    export = eurdf.export(DESCRIPTION, "drake", urdf=ARM)
+    there = InDrake(eurdf.load(DESCRIPTION, urdf=ARM), export)
+    actuator = there.plant.GetJointActuatorByName("shoulder")
+    assert (actuator.default_gear_ratio(), actuator.default_rotor_inertia()) == (5.0, 0.01)
+    assert actuator.effort_limit() == 7.0
+    shoulder = there.plant.GetJointByName("shoulder")
+    assert (shoulder.position_lower_limits()[0], shoulder.velocity_upper_limits()[0]) == (-1.0, 3.0)
+    assert shoulder.default_damping_vector()[0] == 0.2
+    lost = {(loss.code, loss.name) for loss in export.losses}
+    assert {
+        ("export-actuator", "elbow"),
+        ("export-control-range", "shoulder"),
+        ("export-friction", "shoulder"),
+        ("export-spring", "shoulder"),
+    } <= lost
+
+
+def test_armature_without_motor_is_a_loss() -> None:
+    description = (
+        'extended_urdf: "2.0"\njoints: {shoulder: {armature: 0.3}, elbow: {armature: 0.2}}\nactuators: [elbow]\n'
+    )
+    export = eurdf.export(description, "drake", urdf=ARM)
+    assert [loss.name for loss in export.losses if loss.code == "export-armature"] == ["shoulder"]
+    robot = eurdf.load(description, urdf=ARM)
+    there = InDrake(robot, export)
+    there.at(pin.neutral(robot.model))
+    difference = eurdf.mass_matrix(robot, pin.neutral(robot.model)) - there.mass_matrix
+    np.testing.assert_allclose(difference, np.diag([0.3, 0.0]), atol=1e-12)
+
+
+def test_link_called_world_is_renamed_if_it_moves() -> None:
+    description = 'extended_urdf: "2.0"\nroot: floating\n'
+    export = eurdf.export(description, "drake", urdf=ARM)
+    assert [loss.message for loss in export.losses if loss.code == "export-name"] == ["becomes 'world_'"]
+    there = InDrake(eurdf.load(description, urdf=ARM), export)
+    assert there.plant.num_velocities() == 8
+
+
+def test_missing_distance_is_a_loss_with_its_points() -> None:
+    robot, _ = random_robot(3)
+    (closure,) = (each for each in robot.mechanism.closures if each.type == "distance")
+    (loss,) = (loss for loss in eurdf.export(robot, "drake").losses if loss.code == "export-distance-closure")
+    assert loss.name == closure.name
+    assert str(closure.length) in loss.message
+
+
+@pytest.mark.parametrize("name", ["four_bar", "delta", "digit_leg"])
+def test_loops_stay_closed_in_drake(name: str) -> None:
+    from pydrake.systems.analysis import Simulator
+
+    robot = eurdf.load(name, geometry=False)
+    there = InDrake(robot, eurdf.export(name, "drake"))
+    simulator = Simulator(there.plant)
+    context = there.plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
+    there.plant.SetPositions(context, there.coordinates.to_q(robot.configurations["assembled"]))
+    opening = 0.0
+    for time in np.linspace(0.02, 1.0, 50):
+        simulator.AdvanceTo(time)
+        q = there.coordinates.from_q(there.plant.GetPositions(context))
+        opening = max(opening, np.abs(eurdf.residual(robot, q)).max())
+    assert opening < 1e-3
