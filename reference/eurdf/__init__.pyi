@@ -75,6 +75,10 @@ from eurdf.pinocchio.robot import Robot as Robot
 from eurdf.transmissions.exceptions import DependentVelocities as DependentVelocities
 from eurdf.transmissions.exceptions import NoTransmission as NoTransmission
 from eurdf.transmissions.exceptions import OutOfReach as OutOfReach
+from eurdf.transmissions.impedance import Impedance as Impedance
+from eurdf.transmissions.impedance import impedance_map as impedance_map
+from eurdf.transmissions.inertia import ReflectedInertia as ReflectedInertia
+from eurdf.transmissions.inertia import reflected_inertia as reflected_inertia
 from eurdf.transmissions.limits import CommonLimits as CommonLimits
 from eurdf.transmissions.limits import SerialLimits as SerialLimits
 from eurdf.transmissions.limits import serial_limits as serial_limits

@@ -27,6 +27,8 @@ TAKE_NAMES = {
     "load": lambda given: eurdf.load("four_bar", package_dirs=given).model.nq,
     "export": lambda given: eurdf.export("four_bar", "mjcf", package_dirs=given).coordinates.nq,
     "joint_values": lambda given: len(eurdf.joint_values(four_bar(), {"motor_crank": 1.0}, joints=given).values),
+    "impedance_map": lambda given: eurdf.impedance_map(four_bar(), given, None, [1.0]).motor_stiffness[0, 0],
+    "reflected_inertia": lambda given: eurdf.reflected_inertia(four_bar(), given).total[0, 0],
     "serial_limits": lambda given: eurdf.serial_limits(four_bar(), given).torque_box[0],
     "transmission": lambda given: eurdf.transmission(four_bar(), given).joints == ("motor_crank",),
     "prepare_transmission": lambda given: eurdf.prepare_transmission(four_bar(), given).joints == ("motor_crank",),

@@ -39,6 +39,7 @@ CALLS: dict[str, dict[str, Any]] = {
         "gains": 2,
     },
     "forward_kinematics": {"actuated": {"motor_crank": 1}, "q0": "q"},
+    "impedance_map": {"joints": "free_rocker", "q": "q", "stiffness": 1, "damping": 1, "tau": 1},
     "inverse_dynamics": {
         "q": "q",
         "v": "v",
@@ -55,6 +56,7 @@ CALLS: dict[str, dict[str, Any]] = {
     "project_acceleration": {"q": "q", "v": "v", "a": "v", "weights": "v"},
     "project_configuration": {"q": "q", "weights": "v"},
     "project_velocity": {"q": "q", "v": "v", "weights": "v"},
+    "reflected_inertia": {"joints": "free_rocker", "q": "q"},
     "residual": {"q": "q"},
     "residual_and_jacobian": {"q": "q"},
     "serial_limits": {"joints": "free_rocker", "q": "q", "torque_ratio": 1, "velocity_ratio": 1},
@@ -169,7 +171,8 @@ def test_wrong_array_is_a_value_error(name: str, parameter: str) -> None:
             refused(name, parameter, {key: bad}, rf"{parameter}\['{key}'\]", len(values), what)
         return
     for what, bad in wrong(len(given)).items():
-        if not (parameter == "actuated" and what == "mapping"):
+        # A mapping gives coordinates by name; a column of one number is also a matrix.
+        if (parameter, what) not in {("actuated", "mapping"), ("stiffness", "column"), ("damping", "column")}:
             refused(name, parameter, bad, parameter, len(given), what)
 
 

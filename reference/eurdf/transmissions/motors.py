@@ -70,7 +70,7 @@ def springs_of(robot: Robot) -> Indices:
 def passive_joints_of(robot: Robot, motors: Selection) -> tuple[str, ...]:
     """The joints, not actuated, in loops that these motors move."""
     found: set[int] = set()
-    for own, by in _driven_loops(robot):
+    for own, by in driven_loops(robot):
         if by & set(motors.velocities.tolist()):
             found |= own
     return tuple(name for name, slot in robot.slots.items() if slot.idx_v in found)
@@ -79,11 +79,11 @@ def passive_joints_of(robot: Robot, motors: Selection) -> tuple[str, ...]:
 def _in_loops_of(robot: Robot, velocities: Indices) -> Mask:
     """Which actuated velocities (nu,) move loops that these velocities close while the actuators are held."""
     wanted = set(velocities.tolist())
-    found = {velocity for own, by in _driven_loops(robot) if own & wanted for velocity in by}
+    found = {velocity for own, by in driven_loops(robot) if own & wanted for velocity in by}
     return np.isin(robot.actuation.idx_v, sorted(found))
 
 
-def _driven_loops(robot: Robot) -> list[tuple[set[int], set[int]]]:
+def driven_loops(robot: Robot) -> list[tuple[set[int], set[int]]]:
     """Groups of loops while the actuators are held: the velocities that close each, and the actuated ones in it."""
     tree, loops, actuated = robot.tree, find_loops(robot), set(robot.actuation.idx_v.tolist())
     found = []
