@@ -88,8 +88,12 @@ from eurdf.transmissions.positions import actuator_values as actuator_values
 from eurdf.transmissions.positions import joint_values as joint_values
 from eurdf.transmissions.prepared import PreparedTransmission as PreparedTransmission
 from eurdf.transmissions.prepared import prepare_transmission as prepare_transmission
+from eurdf.transmissions.reach import Stop as Stop
 from eurdf.transmissions.transmission import Transmission as Transmission
 from eurdf.transmissions.transmission import Transmissions as Transmissions
 from eurdf.transmissions.transmission import transmission as transmission
+from eurdf.transmissions.workspace import BoundaryPoint as BoundaryPoint
+from eurdf.transmissions.workspace import Workspace as Workspace
+from eurdf.transmissions.workspace import workspace as workspace
 
 __version__: str

@@ -31,6 +31,9 @@ TAKE_NAMES = {
     "reflected_inertia": lambda given: eurdf.reflected_inertia(four_bar(), given).total[0, 0],
     "serial_limits": lambda given: eurdf.serial_limits(four_bar(), given).torque_box[0],
     "transmission": lambda given: eurdf.transmission(four_bar(), given).joints == ("motor_crank",),
+    "workspace": lambda given: (
+        eurdf.workspace(four_bar(), given, grid=3, ranges={"motor_crank": (-0.1, 0.1)}).joints == ("motor_crank",)
+    ),
     "prepare_transmission": lambda given: eurdf.prepare_transmission(four_bar(), given).joints == ("motor_crank",),
 }
 

@@ -67,6 +67,7 @@ CALLS: dict[str, dict[str, Any]] = {
     "split_velocity": {"v": "v"},
     "actuator_values": {"joints": {"free_rocker": -0.1}, "q0": "q"},
     "joint_values": {"motors": {"motor_crank": 1}, "q0": "q"},
+    "workspace": {"joints": "free_rocker", "q": "q", "grid": 3},
     "prepare_transmission": {"joints": "free_rocker", "q": "q"},
     "transmission": {"joints": "free_rocker", "q": "q"},
     "sweep": {"actuator": "motor_crank", "q0": "q"},
@@ -88,7 +89,7 @@ def valid(name: str) -> dict[str, Any]:
     """The arguments of a valid call."""
     arguments = {}
     for parameter, given in CALLS[name].items():
-        if parameter in ("frame", "actuator", "joints", "duration"):
+        if parameter in ("frame", "actuator", "joints", "duration", "grid"):
             arguments[parameter] = given
         elif isinstance(given, Mapping):
             arguments[parameter] = {key: np.ones(size) for key, size in given.items()}

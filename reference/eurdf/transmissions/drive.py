@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eurdf.kinematics.array import Indices, Matrix, Vector
-from eurdf.kinematics.derived import derived
+from eurdf.kinematics.assembly import Assembler, start
+from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.evaluation import Evaluation
+from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.forward_kinematics import forward_kinematics
 from eurdf.kinematics.least_solution import least_solution
 from eurdf.kinematics.loop import LoopGroup, find_loops, independent_groups, joints_of_loops, merged
@@ -217,3 +219,22 @@ def _moved_groups(robot: Robot, driven: Sequence[int], held: Sequence[int]) -> l
         if not set(driven).isdisjoint(velocity for joint in joints for velocity in tree.moving_velocities[joint]):
             found.append(group)
     return found
+
+
+def closed_pose(robot: Robot, q: Vector | None) -> Vector:
+    """A configuration, with its loops closed.
+
+    Raises:
+        NotClosable: They cannot be closed there.
+        ValueError: It is not a configuration.
+    """
+    first = start(robot, q, "q")
+    with borrowed(robot, Assembler) as assembler:
+        assembler.tolerance, assembler.limits = CLOSED, None
+        closed = assembler.closed(first)
+        if closed is not None:
+            return closed
+        assembly = assembler.assemble(first)
+    if not assembly.closes:
+        raise NotClosable("no closed configuration was found near q", assembly.open, assembly.q)
+    return assembly.q

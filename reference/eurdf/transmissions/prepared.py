@@ -8,11 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from eurdf.kinematics.array import Matrix, Vector
-from eurdf.kinematics.assembly import Assembler, start
-from eurdf.kinematics.derived import borrowed
-from eurdf.kinematics.exceptions import NotClosable
 from eurdf.transmissions.c_source import CSource, c_source
-from eurdf.transmissions.drive import CLOSED, Drive
+from eurdf.transmissions.drive import Drive, closed_pose
 from eurdf.transmissions.exceptions import NoTransmission
 from eurdf.transmissions.joint_coordinates import JointCoordinates, coordinates_of
 from eurdf.transmissions.motors import motors_of
@@ -79,7 +76,7 @@ class PreparedTransmission:
             NotClosable: The loops cannot be closed near q.
             ValueError: ``q`` is not a configuration.
         """
-        self._q = _closed(self._at.robot, q)
+        self._q = closed_pose(self._at.robot, q)
         self._angles.clear()
 
     def at_joints(self, positions: Vector) -> MotorSide:
@@ -181,24 +178,5 @@ def prepare_transmission(
     """
     serial = selection(robot, joints)
     side = motors_of(robot, serial) if motors is None else selection(robot, motors, "motors")
-    at = at_one(robot, serial, _closed(robot, q), side)
+    at = at_one(robot, serial, closed_pose(robot, q), side)
     return PreparedTransmission(at, coordinates_of(robot, serial), coordinates_of(robot, side))
-
-
-def _closed(robot: Robot, q: Vector | None) -> Vector:
-    """A configuration, with its loops closed.
-
-    Raises:
-        NotClosable: They cannot be closed there.
-        ValueError: It is not a configuration.
-    """
-    first = start(robot, q, "q")
-    with borrowed(robot, Assembler) as assembler:
-        assembler.tolerance, assembler.limits = CLOSED, None
-        closed = assembler.closed(first)
-        if closed is not None:
-            return closed
-        assembly = assembler.assemble(first)
-    if not assembly.closes:
-        raise NotClosable("no closed configuration was found near q", assembly.open, assembly.q)
-    return assembly.q

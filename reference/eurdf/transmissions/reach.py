@@ -1,0 +1,145 @@
+"""Which positions of the serial joints can be reached from others, and what stops the joints."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
+from eurdf.kinematics.batch.forward_kinematics import forward_kinematics
+from eurdf.kinematics.position_limit import BEYOND, position_limits
+from eurdf.pinocchio.robot import build_robot
+from eurdf.transmissions.joint_coordinates import coordinates_of
+from eurdf.transmissions.selection import Selection
+from eurdf.transmissions.transmission import at_many
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+#: What stops the serial joints: the range that is looked at, or their own limits; the limit of a motor, or of a passive
+#: joint; a pose at which motors do not hold the joints; or one beyond which the loops do not close.
+StopKind = Literal["range", "joint", "motor", "passive", "singular", "not closed"]
+
+Side = Literal["lower", "upper"]
+_SIDES: tuple[Side, Side] = ("lower", "upper")
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """What stops the serial joints at a point of the boundary.
+
+    Attributes:
+        kind: What it is.
+        joint: Name of the joint at its limit; empty if none is.
+        side: Which limit; None if there is none.
+    """
+
+    kind: StopKind
+    joint: str = ""
+    side: Side | None = None
+
+    def __str__(self) -> str:
+        words = {"singular": "singular pose", "not closed": "the loops do not close beyond"}
+        end = "end of the range" if self.kind == "range" else "limit"
+        return words.get(self.kind, f"{self.side} {end} of '{self.joint}'")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Examined:
+    """What was found at B positions.
+
+    Attributes:
+        q: Configurations (B, nq).
+        reached: Whether the joints can be there (B,).
+        stop: Index (B,) in `Reach.stops`; -1 where they can.
+    """
+
+    q: Matrix
+    reached: Mask
+    stop: Indices
+
+
+class Reach:
+    """Moves the serial joints of a robot along straight paths, many at once.
+
+    Attributes:
+        stops: Everything that can stop them.
+    """
+
+    def __init__(self, robot: Robot, joints: Selection, motors: Selection, q: Vector, axes: tuple[Vector, ...]) -> None:
+        """Take a robot, a pose (nq,) at which the joints can be, and for each joint its range, from first to last."""
+        self._robot, self._joints, self._motors = robot, joints, motors
+        driven = replace(robot.mechanism, actuators=joints.joints, motors={})
+        self._driven = build_robot(driven, geometry=False)
+        self._coordinates = coordinates_of(robot, joints)
+        self._limits = position_limits(robot)
+        nv = robot.tree.nv
+        self.stops = [self._at_limit(v, side) for side in _SIDES for v in range(nv)]
+        self.stops += [Stop("singular"), Stop("not closed")]
+        self._singular, self._not_closed = 2 * nv, 2 * nv + 1
+        self._lower, self._upper = np.array([(axis[0], axis[-1]) for axis in axes]).T
+        own = self._limits.lower[joints.velocities] == self._lower, self._limits.upper[joints.velocities] == self._upper
+        for side, is_limit in zip(_SIDES, own, strict=True):
+            for name, limit in zip(joints.names, is_limit.tolist(), strict=True):
+                self.stops.append(Stop("joint" if limit else "range", name, side))
+        self._sign = self._signs(q[None])[0]
+
+    def at(self, q: Matrix) -> Matrix:
+        """Positions (B, nJ) of the joints."""
+        return np.array([self._coordinates.read(each) for each in q])
+
+    def examine(self, q: Matrix, positions: Matrix) -> Examined:
+        """Move the joints from configurations (B, nq) to positions (B, nJ)."""
+        over = np.concatenate((self._lower - positions, positions - self._upper), axis=1)
+        stop = np.where(over.max(axis=1) > BEYOND, self._not_closed + 1 + over.argmax(axis=1), -1)
+        end, left = q.copy(), np.flatnonzero(stop < 0)
+        found = forward_kinematics(self._driven, self._values(positions[left]), q[left])
+        end[left] = found.q
+        stop[left[~found.converged]] = self._not_closed
+        left = left[found.converged]
+        beyond, worst = self._beyond(end[left])
+        stop[left[beyond]] = worst[beyond]
+        left = left[~beyond]
+        stop[left[self._signs(end[left]) != self._sign]] = self._singular
+        return Examined(end, stop < 0, stop)
+
+    def beyond_limits(self, q: Vector) -> Stop | None:
+        """The limit that a configuration (nq,) is beyond, if it is."""
+        beyond, worst = self._beyond(q[None])
+        return self.stops[int(worst[0])] if beyond[0] else None
+
+    def _values(self, positions: Matrix) -> Matrix:
+        """Positions (B, nJ) as the driven robot's actuated coordinates (B, nu)."""
+        circular = self._coordinates.circular
+        if not circular.any():
+            return positions
+        columns = []
+        for column, turns in zip(positions.T, circular.tolist(), strict=True):
+            columns += [np.cos(column), np.sin(column)] if turns else [column]
+        return np.stack(columns, axis=1)
+
+    def _beyond(self, q: Matrix) -> tuple[Mask, Indices]:
+        """Whether configurations are beyond position limits, and the index of the stop that they are most beyond."""
+        limits = self._limits
+        own = q[:, limits.coordinates]
+        over = np.concatenate((limits.lower - own, own - limits.upper), axis=1)
+        return over.max(axis=1, initial=-np.inf) > BEYOND, over.argmax(axis=1)
+
+    def _signs(self, q: Matrix) -> Vector:
+        """Sign of det G (B,), which changes where motors do not hold the joints; 0 where there is no G or B_J."""
+        at = at_many(self._robot, self._joints, q, self._motors)
+        holds = np.isfinite(at.condition) & np.isfinite(at.B_J).all(axis=(1, 2))
+        sign = np.zeros(len(q))
+        G = at.G[holds]
+        sign[holds] = np.sign(np.linalg.det(G)) if len(self._joints) == len(self._motors) else 1.0
+        return sign
+
+    def _at_limit(self, velocity: int, side: Side) -> Stop:
+        kind: StopKind = "passive"
+        if velocity in self._joints.velocities:
+            kind = "joint"
+        elif velocity in self._robot.actuation.idx_v:
+            kind = "motor"
+        return Stop(kind, self._limits.joints[velocity], side)
