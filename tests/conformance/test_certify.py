@@ -243,7 +243,7 @@ def test_missing_packages_of_the_suite_are_named(
 def test_a_missing_suite_is_reported_with_how_to_install_it(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("eurdf.commands.certify.entry_points", lambda **_: ())
+    monkeypatch.setattr("importlib.metadata.entry_points", lambda **_: ())
     assert main(["certify", "--parser", ACCEPTS]) == 2
     said = capsys.readouterr().err
     assert said.startswith("eurdf: the conformance suite is not installed; install it with: ")

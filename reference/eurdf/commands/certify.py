@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Sequence
-from importlib.metadata import entry_points
 
 from eurdf.commands.cannot_run import CannotRun
 
@@ -26,6 +25,8 @@ def run(args: argparse.Namespace) -> int:
     Raises:
         CannotRun: The suite is not installed.
     """
+    from importlib.metadata import entry_points
+
     found = tuple(entry_points(group=GROUP, name="certify"))
     if not found:
         from eurdf.diagnostics.extras import install_suite_command

@@ -12,12 +12,10 @@ from eurdf.kinematics.array import Vector
 from eurdf.kinematics.residual import residual
 from eurdf.linking.configurations import within_limits
 from eurdf.linking.description import Described
-from eurdf.linking.rereading import reread
 from eurdf.mechanism.joint_type import COORDINATES, JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.pinocchio.configuration import configuration_vector
 from eurdf.pinocchio.robot import Robot
-from eurdf.writing.edit_configuration import with_configuration
 
 NAME = "assembled"
 
@@ -94,6 +92,10 @@ def with_assembled(description: Described, robot: Robot, q: Vector) -> tuple[str
     Raises:
         NotEditable: The file has a form in which the configuration cannot be changed alone.
     """
+    # Only now: `eurdf check` uses other functions of this module.
+    from eurdf.linking.rereading import reread
+    from eurdf.writing.edit_configuration import with_configuration
+
     document = description.extension.document
     exact = robot.coordinates(q)
     enough = max(CLOSED_IN_FULL, _largest_row(robot, q))

@@ -9,15 +9,11 @@ from typing import Any
 
 from eurdf.diagnostics import FileError
 from eurdf.diagnostics.lines import BREAK
-from eurdf.format.version2 import Version2
+from eurdf.format.conforms import keys_of
 from eurdf.format.yaml_text import Value, flow, lines_of
 from eurdf.reading.source import Source
 from eurdf.reading.yaml_node import Collection, Node, Span
 from eurdf.reading.yaml_reader import YamlDocument, read_yaml
-
-# The keys that come before the configurations.
-_BEFORE = tuple(takewhile(lambda key: key != "configurations", Version2.model_fields))
-
 
 class NotEditable(Exception):  # noqa: N818 - shown to the user as it is
     """The file has a form in which the configuration cannot be changed without changing something else."""
@@ -58,7 +54,8 @@ class _Edit:
     def stated(self, name: str, value: dict[str, Value]) -> str:
         configurations = self._root.nodes.get("configurations")
         if configurations is None:
-            last = [key for key in self._root.nodes if key in _BEFORE][-1]
+            before = tuple(takewhile(lambda key: key != "configurations", keys_of("2.0")))
+            last = [key for key in self._root.nodes if key in before][-1]
             self._add(self._root, last, {"configurations": {name: value}})
         elif not isinstance(configurations, Collection):
             raise NotEditable("'configurations' is an alias")
