@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 import eurdf
 from eurdf.kinematics.analysis import analyze
-from eurdf.kinematics.residual import closure_openings, residual, residual_and_jacobian
+from eurdf.kinematics.residual import closure_openings, openings_once, residual, residual_and_jacobian
 from eurdf.pinocchio.frame_pairs import FramePairs, PathMemory
 from support.branching import JOINTS, MIMIC, branching, far_from_half_a_turn, somewhere
 from support.linkage import Linkage, closure, n_bar, swapped, translation
@@ -229,6 +229,27 @@ def test_opening_is_distance_and_angle() -> None:
     assert welded.angle == pytest.approx(0.5)
     assert pinned.position == pytest.approx(5.0)
     assert pinned.angle == 0.0
+
+
+@given(seed=seeds, kinds=st.lists(st.sampled_from(sorted(JOINTS)), min_size=3, max_size=9))
+@settings(max_examples=20, deadline=None)
+def test_openings_at_once_equal_those_in_memory(seed: int, kinds: list[str]) -> None:
+    random = np.random.default_rng(seed)
+    linkage = branching([JOINTS[kind]() for kind in kinds], random)
+    q = somewhere(linkage.model, random)
+    assume(far_from_half_a_turn(linkage, q))
+    once, kept = (
+        np.array([(each.position, each.angle) for each in openings(linkage, q)])
+        for openings in (openings_once, closure_openings)
+    )
+    np.testing.assert_allclose(once, kept, rtol=0.0, atol=1e-10)
+
+
+def test_openings_at_once_do_not_depend_on_place_of_root() -> None:
+    robot = eurdf.load("digit_leg", root="floating", geometry=False)
+    q = robot.configurations["assembled"]
+    q[:3] = 1e9, -1e9, 1e9
+    assert not any(opening.is_open for opening in openings_once(robot, q))
 
 
 def test_robot_without_closures_has_empty_residual() -> None:

@@ -32,11 +32,10 @@ def closure_diagnostics(description: Linked, robot: Robot, assembly: Assembly | 
     mechanism = description.mechanism
     if not isinstance(description, Described) or not mechanism.constraints:
         return diagnostics
-    # Only now: a description without closures is checked without a simulator.
-    from eurdf.kinematics.assembly import assemble
-
     if "assembled" in mechanism.configurations:
         return assembled_diagnostics(description, robot)
+    from eurdf.kinematics.assembly import assemble
+
     assembly = assemble(robot) if assembly is None else assembly
     if not assembly.closes:
         worst = max(assembly.open, key=_width)
@@ -67,10 +66,10 @@ def _hint_for_open(mechanism: Mechanism, name: str) -> str:
 
 def assembled_diagnostics(description: Described, robot: Robot) -> Diagnostics:
     """EU-CLO-005: at ``assembled`` every closure is closed."""
-    from eurdf.kinematics.residual import all_openings
+    from eurdf.kinematics.residual import openings_once
 
     diagnostics = Diagnostics()
-    openings = all_openings(robot, robot.configurations["assembled"])
+    openings = openings_once(robot, robot.configurations["assembled"])
     if any(opening.is_open for opening in openings):
         diagnostics.report(
             "assembled-open",

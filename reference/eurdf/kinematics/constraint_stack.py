@@ -59,6 +59,10 @@ class ConstraintStack:
         """Memory to evaluate the constraints in."""
         return self._pairs.memory()
 
+    def openings_once(self, q: Vector) -> list[tuple[float, float]]:
+        """As `openings`, at q (nq,), sooner than memory to evaluate the constraints in is made."""
+        return self.openings(State(q, self._pairs.placements_once(q)))
+
     def at(self, q: Vector, memory: PairMemory) -> State:
         """The constraints at q (nq,); another configuration in the same memory makes the state invalid."""
         return State(q, memory.placements(q), memory)

@@ -110,6 +110,13 @@ def all_openings(robot: Robot, q: Vector) -> tuple[Opening, ...]:
     return tuple(Opening(of.name, *opening) for of, opening in zip(stack.constraints, found, strict=True))
 
 
+def openings_once(robot: Robot, q: Vector) -> tuple[Opening, ...]:
+    """As `all_openings`, sooner if nothing else is evaluated of the robot."""
+    stack = all_constraints(robot)
+    found = stack.openings_once(q)
+    return tuple(Opening(of.name, *opening) for of, opening in zip(stack.constraints, found, strict=True))
+
+
 @contextmanager
 def _evaluated(robot: Robot, q: Vector) -> Iterator[tuple[ConstraintStack, State]]:
     stack, q = all_constraints(robot), checked_array("q", q, (robot.tree.nq,))

@@ -92,6 +92,9 @@ class FramePairs(Protocol):
     def memory(self) -> PairMemory:
         """Memory to compute in."""
 
+    def placements_once(self, q: Vector) -> Sequence[Any]:
+        """ᴬM_B of each pair at q (nq,), without memory."""
+
 
 class TreeKinematics(Protocol):
     """Kinematics and dynamics of a spanning tree, whose joints are numbered from the root, number 0, to the leaves."""

@@ -67,6 +67,27 @@ class FramePairs:
         """Memory to compute in."""
         return PartMemories(self)
 
+    def placements_once(self, q: Vector) -> list[Any]:
+        """ᴬM_B of each pair at q (nq,), without memory for other configurations, which takes longer to make."""
+        model, parents = self.model, self._parents
+        needed: set[int] = set()
+        for pair in self.pairs:
+            for joint, _ in pair:
+                while joint and joint not in needed:
+                    needed.add(joint)
+                    joint = parents[joint]
+        order = sorted(needed)  # a parent has a lower index than its child
+        joints, placements = model.joints, model.jointPlacements
+        oMi = {0: pin.SE3.Identity()}
+        if all(a and b for (a, _), (b, _) in self.pairs) and sum(not parents[joint] for joint in order) == 1:
+            oMi[order.pop(0)] = oMi[0]  # what carries all frames does not matter, however far away it moves
+        for joint in order:
+            moving = joints[joint]
+            data = moving.createData()
+            moving.calc(data, q)
+            oMi[joint] = oMi[parents[joint]] * placements[joint] * data.M
+        return [(oMi[a] * aMf).actInv(oMi[b] * bMf) for (a, aMf), (b, bMf) in self.pairs]
+
     @cached_property
     def parts(self) -> list[Part]:
         """The pairs, divided among models that share no joint."""

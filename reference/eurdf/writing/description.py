@@ -13,7 +13,7 @@ from typing import Any, Literal, cast
 
 from lxml import etree
 
-from eurdf.format.field import is_own_key
+from eurdf.format.own_key import is_own_key
 from eurdf.format.yaml_text import Entry, Value, lines_of, lines_of_item, modeline, section, text_of
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, HingeClosure

@@ -15,6 +15,7 @@ from eurdf.reading.source import Source
 from eurdf.reading.yaml_node import Collection, Node, Span
 from eurdf.reading.yaml_reader import YamlDocument, read_yaml
 
+
 class NotEditable(Exception):  # noqa: N818 - shown to the user as it is
     """The file has a form in which the configuration cannot be changed without changing something else."""
 

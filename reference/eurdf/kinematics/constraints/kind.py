@@ -25,12 +25,12 @@ class State:
     Attributes:
         q: The configuration (nq,).
         placements: ᴬM_B of each pair of frames of the stack there, as `pin.SE3`.
-        memory: Where they were computed.
+        memory: Where they were computed; None where no derivative is asked for.
     """
 
     q: Vector
     placements: Sequence[Any]
-    memory: PairMemory
+    memory: PairMemory | None = None
 
 
 class Kind(ABC, Generic[AnyConstraint]):
@@ -95,6 +95,7 @@ class Closures(Kind[AnyClosure]):
 
     def jacobian(self, at: State) -> Matrix:
         """See `Kind`."""
+        assert at.memory is not None
         return at.memory.jacobian(self.rows_of_twist(self._placements(at)), self.which)
 
     def drift(self, motions: RelativeMotions) -> Matrix:
