@@ -35,7 +35,7 @@ _EPILOG = ending(
 
 #: Names of the formats, and of what actuators and mesh files become. They are checked against `eurdf.exporting` by the
 #: tests: importing it here would slow every command down.
-FORMATS = ("mjcf", "usd", "drake", "loop-joint", "urdf")
+FORMATS = ("mjcf", "usd", "drake", "loop-joint", "sdf", "urdf")
 ACTUATORS = ("motor", "position", "none")
 MESH_FILES = ("copy", "reference")
 

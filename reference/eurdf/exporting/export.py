@@ -103,7 +103,7 @@ def export(
 
     Args:
         robot: What `eurdf.load` takes, or a robot that it returned, with the geometry that it was loaded with.
-        to: Name of the format: ``mjcf``, ``usd``, ``drake``, ``loop-joint`` or ``urdf``.
+        to: Name of the format: ``mjcf``, ``usd``, ``drake``, ``loop-joint``, ``sdf`` or ``urdf``.
         urdf: As for `eurdf.load`; only if `robot` is not loaded yet, as all below but the next four.
         root: As for `eurdf.load`.
         configuration: Name of the configuration to start a simulation from. If the description has none of the name

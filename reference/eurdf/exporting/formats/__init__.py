@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eurdf.exporting.formats import drake, loop_joint, mjcf, urdf, usd
+from eurdf.exporting.formats import drake, loop_joint, mjcf, sdf, urdf, usd
 from eurdf.exporting.written import Format
 
 #: Every format, by name. A new one is a file here and its line.
@@ -13,6 +13,7 @@ FORMATS: dict[str, Format] = {
         usd.FORMAT,
         drake.FORMAT,
         loop_joint.FORMAT,
+        sdf.FORMAT,
         urdf.FORMAT,
     )
 }
