@@ -225,7 +225,7 @@ class _Writer:
         #: Names of links, and poses at the configuration of the file in the world.
         self.links = {body.name: self._new(body.name) for body in self.mechanism.bodies}
         self.poses: dict[str, Pose] = {}
-        #: By joint with one axis, that axis; its name is that of the joint.
+        #: By joint with axes, the last one: the axis of one that can mimic or be coupled.
         self.axes: dict[str, etree._Element] = {}
         self.joints: dict[str, str] = {}
         self.parts: list[Part] = []
@@ -387,12 +387,12 @@ class _Writer:
             if step.type == "screw":
                 _add(element, "screw_thread_pitch").text = _text((joint.pitch,))
             for tag, axis in zip(("axis", "axis2"), step.axes, strict=False):
-                self._axis(joint, _add(element, tag), axis, at[axis.index])
+                stated = _add(element, tag)
+                self._axis(joint, stated, axis, at[axis.index])
+                self.axes[joint.name] = stated
             names.append(name)
             parent, placement = child, IDENTITY
         self.joints[joint.name] = names[0]
-        if len(steps) == 1 and len(steps[0].axes) == 1:
-            self.axes[joint.name] = self.model.findall("joint")[-1].find("axis")
         self.poses[body.name] = self.poses[joint.parent] * joint.placement * joint_transform(joint, at) * joint.offset
         if joint.type is not JointType.FIXED:
             self.parts.append(self._part(joint, names, at))
