@@ -101,3 +101,21 @@ class Beside:
         np.testing.assert_allclose(
             eurdf.mass_matrix(robot, q), T.T @ M @ T, rtol=1e-9, atol=1e-9 * max(1.0, np.abs(M).max())
         )
+
+    def assert_same_openings(self, q: Any) -> None:
+        """How far each closure and coupling is open: the norm of MuJoCo's rows, of each point of a hinge the first."""
+        data = self.data
+        rows = data.efc_id[: data.ne]
+        for opening, constraint in zip(
+            eurdf.closure_openings(self.robot, q), self.robot.mechanism.constraints, strict=True
+        ):
+            mine = data.efc_pos[: data.ne][rows == self.model.equality(constraint.name).id]
+            assert len(mine), constraint.name
+            if constraint.type == "coupling":
+                residual = eurdf.residual(self.robot, q)
+                at = sum(each.rows for each in self.robot.constraints[: self.robot.constraints.index(constraint)])
+                np.testing.assert_allclose(abs(residual[at]), abs(mine[0]), atol=1e-9)
+                continue
+            np.testing.assert_allclose(opening.position, np.linalg.norm(mine[:3]), atol=1e-9)
+            if constraint.type == "6d":
+                np.testing.assert_allclose(opening.angle, 2.0 * np.arcsin(np.linalg.norm(mine[3:])), atol=1e-9)

@@ -62,6 +62,7 @@ class Import:
         start: The configuration of the file that the loops were assembled from.
         opened: How far each closure was open there, before assembling.
         closes: Whether all loops close, in the configuration ``assembled``.
+        sources: Every file that was read, the main one first.
     """
 
     format: str
@@ -71,6 +72,7 @@ class Import:
     start: str
     opened: tuple[Opening, ...]
     closes: bool
+    sources: tuple[Path, ...]
 
     def write(self, folder: str | os.PathLike[str], *, force: bool = False) -> tuple[Path, ...]:
         """Write the files to a folder: all of them or none.
@@ -157,7 +159,7 @@ def _import(format_: str, path: Path, read: RobotRead) -> Import:
     )
     found_losses = (*read.losses, *losses.found)
     files = _files(path, format_, mechanism, read, found_losses, opened)
-    return Import(format_, mechanism, found_losses, MappingProxyType(files), start, opened, closes)
+    return Import(format_, mechanism, found_losses, MappingProxyType(files), start, opened, closes, read.sources)
 
 
 def _without_open_assembled(mechanism: Mechanism, losses: Losses) -> Mechanism:

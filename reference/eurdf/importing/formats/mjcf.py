@@ -787,7 +787,9 @@ class _Reader:
         found: dict[frozenset[tuple[str, Pose]], Closure] = {}
         for closure in closures:
             pair = frozenset((end.body, end.pose) for end in (closure.a, closure.b))
-            if rigid[closure.a.body] == rigid[closure.b.body] or pair in found:
+            if pair in found and found[pair].type != closure.type:
+                self.losses.add("import-equality", closure.name, "is left out: another one joins the same two frames")
+            elif rigid[closure.a.body] == rigid[closure.b.body] or pair in found:
                 self.losses.add("import-redundant-equality", closure.name)
             else:
                 found[pair] = closure
@@ -810,11 +812,12 @@ class _Reader:
             if len(coefficients) < 2:
                 self._lock(coefficients, offset, stated)
                 continue
-            (first, c), *_ = coefficients.items()
+            (first, _), *_ = coefficients.items()
             if len(coefficients) == 2 and stated == f"{first}/mimic" and self._mimic(coefficients, offset):
                 self.losses.add("import-softness", first)
                 continue
-            direction = tuple(sorted((name, value / c) for name, value in coefficients.items()))
+            terms_ = sorted(coefficients.items())
+            direction = tuple((name, value / terms_[0][1]) for name, value in terms_)
             if direction in seen:
                 self.losses.add("import-redundant-equality", stated)
                 continue
