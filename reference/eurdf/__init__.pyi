@@ -15,9 +15,6 @@ from eurdf.exporting.coordinates import Coordinates as Coordinates
 from eurdf.exporting.exceptions import CannotExport as CannotExport
 from eurdf.exporting.export import Export as Export
 from eurdf.exporting.export import export as export
-from eurdf.importing.exceptions import CannotImport as CannotImport
-from eurdf.importing.import_robot import Import as Import
-from eurdf.importing.import_robot import import_robot as import_robot
 from eurdf.kinematics.analysis import Analysis as Analysis
 from eurdf.kinematics.analysis import LoopAnalysis as LoopAnalysis
 from eurdf.kinematics.analysis import Motion as Motion
@@ -98,5 +95,8 @@ from eurdf.transmissions.transmission import transmission as transmission
 from eurdf.transmissions.workspace import BoundaryPoint as BoundaryPoint
 from eurdf.transmissions.workspace import Workspace as Workspace
 from eurdf.transmissions.workspace import workspace as workspace
+from eurdf.viewing.shown import ShownRobot as ShownRobot
+from eurdf.viewing.view import view as view
+from eurdf.viewing.viewer import Viewer as Viewer
 
 __version__: str

@@ -9,11 +9,10 @@ import pytest
 
 from eurdf.commands.main import COMMANDS, main
 
-#: `import` is no name of a module.
-NAMES = [command.__name__.rpartition(".")[2].removesuffix("_robot") for command in COMMANDS]
+NAMES = [command.__name__.rpartition(".")[2] for command in COMMANDS]
 
 #: The commands that link a robot, and those that read a URDF alone.
-OF_ROBOTS = ("check", "info", "assemble", "export", "migrate")
+OF_ROBOTS = ("check", "info", "view", "assemble", "export", "migrate")
 OF_URDFS = ("generate", "schema")
 
 
@@ -64,4 +63,4 @@ def test_shared_options_have_the_same_help(capsys: pytest.CaptureFixture[str], m
         assert len({option(text, name) for text in texts}) == 1
     paths = [option(text, "PATH") for text in of_robots]
     assert all(path.startswith(paths[1]) for path in paths)
-    assert set(NAMES) == {*OF_ROBOTS, *OF_URDFS, "import", "robots", "certify"}
+    assert set(NAMES) == {*OF_ROBOTS, *OF_URDFS, "robots", "certify"}

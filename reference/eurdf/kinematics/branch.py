@@ -8,6 +8,7 @@ point, where K_p loses rank: there the actuator no longer determines the passive
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -65,16 +66,19 @@ class Point:
 class Branch:
     """Takes steps of one actuator of one robot."""
 
-    def __init__(self, robot: Robot, actuator: int, limits: PositionLimits | None) -> None:
+    def __init__(
+        self, robot: Robot, actuator: int, limits: PositionLimits | None, follow: Collection[int] = ()
+    ) -> None:
         """Prepare the loops that an actuator moves.
 
         Args:
             robot: The robot.
             actuator: Index in v of the actuator that is moved.
             limits: The position limits of the passive joints, if any.
+            follow: Indices in v of other actuators that are not held: they follow as passive joints do.
         """
         tree = self._tree = robot.tree
-        held = set(robot.actuation.idx_v.tolist()) - {actuator}
+        held = set(robot.actuation.idx_v.tolist()) - {actuator, *follow}
         groups = [group for group in independent_groups(robot, held) if actuator in group.velocities]
         length = characteristic_length(robot)
         rows, unit = row_scale(robot, length), velocity_scale(robot, length)

@@ -1,0 +1,86 @@
+"""``eurdf view``: show a robot in the browser, and move it with its loops closed."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import threading
+
+from eurdf.commands.output import write_lines
+from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
+from eurdf.commands.selection import select_one
+
+_DESCRIPTION = """\
+Show a robot on a page in the browser, with a slider for each actuator. The loops stay closed: the passive joints
+follow, and a slider stops at a position limit or a dead point and says why.
+
+The page is updated when the files of the robot change. The command ends with Ctrl-C.
+"""
+_EPILOG = ending(
+    "0 ended, 1 the robot has errors, 2 the command cannot run.",
+    "eurdf view my_robot",
+    "eurdf view my_robot --port 9000 --no-browser",
+)
+
+_LOOPBACK = "127.0.0.1"
+
+
+def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the parser."""
+    parser = subparsers.add_parser(
+        "view",
+        help="show a robot in the browser, and move it with its loops closed",
+        description=_DESCRIPTION,
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    add_robot_path(parser)
+    add_robot_options(parser)
+    parser.add_argument("--root", choices=("fixed", "floating"), help="default: as the description says")
+    parser.add_argument(
+        "--port", type=_port, metavar="PORT", help="port to listen on, 0 for any; default: 8080 or the next free one"
+    )
+    parser.add_argument(
+        "--host",
+        default=_LOOPBACK,
+        metavar="ADDRESS",
+        help=f"address to listen on; default: {_LOOPBACK}, for this machine alone. Whoever reaches another one can "
+        "move the robot, and save configurations to its file",
+    )
+    parser.add_argument("--no-browser", action="store_true", help="do not open the page")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Show the page until the command is interrupted, and return the exit code."""
+    path = select_one(args.path)
+    options = {"root": args.root, **robot_options(args)}
+
+    import eurdf
+
+    try:
+        viewer = eurdf.view(path, host=args.host, port=args.port, browser=not args.no_browser, options=options)
+    except eurdf.InvalidRobot as refusal:
+        from eurdf.commands.check import write_reports
+        from eurdf.diagnostics.report import Report
+
+        write_reports([Report(refusal.path, tuple(refusal.diagnostics))])
+        return 1
+    with viewer:
+        write_lines([[(f"{viewer.robot.mechanism.name}: ", ""), (viewer.url, "bold")]], sys.stdout)
+        sys.stdout.flush()
+        try:
+            threading.Event().wait()
+        except KeyboardInterrupt:
+            write_lines([[]], sys.stdout)
+    return 0
+
+
+def _port(text: str) -> int:
+    try:
+        port = int(text)
+    except ValueError:
+        port = -1
+    if not 0 <= port < 1 << 16:
+        raise argparse.ArgumentTypeError(f"'{text}' is not a port, 0 to 65535")
+    return port

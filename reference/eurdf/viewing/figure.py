@@ -1,0 +1,216 @@
+"""A robot in the scene of the page: its nodes there, and which of them are shown."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from eurdf.kinematics.array import Matrix, Vector
+from eurdf.viewing.scene import Placed, Scene
+
+if TYPE_CHECKING:
+    import viser
+
+#: What can be shown, by the label of its checkbox; and whether it is at first.
+LAYERS = {
+    "visual shapes": True,
+    "collision shapes": False,
+    "skeleton": False,
+    "closures": True,
+    "joint axes": False,
+    "frames": False,
+    "link frames": False,
+    "inertia ellipsoids": False,
+    "link names": False,
+}
+
+_LAYER_OF = {"visual": "visual shapes", "collision": "collision shapes", "inertia": "inertia ellipsoids"}
+
+# Red, green, blue, 0 to 255.
+_SKELETON = (90, 90, 90)
+_CLOSURE, _OPEN = (140, 60, 200), (230, 30, 30)
+_PASSIVE, _ACTUATED, _DEPENDENT = (60, 130, 230), (20, 160, 60), (240, 140, 0)
+
+
+class Figure:
+    """One robot in the scene.
+
+    Attributes:
+        scene: What there is to draw.
+        shown: Whether each layer is shown.
+    """
+
+    def __init__(self, server: viser.ViserServer, scene: Scene, root: str, origin: Vector) -> None:
+        """Add the nodes.
+
+        Args:
+            server: The server of the page.
+            scene: What there is to draw.
+            root: Name of the node above all of its nodes.
+            origin: Where the world of the robot has its origin (3,), m.
+        """
+        self.scene = scene
+        self._api = server.scene
+        self._root = self._api.add_frame(root, show_axes=False, position=origin)
+        self._placed: Placed | None = None
+        self.shown = {**LAYERS, "skeleton": not scene.has_visuals}
+        self._texts: list[str] = []
+        self._bodies = [
+            # Names of links can be anything; those of nodes are paths.
+            self._api.add_frame(f"{root}/body{number}", show_axes=False)
+            for number in range(len(scene.bodies))
+        ]
+        self._nodes: dict[str, list[Any]] = {layer: [] for layer in LAYERS}
+        self._lines: dict[str, tuple[Any, Callable[[Placed], Matrix]]] = {}
+        for number, part in enumerate(scene.parts):
+            self._add(
+                _LAYER_OF[part.kind],
+                self._api.add_mesh_simple(
+                    f"{root}/body{part.body}/{part.kind}{number}",
+                    part.surface.vertices,
+                    part.surface.triangles,
+                    color=part.color[:3],
+                    opacity=None if part.color[3] == 1.0 else part.color[3],
+                    flat_shading=not part.surface.smooth,
+                    side="double" if not part.surface.smooth else "front",
+                    position=part.pose.translation,
+                    wxyz=_wxyz(part.pose),
+                ),
+            )
+        for number, name in enumerate(scene.bodies):
+            self._add("link names", self._api.add_label(f"{root}/body{number}/name", name))
+        length = 0.05 * scene.size
+        for number, (name, body, pose) in enumerate(scene.frames):
+            place = {"position": pose.translation, "wxyz": _wxyz(pose)}
+            node = f"{root}/body{body}/frame{number}"
+            self._add("frames", self._api.add_frame(node, axes_length=length, axes_radius=0.03 * length, **place))
+            self._add("frames", self._api.add_label(f"{node}/name", name))
+        count = len(scene.bodies)
+        self._axes = self._api.add_batched_axes(
+            f"{root}/link_frames",
+            np.tile((1.0, 0.0, 0.0, 0.0), (count, 1)),
+            np.zeros((count, 3)),
+            axes_length=length,
+            axes_radius=0.03 * length,
+        )
+        self._add("link frames", self._axes)
+        self._add_lines(f"{root}/skeleton", "skeleton", len(scene.parents) - 1, _SKELETON, 3.0, scene.skeleton)
+        colors = [_ACTUATED if axis.actuated else _PASSIVE for axis in scene.axes]
+        self._add_lines(f"{root}/axes", "joint axes", len(scene.axes), colors, 3.0, scene.axis_lines)
+        colors = [color for _ in scene.links for color in (_CLOSURE, _OPEN, _CLOSURE)]
+        self._add_lines(f"{root}/closures", "closures", len(colors), colors, 2.0, self._closure_lines)
+        self._labels = [
+            self._api.add_label(f"{root}/closure{number}", link.name) for number, link in enumerate(scene.links)
+        ]
+        for label in self._labels:
+            label.visible = False
+        for layer, visible in self.shown.items():
+            self.toggle(layer, visible)
+
+    def has(self, layer: str) -> bool:
+        """Whether there is anything in a layer."""
+        return bool(self._nodes[layer])
+
+    def place(self, placed: Placed) -> None:
+        """Move everything to where it is now."""
+        before, self._placed = self._placed, placed
+        for number, (node, pose) in enumerate(zip(self._bodies, placed.poses, strict=True)):
+            if before is None or before.poses[number] != pose:
+                node.position, node.wxyz = pose.translation, _wxyz(pose)
+        self._place_shared()
+        self._place_labels()
+
+    def toggle(self, layer: str, visible: bool) -> None:
+        """Show or hide a layer."""
+        self.shown[layer] = visible
+        if visible:
+            self._place_shared()
+        for node in self._nodes[layer]:
+            node.visible = visible
+        if layer == "closures":
+            self._place_labels()
+
+    def highlight(self, joints: frozenset[str]) -> None:
+        """Show the axes of dependent actuators in their own colour."""
+        if "joint axes" not in self._lines:
+            return
+        colors = [
+            _DEPENDENT if axis.joint in joints else _ACTUATED if axis.actuated else _PASSIVE for axis in self.scene.axes
+        ]
+        self._lines["joint axes"][0].colors = _line_colors(colors)
+
+    def remove(self) -> None:
+        """Remove all of its nodes."""
+        self._root.remove()
+
+    def _add(self, layer: str, node: Any) -> None:
+        self._nodes[layer].append(node)
+
+    def _add_lines(
+        self,
+        name: str,
+        layer: str,
+        count: int,
+        colors: Any,
+        pixels: float,
+        at: Callable[[Placed], Matrix],
+    ) -> None:
+        if not count:
+            return
+        node = self._api.add_line_segments(
+            name,
+            np.zeros((count, 2, 3)),
+            colors=_line_colors(colors) if isinstance(colors, list) else colors,
+            thickness=pixels,
+            thickness_units="screen",
+        )
+        self._add(layer, node)
+        self._lines[layer] = node, at
+
+    def _closure_lines(self, placed: Placed) -> Matrix:
+        return self.scene.closure_lines(placed).reshape(-1, 2, 3)
+
+    def _place_shared(self) -> None:
+        """Move what is one node for the whole robot, as far as it is shown."""
+        placed = self._placed
+        if placed is None:
+            return
+        for layer, (node, at) in self._lines.items():
+            if self.shown[layer]:
+                node.points = at(placed)
+        if self.shown["link frames"]:
+            self._axes.batched_positions = np.array([pose.translation for pose in placed.poses])
+            self._axes.batched_wxyzs = np.array([_wxyz(pose) for pose in placed.poses])
+
+    def _place_labels(self) -> None:
+        """Label each open closure with how far it is open."""
+        placed = self._placed
+        if placed is None or not self._labels:
+            return
+        openings = {opening.name: opening for opening in placed.openings}
+        for label, link in zip(self._labels, self.scene.links, strict=True):
+            opening = openings[link.name]
+            visible = self.shown["closures"] and opening.is_open
+            if visible:
+                label.text = str(opening)
+                body, pose = link.bodies[0], link.poses[0]
+                label.position = placed.poses[body].act(pose.translation)
+            if label.visible != visible:
+                label.visible = visible
+
+
+def _wxyz(pose: Any) -> Vector:
+    x, y, z, w = np.asarray(_quaternion(pose))
+    return np.array((w, x, y, z))
+
+
+def _quaternion(pose: Any) -> Vector:
+    import pinocchio as pin
+
+    return np.asarray(pin.SE3ToXYZQUAT(pose)[3:])
+
+
+def _line_colors(colors: list[tuple[int, int, int]]) -> Any:
+    return np.repeat(np.array(colors, dtype=np.uint8)[:, None], 2, axis=1)

@@ -1,0 +1,78 @@
+"""The files of a robot that is looked at: loaded again when they change."""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+from eurdf.checking.load import load
+from eurdf.linking.description import Described, Linked, Unlinked, describe
+from eurdf.pinocchio.robot import Robot
+from eurdf.reading.given import Given, is_stream, is_text
+
+#: Time and size of a file; None if there is none.
+Stamp = tuple[int, int] | None
+
+
+class RobotOnDisk:
+    """A robot and where it comes from.
+
+    Attributes:
+        path: What the user gave.
+        options: Keyword arguments of `eurdf.load`.
+    """
+
+    def __init__(self, path: Given, options: dict[str, Any]) -> None:
+        self.path = path
+        self.options = options
+        given = [path, options.get("urdf")]
+        self._can_reread = not any(each is not None and (is_stream(each) or is_text(each)) for each in given)
+        self._stamps: dict[str, Stamp] = {}
+
+    def describe(self) -> Linked | Unlinked:
+        """Read and link the files."""
+        return describe(self.path, **self.options)
+
+    def load(self) -> Robot:
+        """Load it, and remember the state of its files.
+
+        Raises:
+            InvalidRobot: It cannot be built without guessing.
+            RobotNotFound: There are no such files.
+        """
+        if not self._can_reread:
+            return load(self.path, check_loops=True, **self.options)
+        files = set(self._stamps) | _files(self.describe())
+        stamps = {file: _stamp(file) for file in files}
+        self._stamps = stamps  # before it is loaded: a file that changes meanwhile is loaded again
+        robot = load(self.path, check_loops=True, **self.options)
+        self._stamps = {file: _stamp(file) for file in _meshes(robot)} | stamps
+        return robot
+
+    @property
+    def has_changed(self) -> bool:
+        """Whether a file differs from what was loaded."""
+        return any(_stamp(file) != stamp for file, stamp in self._stamps.items())
+
+
+def _files(description: Linked | Unlinked) -> set[str]:
+    """The description and the URDF."""
+    sources = [] if description.urdf is None else [description.urdf.document.source]
+    if isinstance(description, Described):
+        sources.append(description.extension.document.source)
+    return {source.file for source in sources if source.is_file}
+
+
+def _meshes(robot: Robot) -> set[str]:
+    if robot.geometry is None:
+        return set()
+    paths = {shape.meshPath for model in robot.geometry for shape in model.geometryObjects}
+    return {path for path in paths if os.path.isfile(path)}
+
+
+def _stamp(file: str) -> Stamp:
+    try:
+        status = os.stat(file)
+    except OSError:
+        return None
+    return status.st_mtime_ns, status.st_size

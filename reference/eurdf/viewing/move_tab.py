@@ -1,0 +1,77 @@
+"""The tab of the sliders, and of the motions that close the loops."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+from eurdf.kinematics.assembly import Assembly
+from eurdf.viewing import text
+from eurdf.viewing.page import Page
+
+# Steps of a slider over its range, and decimals of its number.
+_STEPS = 1000
+_DECIMALS = 4
+
+
+class MoveTab:
+    """Sliders of the actuators, and buttons that bring all joints elsewhere."""
+
+    def __init__(self, page: Page) -> None:
+        """Add the controls to the container that is open."""
+        self._page = page
+        gui, robot = page.server.gui, page.shown.robot
+        sliders = page.shown.session.sliders
+        self._sliders = [self._slider(index) for index in range(len(sliders))]
+        moved = {slider.joint for slider in sliders}
+        others = [name for name in robot.actuation.joints if name not in moved]
+        if others:
+            gui.add_html(text.box(text.escaped(f"no slider for {', '.join(others)}: drag a frame instead")))
+        reset = gui.add_button("reset", hint="the configuration at the start")
+        reset.on_click(lambda _: page.ask("go", lambda: page.shown.session.reset()))
+        assemble = gui.add_button("assemble", hint="close the loops near this configuration")
+        assemble.on_click(lambda _: page.ask("go", self._assemble))
+        if robot.configurations:
+            names = tuple(robot.configurations)
+            choice = gui.add_dropdown("configuration", names, initial_value=names[0])
+            go = gui.add_button("go to configuration")
+            go.on_click(lambda _: page.ask("go", partial(self._go_to, choice)))
+
+    def refresh(self) -> None:
+        """Bring the sliders to the state of the session."""
+        session = self._page.shown.session
+        for index, handle in enumerate(self._sliders):
+            slider = session.sliders[index]
+            value = min(max(session.value(index), slider.lower), slider.upper)
+            if index != self._page.in_hand and abs(value - handle.value) > 0.5 * 10.0**-_DECIMALS:
+                handle.value = value
+
+    def _slider(self, index: int) -> Any:
+        session = self._page.shown.session
+        slider = session.sliders[index]
+        follow = f"; {', '.join(slider.follow)} follows" if slider.follow else ""
+        handle = self._page.server.gui.add_slider(
+            f"{slider.label} ({slider.unit})",
+            min=slider.lower,
+            max=slider.upper,
+            step=(slider.upper - slider.lower) / _STEPS,
+            initial_value=min(max(session.value(index), slider.lower), slider.upper),
+            disabled=slider.lower == slider.upper,
+            hint=f"{slider.lower:.4g} to {slider.upper:.4g} {slider.unit}{follow}",
+        )
+        handle.precision = _DECIMALS
+
+        def moved(event: Any) -> None:
+            if event.client is not None:  # else it was set here
+                value = float(event.target.value)
+                self._page.ask(("slider", index), lambda: session.move(index, value), in_hand=index)
+
+        handle.on_update(moved)
+        return handle
+
+    def _assemble(self) -> str | None:
+        found: Assembly = self._page.shown.session.assemble()
+        return None if found.closes else "no configuration was found that closes the loops; this is the least open one"
+
+    def _go_to(self, choice: Any) -> None:
+        self._page.shown.session.go_to(str(choice.value))

@@ -1,0 +1,278 @@
+"""What is drawn of a robot: surfaces fixed to bodies, axes, frames and closures, and where they are at a configuration.
+
+Knows no viewer and no renderer.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import coal
+import numpy as np
+import pinocchio as pin
+
+from eurdf.kinematics.array import Matrix, Vector
+from eurdf.kinematics.derived import borrowed, derived
+from eurdf.kinematics.opening import Opening
+from eurdf.kinematics.residual import all_openings
+from eurdf.mechanism.body import Inertia
+from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.pose import direction
+from eurdf.pinocchio.frame_pairs import FramePairs, Site
+from eurdf.pinocchio.frames import body_frame_ids
+from eurdf.pinocchio.placement import placement_of
+from eurdf.viewing.surface import Surface, sphere, surface_of
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+Kind = Literal["visual", "collision", "inertia"]
+Color = tuple[float, float, float, float]
+
+#: Red, green, blue, alpha from 0 to 1.
+COLLISION: Color = (0.95, 0.6, 0.1, 0.45)
+INERTIA: Color = (0.25, 0.45, 0.9, 0.5)
+
+# Directions of the axes of a joint, where it has none of its own.
+_X, _Y, _Z = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Part:
+    """A surface fixed to a body.
+
+    Attributes:
+        kind: What it is.
+        body: Index of the body.
+        pose: Pose of the surface in the body's frame, `pin.SE3`.
+        surface: Its triangles.
+        color: Red, green, blue, alpha from 0 to 1.
+    """
+
+    kind: Kind
+    body: int
+    pose: Any
+    surface: Surface
+    color: Color
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Axis:
+    """An axis of a moving joint.
+
+    Attributes:
+        joint: Name of the joint.
+        body: Index of the child body, to which the axis is fixed here.
+        origin: A point (3,) on it, in the child's frame, m.
+        direction: Unit vector (3,), in the child's frame.
+        actuated: Whether the joint is actuated.
+    """
+
+    joint: str
+    body: int
+    origin: Vector
+    direction: Vector
+    actuated: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Link:
+    """A closure between two bodies.
+
+    Attributes:
+        name: Name of the closure.
+        bodies: Indices of the bodies that carry frame A and frame B.
+        poses: Poses of A and B in these bodies, `pin.SE3`.
+    """
+
+    name: str
+    bodies: tuple[int, int]
+    poses: tuple[Any, Any]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Placed:
+    """A robot at a configuration.
+
+    Attributes:
+        poses: Pose of each body in the world, `pin.SE3`.
+        openings: How far each constraint is open, in file order.
+    """
+
+    poses: list[Any]
+    openings: tuple[Opening, ...]
+
+
+class Scene:
+    """What can be drawn of a robot.
+
+    Attributes:
+        robot: The robot.
+        bodies: Names of the bodies.
+        parents: For each body the index of the one that it hangs from; -1 for the root.
+        parts: The surfaces.
+        axes: The axes of the moving joints.
+        frames: The frames of the description: name, index of the body, pose in it.
+        links: The closures.
+        size: Length of the diagonal of the robot's bounding box in the configuration it was made at, m.
+        center: Center (3,) of that box.
+        lowest: Least height of that box, m.
+    """
+
+    def __init__(self, robot: Robot, q: Vector) -> None:
+        """Collect what there is.
+
+        Args:
+            robot: The robot, with the shapes that it was loaded with; none if a mesh is missing.
+            q: A configuration (nq,) that shows its size.
+        """
+        mechanism = robot.mechanism
+        self.robot = robot
+        self.bodies = tuple(body.name for body in mechanism.bodies)
+        index = {name: number for number, name in enumerate(self.bodies)}
+        self.parents = (-1, *(index[joint.parent] for joint in mechanism.joints))
+        self.parts = (
+            *_shapes(robot, "visual"),
+            *_shapes(robot, "collision"),
+            *_ellipsoids(robot),
+        )
+        actuated = set(mechanism.actuators)
+        self.axes = tuple(
+            axis for joint in mechanism.joints for axis in _axes(joint, index[joint.child], joint.name in actuated)
+        )
+        self.frames = tuple((each.name, index[each.body], placement_of(each.pose)) for each in mechanism.frames)
+        self.links = tuple(
+            Link(
+                closure.name,
+                (index[closure.a.body], index[closure.b.body]),
+                (placement_of(closure.a.pose), placement_of(closure.b.pose)),
+            )
+            for closure in mechanism.closures
+        )
+        points = self._points(self.at(q).poses)
+        low, high = points.min(axis=0), points.max(axis=0)
+        self.size = float(np.linalg.norm(high - low)) or 1.0
+        self.center: Vector = (low + high) / 2.0
+        self.lowest = float(low[2])
+
+    @property
+    def has_visuals(self) -> bool:
+        """Whether there is a visual shape."""
+        return any(part.kind == "visual" for part in self.parts)
+
+    def at(self, q: Vector) -> Placed:
+        """Where everything is at a configuration (nq,)."""
+        with borrowed(self.robot, _memory) as memory:
+            return Placed(list(memory.placements(q)), all_openings(self.robot, q))
+
+    def skeleton(self, placed: Placed) -> Matrix:
+        """Lines (n, 2, 3) from the origin of each body to that of its parent, in the world, m."""
+        origins = _origins(placed.poses)
+        pairs = [(parent, child) for child, parent in enumerate(self.parents) if parent >= 0]
+        return origins[np.array(pairs, dtype=np.intp).reshape(-1, 2)]
+
+    def axis_lines(self, placed: Placed) -> Matrix:
+        """The axes (n, 2, 3) as lines in the world, m."""
+        half = 0.05 * self.size
+        lines = [
+            [placed.poses[axis.body].act(axis.origin + side * half * axis.direction) for side in (-1.0, 1.0)]
+            for axis in self.axes
+        ]
+        return np.array(lines).reshape(-1, 2, 3)
+
+    def closure_lines(self, placed: Placed) -> Matrix:
+        """For each closure three lines, (n, 3, 2, 3), in the world, m.
+
+        They lead from the origin of the body of A to A, from A to B, and from B to the origin of its body.
+        """
+        lines = []
+        for link in self.links:
+            (a, b), (in_a, in_b) = (placed.poses[body] for body in link.bodies), link.poses
+            points = (a.translation, a.act(in_a.translation), b.act(in_b.translation), b.translation)
+            lines.append([points[:2], points[1:3], points[2:]])
+        return np.array(lines).reshape(-1, 3, 2, 3)
+
+    def _points(self, poses: list[Any]) -> Matrix:
+        clouds = [_origins(poses)]
+        for part in self.parts:
+            if part.kind != "inertia" and len(part.surface.vertices):
+                oMp = poses[part.body] * part.pose
+                clouds.append(part.surface.vertices @ oMp.rotation.T + oMp.translation)
+        return np.concatenate(clouds)
+
+
+def _memory(robot: Robot) -> Any:
+    return derived(robot, _body_frames).memory()
+
+
+def _body_frames(robot: Robot) -> FramePairs:
+    ids = body_frame_ids(robot.mechanism)
+    frames = [robot.model.frames[ids[body.name]] for body in robot.mechanism.bodies]
+    world = Site(0, pin.SE3.Identity())
+    pairs = [(world, Site(frame.parentJoint, pin.SE3(frame.placement))) for frame in frames]
+    return FramePairs(robot.model, robot.tree.parents, pairs, None)
+
+
+def _origins(poses: list[Any]) -> Matrix:
+    return np.array([pose.translation for pose in poses])
+
+
+def _shapes(robot: Robot, kind: Literal["visual", "collision"]) -> list[Part]:
+    if robot.geometry is None:
+        return []
+    geometry_model = robot.geometry.visual if kind == "visual" else robot.geometry.collision
+    ids = body_frame_ids(robot.mechanism)
+    numbers = {ids[body.name]: number for number, body in enumerate(robot.mechanism.bodies)}
+    meshes: dict[tuple[str, tuple[float, ...]], Surface] = {}
+    parts = []
+    for shape in geometry_model.geometryObjects:
+        frame = robot.model.frames[shape.parentFrame]
+        if isinstance(shape.geometry, coal.BVHModelBase):
+            # A mesh that several shapes share is converted once.
+            key = shape.meshPath, tuple(np.asarray(shape.meshScale).tolist())
+            surface = meshes[key] = meshes.get(key) or surface_of(shape.geometry)
+        else:
+            surface = surface_of(shape.geometry)
+        red, green, blue, alpha = np.clip(shape.meshColor, 0.0, 1.0).tolist()
+        color = (red, green, blue, alpha) if kind == "visual" else COLLISION
+        parts.append(Part(kind, numbers[shape.parentFrame], frame.placement.actInv(shape.placement), surface, color))
+    return parts
+
+
+def _ellipsoids(robot: Robot) -> list[Part]:
+    """For each body with mass the ellipsoid of constant density with the same mass and moments of inertia."""
+    parts = []
+    for number, body in enumerate(robot.mechanism.bodies):
+        if body.inertia is None or not body.inertia.mass > 0.0:
+            continue
+        half_axes, rotation = _ellipsoid(body.inertia)
+        pose = placement_of(body.inertia.pose) * pin.SE3(rotation, np.zeros(3))
+        parts.append(Part("inertia", number, pose, sphere().scaled(half_axes), INERTIA))
+    return parts
+
+
+def _ellipsoid(inertia: Inertia) -> tuple[Vector, Matrix]:
+    """The half axes (3,), m, and the rotation from its axes: a² = 5/2 (I_b + I_c - I_a) / m.
+
+    Moments that no body can have, which a diagnostic reports, make a half axis of 0.
+    """
+    xx, xy, xz, yy, yz, zz = inertia.moments
+    moments, axes = np.linalg.eigh(np.array(((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))))
+    squares = 2.5 * (moments.sum() - 2.0 * moments) / inertia.mass
+    if np.linalg.det(axes) < 0.0:
+        axes[:, 0] = -axes[:, 0]
+    return np.sqrt(np.maximum(squares, 0.0)), axes
+
+
+def _axes(joint: Joint, body: int, actuated: bool) -> list[Axis]:
+    """The axes of a joint, fixed to its child: three for a ball, those of the plane and its normal for a planar one."""
+    if joint.type in (JointType.FIXED, JointType.FLOATING):
+        return []
+    written = joint.axes or (_X, _Y, _Z)
+    in_child = placement_of(joint.offset).inverse()
+    return [
+        Axis(joint.name, body, in_child.translation, in_child.rotation @ np.array(direction(axis)), actuated)
+        for axis in written
+    ]

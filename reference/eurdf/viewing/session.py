@@ -1,0 +1,349 @@
+"""The state of a robot that is looked at: its configuration, what moves it, and why a motion stops.
+
+Knows no viewer, so that what happens on a page can be tested without one.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from eurdf.kinematics.analysis import Analysis, analyze
+from eurdf.kinematics.array import Vector
+from eurdf.kinematics.assembly import Assembly, assemble
+from eurdf.kinematics.branch import Branch, Point
+from eurdf.kinematics.derived import derived
+from eurdf.kinematics.exceptions import NotClosable
+from eurdf.kinematics.forward_kinematics import forward_kinematics
+from eurdf.kinematics.inverse_kinematics import inverse_kinematics
+from eurdf.kinematics.opening import CLOSED
+from eurdf.kinematics.position_limit import driven_coordinates, position_limits
+from eurdf.kinematics.residual import residual
+from eurdf.kinematics.scale import characteristic_length
+from eurdf.kinematics.sweep import sweep
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mechanism import ROOT_JOINT
+from eurdf.pinocchio.arguments import checked_array
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+#: The configuration to start at, if the description has it.
+ASSEMBLED = "assembled"
+
+# A dead point is where the smallest singular value of K_p is below this fraction of the largest one met, as in `sweep`.
+_DEAD = 0.01
+# Steps are halved down to this fraction of the range of a slider.
+_SHORTEST_STEP = 2.0**-22
+# Corrections of a last step to the limit of a passive joint.
+_TO_LIMIT = 8
+# Bound of each row of the residual of a configuration that is shown as closed, m or rad.
+_TOLERANCE = 1e-12
+
+
+@dataclass(frozen=True, slots=True)
+class Slider:
+    """A coordinate that the user moves.
+
+    Attributes:
+        joint: Name of the joint.
+        label: Name of the joint, and of the coordinate if it has several.
+        unit: ``rad`` or ``m``.
+        lower: Least value: the position limit; without one, half a turn or a characteristic length from the start.
+        upper: Greatest value.
+        velocity: Index in v of the velocity that drives it.
+        actuated: Whether the joint is actuated.
+        follow: Names of the dependent actuators that follow, as the loops do not let this one move alone.
+    """
+
+    joint: str
+    label: str
+    unit: Literal["rad", "m"]
+    lower: float
+    upper: float
+    velocity: int
+    actuated: bool
+    follow: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """Why a motion did not reach where it was to go.
+
+    Attributes:
+        reason: The limit of the joint that was moved; the limit of a passive joint; a dead point (singular
+            configuration); no motion that keeps the loops closed.
+        joint: The joint at its limit; else the one that was moved.
+        value: Its coordinate, rad or m.
+    """
+
+    reason: Literal["limit", "passive limit", "dead point", "blocked"]
+    joint: str
+    value: float
+
+    def __str__(self) -> str:
+        if self.reason == "limit":
+            return f"'{self.joint}' is at its position limit {self.value:.6g}"
+        if self.reason == "passive limit":
+            return f"passive joint '{self.joint}' is at its position limit {self.value:.6g}"
+        if self.reason == "dead point":
+            return f"dead point: at {self.value:.6g}, '{self.joint}' no longer determines the passive joints"
+        return f"the loops block '{self.joint}': it cannot move with the other actuators held"
+
+
+class Session:
+    """A robot at a configuration.
+
+    Attributes:
+        robot: The robot.
+        q: The configuration (nq,).
+        first: The configuration (nq,) that `reset` returns to.
+        analysis: Its dimensions, at the first configuration.
+        sliders: What the user can move: the coordinates of the actuators; of all joints if there are no actuators.
+    """
+
+    def __init__(self, robot: Robot, q: Vector | None = None) -> None:
+        """Start at q; by default at ``assembled``, or at a closed configuration that is found.
+
+        Raises:
+            ValueError: ``q`` is not a configuration.
+        """
+        self.robot = robot
+        assembly = assemble(robot, q, tolerance=_TOLERANCE)
+        self.q: Vector = assembly.q
+        self.first: Vector = assembly.q
+        self.analysis: Analysis = analyze(robot, assembly.q)
+        self._limits = position_limits(robot)
+        self.sliders = tuple(_sliders(robot, self.first, self.analysis))
+        self._branches: dict[int, Branch] = {}
+        self._largest: dict[int, float] = {}
+
+    @property
+    def residual(self) -> float:
+        """Largest row of the residual of the constraints, m or rad."""
+        return float(np.abs(residual(self.robot, self.q)).max(initial=0.0))
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether the loops are closed."""
+        return self.residual <= CLOSED
+
+    def value(self, index: int) -> float:
+        """The coordinate of a slider, rad or m; the angle of a joint without limits is from -pi to pi."""
+        velocity, tree = self.sliders[index].velocity, self.robot.tree
+        driven, coordinates = derived(self.robot, driven_coordinates)
+        if velocity in driven:
+            return float(self.q[coordinates[velocity]])
+        own = zip(tree.own_coordinates, tree.own_velocities, strict=True)
+        cosine, sine = next(self.q[list(places)] for places, velocities in own if velocity in velocities)
+        return math.atan2(sine, cosine)
+
+    def move(self, index: int, value: float) -> Stop | None:
+        """Move a coordinate; the passive joints follow on the same branch.
+
+        If the loops are open, the coordinate moves alone.
+
+        Args:
+            index: Of the slider.
+            value: Where to move it, rad or m.
+
+        Returns:
+            Why it stopped before, or None.
+
+        Raises:
+            ValueError: The value is not finite.
+        """
+        slider = self.sliders[index]
+        if not math.isfinite(value):
+            raise ValueError(f"'{slider.joint}' cannot move to {value}")
+        at, stop = self.value(index), None
+        goal = min(max(value, slider.lower), slider.upper)
+        if goal != value:
+            stop = Stop("limit", slider.joint, goal)
+        if not self.is_closed:
+            v = np.zeros(self.robot.tree.nv)
+            v[slider.velocity] = goal - at
+            self.q = self.robot.tree.integrate(self.q, v)
+            return stop
+        q, stopped = self._follow(index, goal - at)
+        if len(self.robot.tree.springs) and len(self.robot.actuation.idx_q):
+            q = self._at_rest(q)
+        self.q = q
+        return stopped or stop
+
+    def show(self, q: Vector) -> None:
+        """Go to a configuration, closed or not.
+
+        Raises:
+            ValueError: ``q`` does not have the shape (nq,), or is not finite.
+        """
+        self.q = np.array(checked_array("q", q, (self.robot.tree.nq,)))
+
+    def reset(self) -> None:
+        """Go to the first configuration."""
+        self.q = self.first
+
+    def assemble(self) -> Assembly:
+        """Close the loops near the configuration, within the position limits if possible."""
+        within = assemble(self.robot, self.q, tolerance=_TOLERANCE, limits=True)
+        found = within if within.closes else assemble(self.robot, self.q, tolerance=_TOLERANCE)
+        self.q = found.q
+        return found
+
+    def go_to(self, name: str) -> None:
+        """Go to a named configuration.
+
+        Raises:
+            KeyError: There is none of this name.
+        """
+        self.q = self.robot.configurations[name]
+
+    def drag(self, frame: str, target: Any) -> str | None:
+        """Bring a frame as near to a target as the closed loops and the position limits allow.
+
+        Args:
+            frame: Name of a link, joint or frame.
+            target: A pose in the world (`pin.SE3`), or a position (3,), m.
+
+        Returns:
+            Why it is not at the target, or None.
+        """
+        found = inverse_kinematics(self.robot, {frame: target}, self.q, restarts=0, tolerance=1e-6)
+        if found.reason != "closures open":
+            self.q = found.q
+        if found.converged:
+            return None
+        limits = f" ({', '.join(map(str, found.at_limits))})" if found.at_limits else ""
+        return f"{found.reason}{limits}: {', '.join(map(str, found.errors))} off target"
+
+    def analyze(self) -> Analysis:
+        """The dimensions at the configuration."""
+        return analyze(self.robot, self.q)
+
+    def carried_to(self, robot: Robot) -> Vector:
+        """The configuration of another version of the robot in which its joints are where they are here."""
+        names = {joint.name: len(joint.coordinates.names) for joint in robot.mechanism.joints if joint.mimic is None}
+        here = self.robot.coordinates(self.q)
+        kept = {name: values for name, values in here.items() if names.get(name) == len(values)}
+        root = {name: here[name] for name in (ROOT_JOINT,) if name in here and robot.mechanism.root == "floating"}
+        return robot.configuration({**kept, **root})
+
+    def sweep(self, index: int, steps: int = 60) -> tuple[list[Vector], str]:
+        """The range of motion of an actuator: from the configuration to one end, to the other and back.
+
+        Returns:
+            The configurations, and what ends the two paths.
+
+        Raises:
+            NotClosable: The loops do not close.
+            ValueError: It is not an actuator with one coordinate.
+        """
+        found = sweep(self.robot, self.sliders[index].joint, self.q, steps=steps)
+        lower, upper = (list(path.configurations) for path in (found.lower, found.upper))
+        ends = " and ".join(
+            path.end + (f" of '{path.joint}'" if path.joint else "") + f" at {path.reached:.4g}"
+            for path in (found.lower, found.upper)
+        )
+        return [*lower, *reversed(lower), *upper, *reversed(upper)], ends
+
+    def _follow(self, index: int, distance: float) -> tuple[Vector, Stop | None]:
+        """Move a coordinate by a distance, rad or m, from the closed configuration; where it ends, and why."""
+        slider = self.sliders[index]
+        branch = self._branch(index)
+        here = branch.at(self.q)
+        begin = self.value(index)
+        largest = max(self._largest.get(index, 0.0), here.smallest)
+        shortest = _SHORTEST_STEP * (slider.upper - slider.lower)
+        left, part, stop = distance, distance, None
+        while left:
+            there = branch.step(here, part)
+            if there is None and abs(part) > shortest:
+                part *= 0.5
+                continue
+            met = branch.passive_limit(here, there) if there else None
+            if there is not None and met is not None:
+                here, stop = self._to_limit(branch, here, part)
+                break
+            leaves = there is not None and there.smallest >= here.smallest
+            if there is None or there.rank != here.rank or not (leaves or there.smallest >= _DEAD * largest):
+                blocked = left == distance and any(slider.joint in each for each in self.analysis.dependent_actuators)
+                stop = Stop("blocked" if blocked else "dead point", slider.joint, begin + distance - left)
+                break
+            here, left = there, left - part
+            largest = max(largest, here.smallest)
+            part = math.copysign(min(abs(2.0 * part), abs(left)), left)
+        self._largest[index] = largest if math.isfinite(largest) else 0.0
+        return here.q, stop
+
+    def _to_limit(self, branch: Branch, here: Point, part: float) -> tuple[Point, Stop]:
+        """The last point before a passive joint exceeds its limit, on a step that does."""
+        joint = ""
+        for _ in range(_TO_LIMIT):
+            there = branch.step(here, part)
+            met = branch.passive_limit(here, there) if there else None
+            if met is None:
+                break
+            joint, until = met
+            nearer = branch.step(here, part * until) if part * until else None
+            if nearer is not None and branch.passive_limit(here, nearer) is None:
+                here, part = nearer, part * (1.0 - until)
+            else:
+                part *= until
+        return here, self._at_limit(joint, here.q)
+
+    def _at_limit(self, joint: str, q: Vector) -> Stop:
+        index = self._limits.joints.index(joint)
+        at = float(q[self._limits.coordinates[index]])
+        lower, upper = float(self._limits.lower[index]), float(self._limits.upper[index])
+        return Stop("passive limit", joint, lower if abs(at - lower) < abs(at - upper) else upper)
+
+    def _at_rest(self, q: Vector) -> Vector:
+        """The same actuated coordinates, with the springs at rest."""
+        try:
+            return forward_kinematics(self.robot, q[self.robot.actuation.idx_q], q)
+        except NotClosable:
+            return q
+
+    def _branch(self, index: int) -> Branch:
+        if index not in self._branches:
+            slider = self.sliders[index]
+            follow = {each for joint in slider.follow for each in self.robot.tree.velocities_of(joint)}
+            self._branches[index] = Branch(self.robot, slider.velocity, self._limits, follow)
+        return self._branches[index]
+
+
+def _sliders(robot: Robot, q: Vector, analysis: Analysis) -> Iterator[Slider]:
+    tree, limits = robot.tree, position_limits(robot)
+    joints = {joint.name: joint for joint in robot.mechanism.joints}
+    moved = robot.actuation.joints or [name for name in robot.slots if name in joints]
+    length = characteristic_length(robot)
+    driven, coordinates = derived(robot, driven_coordinates)
+    direct = set(driven.tolist())
+    for name in moved:
+        joint = joints[name]
+        velocities = tree.velocities_of(name)
+        turns = joint.type is JointType.CONTINUOUS
+        if joint.coordinates.quaternion is not None or joint.type is JointType.PLANAR or not len(velocities):
+            continue  # moved by dragging a frame
+        dependent = [each for each in analysis.dependent_actuators if name in each]
+        follow = tuple(other for each in dependent for other in each if other != name)
+        for number, velocity in enumerate(velocities):
+            word = joint.coordinates.names[number]
+            at = float(q[coordinates[velocity]]) if velocity in direct else 0.0
+            around = length if word == "length" else math.pi
+            lower, upper = float(limits.lower[velocity]), float(limits.upper[velocity])
+            several = f" {number + 1} ({word})" if len(velocities) > 1 else ""
+            yield Slider(
+                name,
+                f"{name}{several}",
+                "m" if word == "length" else "rad",
+                -math.pi if turns else min(lower, at) if math.isfinite(lower) else at - around,
+                math.pi if turns else max(upper, at) if math.isfinite(upper) else at + around,
+                velocity,
+                name in robot.actuation.joints,
+                follow,
+            )

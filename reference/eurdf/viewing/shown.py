@@ -1,0 +1,106 @@
+"""A robot in a viewer: its state, and what is drawn of it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from eurdf.kinematics.array import Vector
+from eurdf.viewing.figure import Figure
+from eurdf.viewing.scene import Placed, Scene
+from eurdf.viewing.session import Session
+from eurdf.viewing.worker import Worker
+
+if TYPE_CHECKING:
+    import viser
+
+    from eurdf.pinocchio.robot import Robot
+
+
+class ShownRobot:
+    """A robot in a viewer; made by `Viewer.add`.
+
+    Attributes:
+        session: Its state.
+        figure: Its nodes in the scene.
+        on_place: Called after each change of what is shown.
+    """
+
+    def __init__(
+        self, server: viser.ViserServer, worker: Worker, robot: Robot, q: Vector | None, node: str, origin: Vector
+    ) -> None:
+        self._server, self._worker = server, worker
+        self._node, self._origin = node, origin
+        self.on_place: Callable[[Placed], None] = lambda placed: None
+        self.session = Session(robot, q)
+        self.figure = self._drawn()
+
+    @property
+    def robot(self) -> Robot:
+        """The robot."""
+        return self.session.robot
+
+    @property
+    def q(self) -> Vector:
+        """The configuration (nq,) that is shown."""
+        return np.array(self.session.q)
+
+    def show(self, q: Vector) -> None:
+        """Show a configuration.
+
+        Args:
+            q: Configuration (nq,); it may be open.
+
+        Raises:
+            ValueError: ``q`` has another shape or is not finite.
+        """
+
+        def go() -> None:
+            self._worker.play(None)
+            self.session.show(q)
+            self.place()
+
+        self._worker.call(go)
+
+    def animate(self, qs: Iterable[Vector], dt: float) -> None:
+        """Show configurations one after the other, and return after the last.
+
+        Args:
+            qs: Configurations (nq,).
+            dt: Time from one to the next, s.
+
+        Raises:
+            ValueError: A configuration has another shape or is not finite, or ``dt`` is not a positive number.
+        """
+        if not 0.0 < dt < np.inf:
+            raise ValueError(f"dt is {dt!r}; it must be a positive time, s")
+        due = time.monotonic()
+        for q in qs:
+            self.show(q)
+            due += dt
+            time.sleep(max(0.0, due - time.monotonic()))
+
+    def place(self) -> None:
+        """Bring the page to the state of the session; for the thread of the worker."""
+        with self._server.atomic():
+            placed = self.figure.scene.at(self.session.q)
+            self.figure.place(placed)
+            self.on_place(placed)
+
+    def replace(self, robot: Robot) -> None:
+        """Show another version of the robot, where the old one is; for the thread of the worker."""
+        before, shown = self.session, self.figure.shown
+        self.session = Session(robot, before.carried_to(robot))
+        self.figure.remove()
+        self.figure = self._drawn()
+        for layer, visible in shown.items():
+            self.figure.toggle(layer, visible)
+
+    def _drawn(self) -> Figure:
+        scene = Scene(self.robot, self.session.q)
+        figure = Figure(self._server, scene, self._node, self._origin)
+        figure.highlight(frozenset(name for each in self.session.analysis.dependent_actuators for name in each))
+        return figure

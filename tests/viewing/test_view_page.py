@@ -1,0 +1,224 @@
+"""The page of the viewer, without a browser."""
+
+from __future__ import annotations
+
+import os
+import socket
+import sys
+import threading
+import urllib.request
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import eurdf
+from eurdf.commands.main import main
+from eurdf.viewing import text
+from eurdf.viewing.server import is_allowed
+from eurdf.viewing.worker import Worker
+
+COLLECTION = Path(__file__).parents[2] / "robots"
+MISSING = "viser is not installed: pip install -e '.[view]'"
+
+
+@pytest.fixture
+def viewer() -> Iterator[eurdf.Viewer]:
+    pytest.importorskip("viser", reason=MISSING)
+    with eurdf.view("four_bar", port=0) as viewer:
+        yield viewer
+
+
+def test_page_is_served_to_this_machine_alone(viewer: eurdf.Viewer) -> None:
+    assert viewer.url.startswith("http://127.0.0.1:")
+    with urllib.request.urlopen(viewer.url, timeout=10) as answer:
+        assert b"<html" in answer.read()
+    port = int(viewer.url.rpartition(":")[2])
+    with socket.socket() as other:  # another address of this machine
+        other.settimeout(1.0)
+        assert other.connect_ex(("127.0.0.2", port)) != 0
+
+
+def test_pages_of_other_sites_are_refused(viewer: eurdf.Viewer) -> None:
+    import viser
+    from websockets.exceptions import ConnectionClosed
+    from websockets.sync.client import connect
+
+    address = viewer.url.replace("http", "ws")
+    versions = [f"viser-v{viser.__version__}"]
+    with connect(address, subprotocols=versions, origin=viewer.url, max_size=None) as own:
+        assert own.recv(timeout=10)
+    with (
+        connect(address, subprotocols=versions, origin="http://example.com", max_size=None) as other,
+        pytest.raises(ConnectionClosed) as closed,
+    ):
+        other.recv(timeout=10)
+    assert closed.value.rcvd is not None
+    assert closed.value.rcvd.code == 1008
+
+
+@pytest.mark.parametrize(
+    ("origin", "host", "listens", "allowed"),
+    [
+        ("http://127.0.0.1:8080", "127.0.0.1:8080", "127.0.0.1", True),
+        ("http://localhost:9000", "127.0.0.1:8080", "127.0.0.1", True),  # a forwarded port
+        ("http://[::1]:8080", "[::1]:8080", "::1", True),
+        (None, "127.0.0.1:8080", "127.0.0.1", True),
+        ("https://example.com", "127.0.0.1:8080", "127.0.0.1", False),
+        ("http://example.com:8080", "example.com:8080", "127.0.0.1", False),  # a name that leads to this machine
+        ("null", "127.0.0.1:8080", "127.0.0.1", False),
+        ("http://robot.lab:8080", "robot.lab:8080", "0.0.0.0", True),
+        ("https://example.com", "robot.lab:8080", "0.0.0.0", False),
+    ],
+)
+def test_origin_of_a_page_decides(origin: str | None, host: str, listens: str, allowed: bool) -> None:
+    assert is_allowed(origin, host, listens) is allowed
+
+
+def test_port_in_use_is_an_error_and_default_is_the_next(capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("viser", reason=MISSING)
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        with pytest.raises(OSError, match=f"cannot listen on '127.0.0.1', port {port}: address already in use"):
+            eurdf.view("four_bar", port=port)
+        assert main(["view", "four_bar", "--no-browser", "--port", str(port)]) == 2
+        assert f"port {port}" in capsys.readouterr().err
+    with eurdf.view("four_bar") as one, eurdf.view("bennett") as two:
+        assert one.url != two.url
+
+
+def test_address_that_does_not_exist_is_an_error() -> None:
+    pytest.importorskip("viser", reason=MISSING)
+    with pytest.raises(OSError, match=r"cannot listen on '192\.0\.2\.1'"):
+        eurdf.view("four_bar", host="192.0.2.1", port=0)
+
+
+def test_missing_viser_says_what_to_install(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setitem(sys.modules, "viser", None)
+    with pytest.raises(eurdf.MissingExtra, match=r"the viewer needs viser; install it with: .*view"):
+        eurdf.view("four_bar")
+    assert main(["view", "four_bar", "--no-browser"]) == 2
+    assert "the viewer needs viser" in capsys.readouterr().err
+
+
+def test_shown_configurations_are_those_given(viewer: eurdf.Viewer) -> None:
+    robot = viewer.robot
+    q = robot.tree.integrate(viewer.q, np.full(robot.tree.nv, 0.1))
+    viewer.show(q)
+    assert (viewer.q == q).all()
+    viewer.animate([q, robot.configurations["assembled"]], 0.01)
+    assert (viewer.q == robot.configurations["assembled"]).all()
+    with pytest.raises(ValueError, match="q"):
+        viewer.show(q[:2])
+    with pytest.raises(ValueError, match="dt"):
+        viewer.animate([q], 0.0)
+    assert (viewer.q == robot.configurations["assembled"]).all()
+
+
+def test_several_robots_share_a_scene(viewer: eurdf.Viewer) -> None:
+    other = eurdf.load("bennett")
+    shown = viewer.add(other, xyz=(0.0, 1.0, 0.0))
+    q = eurdf.forward_kinematics(other, {"motor_a": 0.3})
+    shown.show(q)
+    assert (shown.q == q).all()
+    assert (viewer.q == viewer.robot.configurations["assembled"]).all()
+    with pytest.raises(ValueError, match="xyz"):
+        viewer.add(other, xyz=(0.0, 1.0))
+
+
+def test_saved_page_needs_no_server(viewer: eurdf.Viewer, tmp_path: Path) -> None:
+    page = viewer.save(tmp_path / "scene.html").read_text()
+    assert "__VISER_EMBED_DATA__" in page
+    assert viewer.url not in page
+
+
+def test_changed_files_are_shown(tmp_path: Path) -> None:
+    pytest.importorskip("viser", reason=MISSING)
+    for name in ("robot.urdf", "robot.yaml"):
+        (tmp_path / name).write_text((COLLECTION / "four_bar" / name).read_text())
+    with eurdf.view(tmp_path, port=0) as viewer:
+        viewer._first.session.move(0, 0.4)
+        before = viewer.robot
+        yaml = tmp_path / "robot.yaml"
+        good = yaml.read_text()
+
+        def wait_for(condition) -> None:
+            deadline = threading.Event()
+            for _ in range(200):
+                if condition():
+                    return
+                deadline.wait(0.05)
+            raise AssertionError("the change was not seen")
+
+        yaml.write_text(good.replace("rocker_pin_b", "no_such_frame"))
+        wait_for(lambda: "no_such_frame" in viewer._panel._diagnostics.content)
+        assert viewer.robot is before
+        assert "robot.yaml:" in viewer._panel._diagnostics.content
+        yaml.write_text(good.replace("name: rocker_pin\n", "name: another_name\n"))
+        wait_for(lambda: viewer.robot is not before)
+        wait_for(lambda: "no errors, no warnings" in viewer._panel._diagnostics.content)
+        assert viewer.robot.constraints[0].name == "another_name"
+        assert viewer._first.session.value(0) == pytest.approx(0.4, abs=1e-9)
+
+
+def test_names_are_text_of_the_page() -> None:
+    hostile = "<img src=x onerror=alert(1)>"
+    opening = eurdf.Opening(hostile, 0.1, 0.0)
+    shown = text.status(1.0, [opening], [hostile])
+    assert "<img" not in shown
+    assert "&lt;img src=x onerror=alert(1)&gt;" in shown
+
+
+def test_command_refuses_invalid_robot(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("viser", reason=MISSING)
+    (tmp_path / "robot.urdf").write_text((COLLECTION / "four_bar/robot.urdf").read_text())
+    (tmp_path / "robot.yaml").write_text('extended_urdf: "2.0"\nactuators: [nothing]\n')
+    assert main(["view", os.fspath(tmp_path), "--no-browser", "--port", "0"]) == 1
+    assert "nothing" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("port", ["-1", "65536", "a"])
+def test_command_refuses_wrong_port(port: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as exit_:
+        main(["view", "four_bar", f"--port={port}"])
+    assert exit_.value.code == 2
+    assert "is not a port" in capsys.readouterr().err
+
+
+def test_worker_runs_the_last_of_each_key_and_frames_between() -> None:
+    errors: list[Exception] = []
+    worker = Worker(errors.append)
+    ran: list[int] = []
+    begun, go_on = threading.Event(), threading.Event()
+    worker.ask("first", lambda: (begun.set(), go_on.wait(10)))
+    assert begun.wait(10)
+    for number in range(5):
+        worker.ask("slider", lambda number=number: ran.append(number))
+    worker.ask("wrong", lambda: 1 / 0)
+    go_on.set()
+    assert worker.call(lambda: "done") == "done"
+    assert ran == [4]
+    assert [type(error) for error in errors] == [ZeroDivisionError]
+    with pytest.raises(ZeroDivisionError):
+        worker.call(lambda: 1 / 0)
+
+    frames: list[int] = []
+    ended = threading.Event()
+
+    def play() -> Iterator[float]:
+        for frame in range(3):
+            frames.append(frame)
+            yield 0.001
+        ended.set()
+
+    worker.play(play())
+    assert ended.wait(10)
+    assert frames == [0, 1, 2]
+    worker.stop()
+    with pytest.raises(RuntimeError, match="closed"):
+        worker.call(lambda: None)
