@@ -15,6 +15,9 @@ from eurdf.exporting.coordinates import Coordinates as Coordinates
 from eurdf.exporting.exceptions import CannotExport as CannotExport
 from eurdf.exporting.export import Export as Export
 from eurdf.exporting.export import export as export
+from eurdf.importing.exceptions import CannotImport as CannotImport
+from eurdf.importing.import_robot import Import as Import
+from eurdf.importing.import_robot import import_robot as import_robot
 from eurdf.kinematics.analysis import Analysis as Analysis
 from eurdf.kinematics.analysis import LoopAnalysis as LoopAnalysis
 from eurdf.kinematics.analysis import Motion as Motion

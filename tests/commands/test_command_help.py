@@ -9,7 +9,8 @@ import pytest
 
 from eurdf.commands.main import COMMANDS, main
 
-NAMES = [command.__name__.rpartition(".")[2] for command in COMMANDS]
+#: `import` is no name of a module.
+NAMES = [command.__name__.rpartition(".")[2].removesuffix("_robot") for command in COMMANDS]
 
 #: The commands that link a robot, and those that read a URDF alone.
 OF_ROBOTS = ("check", "info", "view", "assemble", "export", "migrate")
@@ -63,4 +64,4 @@ def test_shared_options_have_the_same_help(capsys: pytest.CaptureFixture[str], m
         assert len({option(text, name) for text in texts}) == 1
     paths = [option(text, "PATH") for text in of_robots]
     assert all(path.startswith(paths[1]) for path in paths)
-    assert set(NAMES) == {*OF_ROBOTS, *OF_URDFS, "robots", "certify"}
+    assert set(NAMES) == {*OF_ROBOTS, *OF_URDFS, "import", "robots", "certify"}

@@ -41,7 +41,7 @@ def pose(robot: Any, q: Any, frame: str) -> Any:
 
 
 def outside_limits(robot: Any, q: Any) -> float:
-    clipped = position_limits(robot).clip(q, np.arange(robot.model.nv))
+    clipped = position_limits(robot).clip(q)
     return float(np.abs(clipped - q).max())
 
 
@@ -359,3 +359,12 @@ def test_bounded_step_is_optimal_within_bounds(seed: int, size: int, count: int)
         pressures, _ = nnls(G[met].T, -slope)
         remaining = slope + G[met].T @ pressures
     np.testing.assert_allclose(remaining, 0.0, atol=1e-6)
+
+
+def test_limits_are_those_that_model_has_now() -> None:
+    robot = arm(1.0, 1.0, limit=0.5)
+    assert position_limits(robot).upper.tolist() == [0.5, 0.5]
+    assert position_limits(robot) is position_limits(robot)
+    robot.model.upperPositionLimit = np.array([0.5, 0.2])
+    assert position_limits(robot).upper.tolist() == [0.5, 0.2]
+    assert position_limits(robot).clip(np.array([0.3, 0.3])).tolist() == [0.3, 0.2]

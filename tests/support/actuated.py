@@ -52,7 +52,7 @@ def closed_near(robot: Any, random: np.random.Generator, spread: float = 0.3, li
     for _ in range(100):
         away = pin.integrate(robot.model, q0, random.uniform(-spread, spread, robot.model.nv))
         if limits:  # also of joints that are in no loop
-            away = position_limits(robot).clip(away, np.arange(robot.model.nv))
+            away = position_limits(robot).clip(away)
         assembly = assemble(robot, away, restarts=0, limits=limits)
         if assembly.closes:
             return assembly.q

@@ -6,10 +6,10 @@ import argparse
 import os
 import re
 import sys
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from eurdf.commands.cannot_run import CannotRun
+from eurdf.commands.loss_lines import loss_entry, loss_lines
 from eurdf.commands.migrate import print_notes, show_refusal
 from eurdf.commands.output import write_json, write_lines
 from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
@@ -17,7 +17,6 @@ from eurdf.commands.selection import select_one
 
 if TYPE_CHECKING:
     from eurdf.diagnostics import Place
-    from eurdf.diagnostics.text import Line
     from eurdf.linking.description import Linked
     from eurdf.loss import Loss
 
@@ -38,11 +37,6 @@ _EPILOG = ending(
 FORMATS = ("mjcf", "usd", "drake", "loop-joint", "sdf", "urdf")
 ACTUATORS = ("motor", "position", "none")
 MESH_FILES = ("copy", "reference")
-
-# Elements that are shown of each kind of loss.
-_MOST_SHOWN = 4
-
-_STYLES = {"exact": "green", "approximate": "yellow", "dropped": "red"}
 
 
 def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -116,38 +110,13 @@ def run(args: argparse.Namespace) -> int:
     if as_json:
         write_json(_result(args, paths, losses, description, refusal))
     else:
-        write_lines(_lines(losses, description), sys.stdout)
+        write_lines(loss_lines(losses, lambda loss: _place(loss, description)), sys.stdout)
         print_notes([refusal] if refusal else [f"wrote '{each}'" for each in paths])
     return 1 if refusal else 0
 
 
 def _file_name(robot: str) -> str:
     return re.sub(r"[^A-Za-z0-9._-]", "_", robot).strip(".") or "robot"
-
-
-def _lines(losses: tuple[Loss, ...], description: Linked) -> Iterator[Line]:
-    """The losses, by code."""
-    groups: dict[str, list[Loss]] = {}
-    for loss in losses:
-        groups.setdefault(loss.code, []).append(loss)
-    for code, group in groups.items():
-        first = group[0]
-        count = f"{len(group)} x " if len(group) > 1 else ""
-        effect = str(first.effect)
-        yield [(f"{count}{first.concept}: ", "bold"), (effect, _STYLES[effect]), (f" [{code}]", "dim")]
-        for loss in group[:_MOST_SHOWN]:
-            place = _place(loss, description)
-            where = f"{place.file}:{place.line}: " if place is not None and place.line else ""
-            yield [(f"    {where}'{_visible(loss.name)}': {_visible(loss.message)}", "")]
-        if len(group) > _MOST_SHOWN:
-            yield [(f"    and {len(group) - _MOST_SHOWN} more; --format json lists all", "dim")]
-        yield [("    = hint: ", "cyan"), (first.hint, "")]
-
-
-def _visible(text: str) -> str:
-    from eurdf.diagnostics.visible import visible
-
-    return visible(text)
 
 
 def _place(loss: Loss, description: Linked) -> Place | None:
@@ -171,23 +140,10 @@ def _result(
 ) -> dict[str, Any]:
     from eurdf.diagnostics.report import encodable
 
-    def entry(loss: Loss) -> dict[str, Any]:
-        place = _place(loss, description)
-        return {
-            "code": loss.code,
-            "effect": str(loss.effect),
-            "concept": loss.concept,
-            "name": encodable(loss.name),
-            "message": encodable(loss.message),
-            "hint": loss.hint,
-            "file": None if place is None else encodable(place.file),
-            "line": None if place is None else place.line,
-        }
-
     return {
         "path": encodable(description.path),
         "format": args.to,
         "files": [encodable(each) for each in paths],
         "refused": refusal or None,
-        "losses": [entry(loss) for loss in losses],
+        "losses": [loss_entry(loss, _place(loss, description)) for loss in losses],
     }

@@ -15,13 +15,25 @@ from collections.abc import Sequence
 from typing import NoReturn, TextIO
 
 from eurdf import __version__
-from eurdf.commands import assemble, certify, check, export, generate, info, migrate, robots, schema, view
+from eurdf.commands import (
+    assemble,
+    certify,
+    check,
+    export,
+    generate,
+    import_robot,
+    info,
+    migrate,
+    robots,
+    schema,
+    view,
+)
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.exit_code import BROKEN_PIPE, INTERRUPTED
 from eurdf.exceptions import CannotExpand, MissingExtra
 
 #: The commands, in the order in which the help shows them.
-COMMANDS = (check, info, view, assemble, export, robots, migrate, generate, schema, certify)
+COMMANDS = (check, info, view, assemble, export, import_robot, robots, migrate, generate, schema, certify)
 
 # Half of the time of a check is start-up. The matrices are too small for a thread pool, and pydantic plugins are not
 # needed.

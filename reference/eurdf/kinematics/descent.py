@@ -110,7 +110,7 @@ def _within(A: Matrix, b: Vector, damping: float, down: Vector, up: Vector) -> V
 def _damped(A: Matrix, b: Vector, damping: float) -> Vector:
     """The δ that minimises |A δ + b|² + λ |δ|², from the smaller of A Aᵀ and Aᵀ A."""
     wide = A.shape[0] < A.shape[1]
-    gram = A @ A.T if wide else A.T @ A
+    gram = A.dot(A.T) if wide else A.T.dot(A)
     diagonal = gram.ravel()[:: len(gram) + 1]
     diagonal += max(damping, 1e-13 * float(diagonal.sum()), 1e-300)  # invertible even with redundant rows
     step: Vector = A.T.dot(np.linalg.solve(gram, -b)) if wide else np.linalg.solve(gram, A.T.dot(-b))

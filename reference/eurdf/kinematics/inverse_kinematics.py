@@ -14,7 +14,7 @@ from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import Assembler, Assembly, start
 from eurdf.kinematics.bounded_step import bounded_step
 from eurdf.kinematics.constraint_stack import all_constraints
-from eurdf.kinematics.constraints.vector import origins, velocity_of_origin
+from eurdf.kinematics.damped_step import damped_step
 from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.least_solution import certain_inverse
 from eurdf.kinematics.opening import Opening
@@ -46,8 +46,7 @@ _SPREADS = (0.2, 0.5, 1.0, 2.0)
 _FLAT = 0.02
 # A configuration is singular if the smallest singular value of A is below this fraction of its largest value met.
 _SINGULAR = 0.05
-# Singular values of A below this fraction of the largest are zero.
-_ROUNDING = 1e-12
+_ONE = np.eye(3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,11 +191,22 @@ class _Search:
         self.tolerance = tolerance
         self.iterations = 0
         self.limits = assembler.limits
-        self.velocities = np.arange(self.nv)
         self._oMf: Sequence[Any] = ()
-        poses = [isinstance(target, SE3) for target in targets.values()]
+        # Of each target its position, the inverse of its rotation, if it has one, and where its rows begin.
+        self._parts: list[tuple[Vector, Matrix | None, int]] = []
+        rows = 0
+        for target in targets.values():
+            is_pose = isinstance(target, SE3)
+            position = np.array(target.translation if is_pose else target)
+            self._parts.append((position, np.array(target.rotation.T) if is_pose else None, rows))
+            rows += 6 if is_pose else 3
+        self._rows = rows
+        poses = [inverse is not None for _, inverse, _ in self._parts]
         self._all_poses = all(poses)
         self._used = np.repeat([[True, pose] for pose in poses], 3) if poses else np.empty(0, bool)
+        # The derivatives of positions by linear velocities; the other entries are set in `_jacobian`.
+        self._twists = np.zeros((len(poses), 6, 6))
+        self._twists[:, [0, 1, 2], [0, 1, 2]] = 1.0 / self.spaces.length
         self._begun: list[Vector] = []  # where descents began
         # Of E Z, at the configuration farthest from singular.
         self.motions, self.rank, self.smallest = self.nv, 0, 0.0
@@ -205,7 +215,7 @@ class _Search:
         if np.array_equal(self._clipped(q), q) and self._reached(self._error(q)):
             openings = all_openings(self.robot, q)
             if not any(found.is_open for found in openings):
-                return InverseKinematics(q, True, self._errors(q), openings, 0)
+                return InverseKinematics(q, True, self._errors(self._error(q)), openings, 0)
         q, opened = self._closed(self._clipped(q), 20)
         if opened is not None:
             best, error = q, self._error(q)
@@ -234,7 +244,7 @@ class _Search:
         return InverseKinematics(
             q=best,
             converged=reason is None,
-            errors=self._errors(best),
+            errors=self._errors(error),
             open=all_openings(self.robot, best),
             iterations=self.iterations,
             reason=reason,
@@ -319,7 +329,7 @@ class _Search:
             damping = _damping(damping, float(np.trace(H)))
             np.einsum("ii->i", H)[:] += damping
             G, h = self._bounds(q, Z)
-            y = _damped(A, e, damping)
+            y = damped_step(A, e, damping)
             if (G @ y > h).any():
                 y = bounded_step(H, A.T @ e, G, h)
             v = Z @ y
@@ -335,14 +345,14 @@ class _Search:
         A = self._constraint_jacobian(q) * self.spaces.dimensionless
         B = E * scale
         if len(A):
-            inverse = certain_inverse(A @ A.T, math.sqrt(float(np.vdot(A, A))))
+            inverse = certain_inverse(A.dot(A.T), math.sqrt(float(np.vdot(A, A))))
             if inverse is None:
                 return None
-            B -= ((B @ A.T) @ inverse) @ A
-            B -= ((B @ A.T) @ inverse) @ A  # what rounding left
-        v = scale * _damped(B, e, _damping(damping, float(np.vdot(B, B))))
+            B -= B.dot(A.T).dot(inverse).dot(A)
+            B -= B.dot(A.T).dot(inverse).dot(A)  # what rounding left
+        v = scale * damped_step(B, e, _damping(damping, float(np.vdot(B, B))))
         if self.limits is not None:
-            down, up = self.limits.room(q, self.velocities)
+            down, up = self.limits.room(q)
             if (((v > up) & (up <= scale)) | ((v < down) & (-down <= scale))).any():
                 return None
         return np.asarray(v)
@@ -371,7 +381,7 @@ class _Search:
         """G and h such that v = Z y respects the limits if G y ≤ h, for limits within a step of 1 rad or length."""
         if self.limits is None:
             return np.empty((0, Z.shape[1])), np.empty(0)
-        down, up = self.limits.room(q, self.velocities)
+        down, up = self.limits.room(q)
         scale = self.spaces.scale
         rows = Z / scale[:, None]
         moves = np.linalg.norm(rows, axis=1) > 1e-9
@@ -382,68 +392,53 @@ class _Search:
         return self._clipped(self.robot.tree.normalized(self.robot.tree.integrate(q, v)))
 
     def _clipped(self, q: Vector) -> Vector:
-        return q if self.limits is None else self.limits.clip(q, self.velocities)
+        return q if self.limits is None else self.limits.clip(q)
 
     def _error(self, q: Vector) -> Vector:
         """Stacked errors of all frames at q, in characteristic lengths and rad."""
-        self._oMf, parts = self.frames.placements(q), [np.empty(0)]
-        for target, oMf in zip(self.targets.values(), self._oMf, strict=True):
-            position = target.translation if isinstance(target, SE3) else target
-            parts.append((oMf.translation - position) / self.spaces.length)
-            if isinstance(target, SE3):
-                parts.append(log3(target.rotation.T @ oMf.rotation))
-        return np.concatenate(parts)
+        self._oMf, e = self.frames.placements(q), np.empty(self._rows)
+        for (position, inverse, first), oMf in zip(self._parts, self._oMf, strict=True):
+            e[first : first + 3] = (oMf.translation - position) / self.spaces.length
+            if inverse is not None:
+                e[first + 3 : first + 6] = log3(inverse.dot(oMf.rotation))
+        return e
 
     def _jacobian(self) -> Matrix:
         """Derivative of the errors by v, where they were last computed."""
-        placements = self._oMf
-        k = len(placements)
-        rows = np.zeros((k, 6, 6))
-        rows[:, :3] = velocity_of_origin(origins(placements)) / self.spaces.length
-        for row, target, oMf in zip(rows, self.targets.values(), placements, strict=True):
-            if isinstance(target, SE3):
+        rows = self._twists
+        for row, (_, inverse, _), oMf in zip(rows, self._parts, self._oMf, strict=True):
+            x, y, z = (oMf.translation / self.spaces.length).tolist()
+            row[0, 4], row[0, 5], row[1, 5] = z, -y, x  # minus the skew matrix
+            row[1, 3], row[2, 3], row[2, 4] = -z, y, -x
+            if inverse is not None:
                 R = oMf.rotation
-                row[3:, 3:] = log3_derivative(target.rotation.T @ R) @ R.T
-        J = self.frames.jacobian(rows, range(k))
+                row[3:, 3:] = log3_derivative(inverse.dot(R)).dot(R.T)
+        J = self.frames.jacobian(rows, range(len(rows)))
         return J if self._all_poses else J[self._used]
 
     def _reached(self, e: Vector) -> bool:
         """Whether every frame is at its target within the tolerance, m and rad."""
-        first = 0
-        for target in self.targets.values():
-            if not self.spaces.length * math.hypot(*e[first : first + 3]) <= self.tolerance:
+        errors = e.tolist()
+        for _, inverse, first in self._parts:
+            if not self.spaces.length * math.hypot(*errors[first : first + 3]) <= self.tolerance:
                 return False
-            first += 3
-            if isinstance(target, SE3):
-                if not math.hypot(*e[first : first + 3]) <= self.tolerance:
-                    return False
-                first += 3
+            if inverse is not None and not math.hypot(*errors[first + 3 : first + 6]) <= self.tolerance:
+                return False
         return True
 
-    def _errors(self, q: Vector) -> tuple[FrameError, ...]:
-        errors = []
-        for (name, target), oMf in zip(self.targets.items(), self.frames.placements(q), strict=True):
-            if isinstance(target, SE3):
-                angle = math.hypot(*log3(target.rotation.T @ oMf.rotation))
-                errors.append(FrameError(name, math.dist(oMf.translation, target.translation), angle))
-            else:
-                errors.append(FrameError(name, math.dist(oMf.translation, target), 0.0))
-        return tuple(errors)
+    def _errors(self, e: Vector) -> tuple[FrameError, ...]:
+        """The same by frame, m and rad."""
+        errors, found = e.tolist(), []
+        for name, (_, inverse, first) in zip(self.targets, self._parts, strict=True):
+            position = self.spaces.length * math.hypot(*errors[first : first + 3])
+            angle = 0.0 if inverse is None else math.hypot(*errors[first + 3 : first + 6])
+            found.append(FrameError(name, position, angle))
+        return tuple(found)
 
 
 def _damping(given: float, trace: float) -> float:
     """λ, at least so large that what it is added to can be inverted."""
     return max(given, 1e-13 * trace, 1e-300)
-
-
-def _damped(A: Matrix, e: Vector, damping: float) -> Vector:
-    """The y (m,) that minimises |A y + e|² + λ|y|².
-
-    Unlike (AᵀA + λ 1)⁻¹ Aᵀ e, it has no part along motions that change no error, which would be amplified rounding.
-    """
-    left, values, right = np.linalg.svd(A, full_matrices=False)
-    factors = np.where(values > _ROUNDING * values.max(initial=0.0), values / (values**2 + damping), 0.0)
-    return -np.asarray(right.T @ (factors * (left.T @ e)), dtype=np.float64)
 
 
 def _singular_values(A: Matrix) -> Vector:
@@ -453,9 +448,12 @@ def _singular_values(A: Matrix) -> Vector:
 def _target(name: str, target: Any) -> Any:
     """A target, checked: a pose, or a position (3,)."""
     if isinstance(target, SE3):
-        R, p = target.rotation, target.translation
-        if np.isfinite(p).all() and np.abs(R.T @ R - np.eye(3)).max() <= 1e-6 and np.linalg.det(R) > 0.0:
-            return target
+        R = target.rotation
+        if np.isfinite(target.translation).all() and np.abs(R.T.dot(R) - _ONE).max() <= 1e-6:
+            x, y, z = R.tolist()
+            volume = sum(x[i] * (y[i - 2] * z[i - 1] - y[i - 1] * z[i - 2]) for i in range(3))
+            if volume > 0.0:  # no reflection
+                return target
         raise ValueError(f"targets['{name}'] is not a pose: its rotation is not orthonormal, or a number is not finite")
     try:
         return checked_array(f"targets['{name}']", target, (3,))

@@ -62,16 +62,28 @@ class PositionLimits:
         """Which velocities (nv,) have a limit."""
         return np.isfinite(self.lower) | np.isfinite(self.upper)
 
-    def clip(self, q: Vector, velocities: Indices) -> Vector:
-        """The configuration with the coordinates that the given velocities drive clipped to their limits."""
+    @cached_property
+    def _of_bounded(self) -> tuple[Indices, Vector, Vector]:
+        """The coordinates that have a limit, and their limits."""
+        return self._limits_of(np.flatnonzero(self._bounded))
+
+    def _limits_of(self, bounded: Indices) -> tuple[Indices, Vector, Vector]:
+        return self.coordinates[bounded], self.lower[bounded], self.upper[bounded]
+
+    def clip(self, q: Vector, velocities: Indices | None = None) -> Vector:
+        """The configuration with the coordinates that the given velocities, all if None, drive within their limits."""
         within = np.array(q)
-        bounded = velocities[self._bounded[velocities]]
-        coordinates = self.coordinates[bounded]
-        within[coordinates] = np.minimum(np.maximum(q[coordinates], self.lower[bounded]), self.upper[bounded])
+        coordinates, lower, upper = (
+            self._of_bounded if velocities is None else self._limits_of(velocities[self._bounded[velocities]])
+        )
+        within[coordinates] = np.minimum(np.maximum(q[coordinates], lower), upper)
         return within
 
-    def room(self, q: Vector, velocities: Indices) -> tuple[Vector, Vector]:
+    def room(self, q: Vector, velocities: Indices | None = None) -> tuple[Vector, Vector]:
         """Distance from q to the lower limits (at most 0) and to the upper limits (at least 0), by velocity."""
+        if velocities is None:
+            at = q[self.coordinates]
+            return np.minimum(self.lower - at, 0.0), np.maximum(self.upper - at, 0.0)
         at = q[self.coordinates[velocities]]
         return np.minimum(self.lower[velocities] - at, 0.0), np.maximum(self.upper[velocities] - at, 0.0)
 
@@ -94,14 +106,21 @@ def position_limits(robot: Robot, *, strict: bool = False) -> PositionLimits:
     If a URDF gives no range, lower and upper limit are both zero (`urdf-no-range`). Such a coordinate is unlimited,
     unless ``strict``.
     """
-    driven, coordinates = derived(robot, driven_coordinates)
     lowest, highest = robot.tree.position_limits
+    # They are kept as long as the model has the same ones.
+    key, stated = (position_limits, strict), lowest.tobytes() + highest.tobytes()
+    kept: tuple[bytes, PositionLimits] | None = robot.derived.get(key)
+    if kept is not None and kept[0] == stated:
+        return kept[1]
+    driven, coordinates = derived(robot, driven_coordinates)
     lower, upper = np.full(robot.tree.nv, -np.inf), np.full(robot.tree.nv, np.inf)
     lower[driven], upper[driven] = lowest[coordinates[driven]], highest[coordinates[driven]]
     if not strict:
         left_out = (lower == 0.0) & (upper == 0.0)
         lower[left_out], upper[left_out] = -np.inf, np.inf
-    return PositionLimits(tuple(robot.tree.velocity_names), coordinates, lower, upper)
+    limits = PositionLimits(tuple(robot.tree.velocity_names), coordinates, lower, upper)
+    robot.derived[key] = stated, limits
+    return limits
 
 
 def chosen_limits(robot: Robot, limits: Limits) -> PositionLimits | None:

@@ -63,6 +63,13 @@ _WORLD = "world"
 
 LOSSES = (
     LossKind(
+        "export-fixed-joint",
+        "fixed joint",
+        Effect.EXACT,
+        "its name is left out: its link becomes a body without a joint, or a site if it has no mass",
+        "name the link in its place",
+    ),
+    LossKind(
         "export-helical-joint",
         "helical joint",
         Effect.APPROXIMATE,
@@ -349,6 +356,7 @@ class _Writer:
         host, pose = self.hosts[joint.parent]
         pose = pose * joint.placement
         if joint.type is JointType.FIXED:
+            self.losses.add("export-fixed-joint", joint.name)
             self._fixed(body, host, pose * joint.offset)
             return
         element = etree.SubElement(host, "body", {"name": self.bodies.new(body.name), **_placed(pose * joint.offset)})

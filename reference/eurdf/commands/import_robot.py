@@ -1,0 +1,161 @@
+"""``eurdf import``: describe a robot that is in a file of another format, and show what is lost."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from eurdf.commands.cannot_run import CannotRun
+from eurdf.commands.loss_lines import loss_entry, loss_lines
+from eurdf.commands.migrate import print_notes
+from eurdf.commands.output import write_json, write_lines
+from eurdf.commands.robot_options import ending
+
+if TYPE_CHECKING:
+    from eurdf.diagnostics import Place
+    from eurdf.importing.import_robot import Import
+    from eurdf.loss import Loss
+
+_DESCRIPTION = """\
+Describe a robot that is in a file of a simulator, with its closed loops, and show every loss: what a description cannot
+say, or only approximately.
+
+The files are written to a folder, all of them or none: robot.urdf, robot.yaml, its schema, meshes, a README.
+If the loops are open at the keyframe or reference pose of the file, a configuration is searched that closes them.
+"""
+_EPILOG = ending(
+    "0 imported, 1 the file has errors, or losses with --strict, 2 the command cannot run.",
+    "eurdf import cassie.xml -o cassie",
+    "eurdf import scene/arm.xml -o arm --within .",
+)
+
+#: Names of the formats. They are checked against `eurdf.importing` by the tests: importing it here would slow every
+#: command down.
+FORMATS = ("mjcf",)
+
+
+def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the command to the parser."""
+    parser = subparsers.add_parser(
+        "import",
+        help="describe a robot that is in a file of a simulator, and show what is lost",
+        description=_DESCRIPTION,
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("file", metavar="FILE", help="the file to import")
+    parser.add_argument("-o", "--output", metavar="FOLDER", required=True, help="the folder to write to")
+    parser.add_argument(
+        "--from",
+        dest="format_",
+        choices=FORMATS,
+        metavar="FORMAT",
+        help=f"{', '.join(FORMATS)}; default: recognized by the content",
+    )
+    parser.add_argument(
+        "--within",
+        metavar="FOLDER",
+        help="the folder that all files must be in that FILE includes; default: the folder of FILE",
+    )
+    parser.add_argument("--strict", action="store_true", help="write nothing if a loss is not exact")
+    parser.add_argument("--force", action="store_true", help="replace existing files")
+    parser.add_argument("--format", choices=("text", "json"), default="text", help="format of the output")
+    parser.set_defaults(run=run)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Import, show the losses, and return the exit code."""
+    from eurdf.importing.exceptions import CannotImport
+    from eurdf.importing.import_robot import import_robot
+
+    try:
+        found = import_robot(args.file, format=args.format_, within=args.within, strict=args.strict)
+    except CannotImport as reason:
+        places = _Places((Path(args.file),))
+        if args.format == "json":
+            write_json(_result(args, str(reason), [], reason.losses, places))
+        else:
+            write_lines(loss_lines(reason.losses, places.of), sys.stdout)
+            print_notes([f"nothing was written: {reason}"])
+        return 1
+    places = _Places(found.sources)
+    try:
+        paths = [os.fspath(each) for each in found.write(args.output, force=args.force)]
+    except FileExistsError as error:
+        raise CannotRun(str(error).replace("; force replaces it", "; --force replaces it")) from None
+    if args.format == "json":
+        write_json(_result(args, None, paths, found.losses, places, found))
+    else:
+        write_lines(loss_lines(found.losses, places.of), sys.stdout)
+        print_notes([*_loops(found), *(f"wrote '{each}'" for each in paths)])
+    return 0
+
+
+def _loops(found: Import) -> list[str]:
+    """How the loops were, and how they are."""
+    is_open = [opening for opening in found.opened if opening.is_open]
+    if not found.opened:
+        return []
+    count = f"{len(found.opened)} constraint{'' if len(found.opened) == 1 else 's'}"
+    if not is_open:
+        return [f"{count} closed at {found.start}"]
+    widest = max(is_open, key=lambda opening: max(opening.position, opening.angle))
+    after = "closed in the configuration 'assembled'" if found.closes else "no configuration was found that closes them"
+    return [f"{count}, {len(is_open)} open at {found.start}, the most {widest}; {after}"]
+
+
+class _Places:
+    """Where the elements of files are: the first one of a name."""
+
+    def __init__(self, sources: tuple[Path, ...]) -> None:
+        self._sources = sources
+        self._of: dict[str, Place] | None = None
+
+    def of(self, loss: Loss) -> Place | None:
+        """Where the element of a loss is, if it has a name there."""
+        if self._of is None:
+            self._of = self._found()
+        return self._of.get(loss.name)
+
+    def _found(self) -> dict[str, Place]:
+        from eurdf.diagnostics import Place
+        from eurdf.importing.exceptions import CannotImport
+        from eurdf.importing.xml_files import read_root
+
+        found: dict[str, Place] = {}
+        for path in self._sources:
+            try:
+                root = read_root(path)
+            except CannotImport:
+                continue
+            for element in root.iter("*"):
+                name, line = element.get("name"), element.sourceline
+                if name and isinstance(line, int):
+                    found.setdefault(name, Place(os.fspath(path), line))
+        return found
+
+
+def _result(
+    args: argparse.Namespace,
+    refused: str | None,
+    paths: list[str],
+    losses: tuple[Loss, ...],
+    places: _Places,
+    found: Import | None = None,
+) -> dict[str, Any]:
+    from eurdf.diagnostics.report import encodable
+
+    loops = [] if found is None else found.opened
+    return {
+        "path": encodable(args.file),
+        "format": args.format_ if found is None else found.format,
+        "files": [encodable(each) for each in paths],
+        "refused": None if refused is None else encodable(refused),
+        "start": None if found is None else encodable(found.start),
+        "opened": [{"name": encodable(each.name), "position": each.position, "angle": each.angle} for each in loops],
+        "closes": None if found is None else found.closes,
+        "losses": [loss_entry(loss, places.of(loss)) for loss in losses],
+    }

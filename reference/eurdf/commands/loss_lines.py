@@ -1,0 +1,58 @@
+"""The losses of an export or an import, for the terminal and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from eurdf.diagnostics import Place
+    from eurdf.diagnostics.text import Line
+    from eurdf.loss import Loss
+
+# Elements that are shown of each kind of loss.
+_MOST_SHOWN = 4
+
+_STYLES = {"exact": "green", "approximate": "yellow", "dropped": "red"}
+
+
+def loss_lines(losses: Sequence[Loss], place_of: Callable[[Loss], Place | None]) -> Iterator[Line]:
+    """The losses, by code.
+
+    Args:
+        losses: In any order.
+        place_of: Where the element of a loss is stated, if it is in a file.
+    """
+    from eurdf.diagnostics.visible import visible
+
+    groups: dict[str, list[Loss]] = {}
+    for loss in losses:
+        groups.setdefault(loss.code, []).append(loss)
+    for code, group in groups.items():
+        first = group[0]
+        count = f"{len(group)} x " if len(group) > 1 else ""
+        effect = str(first.effect)
+        yield [(f"{count}{first.concept}: ", "bold"), (effect, _STYLES[effect]), (f" [{code}]", "dim")]
+        for loss in group[:_MOST_SHOWN]:
+            place = place_of(loss)
+            where = f"{visible(place.file)}:{place.line}: " if place is not None and place.line else ""
+            yield [(f"    {where}'{visible(loss.name)}': {visible(loss.message)}", "")]
+        if len(group) > _MOST_SHOWN:
+            yield [(f"    and {len(group) - _MOST_SHOWN} more; --format json lists all", "dim")]
+        yield [("    = hint: ", "cyan"), (first.hint, "")]
+
+
+def loss_entry(loss: Loss, place: Place | None) -> dict[str, Any]:
+    """A loss as JSON."""
+    from eurdf.diagnostics.report import encodable
+
+    return {
+        "code": loss.code,
+        "effect": str(loss.effect),
+        "concept": loss.concept,
+        "name": encodable(loss.name),
+        "message": encodable(loss.message),
+        "hint": loss.hint,
+        "file": None if place is None else encodable(place.file),
+        "line": None if place is None else place.line,
+    }

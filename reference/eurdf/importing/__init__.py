@@ -1,0 +1,1 @@
+"""Robots in the formats of others as mechanisms: each import says what it lost."""

@@ -1,0 +1,26 @@
+"""Exceptions of imports."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+from eurdf.diagnostics.visible import visible
+from eurdf.exceptions import EurdfError
+
+if TYPE_CHECKING:
+    from eurdf.loss import Loss
+
+
+class CannotImport(EurdfError, ValueError):  # noqa: N818 - part of the public interface
+    """A file cannot be imported.
+
+    Attributes:
+        path: The file.
+        reason: What is wrong, and what would be right.
+        losses: What was refused, where the caller refuses losses.
+    """
+
+    def __init__(self, path: str | os.PathLike[str], reason: str, losses: tuple[Loss, ...] = ()) -> None:
+        self.path, self.reason, self.losses = os.fspath(path), reason, losses
+        super().__init__(visible(f"cannot import '{self.path}': {reason}"))

@@ -1,0 +1,9 @@
+"""The formats to import from: one file a format."""
+
+from __future__ import annotations
+
+from eurdf.importing.formats import mjcf
+from eurdf.importing.robot_read import ImportFormat
+
+#: Every format, by its name.
+FORMATS: dict[str, ImportFormat] = {each.FORMAT.name: each.FORMAT for each in (mjcf,)}

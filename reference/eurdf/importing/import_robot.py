@@ -1,0 +1,213 @@
+"""`eurdf.import_robot`: a robot from a file of another format, and what is lost of it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import MappingProxyType
+
+import numpy as np
+
+from eurdf.diagnostics import did_you_mean
+from eurdf.exceptions import RobotNotFound
+from eurdf.format.schema import FILES, SchemaVersion, json_schema, schema_text
+from eurdf.importing.exceptions import CannotImport
+from eurdf.importing.formats import FORMATS
+from eurdf.importing.readme import licence_file, readme
+from eurdf.importing.recognition import recognized
+from eurdf.importing.robot_read import RobotRead
+from eurdf.kinematics.assembly import assemble
+from eurdf.kinematics.opening import CLOSED, Opening
+from eurdf.kinematics.residual import closure_openings, residual
+from eurdf.linking.description import Unlinked, describe
+from eurdf.loss import Effect, Loss, Losses, LossKind
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.pinocchio.robot import build_robot
+from eurdf.writing.assembled import NAME as ASSEMBLED
+from eurdf.writing.assembled import beyond_limits
+from eurdf.writing.description import NotWritable, describe_mechanism, version_needed
+from eurdf.writing.output_folder import write_files
+
+#: Losses of every format.
+COMMON = (
+    LossKind(
+        "import-not-assembled",
+        "configuration",
+        Effect.DROPPED,
+        "no configuration was found that closes the loops within the limits of the joints",
+        "correct limits or frames, and find one with `eurdf assemble`",
+    ),
+    LossKind(
+        "import-open-assembled",
+        "configuration",
+        Effect.EXACT,
+        "the name is reserved for a configuration that closes the loops: this one is renamed",
+        "choose another name in the file",
+    ),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Import:
+    """A robot from a file of another format.
+
+    Attributes:
+        format: Name of the format.
+        mechanism: The robot.
+        losses: What is not as in the file.
+        files: Content of each file to write by its path relative to a folder: ``robot.urdf``, ``robot.yaml``, a README,
+            the schema for editors, and the meshes.
+        start: The configuration of the file that the loops were assembled from.
+        opened: How far each closure was open there, before assembling.
+        closes: Whether all loops close, in the configuration ``assembled``.
+        sources: Every file that was read, the main one first.
+    """
+
+    format: str
+    mechanism: Mechanism
+    losses: tuple[Loss, ...]
+    files: Mapping[str, bytes]
+    start: str
+    opened: tuple[Opening, ...]
+    closes: bool
+    sources: tuple[Path, ...]
+
+    def write(self, folder: str | os.PathLike[str], *, force: bool = False) -> tuple[Path, ...]:
+        """Write the files to a folder: all of them or none.
+
+        Args:
+            folder: Where to write; made if it does not exist.
+            force: Whether to replace files that exist.
+
+        Returns:
+            Paths of the files; the URDF is the first.
+
+        Raises:
+            FileExistsError: A file exists, and `force` is False.
+            OSError: A file cannot be written.
+        """
+        return write_files(folder, self.files, force=force)
+
+
+def import_robot(
+    path: str | os.PathLike[str],
+    *,
+    format: str | None = None,  # noqa: A002 - the word of the command
+    within: str | os.PathLike[str] | None = None,
+    strict: bool = False,
+) -> Import:
+    """Import a robot from a file of another format.
+
+    Nothing is dropped in silence: what a description cannot say is in ``losses``. If the loops are open at the keyframe
+    or reference pose of the file, a configuration is searched that closes them, ``assembled``.
+
+    Args:
+        path: The file.
+        format: Name of its format: ``mjcf``. By default it is recognized by its content.
+        within: The folder that all files must be in that the file includes; its own by default.
+        strict: Whether to refuse losses that are not exact.
+
+    Raises:
+        CannotImport: The file is not of this format, has an error, or uses files outside the folder; or, if `strict`,
+            it cannot be imported without losses.
+        MissingExtra: What reads the format is not installed.
+        RobotNotFound: There is no such file.
+        ValueError: There is no such format.
+    """
+    file = Path(path)
+    if not file.is_file():
+        raise RobotNotFound(os.fspath(path), f"'{file}' is not a file")
+    if format is not None and format not in FORMATS:
+        hint = did_you_mean(format, FORMATS) or f"the formats are: {', '.join(FORMATS)}"
+        raise ValueError(f"there is no format '{format}'; {hint}")
+    name = format or recognized(file)
+    read = FORMATS[name].read(file, Path(within) if within is not None else file.absolute().parent)
+    imported = _import(name, file, read)
+    if strict and (refused := tuple(loss for loss in imported.losses if loss.effect is not Effect.EXACT)):
+        more = f"; and {len(refused) - 1} more" if len(refused) > 1 else ""
+        raise CannotImport(file, f"it has losses: {refused[0]}{more}", refused)
+    return imported
+
+
+def _import(format_: str, path: Path, read: RobotRead) -> Import:
+    losses = Losses(COMMON)
+    start, coordinates = read.start
+    robot = build_robot(read.mechanism, geometry=False)
+    q = robot.configuration(coordinates)
+    opened = closure_openings(robot, q)
+    mechanism = _without_open_assembled(read.mechanism, losses)
+    closes = True
+    if mechanism.constraints and ASSEMBLED not in mechanism.configurations:
+        found = next((each for limits in (True, False) if (each := assemble(robot, q, limits=limits)).closes), None)
+        closes = found is not None
+        exact = {} if found is None else robot.coordinates(found.q)
+        beyond = beyond_limits(mechanism, exact)
+        if found is None:
+            losses.add("import-not-assembled", ASSEMBLED, "no configuration was found that closes the loops")
+        elif beyond:
+            losses.add("import-not-assembled", ASSEMBLED, f"the loops close beyond limits only: {beyond[0]}")
+        else:
+            mechanism = replace(
+                mechanism, configurations=MappingProxyType({ASSEMBLED: exact, **mechanism.configurations})
+            )
+    mechanism = replace(
+        mechanism,
+        version=version_needed(mechanism),
+        metadata=MappingProxyType({"source": path.name, **mechanism.metadata}),
+    )
+    found_losses = (*read.losses, *losses.found)
+    files = _files(path, format_, mechanism, read, found_losses, opened)
+    return Import(format_, mechanism, found_losses, MappingProxyType(files), start, opened, closes, read.sources)
+
+
+def _without_open_assembled(mechanism: Mechanism, losses: Losses) -> Mechanism:
+    """EU-CFG-005: the loops are closed at a configuration of that name; another one is renamed."""
+    configurations = dict(mechanism.configurations)
+    if ASSEMBLED not in configurations or not mechanism.constraints:
+        return mechanism
+    robot = build_robot(mechanism, geometry=False)
+    if np.abs(residual(robot, robot.configuration(configurations[ASSEMBLED]))).max() <= CLOSED:
+        return mechanism
+    name = f"{ASSEMBLED}_open"
+    while name in configurations:
+        name += "_"
+    losses.add("import-open-assembled", ASSEMBLED, f"its loops are open: it is renamed to '{name}'")
+    renamed = {name if key == ASSEMBLED else key: value for key, value in configurations.items()}
+    return replace(mechanism, configurations=MappingProxyType(renamed))
+
+
+def _files(
+    path: Path,
+    format_: str,
+    mechanism: Mechanism,
+    read: RobotRead,
+    losses: tuple[Loss, ...],
+    opened: tuple[Opening, ...],
+) -> dict[str, bytes]:
+    schema: SchemaVersion = "2" if version_needed(mechanism) == "2.0" else "2.1"
+    comment = f"Imported from {path.name} ({format_}) by eurdf."
+    try:
+        written = describe_mechanism(mechanism, schema=f"./{FILES[schema]}", comments=(comment,))
+    except NotWritable as reason:
+        raise CannotImport(path, str(reason)) from None
+    _must_be_valid(path, written.yaml, written.urdf.decode())
+    licence = licence_file(path)
+    files = {
+        "robot.urdf": written.urdf,
+        "robot.yaml": written.yaml.encode(),
+        "README.md": readme(path, FORMATS[format_], mechanism, losses, read, opened, licence).encode(),
+        FILES[schema]: schema_text(json_schema(schema)).encode(),
+        **read.meshes,
+    }
+    if licence is not None:
+        files["LICENSE"] = licence.read_bytes()
+    return files
+
+
+def _must_be_valid(path: Path, yaml: str, urdf: str) -> None:
+    """Refuse what could only be written as a description with errors."""
+    found = describe(yaml, urdf=urdf)
+    if isinstance(found, Unlinked):
+        raise CannotImport(path, f"it has no valid description: {found.diagnostics.errors[0].message}")

@@ -1,0 +1,269 @@
+"""The process that compiles an MJCF file: the request is JSON on standard input, the model is JSON on standard output.
+
+It imports nothing of this package. MuJoCo's compiler is C++ that a hostile file can make crash, or take minutes and
+gigabytes; here this ends a process, not that of a caller. It runs in a folder of its own, as MuJoCo writes a log there.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import math
+import os
+import resource
+import signal
+import sys
+from typing import Any
+
+import mujoco
+import numpy as np
+
+#: Arrays of the model that the importer needs, by the kind of element. Those of later releases may be missing.
+_ARRAYS = {
+    "body": "parentid pos quat mass ipos iquat inertia mocapid gravcomp",
+    "jnt": "type bodyid pos axis limited range stiffness qposadr dofadr actfrclimited actfrcrange stiffnesspoly",
+    "dof": "armature damping frictionloss dampingpoly",
+    "geom": "type bodyid contype conaffinity group size pos quat rgba matid dataid",
+    "mat": "rgba texid",
+    "mesh": "pos quat",
+    "site": "bodyid pos quat",
+    "eq": "type objtype obj1id obj2id active0 data",
+    "tendon": "adr num length0 limited stiffness damping frictionloss",
+    "wrap": "type objid prm",
+    "actuator": "trntype trnid gear ctrllimited ctrlrange ctrladr forcelimited forcerange gaintype gainprm biastype "
+    "dyntype",
+    "key": "qpos",
+}
+
+#: The arrays of names in a list of them.
+_ENUMERATIONS = {
+    "jnt_type": mujoco.mjtJoint,
+    "geom_type": mujoco.mjtGeom,
+    "eq_type": mujoco.mjtEq,
+    "eq_objtype": mujoco.mjtObj,
+    "wrap_type": mujoco.mjtWrap,
+    "actuator_trntype": mujoco.mjtTrn,
+    "actuator_gaintype": mujoco.mjtGain,
+    "actuator_biastype": mujoco.mjtBias,
+    "actuator_dyntype": mujoco.mjtDyn,
+}
+
+#: Numbers of what a mechanism does not have.
+_COUNTS = ("nsensor", "ncam", "nlight", "npair", "nexclude", "nflex", "nskin", "nhfield", "nplugin")
+
+_NAMED = {
+    "body": mujoco.mjtObj.mjOBJ_BODY,
+    "joint": mujoco.mjtObj.mjOBJ_JOINT,
+    "geom": mujoco.mjtObj.mjOBJ_GEOM,
+    "site": mujoco.mjtObj.mjOBJ_SITE,
+    "mesh": mujoco.mjtObj.mjOBJ_MESH,
+    "equality": mujoco.mjtObj.mjOBJ_EQUALITY,
+    "tendon": mujoco.mjtObj.mjOBJ_TENDON,
+    "actuator": mujoco.mjtObj.mjOBJ_ACTUATOR,
+    "key": mujoco.mjtObj.mjOBJ_KEY,
+}
+_NUMBERS = {
+    "body": "nbody",
+    "joint": "njnt",
+    "geom": "ngeom",
+    "site": "nsite",
+    "mesh": "nmesh",
+    "equality": "neq",
+    "tendon": "ntendon",
+    "key": "nkey",
+}
+
+_GIT_LFS = b"version https://git-lfs"
+
+
+class Refused(Exception):  # noqa: N818 - the answer to the request
+    """The file cannot be compiled; the text says why."""
+
+
+def main() -> None:
+    """Answer the request."""
+    request = json.load(sys.stdin.buffer)
+    # MuJoCo may print: its lines are no part of the answer.
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+    _limit(resource.RLIMIT_CORE, 0)
+    _limit(resource.RLIMIT_AS, _address_space() + request["memory"])
+    _limit(resource.RLIMIT_CPU, request["seconds"])
+    signal.alarm(2 * request["seconds"])
+    try:
+        answer = _compiled(request["path"])
+    except Refused as reason:
+        answer = {"error": str(reason)}
+    except MemoryError:
+        answer = {"error": "it takes too much memory"}
+    except Exception as error:
+        answer = {"error": "MuJoCo says: " + " ".join(str(error).split())}
+    json.dump(answer, answers)
+    answers.flush()
+
+
+def _compiled(path: str) -> dict[str, Any]:
+    spec = _specification(path)
+    left_out = _without_assets(spec, {mesh.name: reason for mesh in spec.meshes if (reason := _fault(spec, mesh))})
+    try:
+        model = spec.compile()
+    except ValueError:
+        # MuJoCo names one mesh at a time.
+        faults = {mesh.name: reason for mesh in spec.meshes if (reason := _compile_error(spec, mesh))}
+        if not faults:
+            raise
+        spec = _specification(path)
+        faults |= {mesh.name: reason for mesh in spec.meshes if (reason := _fault(spec, mesh))}
+        left_out = _without_assets(spec, faults)
+        model = spec.compile()
+    return {
+        "name": spec.modelname,
+        "degree": bool(spec.compiler.degree),
+        "arrays": _arrays(model),
+        "names": {kind: _names(model, kind) for kind in _NAMED},
+        "counts": {name: int(getattr(model, name, 0)) for name in _COUNTS},
+        "meshes": [_mesh(spec, model, mesh) for mesh in sorted(spec.meshes, key=lambda mesh: mesh.id)],
+        "fullinertia": {
+            int(body.id): np.asarray(body.fullinertia).tolist()
+            for body in spec.bodies
+            if np.isfinite(body.fullinertia).all()
+        },
+        "left_out": left_out,
+    }
+
+
+def _arrays(model: Any) -> dict[str, Any]:
+    names = [f"{kind}_{name}" for kind, ends in _ARRAYS.items() for name in ends.split()]
+    found = {
+        name: np.asarray(getattr(model, name)).tolist()
+        for name in (*names, "qpos0", "qpos_spring")
+        if hasattr(model, name)
+    }
+    for name, kind in _ENUMERATIONS.items():
+        found[name] = [kind(value).name.rpartition("_")[2].lower() for value in found[name]]
+    return found
+
+
+def _specification(path: str) -> Any:
+    spec = mujoco.MjSpec.from_file(path)
+    # Both would drop bodies and shapes.
+    spec.compiler.fusestatic = False
+    spec.compiler.discardvisual = False
+    return spec
+
+
+def _without_assets(spec: Any, faults: dict[str, str]) -> list[dict[str, str]]:
+    """Remove the meshes with faults, textures that are files, skins and height fields, and what uses them."""
+    left_out = []
+    for texture in spec.textures:
+        if texture.file or any(texture.cubefiles):
+            texture.file, texture.cubefiles = "", [""] * len(texture.cubefiles)
+            texture.builtin = mujoco.mjtBuiltin.mjBUILTIN_FLAT
+            texture.width = texture.height = 1
+            if texture.type != mujoco.mjtTexture.mjTEXTURE_2D:
+                texture.height = 6
+    for skin in list(spec.skins):
+        left_out.append({"kind": "skin", "name": skin.name, "reason": "it is left out"})
+        spec.delete(skin)
+    gone = set()
+    for geom in list(spec.geoms):
+        field = geom.type == mujoco.mjtGeom.mjGEOM_HFIELD
+        if not field and geom.meshname not in faults:
+            continue
+        if geom.meshname in faults and not geom.parent.explicitinertial and geom.parent.id != 0 and _weighs(spec, geom):
+            reason = faults[geom.meshname]
+            raise Refused(f"mesh '{geom.meshname}', of which body '{geom.parent.name}' gets its inertia: {reason}")
+        if geom.name:
+            gone.add(geom.name)
+        kind = "height field" if field else "mesh"
+        name = geom.hfieldname if field else geom.meshname
+        left_out.append({"kind": kind, "name": name, "reason": faults.get(name, "it is left out")})
+        spec.delete(geom)
+    for pair in list(spec.pairs):
+        if pair.geomname1 in gone or pair.geomname2 in gone:
+            spec.delete(pair)
+    for field in list(spec.hfields):
+        spec.delete(field)
+    for mesh in list(spec.meshes):
+        if mesh.name in faults:
+            spec.delete(mesh)
+    return left_out
+
+
+def _weighs(spec: Any, geom: Any) -> bool:
+    """Whether the compiler takes the inertia of a body from a shape."""
+    low, high = spec.compiler.inertiagrouprange
+    return bool(low <= geom.group <= high) and geom.mass != 0.0 and not (math.isnan(geom.mass) and geom.density == 0.0)
+
+
+def _path(spec: Any, mesh: Any) -> str:
+    compiler = getattr(mesh, "compiler", spec.compiler)
+    name = os.path.basename(mesh.file) if spec.strippath else mesh.file
+    return os.path.normpath(os.path.join(spec.modelfiledir, compiler.meshdir or "", name))
+
+
+def _fault(spec: Any, mesh: Any) -> str:
+    """Why the file of a mesh cannot be read; empty if it can, as far as can be seen, or if there is no file."""
+    if not mesh.file:
+        return ""
+    path = _path(spec, mesh)
+    if not os.path.isfile(path):
+        return f"its file '{mesh.file}' was not found"
+    with open(path, "rb") as stream:
+        head = stream.read(84)
+    if head.startswith(_GIT_LFS):
+        return f"its file '{mesh.file}' is a pointer of Git LFS; fetch it with `git lfs pull`"
+    if path.lower().endswith(".stl"):
+        size = os.path.getsize(path)
+        if len(head) < 84 or size != 84 + 50 * int.from_bytes(head[80:84], "little"):
+            return f"its file '{mesh.file}' is not a binary STL"
+    return ""
+
+
+def _compile_error(spec: Any, mesh: Any) -> str:
+    """Why MuJoCo refuses a mesh that is a file; empty if it does not."""
+    if not mesh.file:
+        return ""
+    alone = mujoco.MjSpec()
+    alone.add_mesh(name="m", file=os.path.abspath(_path(spec, mesh)), scale=mesh.scale, inertia=mesh.inertia)
+    alone.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="m")
+    try:
+        alone.compile()
+    except ValueError as error:
+        return f"MuJoCo cannot read its file '{mesh.file}': {' '.join(str(error).split())}"
+    return ""
+
+
+def _mesh(spec: Any, model: Any, mesh: Any) -> dict[str, Any]:
+    """The file of a mesh, if a URDF can name it; else its content as OBJ, as it is in the model."""
+    path = _path(spec, mesh) if mesh.file else ""
+    moved = bool(np.any(mesh.refpos)) or not np.allclose(mesh.refquat, (1.0, 0.0, 0.0, 0.0), atol=0.0)
+    if path.lower().endswith((".stl", ".obj")) and not moved:
+        return {"path": path, "scale": np.asarray(mesh.scale).tolist(), "obj": ""}
+    at, count = model.mesh_vertadr[mesh.id], model.mesh_vertnum[mesh.id]
+    vertices = model.mesh_vert[at : at + count].tolist()
+    at, count = model.mesh_faceadr[mesh.id], model.mesh_facenum[mesh.id]
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices]
+    lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in model.mesh_face[at : at + count].tolist()]
+    return {"path": path, "scale": [1.0, 1.0, 1.0], "obj": "\n".join(lines) + "\n"}
+
+
+def _names(model: Any, kind: str) -> list[str]:
+    number = len(model.actuator_trntype) if kind == "actuator" else getattr(model, _NUMBERS[kind])
+    return [mujoco.mj_id2name(model, _NAMED[kind], index) or "" for index in range(number)]
+
+
+def _address_space() -> int:
+    """The address space that this process has, in bytes."""
+    with contextlib.suppress(OSError), open("/proc/self/statm", encoding="ascii") as stream:
+        return int(stream.read().split()[0]) * resource.getpagesize()
+    return 0
+
+
+def _limit(what: int, soft: int) -> None:
+    with contextlib.suppress(OSError, ValueError):  # where the system knows no such bound, or has a lower one
+        resource.setrlimit(what, (soft, resource.getrlimit(what)[1]))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,47 @@
+"""What a format makes of a file, and a format: the seam between a format and the rest."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import MappingProxyType
+
+from eurdf.loss import Loss, LossKind
+from eurdf.mechanism.mechanism import Mechanism
+
+
+@dataclass(frozen=True, slots=True)
+class RobotRead:
+    """A robot that was read from a file.
+
+    Attributes:
+        mechanism: The robot. The meshes of its shapes are named as in ``meshes``.
+        losses: What is not as in the file.
+        meshes: Content of each mesh file, by its path relative to the folder that is written, with ``/``.
+        start: Name of the configuration to assemble from, and its coordinates as files have them.
+        sources: Every file that was read, the main one first.
+    """
+
+    mechanism: Mechanism
+    losses: tuple[Loss, ...]
+    meshes: Mapping[str, bytes] = field(default_factory=dict)
+    start: tuple[str, Mapping[str, tuple[float, ...]]] = ("the neutral configuration", MappingProxyType({}))
+    sources: tuple[Path, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class ImportFormat:
+    """A format to import from.
+
+    Attributes:
+        name: As the user gives it.
+        title: What it is.
+        read: Reads a file, whose own files must be in a folder.
+        losses: Every kind of loss that `read` can record.
+    """
+
+    name: str
+    title: str
+    read: Callable[[Path, Path], RobotRead]
+    losses: tuple[LossKind, ...]

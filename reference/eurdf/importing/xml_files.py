@@ -1,0 +1,84 @@
+"""The XML files of a robot: each is read by our own reader, which refuses entities, before another program reads it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+from lxml import etree
+
+from eurdf.diagnostics import FileError
+from eurdf.importing.exceptions import CannotImport
+from eurdf.reading.source import read_source
+from eurdf.reading.xml_reader import read_xml
+
+
+def read_root(path: Path) -> etree._Element:
+    """The root element of an XML file.
+
+    Raises:
+        CannotImport: It cannot be read, is not XML, is too large, or has entities.
+    """
+    try:
+        return read_xml(read_source(path)).root
+    except FileError as error:
+        found = error.diagnostic
+        where = f"{found.file}:{found.line}: " if found.line else ""
+        raise CannotImport(path, where + found.message) from None
+
+
+def included_files(path: Path, within: Path) -> tuple[Path, ...]:
+    """An MJCF file and all that it includes, each read once, the main one first.
+
+    Args:
+        path: The file.
+        within: The folder that all of them must be in, with symbolic links followed.
+
+    Raises:
+        CannotImport: A file is outside the folder, includes itself, or cannot be read.
+    """
+    found: dict[Path, None] = {}
+
+    def visit(file: Path, chain: tuple[Path, ...]) -> None:
+        inside(path, file, within)
+        if file in chain:
+            shown = " -> ".join(f"'{each.name}'" for each in (*chain[chain.index(file) :], file))
+            raise CannotImport(path, f"a file includes itself: {shown}; remove one of these includes")
+        root = read_root(file)
+        found[file] = None
+        for name in _included(root):
+            visit(_resolved(path, name), (*chain, file))
+
+    visit(_resolved(path, path.name), ())
+    return tuple(found)
+
+
+def inside(path: Path, file: Path, within: Path) -> None:
+    """Refuse a file that is outside a folder, with symbolic links followed.
+
+    Raises:
+        CannotImport: It is outside.
+    """
+    if not file.is_relative_to(Path(os.path.realpath(within))):
+        raise CannotImport(
+            path,
+            f"it uses '{file}', which is outside the folder '{within}'; copy it there, or name a folder that has both "
+            "with --within (within= in Python)",
+        )
+
+
+def _resolved(main: Path, name: str) -> Path:
+    """The path of an included file: relative to the folder of the main file."""
+    try:
+        return Path(os.path.realpath(main.parent / name))
+    except (OSError, ValueError):  # a name that cannot be one, such as one with a zero
+        raise CannotImport(main, f"it includes {name!r}, which cannot be the name of a file") from None
+
+
+def _included(root: etree._Element) -> Iterator[str]:
+    """Names of the files that are included: as text, or as a model to attach."""
+    for element in root.iter("include", "model"):
+        name = element.get("file")
+        if name:
+            yield name

@@ -1,0 +1,153 @@
+"""`eurdf import`: files, losses, refusals."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+import eurdf
+from eurdf.commands import import_robot as command
+from eurdf.commands.main import main
+from eurdf.importing.formats import FORMATS
+from eurdf.importing.import_robot import COMMON
+from eurdf.importing.table import with_tables
+
+BODY = '<geom type="sphere" size="0.1" mass="1"/>'
+FOUR_BAR = f"""\
+<mujoco model="four_bar">
+  <compiler angle="radian"/>
+  <worldbody>
+    <body name="base">
+      {BODY}
+      <body name="crank" pos="0 0 0.1">
+        <joint name="drive" axis="0 1 0" springref="0"/>
+        {BODY}
+        <body name="coupler" pos="0 0 0.2">
+          <joint name="elbow" axis="0 1 0"/>
+          {BODY}
+          <site name="reach" pos="0.3 0 0"/>
+        </body>
+      </body>
+      <body name="rocker" pos="0.3 0 0.1">
+        <joint name="pivot" axis="0 1 0"/>
+        {BODY}
+        <site name="end" pos="0.01 0 0.2"/>
+      </body>
+      <site name="tool" pos="0 0 1"/>
+    </body>
+  </worldbody>
+  <equality><connect name="pin" site1="reach" site2="end"/></equality>
+  <actuator><motor name="drive" joint="drive" ctrlrange="-3 3"/></actuator>
+</mujoco>
+"""
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "four_bar.xml").write_text(FOUR_BAR)
+    return tmp_path
+
+
+def test_command_knows_all_formats() -> None:
+    assert tuple(FORMATS) == command.FORMATS
+
+
+@pytest.mark.parametrize("name", [*FORMATS, "common"])
+def test_losses_are_registered_well(name: str) -> None:
+    losses = COMMON if name == "common" else FORMATS[name].losses
+    codes = [kind.code for kind in losses]
+    assert len(set(codes)) == len(codes)
+    for kind in losses:
+        assert re.fullmatch("import(-[a-z0-9]+)+", kind.code)
+        assert kind.concept
+        assert kind.title
+        assert kind.hint
+
+
+def test_files_are_written_and_losses_shown(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (here / "LICENSE").write_text("Anyone may use it.\n")
+    assert main(["import", "four_bar.xml", "-o", "out"]) == 0
+    out, err = capsys.readouterr()
+    files = ["LICENSE", "README.md", "extended-urdf-2.0.schema.json", "robot.urdf", "robot.yaml"]
+    assert sorted(path.name for path in (here / "out").iterdir()) == files
+    assert "1 constraint, 1 open at the reference pose, the most 'pin' by 10 mm; closed in the configuration" in err
+    line = FOUR_BAR.splitlines().index('  <equality><connect name="pin" site1="reach" site2="end"/></equality>') + 1
+    assert f"four_bar.xml:{line}: 'pin': becomes rigid" in out
+    assert eurdf.check(here / "out").ok
+    assert eurdf.analyze(eurdf.load(here / "out")).mobility == 1
+    readme = (here / "out" / "README.md").read_text()
+    assert "Imported from `four_bar.xml` (MJCF, for MuJoCo)" in readme
+    assert "see `LICENSE`" in readme
+    assert "| `pin` 0.01 m |" in readme
+    assert "import-softness" in readme
+
+
+def test_json_lists_every_loss_with_its_place(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["import", "four_bar.xml", "-o", "out", "--format", "json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    losses = eurdf.import_robot("four_bar.xml").losses
+    assert [(each["code"], each["name"]) for each in found["losses"]] == [(loss.code, loss.name) for loss in losses]
+    assert found["format"] == "mjcf"
+    assert found["closes"] is True
+    assert found["opened"] == [{"name": "pin", "position": pytest.approx(0.01), "angle": 0.0}]
+
+
+def test_existing_file_is_kept_without_force(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (here / "out").mkdir()
+    (here / "out" / "README.md").write_text("mine")
+    assert main(["import", "four_bar.xml", "-o", "out"]) == 2
+    assert "already exists; --force replaces it" in capsys.readouterr().err
+    assert [path.name for path in (here / "out").iterdir()] == ["README.md"]
+    assert main(["import", "four_bar.xml", "-o", "out", "--force"]) == 0
+    assert (here / "out" / "README.md").read_text() != "mine"
+
+
+def test_strict_refuses_losses(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["import", "four_bar.xml", "-o", "out", "--strict"]) == 1
+    out, err = capsys.readouterr()
+    assert "import-softness" in out
+    assert "nothing was written: cannot import 'four_bar.xml': it has losses" in err
+    assert not (here / "out").exists()
+
+
+def test_file_with_an_error_is_refused(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (here / "bad.xml").write_text("<mujoco><worldbody>")
+    assert main(["import", "bad.xml", "-o", "out"]) == 1
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("nothing was written: cannot import 'bad.xml': bad.xml:1: ")
+    assert not (here / "out").exists()
+
+
+def test_missing_file_and_unknown_format_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["import", "gone.xml", "-o", "out"]) == 2
+    assert "'gone.xml' is not a file" in capsys.readouterr().err
+    with pytest.raises(ValueError, match=r"there is no format 'mjfc'; did you mean 'mjcf'\?"):
+        eurdf.import_robot("four_bar.xml", format="mjfc")
+
+
+def test_missing_mujoco_is_an_error(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    from eurdf.importing import mjcf_model
+
+    monkeypatch.setattr(mjcf_model, "find_spec", lambda name: None)
+    assert main(["import", "four_bar.xml", "-o", "out"]) == 2
+    assert re.search(
+        r"MuJoCo, which reads it, is not installed; install it with: .*\[mujoco\]", capsys.readouterr().err
+    )
+
+
+def test_mujoco_is_not_imported_by_the_caller(here: Path) -> None:
+    import subprocess
+
+    program = "import eurdf, sys; eurdf.import_robot('four_bar.xml'); sys.exit('mujoco' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", program], check=False).returncode == 0
+
+
+def test_tables_of_losses_are_current() -> None:
+    page = (Path(eurdf.__file__).parents[2] / "docs" / "import.md").read_text(encoding="utf-8")
+    assert with_tables(page) == page
