@@ -83,10 +83,43 @@ def forward_kinematics(
     velocities = tuple(given.velocities.tolist())
     with borrowed(robot, Assembler, tuple(given.joints)) as assembler, borrowed(robot, DrivenMotion, velocities) as by:
         assembler.tolerance, assembler.limits = tolerance, None
-        q = _follow(robot, given, first, goal, assembler, by)
-        if not len(robot.tree.springs):
-            return q
-        return spring_equilibrium(robot, q, given.velocities, given.coordinates, assembler)
+        q, part = _follow(robot, given, first, goal, assembler, by, _SHORTEST_STEP)
+        if part < 1.0:
+            raise _stopped(robot, assembler, q, goal, given.coordinates)
+        return _at_rest(robot, q, given, assembler)
+
+
+def farthest(
+    robot: Robot, values: Mapping[str, float | Sequence[float]], first: Vector, shortest: float = _SHORTEST_STEP
+) -> tuple[Vector, float]:
+    """As `forward_kinematics`, but it returns how far the straight path leads if it ends early.
+
+    Args:
+        robot: The robot.
+        values: By joint, its coordinates as in files.
+        first: A closed configuration (nq,), to start from.
+        shortest: Smallest step, as a part of the path.
+
+    Returns:
+        The configuration (nq,), and the part of the path that leads there; 1 if it leads to the given coordinates.
+
+    Raises:
+        ValueError: ``values`` does not fit this robot.
+    """
+    given = _given_by_name(robot, values)
+    goal = np.array(first)
+    goal[given.coordinates] = given.values
+    velocities = tuple(given.velocities.tolist())
+    with borrowed(robot, Assembler, tuple(given.joints)) as assembler, borrowed(robot, DrivenMotion, velocities) as by:
+        assembler.tolerance, assembler.limits = 1e-10, None
+        q, part = _follow(robot, given, first, goal, assembler, by, shortest)
+        return _at_rest(robot, q, given, assembler), part
+
+
+def _at_rest(robot: Robot, q: Vector, given: _Given, assembler: Assembler) -> Vector:
+    if not len(robot.tree.springs):
+        return q
+    return spring_equilibrium(robot, q, given.velocities, given.coordinates, assembler)
 
 
 def _closed(assembler: Assembler, q: Vector, tolerance: float) -> Vector:
@@ -106,9 +139,15 @@ def _closed(assembler: Assembler, q: Vector, tolerance: float) -> Vector:
 
 
 def _follow(
-    robot: Robot, given: _Given, first: Vector, goal: Vector, assembler: Assembler, driven: DrivenMotion
-) -> Vector:
-    """Move the given joints from the first configuration to the goal."""
+    robot: Robot,
+    given: _Given,
+    first: Vector,
+    goal: Vector,
+    assembler: Assembler,
+    driven: DrivenMotion,
+    shortest: float,
+) -> tuple[Vector, float]:
+    """Move the given joints from the first configuration toward the goal; where they get, and the part of the path."""
     tree, scale = robot.tree, derived(robot, TangentSpaces).scale
     path = tree.difference(first, goal)  # zero except for the given joints
     q, done, step = first, 0.0, 1.0
@@ -118,7 +157,7 @@ def _follow(
         if v is None:
             v = _blocked_velocity(robot, q, given, step * path[given.velocities])
         motion = v / scale
-        if np.abs(motion).max(initial=0.0) > _LONGEST_MOTION and step > _SHORTEST_STEP:
+        if np.abs(motion).max(initial=0.0) > _LONGEST_MOTION and step > shortest:
             step *= 0.5
             continue
         at = goal if done + step >= 1.0 else tree.integrate(first, (done + step) * path)
@@ -134,9 +173,9 @@ def _follow(
                 q, done, step = closed, done + step, 2.0 * step
                 continue
         step *= 0.5
-        if step < _SHORTEST_STEP:
-            raise _stopped(robot, assembler, q, goal, given.coordinates)
-    return q
+        if step < shortest:
+            return q, done
+    return q, 1.0
 
 
 def _blocked_velocity(robot: Robot, q: Vector, given: _Given, driven: Vector) -> Vector:

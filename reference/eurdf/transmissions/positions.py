@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from eurdf.kinematics.array import Vector
-from eurdf.kinematics.assembly import Assembler, assemble, start
-from eurdf.kinematics.derived import borrowed, derived
+from eurdf.kinematics.assembly import assemble, start
 from eurdf.kinematics.exceptions import NotClosable
-from eurdf.kinematics.forward_kinematics import forward_kinematics
+from eurdf.kinematics.forward_kinematics import farthest
 from eurdf.kinematics.position_limit import BEYOND, position_limits
-from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.transmissions.exceptions import NoTransmission, OutOfReach
 from eurdf.transmissions.motors import motors_of, passive_joints_of
@@ -22,12 +20,6 @@ from eurdf.transmissions.transmission import Transmission, at_one
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
-
-# Steps along a path that ends early, as parts of it, and the bound of the motion in one of them (rad, or characteristic
-# lengths).
-_FIRST_STEP = 2.0**-4
-_SHORTEST_STEP = 2.0**-12
-_LONGEST_MOTION = 0.5
 
 
 class Positions(NamedTuple):
@@ -131,42 +123,20 @@ def _moved(robot: Robot, given: Selection, motors: Selection, values: Mapping[st
     closed = assemble(robot, start(robot, q0))
     if not closed.closes:
         raise NotClosable("no closed configuration was found near the start", closed.open, closed.q)
-    first = closed.q
-    at = robot.coordinates(first)
+    at = robot.coordinates(closed.q)
     still: dict[str, Sequence[float]] = {
         name: at[name] for name in robot.actuation.joints if name not in motors.joints and name not in wanted
     }
-    try:
-        return forward_kinematics(robot, {**still, **wanted}, first)
-    except NotClosable as error:
-        before = {name: at[name][0] for name in wanted}
-        reached, q = _farthest(robot, first, {**still, **before}, {**still, **wanted})
-        nearest = {name: robot.coordinates(q)[name][0] for name in wanted}
-        raise OutOfReach(wanted, nearest, reached, error.openings, error.q) from error
+    q, part = farthest(robot, {**still, **wanted}, closed.q)
+    if part < 1.0:
+        reached = {name: robot.coordinates(q)[name][0] for name in wanted}
+        least = assemble(robot, robot.configuration({**robot.coordinates(q), **still, **_lists(wanted)}), wanted)
+        raise OutOfReach(wanted, reached, part, least.open, least.q)
+    return q
 
 
-def _farthest(robot: Robot, q: Vector, before: Mapping[str, Any], wanted: Mapping[str, Any]) -> tuple[float, Vector]:
-    """The part of the straight path that can be reached from q (nq,), and the configuration there."""
-    one, other = (robot.configuration({**robot.coordinates(q), **_listed(each)}) for each in (before, wanted))
-    path, given = robot.tree.difference(one, other), [robot.slots[name] for name in before]
-    coordinates = [slot.idx_q + k for slot in given for k in range(slot.nq)]
-    scale = derived(robot, TangentSpaces).scale
-    reached, step = 0.0, _FIRST_STEP
-    with borrowed(robot, Assembler, tuple(before)) as assembler:
-        assembler.tolerance, assembler.limits = 1e-10, None
-        while step >= _SHORTEST_STEP and reached + step <= 1.0:
-            guess = np.array(q)
-            guess[coordinates] = robot.tree.integrate(one, (reached + step) * path)[coordinates]
-            closed = assembler.closed(guess)
-            if closed is not None and np.abs(robot.tree.difference(guess, closed) / scale).max() <= _LONGEST_MOTION:
-                reached, q = reached + step, closed
-            else:
-                step *= 0.5
-    return reached, q
-
-
-def _listed(values: Mapping[str, Any]) -> dict[str, Sequence[float]]:
-    return {name: np.atleast_1d(value).tolist() for name, value in values.items()}
+def _lists(values: Mapping[str, float]) -> dict[str, tuple[float]]:
+    return {name: (value,) for name, value in values.items()}
 
 
 def _refuse_more(at: Transmission) -> None:
