@@ -86,6 +86,8 @@ def test_largest_box_is_the_largest() -> None:
     for n, m in ((2, 3), (3, 5), (4, 40)):
         A, b = random.normal(size=(m, n)), random.uniform(0.5, 2.0, m)
         box = largest_box(A, b)
+        many = np.vstack([A * (1.0 + 1e-9 * k) for k in range(300)])  # nearly the same configuration, often
+        np.testing.assert_allclose(largest_box(many, np.tile(b, 300)), box, rtol=1e-6)
         assert (np.abs(A) @ box <= b * (1.0 + 1e-12)).all()
         rows = {"type": "ineq", "fun": lambda x, A=A, b=b: b - np.abs(A) @ np.exp(x)}
         best = minimize(lambda x: -x.sum(), np.full(n, -3.0), constraints=rows, tol=1e-12, method="SLSQP")

@@ -26,6 +26,7 @@ from eurdf.commands import (
     migrate,
     robots,
     schema,
+    transmission,
     view,
 )
 from eurdf.commands.cannot_run import CannotRun
@@ -33,7 +34,7 @@ from eurdf.commands.exit_code import BROKEN_PIPE, INTERRUPTED
 from eurdf.exceptions import CannotExpand, MissingExtra
 
 #: The commands, in the order in which the help shows them.
-COMMANDS = (check, info, view, assemble, export, import_robot, robots, migrate, generate, schema, certify)
+COMMANDS = (check, info, view, assemble, export, import_robot, transmission, robots, migrate, generate, schema, certify)
 
 # Half of the time of a check is start-up. The matrices are too small for a thread pool, and pydantic plugins are not
 # needed.

@@ -13,6 +13,7 @@ def output_schemas() -> dict[str, dict[str, Any]]:
     from eurdf.commands.assembly_info import assembly_schema
     from eurdf.commands.collection_info import collection_schema
     from eurdf.commands.robot_info import info_schema
+    from eurdf.commands.transmission_info import transmission_schema
     from eurdf.diagnostics.report import report_schema
 
     return {
@@ -20,6 +21,7 @@ def output_schemas() -> dict[str, dict[str, Any]]:
         "diagnostics-report.schema.json": report_schema(),
         "info.schema.json": info_schema(),
         "robots.schema.json": collection_schema(),
+        "transmission.schema.json": transmission_schema(),
     }
 
 

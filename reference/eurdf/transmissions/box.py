@@ -7,8 +7,8 @@ import numpy as np
 from eurdf.kinematics.array import Matrix, Vector
 
 _MOST_STEPS = 100
-# Gap of the product of the sides, relative to it, at which the box is the largest one.
-_GAP = 1e-14
+# Bound of what the largest box exceeds this one by, as the logarithm of the ratio of the products of their sides.
+_GAP = 1e-12
 
 
 def largest_box(A: Matrix, b: Vector) -> Vector:
@@ -31,7 +31,7 @@ def largest_box(A: Matrix, b: Vector) -> Vector:
     for _ in range(_MOST_STEPS):
         gap = float(lambdas @ s)
         dual, primal = P.T @ lambdas - 1.0 / y, P @ y + s - 1.0
-        if gap <= _GAP and np.abs(y * dual).max() <= _GAP * 10.0:
+        if gap <= _GAP and np.abs(y * dual).max() <= _GAP:
             break
         centre = lambdas * s - 0.1 * gap / m
         matrix = np.diag(1.0 / (y * y)) + (P.T * (lambdas / s)) @ P

@@ -153,9 +153,14 @@ def _decided(robot: Robot, candidates: Iterable[str], q: Vector) -> tuple[str, .
     return tuple(name for name in names if name not in at.undetermined)
 
 
-def _positions(robot: Robot, names: Iterable[str], q: Vector) -> Positions:
-    at, limits = robot.coordinates(q), position_limits(robot)
+def beyond_limits(robot: Robot, q: Vector) -> tuple[str, ...]:
+    """Names of the joints with a coordinate beyond a position limit at q (nq,)."""
+    limits = position_limits(robot)
     own = q[limits.coordinates]
     outside = (own < limits.lower - BEYOND) | (own > limits.upper + BEYOND)
-    beyond = dict.fromkeys(limits.joints[index] for index in np.flatnonzero(outside).tolist())
-    return Positions({name: at[name][0] for name in names}, q, tuple(beyond))
+    return tuple(dict.fromkeys(limits.joints[index] for index in np.flatnonzero(outside).tolist()))
+
+
+def _positions(robot: Robot, names: Iterable[str], q: Vector) -> Positions:
+    at = robot.coordinates(q)
+    return Positions({name: at[name][0] for name in names}, q, beyond_limits(robot, q))

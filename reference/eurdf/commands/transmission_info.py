@@ -1,0 +1,222 @@
+"""The output of ``eurdf transmission --json``, and its JSON Schema."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field
+
+from eurdf.transmissions.inertia import reflected_inertia
+from eurdf.transmissions.limits import CommonLimits, SerialLimits, serial_limits
+from eurdf.transmissions.linkage_bodies import linkage_bodies
+from eurdf.transmissions.positions import beyond_limits
+from eurdf.transmissions.selection import Selection
+from eurdf.transmissions.transmission import at_one
+
+if TYPE_CHECKING:
+    from eurdf.kinematics.array import Vector
+    from eurdf.pinocchio.robot import Robot
+
+Matrix = tuple[tuple[float, ...], ...]
+
+
+class _Entry(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+
+class AxisInfo(_Entry):
+    """A joint or motor velocity."""
+
+    name: str
+    """Name of the joint; of one with several velocities, its number in brackets too."""
+    unit: Literal["rad", "m"]
+    """Unit of its position; velocities are per s, torques in N·m for rad, forces in N for m."""
+
+
+class LimitsInfo(_Entry):
+    """What the limits of the motors leave to the joints, in the order of the joints."""
+
+    torque: tuple[tuple[float, float], ...]
+    """Smallest and largest torque or force of each joint while the others have none; not a box."""
+    torque_box: tuple[float, ...]
+    """Half sides of the largest box of torques around zero that the motors can produce."""
+    velocity: tuple[tuple[float, float], ...]
+    """Smallest and largest velocity of each joint while the others are still; not a box."""
+    velocity_box: tuple[float, ...]
+    """Half sides of the largest box of velocities around zero that the motors allow."""
+
+
+class InertiaInfo(_Entry):
+    """Terms of the inertia that the joints feel, in kg·m², kg·m or kg."""
+
+    rotors: Matrix
+    """Armature of the motors, Gᵀ I_m G."""
+    linkage: Matrix
+    """Cranks, rods and other bodies that a serial robot does not have."""
+    serial: Matrix
+    """The other bodies."""
+    other_armature: Matrix
+    """Armature of the joints that are not motors."""
+
+
+class PoseInfo(_Entry):
+    """The transmission at one configuration."""
+
+    joints: tuple[float, ...]
+    """Positions of the joints."""
+    reached: bool
+    """Whether the loops can be closed at these positions; if not, what follows is null or empty."""
+    motors: tuple[float, ...] | None
+    """Positions of the motors."""
+    beyond: tuple[str, ...]
+    """Joints beyond their position limits there."""
+    G: Matrix | None
+    """Velocities of the motors by those of the joints, one row for each motor; null if it does not exist."""
+    B_J: Matrix | None
+    """Velocities of the joints by those of the motors, one row for each joint; null if it does not exist."""
+    rank_motors: Annotated[int, Field(ge=0)] | None
+    """Number of independent motor velocities."""
+    rank_joints: Annotated[int, Field(ge=0)] | None
+    """Number of independent joint velocities."""
+    condition: float | None
+    """Condition number of G, in units of the characteristic length; null if there is none."""
+    reason: str | None
+    """Why G does not exist, or null."""
+    inverse_reason: str | None
+    """Why B_J does not exist, or null."""
+    limits: LimitsInfo | None
+    """Limits of the joints; null where there are none, see limits_reason of the robot."""
+    inertia: InertiaInfo | None
+    """The inertia that the joints feel; null if G does not exist."""
+
+
+class TransmissionInfo(_Entry):
+    """The output of 'eurdf transmission --json'."""
+
+    name: str
+    """Name of the robot in the URDF."""
+    joints: tuple[AxisInfo, ...]
+    """The joints."""
+    motors: tuple[AxisInfo, ...]
+    """The motors that move them."""
+    linkage: tuple[str, ...]
+    """Links that the equivalent serial robot does not have."""
+    limits_reason: str | None
+    """Why limits of joints are missing, such as a motor without an effort limit, or null."""
+    poses: tuple[PoseInfo, ...]
+    """One configuration, or those of the grid, with the last joint first to change."""
+    common: LimitsInfo | None
+    """Limits that hold at all poses that are reached with no joint beyond its limits; null if there are none."""
+
+
+def transmission_info(
+    robot: Robot,
+    joints: Selection,
+    motors: Selection,
+    configurations: Sequence[Vector | None],
+    positions: Sequence[Sequence[float]],
+) -> TransmissionInfo:
+    """A transmission as ``eurdf transmission`` shows it.
+
+    Args:
+        robot: The robot.
+        joints: The joints.
+        motors: The motors that move them.
+        configurations: Closed configurations (nq,); None where the joints cannot be reached.
+        positions: Of the joints at each of them.
+    """
+    reasons: list[str] = []
+    poses = [_pose(robot, joints, motors, q, own, reasons) for q, own in zip(configurations, positions, strict=True)]
+    inside = [q for q, pose in zip(configurations, poses, strict=True) if pose.limits is not None and not pose.beyond]
+    return TransmissionInfo(
+        name=robot.mechanism.name,
+        joints=_axes(robot, joints),
+        motors=_axes(robot, motors),
+        linkage=linkage_bodies(robot, joints.joints, motors.joints),
+        limits_reason=reasons[0] if reasons else None,
+        poses=tuple(poses),
+        common=_common(robot, joints, motors, inside) if inside else None,
+    )
+
+
+def _pose(
+    robot: Robot,
+    joints: Selection,
+    motors: Selection,
+    q: Vector | None,
+    positions: Sequence[float],
+    reasons: list[str],
+) -> PoseInfo:
+    nothing: dict[str, Any] = dict.fromkeys(PoseInfo.model_fields)
+    if q is None:
+        return PoseInfo(**{**nothing, "joints": tuple(positions), "reached": False, "beyond": ()})
+    at, coordinates = at_one(robot, joints, q, motors), robot.coordinates(q)
+    limits = inertia = None
+    complete = at.G is not None and at.B_J is not None
+    if complete and at.rank_joints == len(at.joints):
+        try:
+            found = serial_limits(robot, joints.joints, q, motors.joints)
+        except ValueError as reason:  # a motor has no limits
+            reasons.append(str(reason))
+        else:
+            limits = _limits(found)
+    if at.G is not None and at.rank_joints == len(at.joints):
+        terms = reflected_inertia(robot, joints.joints, q, motors.joints)
+        inertia = InertiaInfo(
+            rotors=_rows(terms.rotors),
+            linkage=_rows(terms.linkage),
+            serial=_rows(terms.serial),
+            other_armature=_rows(terms.other_armature),
+        )
+    return PoseInfo(
+        joints=tuple(positions),
+        reached=True,
+        motors=tuple(value for name in motors.joints for value in coordinates[name]),
+        beyond=beyond_limits(robot, q),
+        G=None if at.G is None else _rows(at.G),
+        B_J=None if at.B_J is None else _rows(at.B_J),
+        rank_motors=at.rank_motors,
+        rank_joints=at.rank_joints,
+        condition=at.condition,
+        reason=at.reason,
+        inverse_reason=at.inverse_reason,
+        limits=limits,
+        inertia=inertia,
+    )
+
+
+def _limits(found: SerialLimits | CommonLimits) -> LimitsInfo:
+    axes = [found.torque_axes, found.velocity_axes]
+    if isinstance(found, CommonLimits):
+        axes = [np.stack((each[..., 0].max(axis=0), each[..., 1].min(axis=0)), axis=-1) for each in axes]
+    torque, velocity = (tuple((lower, upper) for lower, upper in each.tolist()) for each in axes)
+    return LimitsInfo(
+        torque=torque,
+        torque_box=tuple(found.torque_box.tolist()),
+        velocity=velocity,
+        velocity_box=tuple(found.velocity_box.tolist()),
+    )
+
+
+def _common(robot: Robot, joints: Selection, motors: Selection, configurations: Sequence[Vector | None]) -> LimitsInfo:
+    return _limits(serial_limits(robot, joints.joints, np.array(configurations), motors.joints))
+
+
+def _axes(robot: Robot, chosen: Selection) -> tuple[AxisInfo, ...]:
+    units: list[Literal["rad", "m"]] = []
+    for name in chosen.joints:
+        kinds = robot.slots[name].joint.coordinates.names
+        units += ["m" if kind == "length" else "rad" for kind in kinds]
+    return tuple(AxisInfo(name=name, unit=unit) for name, unit in zip(chosen.names, units, strict=True))
+
+
+def _rows(matrix: np.ndarray[Any, Any]) -> Matrix:
+    return tuple(tuple(row) for row in matrix.tolist())
+
+
+def transmission_schema() -> dict[str, Any]:
+    """The JSON Schema (2020-12) of `TransmissionInfo`."""
+    schema = TransmissionInfo.model_json_schema(mode="serialization")
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
