@@ -7,7 +7,7 @@ from typing import NamedTuple
 import pinocchio as pin
 
 from eurdf.mechanism.joint import Joint
-from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.joint_type import COORDINATES, JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.mimic import following
 
@@ -40,17 +40,17 @@ def slots(mechanism: Mechanism, model: pin.Model) -> dict[str, Slot]:
     led = following(mechanism)
     idx_qs, idx_vs = model.idx_qs.tolist(), model.idx_vs.tolist()
     joint_id = 1 + (mechanism.root == "floating") + len(led.late)
+    mimics, unwrapped = led.mimics, led.unwrapped
     found = {}
     for joint in mechanism.joints:
-        if joint.type is JointType.FIXED:
+        kind, name = joint.type, joint.name
+        if kind is JointType.FIXED:
             continue
-        if joint.name not in led.mimics:
-            coordinates = joint.coordinates
+        if name not in mimics:
+            coordinates = COORDINATES[kind]
             nq = len(coordinates.names)
-            if joint.type is JointType.PLANAR or (
-                joint.type is JointType.CONTINUOUS and joint.name not in led.unwrapped
-            ):
+            if kind is JointType.PLANAR or (kind is JointType.CONTINUOUS and name not in unwrapped):
                 nq += 1  # Pinocchio has their angle as (cos, sin)
-            found[joint.name] = Slot(joint, idx_qs[joint_id], nq, idx_vs[joint_id], coordinates.nv)
+            found[name] = Slot(joint, idx_qs[joint_id], nq, idx_vs[joint_id], coordinates.nv)
         joint_id += 1
     return found

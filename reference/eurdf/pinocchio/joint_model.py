@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 import numpy as np
 import pinocchio as pin
@@ -63,6 +64,7 @@ def unit(axis: Vector3) -> Vector3:
     return x / norm, y / norm, z / norm
 
 
+@lru_cache(maxsize=256)
 def aligned(axis: Vector3) -> int | None:
     """0, 1 or 2 for an axis that is, as written and within 1e-12, the unit vector of x, y or z; else None."""
     x, y, z = axis
@@ -88,8 +90,12 @@ def _continuous(axis: Vector3) -> pin.JointModel:
     index = aligned(axis)
     if index is not None:
         return _CONTINUOUS[index]
-    # Python cannot give JointModelRevoluteUnboundedUnaligned its axis; Pinocchio's URDF parser can.
-    xyz = " ".join(map(repr, squarable(axis)))
+    return _continuous_about(" ".join(map(repr, squarable(axis))))
+
+
+@lru_cache(maxsize=256)
+def _continuous_about(xyz: str) -> pin.JointModel:
+    """Python cannot give JointModelRevoluteUnboundedUnaligned its axis; Pinocchio's URDF parser can."""
     return pin.JointModel(pin.buildModelFromXML(_ONE_CONTINUOUS_JOINT.format(xyz)).joints[1])
 
 

@@ -17,7 +17,8 @@ from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY
-from eurdf.pinocchio.inertia import inertia_of, is_zero
+from eurdf.pinocchio.frame_pairs import Site
+from eurdf.pinocchio.inertia import inertias_of, is_zero
 from eurdf.pinocchio.joint_model import joint_model
 from eurdf.pinocchio.limits import set_limits
 from eurdf.pinocchio.mimic import following, with_followers
@@ -27,7 +28,6 @@ _Indices = tuple[int, int, int, int]  # of a joint: its own, and where its q, it
 
 _UNIVERSE = 0
 _HERE = pin.SE3.Identity()
-_MASSLESS = pin.Inertia.Zero()
 _FREE_FLYER = pin.JointModel(pin.JointModelFreeFlyer())
 _BODY, _JOINT, _FIXED_JOINT, _OP_FRAME = (
     pin.FrameType.BODY,
@@ -38,6 +38,11 @@ _BODY, _JOINT, _FIXED_JOINT, _OP_FRAME = (
 
 
 def build_model(mechanism: Mechanism) -> pin.Model:
+    """The model of `build_model_and_sites`."""
+    return build_model_and_sites(mechanism)[0]
+
+
+def build_model_and_sites(mechanism: Mechanism) -> tuple[pin.Model, dict[str, Site]]:
     """Build the model of the spanning tree, with every link, joint and named frame of the mechanism.
 
     Pinocchio's own URDF parser fails on a joint that mimics one that comes later or itself mimics, and on one that
@@ -52,8 +57,8 @@ def build_model(mechanism: Mechanism) -> pin.Model:
         mechanism: A sound mechanism.
 
     Returns:
-        The model. Frames that the description adds are OP_FRAME; the frame of a joint that was split in two is
-        FIXED_JOINT, under the joint's name.
+        The model, and for each body by name where its frame is. Frames that the description adds are OP_FRAME; the
+        frame of a joint that was split in two is FIXED_JOINT, under the joint's name.
     """
     model = pin.Model()
     model.name = mechanism.name
@@ -73,44 +78,49 @@ def build_model(mechanism: Mechanism) -> pin.Model:
 
     add_joint, add_frame, append_body = model.addJoint, model.addFrame, model.appendBodyToJoint
     add_joint_frame, add_body_frame = model.addJointFrame, model.addBodyFrame
-    # For each body: the joint that moves it, its frame, and its placement in that joint.
-    sites = {root.name: (joint_id, body_frame, _HERE)}
-    for joint, body in zip(mechanism.joints, mechanism.bodies[1:], strict=True):
-        parent_joint, parent_frame, parent_placement = sites[joint.parent]
+    bodies = mechanism.bodies[1:]
+    mimics, unwrapped = led.mimics, led.unwrapped
+    # For each body: the joint that moves it, its placement in that joint, and its frame.
+    sites = {root.name: Site(joint_id, _HERE)}
+    frames = {root.name: body_frame}
+    for joint, body, inertia in zip(
+        mechanism.joints, bodies, inertias_of([body.inertia for body in bodies]), strict=True
+    ):
+        name = joint.name
+        parent_joint, parent_placement = sites[joint.parent]
+        parent_frame = frames[joint.parent]
         placement = parent_placement * placement_of(joint.placement)
-        inertia = _MASSLESS if body.inertia is None else inertia_of(body.inertia)
         if joint.type is JointType.FIXED:
             if joint.offset is not IDENTITY:
                 placement = placement * placement_of(joint.offset)
             joint_id = parent_joint
-            joint_frame = add_frame(pin.Frame(joint.name, joint_id, parent_frame, placement, _FIXED_JOINT, inertia))
+            joint_frame = add_frame(pin.Frame(name, joint_id, parent_frame, placement, _FIXED_JOINT, inertia))
         else:
-            moving = joint_model(joint, unwrapped=joint.name in led.unwrapped)
-            mimic = led.mimics.get(joint.name) or (Mimic(joint.name) if joint.name in sources else None)
+            moving = joint_model(joint, unwrapped=name in unwrapped)
+            mimic = mimics.get(name) or (Mimic(name) if name in sources else None)
             if mimic is None:
                 free.append((joint, moving.nq))
-                joint_id = add_joint(parent_joint, moving, placement, joint.name)
-                if led.mimics:
-                    sources[joint.name] = _indices(model, joint_id)
+                joint_id = add_joint(parent_joint, moving, placement, name)
+                if mimics:
+                    sources[name] = _indices(model, joint_id)
             else:
-                joint_id = add_joint(parent_joint, _follower(moving, mimic, sources), placement, joint.name)
+                joint_id = add_joint(parent_joint, _follower(moving, mimic, sources), placement, name)
             if joint.offset is IDENTITY:
                 placement = _HERE
                 joint_frame = add_joint_frame(joint_id, parent_frame)
             else:
                 placement = placement_of(joint.offset)
-                joint_frame = add_frame(pin.Frame(joint.name, joint_id, parent_frame, placement, _JOINT))
+                joint_frame = add_frame(pin.Frame(name, joint_id, parent_frame, placement, _JOINT))
             if body.inertia is not None and not is_zero(body.inertia):
                 append_body(joint_id, inertia, placement)
-        if not body.virtual:
-            body_frame = add_body_frame(body.name, joint_id, placement, joint_frame)
-        sites[body.name] = (joint_id, joint_frame if body.virtual else body_frame, placement)
+        sites[body.name] = Site(joint_id, placement)
+        frames[body.name] = joint_frame if body.virtual else add_body_frame(body.name, joint_id, placement, joint_frame)
 
     for frame in mechanism.frames:
-        joint_id, parent_frame, placement = sites[frame.body]
+        joint_id, placement = sites[frame.body]
         kind = _OP_FRAME if frame.kind == "frame" else _FIXED_JOINT
         placement = placement * placement_of(frame.pose)
-        add_frame(pin.Frame(frame.name, joint_id, parent_frame, placement, kind), False)
+        add_frame(pin.Frame(frame.name, joint_id, frames[frame.body], placement, kind), False)
     folded = with_followers(mechanism, led)
     set_limits(
         model,
@@ -118,13 +128,13 @@ def build_model(mechanism: Mechanism) -> pin.Model:
         root_nq,
         root_nv,
     )
-    return model
+    return model, sites
 
 
 def _add_root(model: pin.Model, mechanism: Mechanism) -> tuple[int, int]:
     """EU-VER-004: add the root body, fixed or floating; returns the joint that moves it, and its frame."""
     root = mechanism.bodies[0]
-    inertia = _MASSLESS if root.inertia is None else inertia_of(root.inertia)
+    (inertia,) = inertias_of([root.inertia])
     if mechanism.root == "fixed":
         return _UNIVERSE, model.addFrame(pin.Frame(root.name, _UNIVERSE, 0, _HERE, _BODY, inertia))
     joint_id = model.addJoint(_UNIVERSE, _FREE_FLYER, _HERE, ROOT_JOINT)

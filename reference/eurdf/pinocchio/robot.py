@@ -19,7 +19,7 @@ from eurdf.pinocchio.constraint import build_constraint_models
 from eurdf.pinocchio.coordinates import Slot, slots
 from eurdf.pinocchio.geometry import MeshCache, Resolve, build_geometry, carry_over, meshes_of
 from eurdf.pinocchio.meshes import Mesh
-from eurdf.pinocchio.model import build_model
+from eurdf.pinocchio.model import build_model_and_sites
 from eurdf.pinocchio.tree import PinocchioTree, build_tree
 
 
@@ -194,7 +194,7 @@ def build_robot(
         UnreadableMesh: A mesh file cannot be read as a mesh.
         FileNotFoundError: `resolve` does not find a mesh.
     """
-    model = build_model(mechanism)
+    model, sites = build_model_and_sites(mechanism)
     shapes = None
     if geometry:
         find = _nothing if resolve is None else resolve
@@ -208,7 +208,7 @@ def build_robot(
     return Robot(
         mechanism,
         model,
-        build_tree(mechanism, model),
+        build_tree(mechanism, model, sites, at),
         build_actuation(mechanism, model, at),
         MappingProxyType(
             {

@@ -15,7 +15,7 @@ import pinocchio as pin
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.arguments import checked_data
-from eurdf.pinocchio.coordinates import slots
+from eurdf.pinocchio.coordinates import Slot, slots
 from eurdf.pinocchio.frame_index import frame_index
 from eurdf.pinocchio.frame_pairs import FramePairs, Indices, Matrix, Site, Vector
 from eurdf.pinocchio.frames import body_frame_ids
@@ -309,14 +309,27 @@ class PinocchioTree:
         return J
 
 
-def build_tree(mechanism: Mechanism, model: pin.Model) -> PinocchioTree:
-    """The tree of a mechanism; ``model`` is what `build_model` made of it."""
-    frames = model.frames
-    sites = {
-        name: Site(frames[index].parentJoint, pin.SE3(frames[index].placement))
-        for name, index in body_frame_ids(mechanism).items()
-    }
-    at = slots(mechanism, model)
+def build_tree(
+    mechanism: Mechanism,
+    model: pin.Model,
+    sites: Mapping[str, Site] | None = None,
+    at: Mapping[str, Slot] | None = None,
+) -> PinocchioTree:
+    """The tree of a mechanism.
+
+    Args:
+        mechanism: The mechanism.
+        model: The result of `build_model`.
+        sites: For each body where its frame is, if the caller has it.
+        at: The `slots` of the two, if the caller has them.
+    """
+    if sites is None:
+        frames = model.frames
+        sites = {
+            name: Site(frames[index].parentJoint, pin.SE3(frames[index].placement))
+            for name, index in body_frame_ids(mechanism).items()
+        }
+    at = slots(mechanism, model) if at is None else at
     first = {name: (slot.idx_q, slot.nq, slot.idx_v, slot.nv) for name, slot in at.items()}
     return PinocchioTree(model, sites, first, build_springs(mechanism, at))
 
