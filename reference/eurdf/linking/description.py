@@ -267,6 +267,8 @@ def _own_source(path: Path | Source, confined: bool = False) -> Source:
 
 def _is_inside(path: Path, folder: Path) -> bool:
     """Whether a file is in a folder, with every symbolic link followed."""
+    if path.parent == folder and path.name not in ("", "..") and not os.path.islink(path):
+        return True  # whatever the folder is a link to
     try:
         return path.resolve().is_relative_to(folder.resolve())
     except (OSError, ValueError, RuntimeError):  # a path that cannot be one, or a circle of links

@@ -16,6 +16,9 @@ from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.mimic import drivers
 from eurdf.mechanism.pose import IDENTITY, Pose
 
+#: Three factors below this, m, kg or kg·m², have a finite product, and so have sums of many of these.
+_MODERATE = 1e90
+
 
 def check_finite(mechanism: Mechanism, urdf: Urdf, extension: Extension | None, diagnostics: Diagnostics) -> None:
     """EU-INR-007: armatures, poses at zero, relations of mimic joints, and inertias about joints are finite.
@@ -53,6 +56,35 @@ def _not_finite(mechanism: Mechanism, urdf: Urdf, extension: Extension | None) -
             element = next(urdf.joints[name].element.iterchildren("mimic"))
             what = f"the relation of mimic joint '{name}' to joint '{mimic.joint}', multiplier or offset,"
             yield what, urdf.document.place(element)
+    if not _is_moderate(mechanism):
+        yield from _poses_and_inertias_not_finite(mechanism, urdf, extension)
+    if extension is not None:
+        yield from _couplings_not_finite(mechanism, extension)
+
+
+def _is_moderate(mechanism: Mechanism) -> bool:
+    """Whether all lengths, masses and moments together are so small that no pose and no inertia can overflow."""
+    total = 0.0
+    for joint in mechanism.joints:
+        x, y, z = joint.placement.xyz
+        u, v, w = joint.offset.xyz
+        total += abs(x) + abs(y) + abs(z) + abs(u) + abs(v) + abs(w)
+    for body in mechanism.bodies:
+        inertia = body.inertia
+        if inertia is not None:
+            x, y, z = inertia.pose.xyz
+            total += abs(inertia.mass) + abs(x) + abs(y) + abs(z) + sum(map(abs, inertia.moments))
+    poses = [frame.pose for frame in mechanism.frames]
+    poses += [anchor.pose for closure in mechanism.closures for anchor in closure.anchors]
+    for pose in poses:
+        x, y, z = pose.xyz
+        total += abs(x) + abs(y) + abs(z)
+    return total < _MODERATE
+
+
+def _poses_and_inertias_not_finite(
+    mechanism: Mechanism, urdf: Urdf, extension: Extension | None
+) -> Iterator[tuple[str, Place]]:
     root = mechanism.bodies[0]
     pose_of = {root.name: IDENTITY}  # in the frame of the root, at zero
     in_joint = {root.name: (root.name, IDENTITY)}  # the body that the last joint moves, and the pose in its frame
@@ -85,7 +117,6 @@ def _not_finite(mechanism: Mechanism, urdf: Urdf, extension: Extension | None) -
             if not all(_is_finite(pose_of[anchor.body] * anchor.pose) for anchor in closure.anchors):
                 what = f"the pose of a frame of closure '{closure.name}' at zero"
                 yield what, extension.document.place(pointers[closure.name])
-        yield from _couplings_not_finite(mechanism, extension)
 
 
 def _couplings_not_finite(mechanism: Mechanism, extension: Extension) -> Iterator[tuple[str, Place]]:

@@ -71,7 +71,8 @@ def link(
         mechanism = _bare(urdf, diagnostics, root or "fixed")
     else:
         mechanism = _described(urdf, extension, reporter, root or extension.root)
-        mechanism = replace(mechanism, configurations=_led(mechanism, drivers(mimics)))
+        if mimics:
+            mechanism = replace(mechanism, configurations=_led(mechanism, drivers(mimics)))
         _reserve_names(extension, reporter, mechanism.root)
     if mechanism.root == "floating":
         _reserve_root_joint(urdf, diagnostics)

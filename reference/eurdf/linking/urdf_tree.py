@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import math
 
-from eurdf.format.urdf.data import Urdf, UrdfJoint
+from eurdf.format.urdf.data import Limit, Urdf, UrdfJoint
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.pose import Vector3
+from eurdf.mechanism.pose import IDENTITY
 
+_UNLIMITED = Limit(-math.inf, math.inf, math.inf, math.inf)
 _AXIAL = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC})
 
 
@@ -25,18 +26,32 @@ def joint_of(joint: UrdfJoint) -> Joint:
     their coordinates, of different units.
     """
     kind = joint.type
-    axes: tuple[Vector3, ...] = ()
-    properties = JointProperties() if kind is JointType.FIXED else JointProperties.unlimited(kind)
-    if kind in _AXIAL:
-        axes = (joint.axis,)
-        changes = {"damping": (joint.damping,), "friction": (joint.friction,)}
-        limit = joint.limit
-        if limit is not None:
-            changes |= {"velocity": (limit.velocity,), "effort": (limit.effort,)}
-            if kind is not JointType.CONTINUOUS:
-                changes |= {"lower": (limit.lower,), "upper": (limit.upper,)}
-        properties = replace(properties, **changes)
-    mimic = joint.mimic if kind in _AXIAL else None
+    if kind not in _AXIAL:
+        properties = JointProperties() if kind is JointType.FIXED else JointProperties.unlimited(kind)
+        return Joint(joint.name, kind, joint.parent, joint.child, joint.placement, properties=properties)
+    lower, upper, velocity, effort = joint.limit or _UNLIMITED
+    if kind is JointType.CONTINUOUS:
+        lower, upper = -math.inf, math.inf
+    properties = JointProperties(
+        (lower,),
+        (upper,),
+        (velocity,),
+        (effort,),
+        (joint.damping,),
+        (joint.friction,),
+        armature=(0.0,),
+        gear_ratio=(1.0,),
+        rotor_inertia=(0.0,),
+    )
     return Joint(
-        joint.name, kind, joint.parent, joint.child, joint.placement, axes=axes, properties=properties, mimic=mimic
+        joint.name,
+        kind,
+        joint.parent,
+        joint.child,
+        joint.placement,
+        IDENTITY,
+        (joint.axis,),
+        0.0,
+        properties,
+        joint.mimic,
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 
 from eurdf.diagnostics import Hint, did_you_mean
@@ -56,6 +56,17 @@ _OPTIONAL_ATTRIBUTES: dict[str, tuple[str, ...]] = {
     "mimic": ("multiplier", "offset"),
 }
 
+_REQUIRED_ATTRIBUTES: dict[str, tuple[str, ...]] = {
+    "mesh": ("filename",),
+    "limit": ("effort", "velocity"),
+    "mimic": ("joint",),
+}
+
+#: All attributes of each of these elements, none of which is a near miss of another.
+_KNOWN_ATTRIBUTES: dict[str, frozenset[str]] = {
+    tag: frozenset((*optional, *_REQUIRED_ATTRIBUTES.get(tag, ()))) for tag, optional in _OPTIONAL_ATTRIBUTES.items()
+}
+
 #: The types of joints that move in a range, and so need a `limit`.
 RANGED = frozenset({JointType.REVOLUTE, JointType.PRISMATIC})
 
@@ -88,12 +99,17 @@ def cycle_of(names: Sequence[str]) -> str:
     return " -> ".join(f"'{name}'" for name in [*shown, names[0]])
 
 
-def _floats(text: str, separator: str | None = None) -> tuple[float, ...] | None:
-    """Finite decimal numbers in ASCII. What else `float` accepts (nan, inf, 1_0, other digits) is not URDF."""
+def _floats(text: str, pieces: Iterable[str]) -> tuple[float, ...] | None:
+    """Finite decimal numbers in ASCII. What else `float` accepts (nan, inf, 1_0, other digits) is not URDF.
+
+    Args:
+        text: All of them.
+        pieces: One each.
+    """
     if "_" in text or not text.isascii():
         return None
     try:
-        values = tuple(map(float, text.split(separator)))
+        values = tuple(map(float, pieces))
     except ValueError:
         return None
     # The sum is finite if all numbers are, unless it overflows.
@@ -129,7 +145,7 @@ class UrdfReader:
         values = self._floats.get(text)
         if values is None:
             # Zeros, units and limits occur often in a file.
-            values = self._floats[text] = _floats(text)
+            values = self._floats[text] = _floats(text, text.split())
         if values is not None and len(values) == count:
             return values
         if values is None:
@@ -172,11 +188,11 @@ class UrdfReader:
         get = element.get
         texts = [get(attribute, default) for attribute, default in attributes.items()]
         if None not in texts:
-            # A comma in an attribute makes one number too many, and a blank is not a number, so both are rejected.
             joined = ",".join(texts)  # type: ignore[arg-type]
             values = self._joined.get(joined)
             if values is None:
-                values = self._joined[joined] = _floats(joined, ",")
+                values = self._joined[joined] = _floats(joined, texts)  # type: ignore[arg-type]
+            # A comma in an attribute, which is an error, makes one number more in another element's text.
             if values is not None and len(values) == len(texts):
                 return values
         for attribute, text in zip(attributes, texts, strict=True):
@@ -194,6 +210,8 @@ class UrdfReader:
     def name(self, element: Element, attribute: str = "name") -> str | None:
         """EU-URD-005, EU-URD-008: the name of an element that requires one; it is not empty."""
         name = element.get(attribute)
+        if name and name[0] not in _WHITE:
+            return name
         if name is None:
             self.missing_attribute(element, attribute)
             return None
@@ -235,10 +253,10 @@ class UrdfReader:
 
     def attributes(self, element: Element) -> None:
         """EU-URD-026: warn of an unknown attribute whose name is near that of an optional one."""
-        optional = _OPTIONAL_ATTRIBUTES[str(element.tag)]
+        tag = str(element.tag)
+        known = _KNOWN_ATTRIBUTES[tag]
         for attribute in map(str, element.keys()):
-            hint = None if attribute in optional else self.near_miss(attribute, optional)
-            if hint:
+            if attribute not in known and (hint := self.near_miss(attribute, _OPTIONAL_ATTRIBUTES[tag])):
                 message = f"{named(element)} has an unknown attribute '{attribute}'"
                 self.report("urdf-unknown-element", message, element, hint=hint)
 
@@ -263,13 +281,13 @@ class UrdfReader:
         """The pose of an ``origin``; the identity if there is none or it has an error (EU-FRM-006)."""
         if element is None:
             return IDENTITY
-        text = (element.get("xyz"), element.get("rpy"))
-        if len(element.keys()) > 2 - text.count(None):
+        xyz_text, rpy_text = text = element.get("xyz"), element.get("rpy")
+        if xyz_text is None or rpy_text is None or len(element.attrib) > 2:
             self.attributes(element)
         pose = self._poses.get(text)
         if pose is None:
-            xyz = _ZERO if text[0] is None else self.numbers(element, "xyz", text[0], 3)
-            rpy = _ZERO if text[1] is None else self.numbers(element, "rpy", text[1], 3)
+            xyz = _ZERO if xyz_text is None else self.numbers(element, "xyz", xyz_text, 3)
+            rpy = _ZERO if rpy_text is None else self.numbers(element, "rpy", rpy_text, 3)
             if xyz is None or rpy is None:
                 return IDENTITY
             # The visual and the collision of a link often have the same pose.

@@ -96,9 +96,10 @@ def _limit(
     if values is None:
         return None
     effort, velocity, lower, upper = values
-    _refuse_negative(reader, element, effort=effort, velocity=velocity)
-    if kind in RANGED:
-        _check_order(reader, name, lower, upper, element)
+    if effort < 0.0 or velocity < 0.0:
+        _report_negative(reader, element, effort=effort, velocity=velocity)
+    if lower > upper and kind in RANGED:
+        _report_reversed(reader, name, lower, upper, element)
     return Limit(lower, upper, velocity, effort)
 
 
@@ -113,26 +114,26 @@ def _check_needs_no_limit(reader: UrdfReader, name: str | None, kind: JointType,
         )
 
 
-def _check_order(reader: UrdfReader, name: str | None, lower: float, upper: float, element: Element) -> None:
+def _report_reversed(reader: UrdfReader, name: str | None, lower: float, upper: float, element: Element) -> None:
     """EU-URD-019: the lower limit is not above the upper one."""
-    if lower > upper:
-        reader.report(
-            "urdf-reversed-limits",
-            f"joint '{name}': lower limit {lower:g} is above upper limit {upper:g}",
-            element,
-            "lower",
-            "swap the two limits",
-        )
+    reader.report(
+        "urdf-reversed-limits",
+        f"joint '{name}': lower limit {lower:g} is above upper limit {upper:g}",
+        element,
+        "lower",
+        "swap the two limits",
+    )
 
 
 def _dynamics(reader: UrdfReader, element: Element) -> tuple[float, ...]:
     reader.attributes(element)
     damping, friction = reader.single_numbers(element, _DYNAMICS) or (0.0, 0.0)
-    _refuse_negative(reader, element, damping=damping, friction=friction)
+    if damping < 0.0 or friction < 0.0:
+        _report_negative(reader, element, damping=damping, friction=friction)
     return damping, friction
 
 
-def _refuse_negative(reader: UrdfReader, element: Element, **values: float) -> None:
+def _report_negative(reader: UrdfReader, element: Element, **values: float) -> None:
     """EU-URD-020: magnitudes are not negative."""
     for attribute, value in values.items():
         if value < 0.0:

@@ -52,24 +52,24 @@ def _read_robot(reader: UrdfReader, root: Element, materials: Materials | None) 
     if not _is_robot(reader, root):
         return None
     name = reader.name(root)
-    elements: list[Element] = []
+    elements: list[tuple[str, Element]] = []
     for element in root:
         tag = element.tag
         if tag in ("link", "joint"):
-            elements.append(element)
+            elements.append((tag, element))
         elif tag == "material":
             if materials is not None:
                 materials.define(element)
         elif isinstance(tag, str) and not _is_of_other_dialect(reader, element):
             reader.unknown(root, element)
-    count = sum(element.tag == "joint" for element in elements)
+    count = sum(tag == "joint" for tag, _ in elements)
     if count > JOINT_LIMIT:
         reader.report("file-too-large", f"the robot has {count:,} joints; the maximum is {JOINT_LIMIT:,}", root)
         return None
     links: list[UrdfLink] = []
     joints: list[UrdfJoint] = []
-    for element in elements:
-        if element.tag == "link":
+    for tag, element in elements:
+        if tag == "link":
             if link := read_link(reader, element, materials):
                 links.append(link)
         elif joint := read_joint(reader, element):
