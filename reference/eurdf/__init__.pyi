@@ -85,6 +85,7 @@ from eurdf.transmissions.inertia import reflected_inertia as reflected_inertia
 from eurdf.transmissions.limits import CommonLimits as CommonLimits
 from eurdf.transmissions.limits import SerialLimits as SerialLimits
 from eurdf.transmissions.limits import serial_limits as serial_limits
+from eurdf.transmissions.polynomial_map import PolynomialMap as PolynomialMap
 from eurdf.transmissions.polytope import Polytope as Polytope
 from eurdf.transmissions.positions import Positions as Positions
 from eurdf.transmissions.positions import actuator_values as actuator_values
@@ -92,6 +93,8 @@ from eurdf.transmissions.positions import joint_values as joint_values
 from eurdf.transmissions.prepared import PreparedTransmission as PreparedTransmission
 from eurdf.transmissions.prepared import prepare_transmission as prepare_transmission
 from eurdf.transmissions.reach import Stop as Stop
+from eurdf.transmissions.serial_twin import SerialTwin as SerialTwin
+from eurdf.transmissions.serial_twin import serial_twin as serial_twin
 from eurdf.transmissions.transmission import Transmission as Transmission
 from eurdf.transmissions.transmission import Transmissions as Transmissions
 from eurdf.transmissions.transmission import transmission as transmission

@@ -34,6 +34,9 @@ TAKE_NAMES = {
     "workspace": lambda given: (
         eurdf.workspace(four_bar(), given, grid=3, ranges={"motor_crank": (-0.1, 0.1)}).joints == ("motor_crank",)
     ),
+    "serial_twin": lambda given: (
+        eurdf.serial_twin(four_bar(), given, grid=5, ranges={"motor_crank": (-0.1, 0.1)}).joints == ("motor_crank",)
+    ),
     "prepare_transmission": lambda given: eurdf.prepare_transmission(four_bar(), given).joints == ("motor_crank",),
 }
 

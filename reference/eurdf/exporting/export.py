@@ -129,7 +129,7 @@ def export(
     """
     choices = Choices(to, configuration, actuators, mesh_files, strict)
     if isinstance(robot, Robot):
-        return _export(robot, _meshes_of(robot), choices)
+        return _export(robot, files_of_meshes(robot), choices)
     description = describe(robot, urdf, root, package_dirs=package_dirs, xacro_args=xacro_args, confined=confined)
     if isinstance(description, Unlinked) or description.diagnostics.refused:
         raise InvalidRobot(description.path, tuple(description.diagnostics))
@@ -203,7 +203,7 @@ def _configurations(robot: Robot, first: str) -> dict[str, Mapping[str, tuple[fl
     return dict(stated)
 
 
-def _meshes_of(robot: Robot) -> dict[str, Path]:
+def files_of_meshes(robot: Robot) -> dict[str, Path]:
     """The files of the meshes of a robot that was loaded with its geometry."""
     if robot.geometry is None:
         return {}

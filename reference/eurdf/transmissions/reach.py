@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
@@ -9,7 +10,9 @@ import numpy as np
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.batch.forward_kinematics import forward_kinematics
+from eurdf.kinematics.derived import derived
 from eurdf.kinematics.position_limit import BEYOND, position_limits
+from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.pinocchio.robot import build_robot
 from eurdf.transmissions.joint_coordinates import coordinates_of
 from eurdf.transmissions.selection import Selection
@@ -17,6 +20,9 @@ from eurdf.transmissions.transmission import at_many
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
+
+# Steps of the joints, rad or characteristic lengths. A loop that has to be found open takes long.
+_LONGEST_STEP = 0.04
 
 #: What stops the serial joints: the range that is looked at, or their own limits; the limit of a motor, or of a passive
 #: joint; a pose at which motors do not hold the joints; or one beyond which the loops do not close.
@@ -75,6 +81,7 @@ class Reach:
         self._driven = build_robot(driven, geometry=False)
         self._coordinates = coordinates_of(robot, joints)
         self._limits = position_limits(robot)
+        self._unit = derived(robot, TangentSpaces).scale[joints.velocities]
         nv = robot.tree.nv
         self.stops = [self._at_limit(v, side) for side in _SIDES for v in range(nv)]
         self.stops += [Stop("singular"), Stop("not closed")]
@@ -86,12 +93,26 @@ class Reach:
                 self.stops.append(Stop("joint" if limit else "range", name, side))
         self._sign = self._signs(q[None])[0]
 
-    def at(self, q: Matrix) -> Matrix:
-        """Positions (B, nJ) of the joints."""
-        return np.array([self._coordinates.read(each) for each in q])
-
     def examine(self, q: Matrix, positions: Matrix) -> Examined:
-        """Move the joints from configurations (B, nq) to positions (B, nJ)."""
+        """Move the joints from configurations (B, nq), where they can be, straight to positions (B, nJ).
+
+        They move in short steps, and stop after the first one that they cannot make.
+        """
+        own = self._coordinates
+        start = np.array([own.nearest(own.read(each), to) for each, to in zip(q, positions, strict=True)])
+        longest = np.abs((positions - start) / self._unit).max(initial=0.0)
+        steps = max(1, math.ceil(longest / _LONGEST_STEP))
+        end, stop = q.copy(), np.full(len(q), -1, np.intp)
+        for step in range(1, steps + 1):
+            left = np.flatnonzero(stop < 0)
+            if not len(left):
+                break
+            to = start[left] + step / steps * (positions - start)[left]
+            end[left], stop[left] = self._moved(end[left], to if step < steps else positions[left])
+        return Examined(end, stop < 0, stop)
+
+    def _moved(self, q: Matrix, positions: Matrix) -> tuple[Matrix, Indices]:
+        """The configurations (B, nq) after a step, and what stops the joints (B,)."""
         over = np.concatenate((self._lower - positions, positions - self._upper), axis=1)
         stop = np.where(over.max(axis=1) > BEYOND, self._not_closed + 1 + over.argmax(axis=1), -1)
         end, left = q.copy(), np.flatnonzero(stop < 0)
@@ -103,7 +124,7 @@ class Reach:
         stop[left[beyond]] = worst[beyond]
         left = left[~beyond]
         stop[left[self._signs(end[left]) != self._sign]] = self._singular
-        return Examined(end, stop < 0, stop)
+        return end, stop
 
     def beyond_limits(self, q: Vector) -> Stop | None:
         """The limit that a configuration (nq,) is beyond, if it is."""

@@ -61,10 +61,6 @@ class Workspace:
         index: Indices (N, nJ) on the grid of the points reached.
         positions: Positions (N, nJ) there.
         q: Configurations (N, nq) there.
-        boundary: Points between neighbours on the grid of which one is reached; for two joints, those of the outlines,
-            with their corners.
-        outlines: For two joints, indices in ``boundary`` of the points of each closed curve, counterclockwise around
-            what is reached and clockwise around holes; the curve around all comes first. Else empty.
     """
 
     robot: Robot
@@ -74,10 +70,29 @@ class Workspace:
     index: Indices
     positions: Matrix
     q: Matrix
-    boundary: tuple[BoundaryPoint, ...]
-    outlines: tuple[tuple[int, ...], ...]
     _joints: Selection
     _motors: Selection
+    _search: _Search
+
+    @property
+    def boundary(self) -> tuple[BoundaryPoint, ...]:
+        """Points between neighbours on the grid of which one is reached; computed on first use.
+
+        For two joints they are those of the outlines, with their corners.
+        """
+        return self._bounds[0]
+
+    @property
+    def outlines(self) -> tuple[tuple[int, ...], ...]:
+        """For two joints, indices in `boundary` of the points of closed curves; else empty.
+
+        The curves are counterclockwise around what is reached, and clockwise around holes; the one around all is first.
+        """
+        return self._bounds[1]
+
+    @cached_property
+    def _bounds(self) -> tuple[tuple[BoundaryPoint, ...], tuple[tuple[int, ...], ...]]:
+        return self._search.outlined() if len(self.axes) == 2 else (self._search.boundary(), ())
 
     @cached_property
     def transmissions(self) -> Transmissions:
@@ -159,7 +174,6 @@ def workspace(
     search = _Search(reach, axes)
     search.flood(start, pose)
     index = np.argwhere(search.reached)
-    boundary, curves = search.outlined() if len(chosen) == 2 else (search.boundary(), ())
     return Workspace(
         robot,
         chosen.names,
@@ -168,10 +182,9 @@ def workspace(
         index,
         np.stack([axis[own] for axis, own in zip(axes, index.T, strict=True)], axis=1),
         search.q[tuple(index.T)],
-        boundary,
-        curves,
         chosen,
         by,
+        search,
     )
 
 

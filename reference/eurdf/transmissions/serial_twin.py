@@ -1,0 +1,464 @@
+"""The equivalent serial robot: joints that are motors, without rods and cranks, for simulators and trainings."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, cast
+
+import numpy as np
+
+from eurdf.exporting.export import export, files_of_meshes
+from eurdf.kinematics.array import Mask, Matrix, Vector
+from eurdf.kinematics.driven_motion import DrivenMotion
+from eurdf.mechanism.joint import JointProperties
+from eurdf.mechanism.mechanism import ROOT_JOINT
+from eurdf.pinocchio.robot import build_robot
+from eurdf.transmissions.drive import closed_pose
+from eurdf.transmissions.inertia import reflected_inertia
+from eurdf.transmissions.joint_coordinates import coordinates_of
+from eurdf.transmissions.limits import CommonLimits, serial_limits
+from eurdf.transmissions.linkage_bodies import linkage_bodies
+from eurdf.transmissions.motors import motors_of
+from eurdf.transmissions.polynomial_map import PolynomialMap, fitted, scaled
+from eurdf.transmissions.reach import Reach
+from eurdf.transmissions.selection import Selection, selection
+from eurdf.transmissions.serial_mechanism import serial_mechanism, with_properties
+from eurdf.transmissions.transmission import Transmission, at_many, at_one
+from eurdf.transmissions.workspace import Workspace, workspace
+from eurdf.writing.output_folder import write_files
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+#: How limits and armature are chosen.
+Choice = Literal["conservative", "fitted"]
+
+# The numbers of a joint, as a report names them.
+_NUMBERS = ("position", "torque", "velocity", "armature", "damping", "friction")
+
+# Number of points of a grid, about, and along one joint, at most, where the caller does not say how fine it is.
+_POINTS, _MOST_ALONG = 441, 51
+
+# Points for each coefficient of the polynomials.
+_POINTS_A_COEFFICIENT = 3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Neglected:
+    """What a serial twin neglects, over the points of the workspace.
+
+    Smallest and largest values are (nJ, 2), in kg·m² or kg, N·m or N, rad/s or m/s.
+
+    Attributes:
+        mass: Mass of the bodies that are lumped onto others, kg.
+        armature: Smallest and largest armature that would be exact for each joint alone, the diagonal of M_J less the
+            inertia of the twin.
+        rotors: Smallest and largest part of it that comes from the rotors.
+        linkage: Smallest and largest part of it that comes from the bodies of the linkage, where they are.
+        coupling: Largest inertia between two different joints (nJ, nJ) that no armature can state.
+        inertia: Largest error of the inertia matrix, ‖M_twin - M_J‖ / ‖M_J‖.
+        gravity: Largest error (nJ,) of the torque that holds a joint against gravity, N·m or N.
+        torque: Smallest and largest torque of each joint alone; None where a motor has no limit.
+        velocity: Smallest and largest velocity of each joint alone; None where a motor has no limit.
+        covered: Part of the points that are inside the position limits of the twin.
+    """
+
+    mass: float
+    armature: Matrix
+    rotors: Matrix
+    linkage: Matrix
+    coupling: Matrix
+    inertia: float
+    gravity: Vector
+    torque: Matrix | None
+    velocity: Matrix | None
+    covered: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SerialTwin:
+    """A serial robot that stands for one with a parallel transmission.
+
+    Attributes:
+        robot: The serial robot. Its joints are actuated, with the limits and armatures below.
+        joints: Name of each joint velocity, nJ of them.
+        motors: Name of each motor velocity of the parallel robot.
+        q: Configuration (nq,) of the parallel robot at which masses are lumped.
+        bodies: Names of the bodies left out; their masses are lumped onto those that carry them.
+        chosen: How limits and armature are chosen.
+        position: Smallest and largest position (nJ, 2) of the joints, rad or m.
+        torque: Largest torque or force (nJ,), N·m or N; inf where a motor has no limit.
+        velocity: Largest velocity (nJ,), rad/s or m/s; inf where a motor has no limit.
+        armature: Armature (nJ,), kg·m² or kg.
+        damping: Viscous damping (nJ,) at q, that of the motors included, N·m·s/rad or N·s/m.
+        friction: Dry friction (nJ,) at q while a joint moves alone, that of the motors included, N·m or N.
+        map: The positions of the motors as polynomials.
+        neglected: What the twin neglects.
+        workspace: The reachable set that the numbers refer to.
+        notes: What was left out for want of numbers.
+    """
+
+    robot: Robot
+    joints: tuple[str, ...]
+    motors: tuple[str, ...]
+    q: Vector
+    bodies: tuple[str, ...]
+    chosen: Choice
+    position: Matrix
+    torque: Vector
+    velocity: Vector
+    armature: Vector
+    damping: Vector
+    friction: Vector
+    map: PolynomialMap
+    neglected: Neglected
+    workspace: Workspace
+    notes: tuple[str, ...]
+
+    def report(self) -> dict[str, Any]:
+        """The numbers as plain values, for JSON; infinite ones are None."""
+        own = {
+            name: getattr(self, name) for name in ("position", "torque", "velocity", "armature", "damping", "friction")
+        }
+        lost = {name: getattr(self.neglected, name) for name in self.neglected.__slots__}
+        fit = {name: getattr(self.map, name) for name in self.map.__slots__ if name not in ("joints", "motors")}
+        q = self.workspace.robot.coordinates(self.q)
+        return {
+            "joints": list(self.joints),
+            "motors": list(self.motors),
+            "lumped": list(self.bodies),
+            "lumped_at": {name: list(values) for name, values in q.items()},
+            "chosen": self.chosen,
+            **{name: _plain(value) for name, value in own.items()},
+            "neglected": {name: _plain(value) for name, value in lost.items()},
+            "stops": {str(stop): count for stop, count in self.workspace.stops.items()},
+            "map": {name: _plain(value) for name, value in fit.items()},
+            "notes": list(self.notes),
+        }
+
+    def files(self) -> dict[str, bytes]:
+        """The twin as URDF and MJCF, and its report: the content by path."""
+        found: dict[str, bytes] = {}
+        for to in ("urdf", "mjcf"):
+            found |= {f"{to}/{path}": content for path, content in export(self.robot, to).files.items()}
+        text = json.dumps(self.report(), indent=2, ensure_ascii=False, allow_nan=False)
+        return {**found, "transmission.json": f"{text}\n".encode()}
+
+    def write(self, folder: str | os.PathLike[str], *, force: bool = False) -> tuple[Path, ...]:
+        """Write the files to a folder: all of them or none.
+
+        Raises:
+            FileExistsError: A file exists, and ``force`` is False.
+            OSError: A file cannot be written.
+        """
+        return write_files(folder, self.files(), force=force)
+
+    def __repr__(self) -> str:
+        return f"<SerialTwin of '{self.workspace.robot.mechanism.name}': {', '.join(self.joints)}>"
+
+
+def serial_twin(
+    robot: Robot,
+    joints: str | Iterable[str],
+    q: Vector | None = None,
+    motors: str | Iterable[str] | None = None,
+    *,
+    limits: Choice = "conservative",
+    armature: Mapping[str, float] | None = None,
+    grid: int | None = None,
+    ranges: Mapping[str, Sequence[float]] | None = None,
+    degree: int = 8,
+) -> SerialTwin:
+    """The serial robot that stands for one whose joints are moved through rods.
+
+    The bodies of the linkage are left out, and their masses are lumped onto the bodies that carry them, as they are at
+    q. The armature of a joint is the diagonal of M_J less the inertia of the twin, at least 0, so that no mass counts
+    twice. ``conservative``: positions in a box inside the workspace; torques and velocities that the motors reach
+    together at all points of it; the largest armature there. ``fitted``: the range of the workspace, and the means over
+    its points of the torques, velocities and armatures.
+
+    Args:
+        robot: The robot, with the geometry that it was loaded with.
+        joints: As in `transmission`.
+        q: As in `workspace`; the masses are lumped there.
+        motors: As in `transmission`.
+        limits: How limits and armatures are chosen.
+        armature: By motor, as in `reflected_inertia`.
+        grid: As in `workspace`; by default 21 for two joints, and about 450 points in all.
+        ranges: As in `workspace`.
+        degree: Degree of the polynomials in each joint; lowered where the workspace has too few points.
+
+    Raises:
+        NotClosable: The loops cannot be closed near q.
+        NoTransmission: The motors do not hold the joints at q, or other actuated joints are in the way.
+        ValueError: An argument is wrong, as in `workspace`.
+    """
+    if limits not in ("conservative", "fitted"):
+        raise ValueError(f"limits is {limits!r}; it must be 'conservative' or 'fitted'")
+    if not 1 <= degree <= 30:
+        raise ValueError(f"degree is {degree}; it must be from 1 to 30")
+    serial = selection(robot, joints)
+    by = motors_of(robot, serial) if motors is None else selection(robot, motors, "motors")
+    pose = closed_pose(robot, q)
+    grid = max(5, min(_MOST_ALONG, round(_POINTS ** (1.0 / len(serial))))) if grid is None else grid
+    found = workspace(robot, serial.joints, pose, by.joints, grid=grid, ranges=ranges)
+    bodies = linkage_bodies(robot, serial.joints, by.joints)
+    plain = _without_linkage(robot, pose, bodies, serial, by)
+    inside = _box(found, coordinates_of(robot, serial).read(pose))
+    chosen = inside if limits == "conservative" else np.ones(len(found.q), dtype=bool)
+    points = found.positions[chosen]
+    position = np.stack((points.min(axis=0), points.max(axis=0)), axis=1)
+    most, notes = _limits(robot, found, serial, by, chosen, limits)
+    terms = reflected_inertia(robot, serial.joints, found.q, by.joints, armature=armature)
+    own = np.array([_of_twin(robot, plain, each) for each in found.q])
+    lumped = reflected_inertia(plain, serial.joints, own, serial.joints).total
+    needed = terms.total - lumped
+    diagonal = np.maximum(np.diagonal(needed, axis1=1, axis2=2), 0.0)
+    added = diagonal[chosen].max(axis=0) if limits == "conservative" else diagonal.mean(axis=0)
+    losses = _losses(robot, at_one(robot, serial, pose, by))
+    properties = _properties(serial, position, most.torque, most.velocity, added, *losses)
+    mechanism = with_properties(plain.mechanism, properties)
+    twin = build_robot(
+        mechanism, geometry=robot.geometry is not None, resolve=partial(_found_mesh, files_of_meshes(robot))
+    )
+    error = np.linalg.norm(lumped + np.diag(added) - terms.total, 2, axis=(1, 2))
+    neglected = Neglected(
+        _mass(robot, bodies),
+        _extent(diagonal),
+        _extent(np.diagonal(terms.rotors, axis1=1, axis2=2)),
+        _extent(np.diagonal(terms.linkage, axis1=1, axis2=2)),
+        np.abs(needed * (1.0 - np.eye(len(serial)))).max(axis=0),
+        float((error / np.linalg.norm(terms.total, 2, axis=(1, 2))).max()),
+        _gravity_error(robot, plain, found.q, own, serial, by),
+        most.torque_alone,
+        most.velocity_alone,
+        float(chosen.mean()),
+    )
+    fit = _fit(robot, found, serial, by, pose, degree)
+    return SerialTwin(
+        twin,
+        serial.names,
+        by.names,
+        pose,
+        bodies,
+        limits,
+        position,
+        most.torque,
+        most.velocity,
+        added,
+        *losses,
+        fit,
+        neglected,
+        found,
+        notes,
+    )
+
+
+def _without_linkage(robot: Robot, q: Vector, bodies: Sequence[str], joints: Selection, motors: Selection) -> Robot:
+    """The twin without armature of its joints."""
+    coordinates = robot.joint_coordinates(q)
+    mechanism = serial_mechanism(robot.mechanism, set(bodies), coordinates, joints.joints, set(motors.joints))
+    bare = {
+        joint.name: replace(joint.properties, armature=(), gear_ratio=(), rotor_inertia=())
+        for joint in mechanism.joints
+        if joint.name in joints.joints
+    }
+    return build_robot(with_properties(mechanism, bare), geometry=False)
+
+
+def _found_mesh(files: Mapping[str, Path], uri: str) -> str | None:
+    path = files.get(uri)
+    return None if path is None else os.fspath(path)
+
+
+def _of_twin(robot: Robot, twin: Robot, q: Vector) -> Vector:
+    """The configuration of the twin at one of the robot."""
+    own = {*twin.slots, ROOT_JOINT}
+    return twin.configuration({name: values for name, values in robot.coordinates(q).items() if name in own})
+
+
+def _box(found: Workspace, start: Vector) -> Mask:
+    """Which points are in a box of points that are all reached: it grows from the start in all directions in turn."""
+    reached = np.zeros(tuple(map(len, found.axes)), dtype=bool)
+    reached[tuple(found.index.T)] = True
+    cell = np.array([axis[1] - axis[0] for axis in found.axes])
+    nearest = found.index[np.abs((found.positions - start) / cell).sum(axis=1).argmin()]
+    low, high = nearest.copy(), nearest.copy()
+    directions = [(axis, step) for axis in range(len(found.axes)) for step in (-1, 1)]
+    while directions:
+        for axis, step in tuple(directions):
+            wider = low.copy(), high.copy()
+            wider[0 if step < 0 else 1][axis] += step
+            inside = wider[0][axis] >= 0 and wider[1][axis] < reached.shape[axis]
+            if inside and reached[tuple(slice(a, b + 1) for a, b in zip(*wider, strict=True))].all():
+                low, high = wider
+            else:
+                directions.remove((axis, step))
+    return np.asarray(((found.index >= low) & (found.index <= high)).all(axis=1))
+
+
+class _Limits(NamedTuple):
+    """Limits (nJ,), and the smallest and largest of each joint alone (nJ, 2), which are None if motors have none."""
+
+    torque: Vector
+    velocity: Vector
+    torque_alone: Matrix | None
+    velocity_alone: Matrix | None
+
+
+def _limits(
+    robot: Robot, found: Workspace, joints: Selection, motors: Selection, chosen: Mask, choice: Choice
+) -> tuple[_Limits, tuple[str, ...]]:
+    """The limits of the joints, and what could not be stated."""
+    unlimited = _unlimited(robot, motors)
+    if unlimited:
+        none = np.full(len(joints), np.inf)
+        listed = ", ".join(f"'{name}'" for name in unlimited)
+        note = f"torque and velocity limits are left out: {listed} have no effort or no velocity limit"
+        return _Limits(none, none, None, None), (note,)
+    at = cast(CommonLimits, serial_limits(robot, joints.joints, found.q, motors.joints))
+    alone = _extent(np.abs(at.torque_axes).min(axis=2)), _extent(np.abs(at.velocity_axes).min(axis=2))
+    if choice == "fitted":
+        torques, velocities = (
+            np.array([getattr(each, box) for each in at.each]) for box in ("torque_box", "velocity_box")
+        )
+        return _Limits(torques.mean(axis=0), velocities.mean(axis=0), *alone), ()
+    within = cast(CommonLimits, serial_limits(robot, joints.joints, found.q[chosen], motors.joints))
+    return _Limits(within.torque_box, within.velocity_box, *alone), ()
+
+
+def _unlimited(robot: Robot, motors: Selection) -> list[str]:
+    """The motors without an effort limit or control range, or without a velocity limit."""
+    actuation = robot.actuation
+    ranged = np.isfinite(actuation.control).all(axis=1)
+    controlled = set(actuation.idx_v[ranged].tolist())
+    found = []
+    for name in motors.joints:
+        slot = robot.slots[name]
+        properties = slot.joint.properties
+        fastest, strongest = properties.velocity or (np.inf,), properties.effort or (np.inf,)
+        stated = np.isfinite(strongest).all() or controlled.issuperset(range(slot.idx_v, slot.idx_v + slot.nv))
+        if not (stated and np.isfinite(fastest).all()):
+            found.append(name)
+    return found
+
+
+def _losses(robot: Robot, at: Transmission) -> tuple[Vector, Vector]:
+    """Damping and dry friction (nJ,) of the joints, those of their motors included."""
+    assert at.G is not None
+    passive = ~np.isin(at.joint_index, at.motor_index)
+    damping, friction = robot.tree.damping, robot.tree.dry_friction
+    return (
+        np.where(passive, damping[at.joint_index], 0.0) + damping[at.motor_index] @ at.G**2,
+        np.where(passive, friction[at.joint_index], 0.0) + friction[at.motor_index] @ np.abs(at.G),
+    )
+
+
+def _properties(
+    joints: Selection,
+    position: Matrix,
+    torque: Vector,
+    velocity: Vector,
+    armature: Vector,
+    damping: Vector,
+    friction: Vector,
+) -> dict[str, JointProperties]:
+    """The properties of each joint."""
+    found: dict[str, JointProperties] = {}
+    for name in joints.joints:
+        own = [index for index, label in enumerate(joints.names) if label.partition("[")[0] == name]
+
+        def of(values: Vector, own: list[int] = own) -> tuple[float, ...]:
+            return tuple(values[own].tolist())
+
+        found[name] = JointProperties(
+            of(position[:, 0]),
+            of(position[:, 1]),
+            of(velocity),
+            of(torque),
+            of(damping),
+            of(friction),
+            of(armature),
+        )
+    return found
+
+
+def _mass(robot: Robot, bodies: Sequence[str]) -> float:
+    """Mass of some bodies, kg."""
+    return sum(body.inertia.mass for body in robot.mechanism.bodies if body.name in bodies and body.inertia is not None)
+
+
+def _gravity_error(
+    robot: Robot, twin: Robot, q: Matrix, of_twin: Matrix, joints: Selection, motors: Selection
+) -> Vector:
+    """Largest difference (nJ,) of the torques that hold the joints against gravity."""
+    others = [name for name in robot.actuation.joints if name not in motors.joints and name not in joints.joints]
+    one, other = _Holding(robot, joints.joints, others), _Holding(twin, joints.joints, others)
+    differences = [one.torque(own) - other.torque(twins) for own, twins in zip(q, of_twin, strict=True)]
+    return np.asarray(np.abs(differences).max(axis=0))
+
+
+class _Holding:
+    """Holds joints against gravity, while other joints are held too."""
+
+    def __init__(self, robot: Robot, joints: Sequence[str], others: Sequence[str]) -> None:
+        self._tree = robot.tree
+        self._memory = robot.tree.memory()
+        driven = [velocity for name in (*joints, *others) for velocity in robot.tree.velocities_of(name)]
+        self._motion = DrivenMotion(robot, tuple(driven))
+        self._count = sum(len(robot.tree.velocities_of(name)) for name in joints)
+
+    def torque(self, q: Vector) -> Vector:
+        """Torques (n,) at q (nq,); NaN where the motion is in doubt."""
+        D = self._motion.derivative(q)
+        if D is None:
+            return np.full(self._count, np.nan)
+        zero = np.zeros(self._tree.nv)
+        return np.asarray(D[:, : self._count].T @ self._tree.inverse_dynamics(q, zero, zero, self._memory))
+
+
+def _fit(
+    robot: Robot, found: Workspace, joints: Selection, motors: Selection, pose: Vector, degree: int
+) -> PolynomialMap:
+    """Polynomials through the points of the workspace, tested between them."""
+    n = len(joints)
+    while degree > 1 and _POINTS_A_COEFFICIENT * (degree + 1) ** n > len(found.q):
+        degree -= 1
+    lower, upper = np.array([(axis[0], axis[-1]) for axis in found.axes]).T
+    at = coordinates_of(robot, motors)
+    start = at.read(pose)
+
+    def positions(q: Matrix) -> Matrix:
+        return np.array([at.nearest(at.read(each), start) for each in q])
+
+    coefficients = fitted(scaled(found.positions, lower, upper), positions(found.q), degree)
+    none = np.full(len(motors), np.nan)
+    fit = PolynomialMap(joints.names, motors.names, lower, upper, coefficients, none, np.full((len(motors), n), np.nan))
+    cell = np.array([axis[1] - axis[0] for axis in found.axes])
+    between = Reach(robot, joints, motors, pose, found.axes).examine(found.q, found.positions + 0.5 * cell)
+    tested = between.q[between.reached]
+    if not len(tested):
+        return fit
+    where = found.positions[between.reached] + 0.5 * cell
+    error = np.abs(fit.motor_positions(where) - positions(tested)).max(axis=0)
+    error_of_G = np.nanmax(np.abs(fit.G(where) - at_many(robot, joints, tested, motors).G), axis=0)
+    return replace(fit, error=error, error_of_G=error_of_G)
+
+
+def _extent(values: Matrix) -> Matrix:
+    """Smallest and largest (n, 2) of values (B, n)."""
+    return np.stack((values.min(axis=0), values.max(axis=0)), axis=1)
+
+
+def _plain(value: Any) -> Any:
+    """Numbers and arrays as plain values; None for those that are not finite."""
+    if isinstance(value, np.ndarray):
+        return _plain(value.tolist())
+    if isinstance(value, list):
+        return [_plain(each) for each in value]
+    return None if isinstance(value, float) and not np.isfinite(value) else value
