@@ -8,6 +8,7 @@ import io
 import json
 import os
 from collections.abc import Mapping, Sequence
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 from eurdf.commands.cannot_run import CannotRun
@@ -28,8 +29,8 @@ _DESCRIPTION = """\
 Show how motors drive joints through the loops of a robot: velocities, torques, the limits that those of the motors
 leave to the joints, and the inertia that the joints feel.
 
-The joints are those of the equivalent serial robot, such as pitch and roll of an ankle. --grid moves them over their
-position limits.
+The joints are those of the equivalent serial robot, such as pitch and roll of an ankle. --grid moves them over all
+poses that they reach, on one branch, with no joint beyond its position limits.
 """
 _EPILOG = ending(
     "0 shown, 1 the robot has errors or the map does not exist there, 2 the command cannot run.",
@@ -80,6 +81,7 @@ def run(args: argparse.Namespace) -> int:
     if args.force and not args.csv:
         raise CannotRun("--force has no effect without --csv; add --csv FILE")
     from eurdf.checking.load import load
+    from eurdf.transmissions.exceptions import NoTransmission
 
     try:
         robot = load(path, geometry=False, **robot_options(args))
@@ -88,6 +90,9 @@ def run(args: argparse.Namespace) -> int:
         return 1
     try:
         info = _info(robot, args)
+    except NoTransmission as reason:
+        print_notes([str(reason)])
+        return 1
     except (EurdfError, ValueError) as reason:
         raise CannotRun(str(reason)) from None
     if args.csv:
@@ -102,9 +107,9 @@ def run(args: argparse.Namespace) -> int:
 
 def _info(robot: Robot, args: argparse.Namespace) -> TransmissionInfo:
     from eurdf.commands.transmission_info import transmission_info
-    from eurdf.transmissions.joint_grid import joint_grid
     from eurdf.transmissions.motors import motors_of
     from eurdf.transmissions.selection import selection
+    from eurdf.transmissions.workspace import workspace
 
     joints = selection(robot, args.joints, "--joints")
     motors = motors_of(robot, joints) if args.motors is None else selection(robot, args.motors, "--motors")
@@ -112,11 +117,13 @@ def _info(robot: Robot, args: argparse.Namespace) -> TransmissionInfo:
         q = _pose(robot, args.at)
         at = robot.coordinates(q)
         return transmission_info(robot, joints, motors, [q], [[value for name in joints.joints for value in at[name]]])
-    if args.grid < 2 or args.grid ** len(joints.joints) > _MOST_POSES:
-        raise CannotRun(f"--grid {args.grid} makes {args.grid ** len(joints.joints)} poses; give 2 to {_MOST_POSES}")
-    grid = joint_grid(robot, joints.joints, motors, args.grid)
-    configurations = [q if reached else None for q, reached in zip(grid.q, grid.reached.tolist(), strict=True)]
-    return transmission_info(robot, joints, motors, configurations, grid.values.tolist())
+    if args.grid < 2 or args.grid ** len(joints) > _MOST_POSES:
+        raise CannotRun(f"--grid {args.grid} makes {args.grid ** len(joints)} poses; give 2 to {_MOST_POSES}")
+    reached = workspace(robot, joints.joints, motors=motors.joints, grid=args.grid)
+    found: dict[tuple[int, ...], Vector] = dict(zip(map(tuple, reached.index.tolist()), reached.q, strict=True))
+    nodes = list(product(*(range(len(axis)) for axis in reached.axes)))
+    positions = [[float(axis[i]) for axis, i in zip(reached.axes, node, strict=True)] for node in nodes]
+    return transmission_info(robot, joints, motors, [found.get(node) for node in nodes], positions)
 
 
 def _pose(robot: Robot, given: str | None) -> Vector:
@@ -282,13 +289,10 @@ def _grid_tables(info: TransmissionInfo) -> list[Any]:
     from rich.text import Text
 
     poses = info.poses
-    reached = sum(pose.reached for pose in poses)
-    beyond = sum(pose.reached and bool(pose.beyond) for pose in poses)
-    singular = sum(pose.reached and pose.G is None for pose in poses)
-    counts = f"{len(poses)} poses: {reached} reached, {beyond} of them beyond limits, {singular} without G"
+    counts = f"{len(poses)} poses, {sum(pose.reached for pose in poses)} of them reached within all position limits"
     units = [axis.unit for axis in info.joints]
     spread = new_table("", *(f"{axis.name}: least to most" for axis in info.joints))
-    inside = [pose for pose in poses if pose.reached and not pose.beyond]
+    inside = [pose for pose in poses if pose.reached]
     for label, word, by_unit in (
         ("torque, others zero", "torque", _TORQUE),
         ("velocity, others zero", "velocity", {unit: f"{unit}/s" for unit in units}),
@@ -305,7 +309,7 @@ def _grid_tables(info: TransmissionInfo) -> list[Any]:
             spread.add_row(f"inertia of {label}", *shown)
     tables: list[Any] = [Text(counts), *([spread] if spread.row_count else [])]
     if info.common:
-        table = new_table("at all poses within limits", *(axis.name for axis in info.joints))
+        table = new_table("at all poses reached", *(axis.name for axis in info.joints))
         for column in table.columns[1:]:
             column.justify = "right"
         for label, numbers in _limit_rows(info.common, units):

@@ -67,11 +67,11 @@ class PoseInfo(_Entry):
     joints: tuple[float, ...]
     """Positions of the joints."""
     reached: bool
-    """Whether the loops can be closed at these positions; if not, what follows is null or empty."""
+    """Whether the joints reach these positions within the position limits; if not, what follows is null or empty."""
     motors: tuple[float, ...] | None
     """Positions of the motors."""
     beyond: tuple[str, ...]
-    """Joints beyond their position limits there."""
+    """Joints beyond their position limits there; none at the poses of a grid."""
     G: Matrix | None
     """Velocities of the motors by those of the joints, one row for each motor; null if it does not exist."""
     B_J: Matrix | None
@@ -108,7 +108,7 @@ class TransmissionInfo(_Entry):
     poses: tuple[PoseInfo, ...]
     """One configuration, or those of the grid, with the last joint first to change."""
     common: LimitsInfo | None
-    """Limits that hold at all poses that are reached with no joint beyond its limits; null if there are none."""
+    """Limits that hold at all poses that are reached; null if there are none."""
 
 
 def transmission_info(
@@ -129,7 +129,7 @@ def transmission_info(
     """
     reasons: list[str] = []
     poses = [_pose(robot, joints, motors, q, own, reasons) for q, own in zip(configurations, positions, strict=True)]
-    inside = [q for q, pose in zip(configurations, poses, strict=True) if pose.limits is not None and not pose.beyond]
+    inside = [q for q, pose in zip(configurations, poses, strict=True) if pose.limits is not None]
     return TransmissionInfo(
         name=robot.mechanism.name,
         joints=_axes(robot, joints),
