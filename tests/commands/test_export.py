@@ -7,11 +7,13 @@ import os
 import re
 from pathlib import Path
 
+import jsonschema
 import pytest
 
 import eurdf
 from eurdf.commands import export as command
 from eurdf.commands.main import main
+from eurdf.commands.output_schema import output_schemas
 from eurdf.exporting.export import ACTUATORS, MESH_FILES
 from eurdf.exporting.formats import FORMATS
 from eurdf.exporting.table import with_table
@@ -56,6 +58,9 @@ def test_files_are_written_to_a_folder_named_after_the_robot(here: Path, capsys:
 def test_json_lists_every_loss_with_its_place(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["export", "kangaroo_leg", "--to", "mjcf", "--format", "json"]) == 0
     found = json.loads(capsys.readouterr().out)
+    jsonschema.Draft202012Validator(output_schemas()["export.schema.json"]).validate(found)
+    assert (found["format"], found["refused"]) == ("mjcf", None)
+    assert all(Path(file).is_file() for file in found["files"])
     losses = eurdf.export("kangaroo_leg", "mjcf").losses
     assert [(each["code"], each["name"]) for each in found["losses"]] == [(loss.code, loss.name) for loss in losses]
     for each in found["losses"]:
@@ -76,6 +81,10 @@ def test_existing_file_is_kept_without_force(here: Path, capsys: pytest.CaptureF
 
 
 def test_strict_refuses_losses(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["export", "four_bar", "--to", "mjcf", "--strict", "--format", "json"]) == 1
+    found = json.loads(capsys.readouterr().out)
+    jsonschema.Draft202012Validator(output_schemas()["export.schema.json"]).validate(found)
+    assert (found["files"], found["refused"]) == ([], "nothing was written: --strict refuses losses")
     assert main(["export", "four_bar", "--to", "mjcf", "--strict"]) == 1
     out, err = capsys.readouterr()
     assert "export-soft-3d" in out

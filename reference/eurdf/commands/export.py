@@ -6,10 +6,10 @@ import argparse
 import os
 import re
 import sys
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from eurdf.commands.cannot_run import CannotRun
-from eurdf.commands.loss_lines import loss_entry, loss_lines
+from eurdf.commands.loss_lines import loss_lines
 from eurdf.commands.migrate import print_notes, show_refusal
 from eurdf.commands.output import write_json, write_lines
 from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
@@ -108,7 +108,10 @@ def run(args: argparse.Namespace) -> int:
         except FileExistsError as error:
             raise CannotRun(str(error).replace("; force replaces it", "; --force replaces it")) from None
     if as_json:
-        write_json(_result(args, paths, losses, description, refusal))
+        from eurdf.commands.export_info import export_info
+
+        info = export_info(description.path, args.to, paths, losses, refusal, lambda loss: _place(loss, description))
+        write_json(info.model_dump(mode="json"))
     else:
         write_lines(loss_lines(losses, lambda loss: _place(loss, description)), sys.stdout)
         print_notes([refusal] if refusal else [f"wrote '{each}'" for each in paths])
@@ -133,17 +136,3 @@ def _place(loss: Loss, description: Linked) -> Place | None:
     if name in urdf.joints:
         return urdf.document.place(urdf.joints[name].element, None)
     return None
-
-
-def _result(
-    args: argparse.Namespace, paths: list[str], losses: tuple[Loss, ...], description: Linked, refusal: str
-) -> dict[str, Any]:
-    from eurdf.diagnostics.report import encodable
-
-    return {
-        "path": encodable(description.path),
-        "format": args.to,
-        "files": [encodable(each) for each in paths],
-        "refused": refusal or None,
-        "losses": [loss_entry(loss, _place(loss, description)) for loss in losses],
-    }

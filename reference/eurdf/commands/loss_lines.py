@@ -54,5 +54,5 @@ def loss_entry(loss: Loss, place: Place | None) -> dict[str, Any]:
         "message": encodable(loss.message),
         "hint": loss.hint,
         "file": None if place is None else encodable(place.file),
-        "line": None if place is None else place.line,
+        "line": None if place is None else place.line or None,
     }

@@ -12,6 +12,7 @@ def output_schemas() -> dict[str, dict[str, Any]]:
     """JSON Schema (2020-12) of each command's JSON, by file name."""
     from eurdf.commands.assembly_info import assembly_schema
     from eurdf.commands.collection_info import collection_schema
+    from eurdf.commands.export_info import export_schema
     from eurdf.commands.robot_info import info_schema
     from eurdf.commands.transmission_info import transmission_schema
     from eurdf.diagnostics.report import report_schema
@@ -19,6 +20,7 @@ def output_schemas() -> dict[str, dict[str, Any]]:
     return {
         "assemble.schema.json": assembly_schema(),
         "diagnostics-report.schema.json": report_schema(),
+        "export.schema.json": export_schema(),
         "info.schema.json": info_schema(),
         "robots.schema.json": collection_schema(),
         "transmission.schema.json": transmission_schema(),
