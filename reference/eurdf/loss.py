@@ -74,6 +74,7 @@ class LossKind:
         title: What happens, as one sentence.
         hint: What the user can do.
         error: Of an approximate one: how large the error is.
+        only: Which elements of the concept it is about, or with which option; empty if it is about all.
         sayable: Whether the format could say it: it is dropped because of an option or of the robot's files.
     """
 
@@ -83,6 +84,7 @@ class LossKind:
     title: str
     hint: str
     error: str = ""
+    only: str = ""
     sayable: bool = False
 
 
@@ -94,6 +96,7 @@ COMMON = (
         Effect.EXACT,
         "is changed: the format cannot contain it, or has it already",
         "choose another name in the description",
+        only="names that the format does not allow",
     ),
     LossKind(
         "export-metadata",
@@ -108,6 +111,7 @@ COMMON = (
         Effect.EXACT,
         "its package:// address becomes a path: other programs do not know the package",
         "write the file to a package, and change the path there, if you need the address",
+        only="package:// addresses",
     ),
     LossKind(
         "export-mesh-missing",
@@ -116,6 +120,7 @@ COMMON = (
         "its file was not found",
         "give the folder of its package, --package-dir or package_dirs=",
         sayable=True,
+        only="files not found",
     ),
 )
 
@@ -128,6 +133,7 @@ CONVERSION = (
         "its format is not one that the program reads: becomes an OBJ file",
         "convert the mesh with its materials, and name the new file in the URDF",
         error="none in the triangles; materials, textures and normals in the file are left out",
+        only="files that the program does not read",
     ),
     LossKind(
         "export-mesh-format",
@@ -136,6 +142,7 @@ CONVERSION = (
         "its format is not one that the program reads, and it cannot be converted",
         "convert the mesh, and name the new file in the URDF",
         sayable=True,
+        only="files that nothing reads",
     ),
 )
 

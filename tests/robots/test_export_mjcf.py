@@ -284,7 +284,7 @@ def test_armature_of_a_planar_joint_is_a_loss() -> None:
     description = 'extended_urdf: "2.0"\njoints: {shoulder: {armature: [1, 2, 3]}}\n'
     export = eurdf.export(description, "mjcf", urdf=urdf)
     codes = {loss.code: loss.message for loss in export.losses if loss.name == "shoulder"}
-    assert codes["export-unequal-axes"] == "armature 1, 2: the mean is written"
+    assert codes["export-unequal-armature"] == "armature 1, 2: the mean is written"
     assert "export-turning-armature" in codes
     model = mujoco.MjModel.from_xml_string(export.main.decode())
     assert model.dof_armature[:3].tolist() == [1.5, 1.5, 3.0]

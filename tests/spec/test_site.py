@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from eurdf.diagnostics import REGISTRY
+from eurdf.exporting.formats import FORMATS
 from spec.site.clause import SPEC, read_chapters, read_clauses
 
 ROOT = Path(__file__).parents[2]
@@ -51,6 +52,12 @@ def _anchors(site: Path, page: str) -> list[str]:
 def test_every_clause_has_anchor_in_its_chapter(site: Path) -> None:
     for clause in read_clauses(read_chapters()):
         assert _anchors(site, clause.chapter).count(clause.id) == 1, clause.id
+
+
+def test_losses_of_every_format_are_shown(site: Path) -> None:
+    page = (site / "export.html").read_text(encoding="utf-8")
+    for each in FORMATS.values():
+        assert all(kind.code in page for kind in each.losses), each.name
 
 
 def test_every_diagnostic_has_anchor(site: Path) -> None:

@@ -24,17 +24,8 @@ from eurdf.writing.xml_text import representable
 
 AXES: tuple[tuple[str, Vector3], ...] = (("_x", (1.0, 0.0, 0.0)), ("_y", (0.0, 1.0, 0.0)), ("_z", (0.0, 0.0, 1.0)))
 
-_WITHOUT_RANGE = (JointType.PLANAR, JointType.FLOATING)
-
 #: Losses of every URDF.
 URDF_LOSSES = (
-    LossKind(
-        "export-position-limit",
-        "position limit",
-        Effect.DROPPED,
-        "is left out: planar and floating joints have none",
-        "use prismatic and revolute joints",
-    ),
     LossKind(
         "export-universal-joint",
         "universal joint",
@@ -68,6 +59,35 @@ URDF_LOSSES = (
     *COMMON,
 )
 
+_ON_AXES = tuple(
+    kind
+    for concept, word in (
+        ("velocity limit", "velocity"),
+        ("effort limit", "effort"),
+        ("damping", "damping"),
+        ("friction", "friction"),
+    )
+    for kind in (
+        LossKind(
+            f"export-ball-{word}",
+            concept,
+            Effect.DROPPED,
+            "is left out: the three joints that the joint becomes have none",
+            "choose values for the three joints",
+            only="spherical joints",
+        ),
+        LossKind(
+            f"export-unequal-{word}",
+            concept,
+            Effect.APPROXIMATE,
+            "the axes of the joint have different values: that of the first is written",
+            "give the axes of the joint one value",
+            error="difference of the values to that of the first axis",
+            only="planar and floating joints with different values",
+        ),
+    )
+)
+
 #: Losses of a tree that has only the joint types of URDF.
 PLAIN_LOSSES = (
     LossKind(
@@ -81,7 +101,7 @@ PLAIN_LOSSES = (
         "export-spherical-joint",
         "spherical joint",
         Effect.APPROXIMATE,
-        "becomes three continuous joints about x, y and z: their properties are left out",
+        "becomes three continuous joints about x, y and z",
         "keep the joint away from where its second angle is ±π/2, or export to a format with spherical joints",
         error="none in poses; angular velocities are singular where the second angle is ±π/2",
     ),
@@ -99,13 +119,14 @@ PLAIN_LOSSES = (
         "is left out",
         "set the armature in the simulator",
     ),
+    *_ON_AXES,
     LossKind(
-        "export-unequal-properties",
-        "effort limit",
-        Effect.APPROXIMATE,
-        "the axes of the joint have different values: those of the first are written",
-        "give the axes of the joint one value",
-        error="difference of the values to that of the first axis",
+        "export-position-limit",
+        "position limit",
+        Effect.DROPPED,
+        "is left out: planar and floating joints have none",
+        "use prismatic and revolute joints",
+        only="planar and floating joints",
     ),
     LossKind(
         "export-frame",
@@ -237,8 +258,6 @@ class UrdfTree:
             self.losses.add(f"export-{joint.type}-joint", joint.name)
         if any(joint.properties.stiffness):
             self.losses.add("export-spring", joint.name)
-        if joint.type in _WITHOUT_RANGE and any(map(math.isfinite, (*joint.properties.lower, *joint.properties.upper))):
-            self.losses.add("export-position-limit", joint.name)
         parent, placement = self.links[joint.parent], joint.placement
         names = []
         for number, step in enumerate(steps):
@@ -279,9 +298,6 @@ class UrdfTree:
             if joint.type not in (JointType.PLANAR, JointType.FLOATING):
                 return
             at = 0
-            several = (properties.velocity, properties.effort, properties.damping, properties.friction)
-            if any(len(set(values)) > 1 for values in several):
-                self.losses.add("export-unequal-properties", joint.name)
         position = None
         if step.type in (JointType.REVOLUTE, JointType.PRISMATIC):
             lower = properties.lower[at] if properties.lower else -math.inf
@@ -310,6 +326,7 @@ class PlainTree(UrdfTree):
             add_joint(self.root, fixed, JointType.FIXED, self.links[frame.body], name, frame.pose, None)
             losses.add("export-frame", frame.name)
         for joint in mechanism.joints:
+            self._report_axes(joint)
             if any(joint.properties.armature):
                 losses.add("export-armature", joint.name)
             if any(ratio != 1.0 for ratio in joint.properties.gear_ratio) or any(joint.properties.rotor_inertia):
@@ -323,6 +340,25 @@ class PlainTree(UrdfTree):
             losses.add("export-floating-root", mechanism.bodies[0].name)
             # The coordinates are those of the URDF once it is loaded as the hint says.
             self.parts.insert(0, Part((ROOT_JOINT,), ROOT_JOINT, JointType.FLOATING))
+
+    def _report_axes(self, joint: Joint) -> None:
+        """Record what the axes of a joint with several of them lose."""
+        properties = joint.properties
+        if joint.type not in (JointType.SPHERICAL, JointType.PLANAR, JointType.FLOATING):
+            return
+        if any(map(math.isfinite, (*properties.lower, *properties.upper))):
+            self.losses.add("export-position-limit", joint.name)
+        for word, values, none in (
+            ("velocity", properties.velocity, math.inf),
+            ("effort", properties.effort, math.inf),
+            ("damping", properties.damping, 0.0),
+            ("friction", properties.friction, 0.0),
+        ):
+            if joint.type is JointType.SPHERICAL:
+                if any(value != none for value in values):
+                    self.losses.add(f"export-ball-{word}", joint.name)
+            elif len(set(values)) > 1:
+                self.losses.add(f"export-unequal-{word}", joint.name)
 
     @property
     def coordinates(self) -> Coordinates:

@@ -119,6 +119,7 @@ LOSSES = (
         Effect.DROPPED,
         "limits of position and velocity are left out: Drake has none for this type of joint",
         "limit the motion in the controller",
+        only="planar and helical joints",
     ),
     LossKind(
         "export-velocity-limit",
@@ -126,6 +127,7 @@ LOSSES = (
         Effect.DROPPED,
         "is left out: Drake has none for this type of joint",
         "limit velocities in the controller",
+        only="spherical, planar, floating and helical joints",
     ),
     LossKind(
         "export-effort-limit",
@@ -133,6 +135,7 @@ LOSSES = (
         Effect.DROPPED,
         "is left out: in Drake, it is one of the actuator, which acts on a joint with one freedom",
         "limit efforts in the controller",
+        only="spherical, planar and floating joints",
     ),
     LossKind(
         "export-unequal-damping",
@@ -141,6 +144,7 @@ LOSSES = (
         "the axes of the joint have different values: their mean is written",
         "give the axes of the joint one value",
         error="difference of the values to their mean",
+        only="spherical joints with different values",
     ),
     LossKind("export-friction", "friction", Effect.DROPPED, "is left out: Drake has none of joints", "model it apart"),
     LossKind(
@@ -149,6 +153,7 @@ LOSSES = (
         Effect.DROPPED,
         "is left out: in Drake, it is one of an actuator, which acts on a joint with one freedom",
         "make the joint an actuator, or add the inertia to its link",
+        only="joints without an actuator",
     ),
     LossKind(
         "export-gear-ratio",
@@ -156,6 +161,7 @@ LOSSES = (
         Effect.EXACT,
         "is written as 1, with the armature as rotor inertia: the armature is not gear ratio² · rotor inertia",
         "leave out the armature in the description",
+        only="armature stated apart",
     ),
     LossKind(
         "export-actuator",
@@ -163,6 +169,7 @@ LOSSES = (
         Effect.DROPPED,
         "is left out: in Drake, one acts on a joint with one freedom and an effort limit above 0",
         "apply the forces from a program",
+        only="spherical, planar and floating joints, and limits of 0",
     ),
     LossKind(
         "export-control-range",
@@ -177,6 +184,7 @@ LOSSES = (
         Effect.DROPPED,
         "is left out: Drake refuses inertia without a positive mass",
         "correct the inertia in the URDF; `eurdf check` reports those that no body has",
+        only="inertia without mass",
     ),
     *CONVERSION,
     *URDF_LOSSES,

@@ -145,6 +145,7 @@ LOSSES = (
         Effect.DROPPED,
         "is left out: MuJoCo has none for a ball joint, and none of 0",
         "limit efforts in the controller",
+        only="spherical joints, and limits of 0",
     ),
     LossKind(
         "export-equal-limits",
@@ -153,14 +154,19 @@ LOSSES = (
         "both limits are equal, which MuJoCo refuses: becomes a soft equality",
         "make the joint 'fixed' in the description",
         error=_OPENING,
+        only="equal limits",
     ),
-    LossKind(
-        "export-unequal-axes",
-        "armature",
-        Effect.APPROXIMATE,
-        "the axes of the joint have different values: their mean is written",
-        "give the axes of the joint one value",
-        error="difference of the values to their mean",
+    *(
+        LossKind(
+            f"export-unequal-{concept}",
+            concept,
+            Effect.APPROXIMATE,
+            "the axes of the joint have different values: their mean is written",
+            "give the axes of the joint one value",
+            error="difference of the values to their mean",
+            only="axes with different values",
+        )
+        for concept in ("armature", "damping", "friction")
     ),
     LossKind(
         "export-turning-armature",
@@ -169,6 +175,7 @@ LOSSES = (
         "acts along the axes of the joint at rest, not along those of the child: centrifugal terms differ",
         "leave out the armature of planar and floating joints",
         error="up to armature · (joint velocity)² in the force; none at rest",
+        only="planar and floating joints",
     ),
     LossKind(
         "export-gear-ratio",
@@ -184,6 +191,7 @@ LOSSES = (
         "acts along the axes of the joint at rest, not along those of the child",
         "turn the forces with Export.coordinates.rates",
         error="none at the joint's zero; elsewhere the force is turned by the joint's angle",
+        only="planar and floating joints",
     ),
     LossKind(
         "export-position-gain",
@@ -192,6 +200,7 @@ LOSSES = (
         "the description has no gain",
         "set 'kp' and 'dampratio' of the actuator",
         error="gain and damping are this export's choice",
+        only="--actuators position",
     ),
     LossKind(
         "export-no-actuator",
@@ -200,6 +209,7 @@ LOSSES = (
         "is left out, as asked for",
         "export with actuators 'motor' or 'position'",
         sayable=True,
+        only="--actuators none",
     ),
     LossKind(
         "export-massless-link",
@@ -208,6 +218,7 @@ LOSSES = (
         f"moves without inertia, which MuJoCo refuses: gets {LEAST:g} kg and kg·m²",
         "give the link its mass, or merge its joints into one of a type with several axes",
         error=f"{LEAST:g} kg and kg·m² in the mass matrix",
+        only="links that move",
     ),
     LossKind(
         "export-inertia",
@@ -216,6 +227,7 @@ LOSSES = (
         "is not that of a body with volume, which MuJoCo asks for: principal moments are raised",
         "correct the inertia in the URDF; `eurdf check` reports those that no body has",
         error="the message gives the change of a principal moment; none in mass and centre of mass",
+        only="what no body has",
     ),
     LossKind(
         "export-texture",
@@ -231,6 +243,7 @@ LOSSES = (
         "no closed configuration was found, so there is no keyframe",
         "find one with `eurdf assemble`, and write it to the description as 'assembled'",
         sayable=True,
+        only="none is closed",
     ),
     *CONVERSION,
     *COMMON,
@@ -464,18 +477,22 @@ class _Writer:
         for attribute, values in (
             ("armature", properties.armature),
             ("damping", properties.damping),
-            ("frictionloss", properties.friction),
+            ("friction", properties.friction),
         ):
             mine = [values[index] for index in piece.velocities] if values else []
             together = [values[i] for i in _sharing(joint, piece)] if values else []
             if any(together):
                 if len(set(together)) > 1:
                     shown = ", ".join(f"{value:g}" for value in together)
-                    self.losses.add("export-unequal-axes", joint.name, f"{attribute} {shown}: the mean is written")
+                    self.losses.add(
+                        f"export-unequal-{attribute}", joint.name, f"{attribute} {shown}: the mean is written"
+                    )
                     mine = together
                 if attribute == "armature" and piece.kind == "slide" and len(together) > 1:
                     self.losses.add("export-turning-armature", joint.name)
-                found[attribute] = numbers((math.fsum(mine) / len(mine),))
+                found["frictionloss" if attribute == "friction" else attribute] = numbers(
+                    (math.fsum(mine) / len(mine),)
+                )
         for index in piece.velocities:
             if properties.velocity and math.isfinite(properties.velocity[index]):
                 self.losses.add("export-velocity-limit", joint.name, f"{properties.velocity[index]:g} is left out")

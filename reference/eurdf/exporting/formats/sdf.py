@@ -82,6 +82,7 @@ LOSSES = (
         "its axes are not perpendicular: becomes two joints",
         "use Export.coordinates",
         error=_BETWEEN,
+        only="axes not perpendicular",
     ),
     LossKind(
         "export-zero",
@@ -89,6 +90,7 @@ LOSSES = (
         Effect.EXACT,
         "is where the links are: coordinates of joints are zero there",
         "use Export.coordinates",
+        only="the one where the links are",
     ),
     LossKind(
         "export-configurations",
@@ -96,6 +98,7 @@ LOSSES = (
         Effect.DROPPED,
         "is left out: a file has one configuration, where its links are",
         "export with another --configuration, or keep the description beside the file",
+        only="all but one",
     ),
     LossKind(
         "export-distance-dropped",
@@ -110,6 +113,7 @@ LOSSES = (
         Effect.EXACT,
         "becomes the mimic of one joint by the other",
         "simulate with a physics engine that has mimic joints",
+        only="two joints",
     ),
     LossKind(
         "export-coupling-dropped",
@@ -117,6 +121,7 @@ LOSSES = (
         Effect.DROPPED,
         "is left out: SDFormat relates two joints, of which one has no other relation",
         "add a plugin that couples the joints",
+        only="three joints or more, or joints that mimic",
     ),
     LossKind(
         "export-compliance", "compliance", Effect.DROPPED, "is left out", "set 'cfm' and 'erp' of the joint by hand"
@@ -127,6 +132,7 @@ LOSSES = (
         Effect.DROPPED,
         "is left out: a ball joint has none",
         "limit velocities in the controller",
+        only="spherical and floating joints",
     ),
     LossKind(
         "export-effort-limit",
@@ -134,9 +140,24 @@ LOSSES = (
         Effect.DROPPED,
         "is left out: a ball joint has none",
         "limit efforts in the controller",
+        only="spherical and floating joints",
     ),
-    LossKind("export-damping", "damping", Effect.DROPPED, "is left out: a ball joint has none", "add a plugin"),
-    LossKind("export-friction", "friction", Effect.DROPPED, "is left out: a ball joint has none", "add a plugin"),
+    LossKind(
+        "export-damping",
+        "damping",
+        Effect.DROPPED,
+        "is left out: a ball joint has none",
+        "add a plugin",
+        only="spherical and floating joints",
+    ),
+    LossKind(
+        "export-friction",
+        "friction",
+        Effect.DROPPED,
+        "is left out: a ball joint has none",
+        "add a plugin",
+        only="spherical and floating joints",
+    ),
     LossKind(
         "export-armature", "armature", Effect.DROPPED, "is left out", "add the inertia of the rotor to a link by hand"
     ),
@@ -166,6 +187,7 @@ LOSSES = (
         "is not that of a body with volume, which SDFormat asks for: principal moments are raised",
         "correct the inertia in the URDF; `eurdf check` reports those that no body has",
         error="the message gives the change of a principal moment; none in mass and centre of mass",
+        only="what no body has",
     ),
     LossKind("export-texture", "texture", Effect.DROPPED, "is left out; the color is kept", "add a material"),
     *COMMON,

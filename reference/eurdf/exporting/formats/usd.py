@@ -86,6 +86,7 @@ LOSSES = (
         f"becomes two joints with a body of {LEAST:g} kg and kg·m² between them, as its axes are not perpendicular",
         "use a simulator with reduced coordinates, to which light bodies do no harm",
         error=f"{LEAST:g} kg and kg·m² in the mass matrix",
+        only="axes not perpendicular",
     ),
     LossKind(
         "export-helical-joint",
@@ -108,6 +109,7 @@ LOSSES = (
         Effect.DROPPED,
         "is free: NewtonMimicAPI does not relate a rotation to a translation",
         "couple the two joints in the simulator, or export to MJCF",
+        only="a rotation and a translation",
     ),
     LossKind(
         "export-velocity-limit",
@@ -123,6 +125,7 @@ LOSSES = (
         Effect.DROPPED,
         "is left out: in USD, a drive has it, and the joint has none",
         "limit efforts in the controller",
+        only="joints without a drive",
     ),
     LossKind(
         "export-ball-damping",
@@ -131,6 +134,7 @@ LOSSES = (
         "is in the schema of Newton, as USD has no drive of spherical joints; of several axes, the mean",
         "in other simulators, damp the joint in the controller",
         error="none in Newton; elsewhere there is no damping",
+        only="spherical joints",
     ),
     LossKind(
         "export-friction",
@@ -154,6 +158,7 @@ LOSSES = (
         Effect.DROPPED,
         "armature, friction and velocity limit are left out: simulators have one number for rotations and translations",
         "set them in the simulator",
+        only="planar, cylindrical and floating joints",
     ),
     LossKind(
         "export-gear-ratio",
@@ -169,6 +174,7 @@ LOSSES = (
         "is left out: the joint has a position drive, and USD has one drive for an axis",
         "export with actuators 'motor'",
         sayable=True,
+        only="--actuators position",
     ),
     LossKind(
         "export-coupling",
@@ -184,6 +190,7 @@ LOSSES = (
         Effect.DROPPED,
         "is left out: NewtonMimicAPI relates two rotations or two translations, and gives a joint one leader",
         "couple the joints in the simulator",
+        only="a rotation and a translation, or several leaders",
     ),
     LossKind(
         "export-compliance",
@@ -198,6 +205,7 @@ LOSSES = (
         Effect.DROPPED,
         "is left out: USD has no drive of spherical joints",
         "apply torques to the two bodies",
+        only="spherical joints",
     ),
     LossKind(
         "export-position-gain",
@@ -206,6 +214,7 @@ LOSSES = (
         "the description has no gain",
         "set stiffness and damping of the drive",
         error="gain and damping are this export's choice",
+        only="--actuators position",
     ),
     LossKind(
         "export-no-actuator",
@@ -214,6 +223,7 @@ LOSSES = (
         "is left out, as asked for",
         "export with actuators 'motor' or 'position'",
         sayable=True,
+        only="--actuators none",
     ),
     LossKind(
         "export-actuator-name",
@@ -221,6 +231,7 @@ LOSSES = (
         Effect.DROPPED,
         "its name is left out: a drive has that of its joint",
         "use the name of the joint",
+        only="its name",
     ),
     LossKind(
         "export-control-range",
@@ -229,6 +240,7 @@ LOSSES = (
         "is not symmetric: a drive has the larger of its two magnitudes as its largest force",
         "limit commands in the controller",
         error="the smaller magnitude may be exceeded, up to the larger one",
+        only="not symmetric",
     ),
     LossKind(
         "export-massless-link",
@@ -237,6 +249,7 @@ LOSSES = (
         f"moves without inertia, and USD takes 0 for unknown: gets {LEAST:g} kg and kg·m²",
         "give the link its mass, or merge its joints into one of a type with several axes",
         error=f"{LEAST:g} kg and kg·m² in the mass matrix",
+        only="links that move",
     ),
     LossKind(
         "export-massless-base",
@@ -244,6 +257,7 @@ LOSSES = (
         Effect.EXACT,
         "is fixed to the world, and USD takes 0 for unknown: gets 1 kg and 1 kg·m², without effect",
         "give the link its mass",
+        only="the fixed base",
     ),
     LossKind(
         "export-inertia",
@@ -252,6 +266,7 @@ LOSSES = (
         "is not that of a body with volume, which simulators ask for: principal moments are raised",
         "correct the inertia in the URDF; `eurdf check` reports those that no body has",
         error="the message gives the change of a principal moment; none in mass and centre of mass",
+        only="what no body has",
     ),
     LossKind(
         "export-convex-hull",
@@ -260,6 +275,7 @@ LOSSES = (
         "the mesh collides as its convex hull",
         "set physics:approximation of the shape",
         error="the distance of the mesh to its convex hull",
+        only="meshes",
     ),
     LossKind(
         "export-mesh-converted",
@@ -291,6 +307,7 @@ LOSSES = (
         "is left out: a stage has one, where the bodies are",
         "export again with --configuration, or set the joints in the simulator",
         sayable=True,
+        only="all but one",
     ),
     LossKind(
         "export-no-configuration",
@@ -299,6 +316,7 @@ LOSSES = (
         "no closed configuration was found: the bodies are where all coordinates are 0, and the loops may be open",
         "find one with `eurdf assemble`, and write it to the description as 'assembled'",
         sayable=True,
+        only="none is closed",
     ),
     *COMMON,
 )

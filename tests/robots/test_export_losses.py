@@ -1,0 +1,174 @@
+"""The registry of losses: every kind of loss of every format does occur, and what has none is exact."""
+
+from __future__ import annotations
+
+import importlib.util
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import eurdf
+from eurdf.exporting.formats import FORMATS
+from eurdf.mechanism.body import Inertia, Shape
+from eurdf.mechanism.constraint import Compliance, Coupling
+from eurdf.mechanism.frame import Frame
+from eurdf.mechanism.joint import Joint, JointProperties
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.motor import Motor
+from eurdf.mechanism.pose import IDENTITY, Vector3
+from eurdf.pinocchio.robot import build_robot
+from support.exported import random_robot
+
+#: Kinds of loss that need what no robot here has: their tests are with their format.
+ELSEWHERE = {
+    "mjcf": {"export-mesh-path", "export-mesh-format", "export-mesh-converted"},
+    "usd": {"export-mesh-path", "export-mesh-format", "export-mesh-converted", "export-convex-hull"},
+    "drake": {"export-mesh-path", "export-mesh-format", "export-mesh-converted"},
+    "loop-joint": {"export-mesh-path"},
+    "sdf": {"export-mesh-path"},
+    "urdf": {"export-mesh-path"},
+}
+#: Formats whose extra is not installed here.
+MISSING = {"usd"} if importlib.util.find_spec("pxr") is None else set()
+PERPENDICULAR = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+SKEW = ((1.0, 0.0, 0.0), (1.0, 2.0, 0.5))
+
+
+def every_property(joint: Joint) -> Joint:
+    """The joint with each property, of other values on each axis."""
+    kind, n = joint.type, joint.coordinates.nv
+    if kind is JointType.FIXED or joint.mimic is not None:
+        return joint
+    some = tuple(float(value) for value in range(1, n + 1))
+    properties = JointProperties(
+        velocity=some,
+        effort=some,
+        damping=some,
+        friction=some,
+        armature=some,
+        gear_ratio=(2.0,) * n,
+        rotor_inertia=some,
+    )
+    if joint.coordinates.quaternion is None:
+        properties = replace(properties, lower=(-9.0,) * n, upper=(9.0,) * n)
+        if kind is not JointType.PLANAR:
+            properties = replace(properties, stiffness=some, rest=(0.1,) * n)
+    return replace(joint, properties=properties)
+
+
+def robots() -> Iterator[tuple[Mechanism, dict[str, Any]]]:
+    """Robots with every element that a format may lose, and options of the export."""
+    mechanism = random_robot(3, "floating")[0].mechanism
+    yield mechanism, {}
+    rich = replace(
+        mechanism,
+        joints=tuple(map(every_property, mechanism.joints)),
+        closures=tuple(replace(each, compliance=Compliance(1e-6, 1e-6)) for each in mechanism.closures),
+        couplings=(*mechanism.couplings, *_couplings(mechanism)),
+        configurations={**mechanism.configurations, "other": {}},
+        metadata={"license": "none"},
+        actuators=tuple(joint.name for joint in mechanism.joints if joint.mimic is None and joint.type != "fixed"),
+    )
+    rich = replace(rich, motors={name: Motor(f"motor_{name}", (-3.0, 4.0)) for name in rich.actuators})
+    yield rich, {}
+    yield rich, {"actuators": "position"}
+    yield rich, {"actuators": "none"}
+    yield replace(rich, actuators=(), motors={}), {}
+    yield replace(rich, motors={}), {}
+    yield _odd(mechanism, SKEW), {}
+    yield replace(_odd(mechanism, PERPENDICULAR), root="fixed"), {}
+    # No closed configuration: the ends of the closures are far away from each other.
+    far = tuple(
+        replace(each, a=replace(each.a, pose=replace(each.a.pose, xyz=(1e3, 1e3, 0.0)))) for each in mechanism.closures
+    )
+    yield replace(mechanism, closures=far, couplings=(), configurations={}), {}
+
+
+def _couplings(mechanism: Mechanism) -> Iterator[Coupling]:
+    """One of three joints, and one of a rotation and a translation."""
+    named = {joint.type: joint.name for joint in mechanism.joints if joint.mimic is None}
+    names = [named[kind] for kind in (JointType.REVOLUTE, JointType.PRISMATIC, JointType.HELICAL)]
+    yield Coupling("three", tuple((name, 1.0) for name in names))
+    yield Coupling("two", tuple((name, 1.0) for name in names[:2]))
+    yield Coupling("turns", ((named[JointType.REVOLUTE], 1.0), (named[JointType.CONTINUOUS], 1.0)))
+
+
+def _odd(mechanism: Mechanism, axes: tuple[Vector3, Vector3]) -> Mechanism:
+    """Links without mass and with inertias that no body has, equal limits, odd names, a texture, a missing mesh."""
+    base, first, second, third, *others = mechanism.bodies
+    shapes = (Shape("mesh", (1.0, 1.0, 1.0), filename="missing.stl"), Shape("sphere", (0.1,), texture="wood.png"))
+    bodies = [
+        replace(base, inertia=None, visuals=shapes),
+        replace(first, inertia=Inertia(1.0, IDENTITY, (1.0, 0.0, 0.0, 1.0, 0.0, 3.0))),
+        replace(second, inertia=Inertia(0.0, IDENTITY, (1.0, 0.0, 0.0, 1.0, 0.0, 1.0))),
+        replace(third, inertia=None),
+        *others,
+    ]
+    equal = JointProperties(lower=(0.5,), upper=(0.5,), effort=(0.0,))
+    renamed = {base.name: "world", first.name: "a::b"}
+    # Some formats call one of the joints that a spherical one becomes so.
+    (ball,) = (joint.name for joint in mechanism.joints if joint.type is JointType.SPHERICAL)
+    frames = (Frame(f"{ball}_x", "a::b"), Frame("__x__", "world"))
+    return replace(
+        mechanism,
+        bodies=tuple(replace(body, name=renamed.get(body.name, body.name)) for body in bodies),
+        joints=tuple(
+            replace(
+                joint,
+                parent=renamed.get(joint.parent, joint.parent),
+                child=renamed.get(joint.child, joint.child),
+                properties=equal if joint.type is JointType.PRISMATIC else joint.properties,
+                axes=axes if joint.type is JointType.UNIVERSAL else joint.axes,
+            )
+            for joint in mechanism.joints
+        ),
+        closures=(),
+        couplings=(),
+        configurations={},
+        actuators=tuple(joint.name for joint in mechanism.joints if joint.type is JointType.PRISMATIC),
+        frames=frames,
+    )
+
+
+@pytest.mark.slow
+def test_every_kind_of_loss_occurs() -> None:
+    found: dict[str, set[str]] = {name: set() for name in FORMATS}
+    for mechanism, options in robots():
+        robot = build_robot(mechanism, geometry=False)
+        for name in FORMATS:
+            if name in MISSING or (name == "sdf" and mechanism.closures and not mechanism.configurations):
+                continue
+            found[name] |= {loss.code for loss in eurdf.export(robot, name, **options).losses}
+    missing = {
+        name: {kind.code for kind in each.losses} - found[name] - ELSEWHERE[name]
+        for name, each in FORMATS.items()
+        if name not in MISSING
+    }
+    assert not any(missing.values()), missing
+
+
+@pytest.mark.parametrize("name", ["drake", "loop-joint", "sdf"])
+def test_meshes_are_copied_converted_or_reported(tmp_path: Path, name: str) -> None:
+    facet = "facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet"
+    (tmp_path / "pkg").mkdir()
+    (tmp_path / "pkg" / "a.stl").write_text(f"solid a {facet} endsolid a")
+    (tmp_path / "b.dae").write_text("<COLLADA/>")
+    meshes = [
+        f'<visual><geometry><mesh filename="{uri}"/></geometry></visual>' for uri in ("package://pkg/a.stl", "b.dae")
+    ]
+    (tmp_path / "robot.urdf").write_text(f'<robot name="r"><link name="base">{"".join(meshes)}</link></robot>')
+    export = eurdf.export(tmp_path / "robot.urdf", name, package_dirs=[tmp_path])
+    codes = {(loss.code, loss.name) for loss in export.losses if loss.concept == "mesh"}
+    expected = {("export-mesh-path", "package://pkg/a.stl")}
+    copied = ["meshes/a.stl", "meshes/b.dae"]
+    if name == "drake":
+        expected |= {("export-mesh-converted", "package://pkg/a.stl"), ("export-mesh-format", "b.dae")}
+        copied = ["meshes/a.stl.obj"]
+    assert codes == expected
+    assert list(export.files)[1:] == copied
+    assert all(each.encode() in export.main for each in copied)
+    assert b"package://" not in export.main
