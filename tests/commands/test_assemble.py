@@ -300,21 +300,19 @@ def test_uneditable_file_is_unchanged(folder: Path, run: Run) -> None:
 
 
 def test_concurrently_changed_file_is_not_overwritten(folder: Path, run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    import eurdf.writing.assembled
+    import eurdf.writing.saved_configuration as saving
 
     file = bench(folder)
-    compute = eurdf.writing.assembled.with_assembled
+    compute = saving.with_closed_configuration
 
     def meanwhile(*arguments: Any) -> Any:
         file.write_text("changed\n")
         return compute(*arguments)
 
-    monkeypatch.setattr(eurdf.writing.assembled, "with_assembled", meanwhile)
+    monkeypatch.setattr(saving, "with_closed_configuration", meanwhile)
     code, _, err = run("robot.yaml", "--write")
     assert (code, file.read_text()) == (2, "changed\n")
-    assert err == (
-        "eurdf: another program changed 'robot.yaml' in the meantime; nothing was written, run the command again\n"
-    )
+    assert err == ("eurdf: another program changed 'robot.yaml' in the meantime; nothing was written, try again\n")
 
 
 @pytest.mark.parametrize(

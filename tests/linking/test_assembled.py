@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 import eurdf
 from eurdf.linking.description import describe
 from eurdf.pinocchio.robot import build_robot
-from eurdf.writing.assembled import CLOSED_IN_FULL, beyond_limits, with_assembled
+from eurdf.writing.assembled import CLOSED_IN_FULL, beyond_limits, with_closed_configuration
 from support.described import written
 from support.star import STAR
 
@@ -41,7 +41,7 @@ def test_configuration_of_every_joint_type_survives_round_trip(
     nv = robot.model.nv
     v = data.draw(st.lists(st.floats(-1.0, 1.0) | st.just(0.0), min_size=nv, max_size=nv))
     q = np.array(pin.integrate(robot.model, pin.neutral(robot.model), np.array(v)))
-    text, diagnostics = with_assembled(description, robot, q)
+    text, diagnostics = with_closed_configuration(description, robot, q)
     assert not beyond_limits(robot.mechanism, robot.coordinates(q))
     assert not diagnostics.errors
     path.write_text(text, encoding="utf-8")
@@ -59,7 +59,7 @@ def test_written_assembly_is_closed_when_read(name: str, tmp_path: Path) -> None
     assembly = eurdf.assemble(robot, start, tolerance=1e-13, limits=True)
     assert assembly.closes
     assert np.abs(assembly.q - robot.configurations["assembled"]).max() > 1e-3
-    text, diagnostics = with_assembled(description, robot, assembly.q)
+    text, diagnostics = with_closed_configuration(description, robot, assembly.q)
     assert not diagnostics.errors
     (tmp_path / "robot.yaml").write_text(text, encoding="utf-8")
     (tmp_path / "robot.urdf").write_bytes((ROBOTS / name / "robot.urdf").read_bytes())

@@ -16,8 +16,11 @@ import pytest
 import eurdf
 from eurdf.commands.main import main
 from eurdf.viewing import text
+from eurdf.viewing.files import RobotOnDisk
 from eurdf.viewing.server import is_allowed
+from eurdf.viewing.session import Session
 from eurdf.viewing.worker import Worker
+from eurdf.writing.saved_configuration import CannotSave
 
 COLLECTION = Path(__file__).parents[2] / "robots"
 MISSING = "viser is not installed: pip install -e '.[view]'"
@@ -164,6 +167,41 @@ def test_changed_files_are_shown(tmp_path: Path) -> None:
         wait_for(lambda: "no errors, no warnings" in viewer._panel._diagnostics.content)
         assert viewer.robot.constraints[0].name == "another_name"
         assert viewer._first.session.value(0) == pytest.approx(0.4, abs=1e-9)
+
+
+def test_pose_is_saved_to_the_description_and_comments_stay(tmp_path: Path) -> None:
+    for name in ("robot.urdf", "robot.yaml"):
+        (tmp_path / name).write_text((COLLECTION / "four_bar" / name).read_text())
+    files = RobotOnDisk(tmp_path, {"root": "floating"})
+    session = Session(files.load())
+    assert files.can_save
+    session.move(0, 0.4)
+    assert files.save("bent knee", session) == f"saved configuration 'bent knee' to '{tmp_path / 'robot.yaml'}'"
+    text_ = (tmp_path / "robot.yaml").read_text()
+    assert "# Written by build.py" in text_
+    robot = eurdf.load(tmp_path, strict=True)
+    assert robot.coordinates(robot.configurations["bent knee"])["motor_crank"] == pytest.approx((0.4,))
+    assert np.abs(eurdf.residual(robot, robot.configurations["bent knee"])).max() < 1e-12
+    assert files.has_changed
+    assert files.save("bent knee", session).endswith("already has this configuration")
+    assert (tmp_path / "robot.yaml").read_text() == text_
+    session.show(session.robot.tree.integrate(session.q, np.full(session.robot.tree.nv, 0.3)))
+    with pytest.raises(CannotSave, match="the loops are open"):
+        files.save("open", session)
+
+
+@pytest.mark.parametrize("path", ["four_bar", os.fspath(COLLECTION / "four_bar/robot.v1.yaml")])
+def test_pose_is_not_saved_where_it_cannot_be(path: str) -> None:
+    assert not RobotOnDisk(path, {}).can_save
+
+
+def test_text_and_plain_urdf_cannot_be_saved_to() -> None:
+    urdf = (COLLECTION / "four_bar/robot.urdf").read_text()
+    for robot in (urdf, COLLECTION / "four_bar/robot.urdf"):
+        files = RobotOnDisk(robot, {})
+        files.load()
+        assert not files.can_save
+        assert not files.has_changed
 
 
 def test_names_are_text_of_the_page() -> None:

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import argparse
-import os
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.migrate import print_notes, show_refusal
 from eurdf.commands.output import cell, new_table, write_json, write_rendered
-from eurdf.commands.output_file import write_new
 from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
 from eurdf.commands.selection import select_one
 
@@ -104,7 +101,7 @@ def run(args: argparse.Namespace) -> int:
     if file is not None:
         info = info.model_copy(update={"file": file})
         if code == 0 and not beyond:
-            info = info.model_copy(update={"written": _write(file, description, robot, assembly.q, args.force)})
+            info = info.model_copy(update={"written": _write(description, robot, assembly.q, args.force)})
         else:
             code = 1
     if args.json:
@@ -115,19 +112,12 @@ def run(args: argparse.Namespace) -> int:
 
 def _file_to_write(path: str, description: Described) -> str:
     """The file to write the configuration to."""
-    source = description.extension.document.source
-    file = source.file
-    if not source.is_file:
-        raise CannotRun(f"--write needs a file, but the description came from {file}")
-    if description.extension.version == "1":
-        raise CannotRun(
-            f"'{file}' has version 1, which has no configurations; `eurdf migrate` converts it to version 2"
-        )
-    if not os.path.lexists(path):
-        raise CannotRun(
-            f"'{path}' is a robot of the collection; copy its folder '{Path(file).parent}' and change the copy"
-        )
-    return file
+    from eurdf.writing.saved_configuration import CannotSave, file_to_save_to
+
+    try:
+        return file_to_save_to(path, description)
+    except CannotSave as reason:
+        raise CannotRun(str(reason)) from None
 
 
 def _start(robot: Robot, name: str | None) -> tuple[str, Vector]:
@@ -164,29 +154,16 @@ def _assemble(robot: Robot, q0: Vector, hold: list[str], limits: bool) -> Assemb
     return assembly
 
 
-def _write(file: str, description: Described, robot: Robot, q: Vector, force: bool) -> bool:
+def _write(description: Described, robot: Robot, q: Vector, force: bool) -> bool:
     """Write the configuration to the description; return whether the file changed."""
-    from eurdf.reading.source import BOM
-    from eurdf.writing.assembled import NAME, is_stated, with_assembled
-    from eurdf.writing.edit_configuration import NotEditable
+    from eurdf.writing.assembled import NAME
+    from eurdf.writing.saved_configuration import CannotSave, save_configuration
 
-    if is_stated(robot, q):
-        return False
-    if NAME in robot.configurations and not force:
-        raise CannotRun(f"'{file}' already has a different configuration '{NAME}'; --force replaces it")
-    source = description.extension.document.source
     try:
-        text, diagnostics = with_assembled(description, robot, q)
-    except NotEditable as reason:
-        raise CannotRun(f"cannot write to '{file}': {reason}; edit the file by hand") from None
-    errors = diagnostics.errors
-    if errors:
-        raise CannotRun(f"cannot write to '{file}': {errors[0]}")
-    before = Path(file).read_bytes()
-    if before.removeprefix(BOM) != source.data:
-        raise CannotRun(f"another program changed '{file}' in the meantime; nothing was written, run the command again")
-    write_new(file, text if before == source.data else BOM.decode() + text, force=True)
-    return True
+        return save_configuration(description, robot, q, force=force)
+    except CannotSave as reason:
+        replaces = NAME in robot.configurations and not force
+        raise CannotRun(f"{reason}; --force replaces it" if replaces else str(reason)) from None
 
 
 def _messages(info: AssemblyInfo, assembly: Assembly, beyond: list[BeyondLimit]) -> list[str]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import argparse
 import os
-from pathlib import Path
 
 from eurdf.commands.cannot_run import CannotRun
+from eurdf.writing.atomic_file import write_atomically
 
 #: The path that means the standard output.
 STDOUT = "-"
@@ -40,18 +40,8 @@ def write_new(path: str | os.PathLike[str], text: str, force: bool = False) -> N
     Raises:
         CannotRun: The file exists and ``force`` is False, or it cannot be written.
     """
-    target = Path(os.path.realpath(path))
     refuse_to_replace(path, force)
-    scratch = target.with_name(f".{target.name}.{os.getpid()}.tmp")
     try:
-        if target.is_dir():
-            raise IsADirectoryError(0, "it is a folder")
-        with scratch.open("x", encoding="utf-8", newline="") as stream:
-            stream.write(text)
-        if target.exists():
-            scratch.chmod(target.stat().st_mode & 0o7777)
-        scratch.replace(target)
+        write_atomically(path, text)
     except OSError as error:
         raise CannotRun(f"cannot write '{path}': {error.strerror or error}") from error
-    finally:
-        scratch.unlink(missing_ok=True)

@@ -6,6 +6,7 @@ import argparse
 import sys
 import threading
 
+from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.output import write_lines
 from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
 from eurdf.commands.selection import select_one
@@ -19,6 +20,7 @@ The page is updated when the files of the robot change. The command ends with Ct
 _EPILOG = ending(
     "0 ended, 1 the robot has errors, 2 the command cannot run.",
     "eurdf view my_robot",
+    "eurdf view my_robot --trajectory walk.csv",
     "eurdf view my_robot --port 9000 --no-browser",
 )
 
@@ -47,6 +49,11 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help=f"address to listen on; default: {_LOOPBACK}, for this machine alone. Whoever reaches another one can "
         "move the robot, and save configurations to its file",
     )
+    parser.add_argument(
+        "--trajectory",
+        metavar="FILE",
+        help="a CSV file to replay: the first line names the columns, time and joints; the other joints follow",
+    )
     parser.add_argument("--no-browser", action="store_true", help="do not open the page")
     parser.set_defaults(run=run)
 
@@ -69,6 +76,11 @@ def run(args: argparse.Namespace) -> int:
     with viewer:
         write_lines([[(f"{viewer.robot.mechanism.name}: ", ""), (viewer.url, "bold")]], sys.stdout)
         sys.stdout.flush()
+        if args.trajectory is not None:
+            try:
+                viewer.replay(args.trajectory)
+            except ValueError as reason:
+                raise CannotRun(f"'{args.trajectory}': {reason}") from None
         try:
             threading.Event().wait()
         except KeyboardInterrupt:

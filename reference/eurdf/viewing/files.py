@@ -6,9 +6,12 @@ import os
 from typing import Any
 
 from eurdf.checking.load import load
+from eurdf.kinematics.residual import closure_openings
 from eurdf.linking.description import Described, Linked, Unlinked, describe
-from eurdf.pinocchio.robot import Robot
+from eurdf.pinocchio.robot import Robot, build_robot
 from eurdf.reading.given import Given, is_stream, is_text
+from eurdf.viewing.session import Session
+from eurdf.writing.saved_configuration import CannotSave, file_to_save_to, save_configuration
 
 #: Time and size of a file; None if there is none.
 Stamp = tuple[int, int] | None
@@ -48,6 +51,41 @@ class RobotOnDisk:
         robot = load(self.path, check_loops=True, **self.options)
         self._stamps = {file: _stamp(file) for file in _meshes(robot)} | stamps
         return robot
+
+    @property
+    def can_save(self) -> bool:
+        """Whether configurations can be saved to its description."""
+        if not self._can_reread:
+            return False
+        description = self.describe()
+        try:
+            return isinstance(description, Described) and bool(file_to_save_to(self.path, description))
+        except CannotSave:
+            return False
+
+    def save(self, name: str, session: Session) -> str:
+        """Save the configuration of a session under a name; a different one of this name is replaced.
+
+        Returns:
+            What was done.
+
+        Raises:
+            CannotSave: The loops are open, or the file cannot be changed.
+        """
+        # The root may have been chosen for the page alone.
+        description = describe(self.path, **{**self.options, "root": None})
+        if isinstance(description, Unlinked) or description.diagnostics.refused:
+            raise CannotSave("the files have errors; nothing was written")
+        assert isinstance(description, Described)
+        if not name.strip():
+            raise CannotSave("the configuration needs a name")
+        robot = build_robot(description.mechanism, geometry=False)
+        q = session.carried_to(robot)
+        if any(opening.is_open for opening in closure_openings(robot, q)):
+            raise CannotSave("the loops are open; assemble first")
+        file = file_to_save_to(self.path, description)
+        changed = save_configuration(description, robot, q, name, force=True)
+        return f"saved configuration '{name}' to '{file}'" if changed else f"'{file}' already has this configuration"
 
     @property
     def has_changed(self) -> bool:

@@ -7,7 +7,11 @@ from typing import Any
 
 from eurdf.kinematics.assembly import Assembly
 from eurdf.viewing import text
+from eurdf.viewing.gizmo import Gizmo
 from eurdf.viewing.page import Page
+from eurdf.viewing.scene import Placed
+from eurdf.viewing.session import ASSEMBLED
+from eurdf.writing.saved_configuration import CannotSave
 
 # Steps of a slider over its range, and decimals of its number.
 _STEPS = 1000
@@ -36,9 +40,19 @@ class MoveTab:
             choice = gui.add_dropdown("configuration", names, initial_value=names[0])
             go = gui.add_button("go to configuration")
             go.on_click(lambda _: page.ask("go", partial(self._go_to, choice)))
+        if page.files is not None and page.files.can_save:
+            name = gui.add_text("name", initial_value=ASSEMBLED)
+            save = gui.add_button("save as configuration", hint="write the pose to the description")
+            save.on_click(lambda _: page.ask("save", partial(self._save, name)))
+        self._gizmo = Gizmo(page)
 
-    def refresh(self) -> None:
-        """Bring the sliders to the state of the session."""
+    def remove(self) -> None:
+        """Remove what is not in the container."""
+        self._gizmo.remove()
+
+    def refresh(self, placed: Placed) -> None:
+        """Bring the sliders and the handle to the state of the session."""
+        self._gizmo.refresh(placed)
         session = self._page.shown.session
         for index, handle in enumerate(self._sliders):
             slider = session.sliders[index]
@@ -72,6 +86,14 @@ class MoveTab:
     def _assemble(self) -> str | None:
         found: Assembly = self._page.shown.session.assemble()
         return None if found.closes else "no configuration was found that closes the loops; this is the least open one"
+
+    def _save(self, name: Any) -> str:
+        files, session = self._page.files, self._page.shown.session
+        assert files is not None
+        try:
+            return files.save(str(name.value), session)
+        except CannotSave as reason:
+            return str(reason)
 
     def _go_to(self, choice: Any) -> None:
         self._page.shown.session.go_to(str(choice.value))

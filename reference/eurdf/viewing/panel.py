@@ -11,7 +11,9 @@ from eurdf.viewing import text
 from eurdf.viewing.figure import LAYERS
 from eurdf.viewing.move_tab import MoveTab
 from eurdf.viewing.page import Page
+from eurdf.viewing.play_tab import PlayTab
 from eurdf.viewing.scene import Placed
+from eurdf.viewing.trajectory import Trajectory
 
 # Time between looks at the files, s.
 _LOOK = 0.5
@@ -31,7 +33,7 @@ class Panel:
         self._closed = threading.Event()
         self._status = gui.add_html("")
         tabs = gui.add_tab_group()
-        self._tabs: dict[str, Any] = {name: tabs.add_tab(name) for name in ("Move", "Show", "Robot")}
+        self._tabs: dict[str, Any] = {name: tabs.add_tab(name) for name in ("Move", "Play", "Show", "Robot")}
         self._folders: dict[str, Any] = {}
         with self._tabs["Robot"]:
             self._gauge = gui.add_html("")
@@ -43,6 +45,10 @@ class Panel:
         if page.files is not None:
             threading.Thread(target=self._watch, name="eurdf viewer files", daemon=True).start()
 
+    def play(self, trajectory: Trajectory) -> None:
+        """Replay a trajectory."""
+        self._play.play(trajectory)
+
     def close(self) -> None:
         """Stop what runs in the background."""
         self._closed.set()
@@ -53,6 +59,7 @@ class Panel:
         """Make the controls and texts that depend on the robot."""
         session, robot = self._page.shown.session, self._page.shown.robot
         self._move = self._in_tab("Move", lambda: MoveTab(self._page))
+        self._play = self._in_tab("Play", lambda: PlayTab(self._page))
         self._in_tab("Show", self._checkboxes)
         self._dimensions.content = text.dimensions(session.analysis)
         self._diagnostics.content = text.diagnostics(robot.diagnostics)
@@ -60,6 +67,8 @@ class Panel:
 
     def _in_tab(self, name: str, make: Callable[[], Any]) -> Any:
         """Make controls in a tab, in place of those that are there."""
+        if name == "Move" and name in self._folders:
+            self._move.remove()
         if name in self._folders:
             self._folders[name].remove()
         with self._tabs[name]:
@@ -84,7 +93,8 @@ class Panel:
 
     def _refresh(self, placed: Placed) -> None:
         """Bring sliders and texts to the state of the session."""
-        self._move.refresh()
+        self._move.refresh(placed)
+        self._play.refresh()
         self._status.content = text.status(self._page.shown.session.residual, placed.openings, self._page.messages)
         if self._later is not None:
             self._later.cancel()

@@ -18,6 +18,7 @@ from eurdf.viewing.page import Page
 from eurdf.viewing.panel import Panel
 from eurdf.viewing.server import start_server, stop_server, url_of
 from eurdf.viewing.shown import ShownRobot
+from eurdf.viewing.trajectory import read_trajectory
 from eurdf.viewing.worker import Worker
 
 if TYPE_CHECKING:
@@ -67,6 +68,19 @@ class Viewer:
     def animate(self, qs: Iterable[Vector], dt: float) -> None:
         """Show configurations of the first robot one after the other; see `ShownRobot.animate`."""
         self._first.animate(qs, dt)
+
+    def replay(self, file: str | os.PathLike[str]) -> None:
+        """Start to replay a trajectory with the first robot.
+
+        Args:
+            file: A CSV file. The first line names the columns: ``time`` (s) and joints (rad or m); those with several
+                coordinates have a column for each, ``NAME:1``, ``NAME:2`` and so on. The other joints follow.
+
+        Raises:
+            OSError: It cannot be read.
+            ValueError: It has an error; the text says in which line.
+        """
+        self._panel.play(read_trajectory(Path(file).read_text(encoding="utf-8"), self.robot))
 
     def add(self, robot: Robot, q: Vector | None = None, *, xyz: Sequence[float] = (0.0, 0.0, 0.0)) -> ShownRobot:
         """Add a robot to the scene, without controls.

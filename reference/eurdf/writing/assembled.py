@@ -1,4 +1,4 @@
-"""The description of a robot with the configuration ``assembled`` written into it."""
+"""The description of a robot with a closed configuration written into it, such as ``assembled``."""
 
 from __future__ import annotations
 
@@ -69,14 +69,16 @@ def beyond_limits(mechanism: Mechanism, coordinates: Mapping[str, Sequence[float
     ]
 
 
-def is_stated(robot: Robot, q: Vector) -> bool:
-    """Whether the configuration ``assembled`` of a robot is this one, to 1e-12 in each entry of q (nq,)."""
-    stated = robot.configurations.get(NAME)
+def is_stated(robot: Robot, q: Vector, name: str = NAME) -> bool:
+    """Whether a named configuration of a robot is this one, to 1e-12 in each entry of q (nq,)."""
+    stated = robot.configurations.get(name)
     return stated is not None and bool(np.abs(stated - q).max(initial=0.0) <= _SAME)
 
 
-def with_assembled(description: Described, robot: Robot, q: Vector) -> tuple[str, Diagnostics]:
-    """The text of a description in which the configuration ``assembled`` is q.
+def with_closed_configuration(
+    description: Described, robot: Robot, q: Vector, name: str = NAME
+) -> tuple[str, Diagnostics]:
+    """The text of a description in which a named configuration is q.
 
     Joints at their neutral are left out, unless the file states them already. Numbers are rounded to 15 decimals where
     the loops stay as closed.
@@ -85,6 +87,7 @@ def with_assembled(description: Described, robot: Robot, q: Vector) -> tuple[str
         description: Of version 2.
         robot: The robot built from it, with its own root.
         q: Configuration (nq,).
+        name: Name of the configuration; an existing one is replaced.
 
     Returns:
         The text, and its diagnostics, such as a coordinate beyond its limits.
@@ -99,25 +102,25 @@ def with_assembled(description: Described, robot: Robot, q: Vector) -> tuple[str
     document = description.extension.document
     exact = robot.coordinates(q)
     enough = max(CLOSED_IN_FULL, _largest_row(robot, q))
-    rounded = {name: tuple(round(value, _DECIMALS) for value in values) for name, values in exact.items()}
+    rounded = {joint: tuple(round(value, _DECIMALS) for value in values) for joint, values in exact.items()}
     text, diagnostics = "", Diagnostics()
     for coordinates in (rounded, exact):
-        text = with_configuration(document, NAME, _to_state(description, robot, coordinates))
+        text = with_configuration(document, name, _to_state(description, robot, coordinates, name))
         mechanism, diagnostics = reread(text, description.urdf, document.source.file)
         if mechanism is None:
             break
-        back = configuration_vector(robot.mechanism, robot.model, mechanism.configurations[NAME])
+        back = configuration_vector(robot.mechanism, robot.model, mechanism.configurations[name])
         if _largest_row(robot, back) <= enough:
             break
     return text, diagnostics
 
 
 def _to_state(
-    description: Described, robot: Robot, coordinates: Mapping[str, Sequence[float]]
+    description: Described, robot: Robot, coordinates: Mapping[str, Sequence[float]], configuration: str
 ) -> dict[str, Sequence[float]]:
     """The coordinates of the joints that a file has to state."""
     entries = {entry.name: entry.joints for entry in description.extension.configurations}
-    stated = entries.get(NAME, {})
+    stated = entries.get(configuration, {})
     neutral = {joint.name: joint.coordinates.neutral for joint in robot.mechanism.joints}
     neutral[ROOT_JOINT] = COORDINATES[JointType.FLOATING].neutral
     return {name: values for name, values in coordinates.items() if name in stated or tuple(values) != neutral[name]}
