@@ -158,3 +158,44 @@ def test_wrong_limits_are_refused() -> None:
         eurdf.serial_limits(stretched, "slide", np.array([slider_crank(0.05, 0.13, 0.8)[1], q]))
     with pytest.raises(eurdf.NoTransmission, match="leave out some"):
         eurdf.serial_limits(robot, [*joints, "universal_rod_a"])
+
+
+def test_limits_in_a_workspace_hold_between_its_points() -> None:
+    crank, rod = 0.05, 0.13
+    robot, q = slider_crank(crank, rod, 0.8)
+    space = eurdf.workspace(robot, "slide", q, grid=4, ranges={"slide": (0.1, 0.17)})
+    limits = eurdf.serial_limits(robot, "slide", space)
+
+    def slope(angle: Any) -> Any:  # |dx/dθ|
+        return crank * np.sin(angle) + crank**2 * np.sin(angle) * np.cos(angle) / np.sqrt(
+            rod**2 - (crank * np.sin(angle)) ** 2
+        )
+
+    first, last = (np.arccos((x * x + crank**2 - rod**2) / (2.0 * crank * x)) for x in (0.1, 0.17))
+    slopes = slope(np.linspace(last, first, 100_001))
+    assert slopes.argmax() not in (0, 100_000)  # inside, and between the points of the grid
+    force, velocity = 10.0 / slopes.max(), 3.0 * slopes.min()  # limits of the motor: 10 N·m, 3 rad/s
+    assert limits.torque_box[0] == pytest.approx(force, rel=1e-3)
+    assert limits.velocity_box[0] == pytest.approx(velocity, rel=1e-6)
+    assert eurdf.serial_limits(robot, "slide", space.q).torque_box[0] > 1.005 * force
+    assert limits.torque_margin is not None
+    assert 0.0 <= limits.torque_margin < 1e-2
+    with pytest.raises(ValueError, match="the workspace is that of another robot, or of other joints: slide"):
+        eurdf.serial_limits(robot, "pin", space)
+
+
+@pytest.mark.slow
+def test_limits_in_the_workspace_of_an_ankle_hold_at_random_poses() -> None:
+    robot, joints = eurdf.load("unitree_g1_ankle", geometry=False), DRIVEN["unitree_g1_ankle"]
+    space = eurdf.workspace(robot, joints, grid=9)
+    limits = eurdf.serial_limits(robot, joints, space)
+    random = np.random.default_rng(0)
+    start = random.integers(0, len(space.q), 400)
+    cell = np.array([axis[1] - axis[0] for axis in space.axes])
+    qs = space.moved(space.q[start], space.positions[start] + random.uniform(-1.0, 1.0, (400, 2)) * cell)
+    qs = qs[np.isfinite(qs).all(axis=1)]
+    assert len(qs) > 200
+    signs = np.array([[1.0, 1.0], [1.0, -1.0]])
+    for each in eurdf.serial_limits(robot, joints, qs).each:
+        assert each.torque.contains(signs * limits.torque_box, 1e-6).all()
+        assert each.velocity.contains(signs * limits.velocity_box, 1e-6).all()

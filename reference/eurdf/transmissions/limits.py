@@ -2,28 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from eurdf.kinematics.array import Indices, Matrix, Vector
+from eurdf.kinematics.several import several
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.transmissions.box import box_along, largest_box
 from eurdf.transmissions.exceptions import NoTransmission
 from eurdf.transmissions.polytope import Polytope, image_of_box, preimage_of_box
+from eurdf.transmissions.selection import selection
 from eurdf.transmissions.transmission import Transmission, Transmissions, transmission
+from eurdf.transmissions.workspace import Workspace
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 # A configuration bounds a box if the box uses more than this part of one of its half-spaces.
 _BOUNDS = 1.0 - 1e-9
+# Searches for poses of a workspace that exceed a box, each with steps of half the size, around so many of the worst.
+_SEARCHES = 6
+_WORST = 8
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SerialLimits:
     """The limits of joints at one configuration, as `serial_limits` returns them.
 
@@ -34,27 +42,44 @@ class SerialLimits:
         motors: Names of the motors.
         torque: The torques that the motors can produce at the joints.
         velocity: The joint velocities at which no motor exceeds its limit.
-        torque_box: Half sides (nJ,) of the largest box of torques.
-        velocity_box: Half sides (nJ,) of the largest box of velocities.
-        torque_axes: Smallest and largest torque (nJ, 2) of each joint while the others have none: not a box.
-        velocity_axes: Smallest and largest velocity (nJ, 2) of each joint while the others are still: not a box.
     """
 
     joints: tuple[str, ...]
     motors: tuple[str, ...]
     torque: Polytope
     velocity: Polytope
-    torque_box: Vector
-    velocity_box: Vector
-    torque_axes: Matrix
-    velocity_axes: Matrix
+    _torque_ratio: Vector | None
+    _velocity_ratio: Vector | None
+
+    @cached_property
+    def torque_box(self) -> Vector:
+        """Half sides (nJ,) of the largest box of torques."""
+        return _box(self.torque.A, self.torque.b, self._torque_ratio)
+
+    @cached_property
+    def velocity_box(self) -> Vector:
+        """Half sides (nJ,) of the largest box of velocities."""
+        return _box(self.velocity.A, self.velocity.b, self._velocity_ratio)
+
+    @property
+    def torque_axes(self) -> Matrix:
+        """Smallest and largest torque (nJ, 2) of each joint while the others have none: not a box."""
+        return self.torque.axes
+
+    @property
+    def velocity_axes(self) -> Matrix:
+        """Smallest and largest velocity (nJ, 2) of each joint while the others are still: not a box."""
+        return self.velocity.axes
+
+    def __repr__(self) -> str:
+        return f"<SerialLimits of {', '.join(self.joints)} by {', '.join(self.motors)}>"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CommonLimits:
     """The limits of joints at B configurations, as `serial_limits` returns them.
 
-    The boxes hold at these configurations, and may not hold between them. `each` has what belongs to one of them.
+    Between configurations that were given, the boxes may not hold; those of a workspace were searched there too.
 
     Attributes:
         joints: Names of the joints, nJ.
@@ -66,6 +91,11 @@ class CommonLimits:
         torque_bounded_by: Indices of the configurations that bound ``torque_box``.
         velocity_bounded_by: Indices of the configurations that bound ``velocity_box``.
         each: The limits at each configuration.
+        q: The configurations (B, nq): those given; of a workspace also poses of its boundary and those found to bound
+            a box.
+        torque_margin: For a workspace, the largest part by which a pose of the last and finest search exceeded
+            ``torque_box``, which is made smaller by it; None for given configurations.
+        velocity_margin: The same of ``velocity_box``.
     """
 
     joints: tuple[str, ...]
@@ -77,12 +107,15 @@ class CommonLimits:
     torque_bounded_by: Indices
     velocity_bounded_by: Indices
     each: tuple[SerialLimits, ...]
+    q: Matrix
+    torque_margin: float | None = None
+    velocity_margin: float | None = None
 
 
 def serial_limits(
     robot: Robot,
     joints: str | Iterable[str],
-    q: Vector | Matrix | None = None,
+    q: Vector | Matrix | Workspace | None = None,
     motors: str | Iterable[str] | None = None,
     *,
     torque_ratio: ArrayLike | None = None,
@@ -98,9 +131,10 @@ def serial_limits(
     Args:
         robot: The robot.
         joints: As in `transmission`.
-        q: A closed configuration (nq,), or several (B, nq), for a box that holds at all of them. The default is the
-            `assembled` configuration, or the neutral one if there is none.
-        motors: As in `transmission`.
+        q: A closed configuration (nq,), or several (B, nq), for a box that holds at all of them. Or the `workspace` of
+            the joints, for a box that holds everywhere in it: its grid and its boundary, refined around the poses that
+            bound the box. The default is the `assembled` configuration, or the neutral one if there is none.
+        motors: As in `transmission`; those of the workspace, if it is given.
         torque_ratio: Ratio (nJ,) of the sides of the box of torques, positive, in place of the largest product.
         velocity_ratio: Ratio (nJ,) of the sides of the box of velocities.
 
@@ -109,54 +143,133 @@ def serial_limits(
         NotClosable: The loops are open at q.
         ValueError: A motor has no limit, or cannot be without torque; or an argument is wrong, as in `transmission`.
     """
+    if isinstance(q, Workspace):
+        return _everywhere(q, robot, several(joints), torque_ratio, velocity_ratio)
     at = transmission(robot, joints, q, motors)
-    ratios = [
-        _checked_ratio(name, ratio, len(at.joints))
-        for name, ratio in (("torque_ratio", torque_ratio), ("velocity_ratio", velocity_ratio))
-    ]
-    index = range(len(at)) if isinstance(at, Transmissions) else (None,)
-    maps = [_complete(at, each) for each in index]
-    if isinstance(at, Transmissions) and not len(at):
-        raise ValueError("q has no rows; give at least one configuration")
-    ranges = _ranges(robot, at.motors, at.joints)
-    found = [_limits(at.joints, at.motors, G, *ranges, *ratios) for G in maps]
+    task = _task(robot, at, torque_ratio, velocity_ratio)
     if isinstance(at, Transmission):
-        return found[0]
-    boxes, bounded = [], []
-    for polytopes, ratio in zip(
-        ([each.torque for each in found], [each.velocity for each in found]), ratios, strict=True
-    ):
-        A, b = np.vstack([each.A for each in polytopes]), np.concatenate([each.b for each in polytopes])
-        box = _box(A, b, ratio)
-        used = (np.abs(A) @ box / b).reshape(len(found), -1).max(axis=1)
-        boxes.append(box)
-        bounded.append(np.flatnonzero(used > _BOUNDS))
+        return task.limits(_complete(at, None))
+    if not len(at):
+        raise ValueError("q has no rows; give at least one configuration")
+    return _common(task, at)
+
+
+@dataclass(frozen=True, eq=False)
+class _Task:
+    """What is the same at all configurations: names, the ranges of the motors, and the ratios of the boxes."""
+
+    joints: tuple[str, ...]
+    motors: tuple[str, ...]
+    lower: Vector
+    upper: Vector
+    fastest: Vector
+    torque_ratio: Vector | None
+    velocity_ratio: Vector | None
+
+    def limits(self, G: Matrix) -> SerialLimits:
+        """The limits for a G (nm, nJ)."""
+        ratios = self.torque_ratio, self.velocity_ratio
+        return SerialLimits(self.joints, self.motors, self.torque(G), self.velocity(G), *ratios)
+
+    def torque(self, G: Matrix) -> Polytope:
+        """The torques that the motors can produce."""
+        return image_of_box(G, self.lower, self.upper)
+
+    def velocity(self, G: Matrix) -> Polytope:
+        """The velocities that the motors allow."""
+        return preimage_of_box(G, self.fastest)
+
+
+def _task(
+    robot: Robot,
+    at: Transmission | Transmissions,
+    torque_ratio: ArrayLike | None,
+    velocity_ratio: ArrayLike | None,
+) -> _Task:
+    n = len(at.joints)
+    ratios = _checked_ratio("torque_ratio", torque_ratio, n), _checked_ratio("velocity_ratio", velocity_ratio, n)
+    for index in range(len(at)) if isinstance(at, Transmissions) else (None,):
+        _complete(at, index)
+    return _Task(at.joints, at.motors, *_ranges(robot, at.motors), *ratios)
+
+
+def _common(task: _Task, at: Transmissions, margins: tuple[float | None, float | None] = (None, None)) -> CommonLimits:
+    """The limits at several configurations; boxes are made smaller by the margins."""
+    found = [task.limits(_complete(at, index)) for index in range(len(at))]
+    torque, torque_bounded = _common_box([each.torque for each in found], task.torque_ratio)
+    velocity, velocity_bounded = _common_box([each.velocity for each in found], task.velocity_ratio)
     return CommonLimits(
-        at.joints,
-        at.motors,
-        boxes[0],
-        boxes[1],
+        task.joints,
+        task.motors,
+        torque / (1.0 + (margins[0] or 0.0)),
+        velocity / (1.0 + (margins[1] or 0.0)),
         np.array([each.torque_axes for each in found]),
         np.array([each.velocity_axes for each in found]),
-        bounded[0],
-        bounded[1],
+        torque_bounded,
+        velocity_bounded,
         tuple(found),
+        at.q,
+        *margins,
     )
 
 
-def _limits(
+def _common_box(polytopes: Sequence[Polytope], ratio: Vector | None) -> tuple[Vector, Indices]:
+    """The largest box in all polytopes, and the indices of those that bound it."""
+    box = _box(np.vstack([each.A for each in polytopes]), np.concatenate([each.b for each in polytopes]), ratio)
+    return box, np.flatnonzero([_used(each, box) > _BOUNDS for each in polytopes])
+
+
+def _used(polytope: Polytope, box: Vector) -> float:
+    """The largest part of a half-space that a box uses; more than 1 if a corner is outside."""
+    return float((np.abs(polytope.A) @ box / polytope.b).max())
+
+
+def _everywhere(
+    space: Workspace,
+    robot: Robot,
     joints: tuple[str, ...],
-    motors: tuple[str, ...],
-    G: Matrix,
-    lower: Vector,
-    upper: Vector,
-    fastest: Vector,
-    torque_ratio: Vector | None,
-    velocity_ratio: Vector | None,
-) -> SerialLimits:
-    torque, velocity = image_of_box(G, lower, upper), preimage_of_box(G, fastest)
-    boxes = _box(torque.A, torque.b, torque_ratio), _box(velocity.A, velocity.b, velocity_ratio)
-    return SerialLimits(joints, motors, torque, velocity, *boxes, torque.axes, velocity.axes)
+    torque_ratio: ArrayLike | None,
+    velocity_ratio: ArrayLike | None,
+) -> CommonLimits:
+    """The limits in a workspace."""
+    if space.robot is not robot or selection(robot, joints).names != space.joints:
+        raise ValueError(f"the workspace is that of another robot, or of other joints: {', '.join(space.joints)}")
+    edge = [point for point in space.boundary if point.stop.kind in ("range", "joint", "motor", "passive")]
+    positions = np.vstack([space.positions, *(point.position[None] for point in edge)])
+    q = np.vstack([space.q, *(point.q[None] for point in edge)])
+    at = space.transmissions_at(q)
+    task = _task(robot, at, torque_ratio, velocity_ratio)
+    margins = []
+    for polytope, ratio in ((task.torque, task.torque_ratio), (task.velocity, task.velocity_ratio)):
+        positions, q, margin = _refined(space, polytope, ratio, positions, q)
+        margins.append(margin)
+    return _common(task, space.transmissions_at(q), (margins[0], margins[1]))
+
+
+def _refined(
+    space: Workspace, polytope: Callable[[Matrix], Polytope], ratio: Vector | None, positions: Matrix, q: Matrix
+) -> tuple[Matrix, Matrix, float]:
+    """Poses with those added, around the ones that bound the box, at which it does not hold; and the margin."""
+    n = positions.shape[1]
+    cell = np.array([axis[1] - axis[0] for axis in space.axes])
+    around = np.array([move for move in product((-1.0, 0.0, 1.0), repeat=n) if any(move)])
+    polytopes = [polytope(G) for G in space.transmissions_at(q).G]
+    margin = 0.0
+    for level in range(1, _SEARCHES + 1):
+        box, _ = _common_box(polytopes, ratio)
+        used = np.array([_used(each, box) for each in polytopes])
+        worst = np.argsort(-used)[:_WORST]
+        to = (positions[worst, None] + 0.5**level * around * cell).reshape(-1, n)
+        near = space.moved(np.repeat(q[worst], len(around), axis=0), to)
+        reached = np.isfinite(near).all(axis=1)
+        at = space.transmissions_at(near[reached])
+        found = [polytope(G) for G in at.G]
+        exceeded = np.array([_used(each, box) for each in found]) - 1.0
+        margin = float(exceeded.max(initial=0.0))
+        new = np.flatnonzero(exceeded > 0.0)
+        positions, q = np.vstack((positions, to[reached][new])), np.vstack((q, near[reached][new]))
+        polytopes += [found[index] for index in new.tolist()]
+    return positions, q, margin
 
 
 def _box(A: Matrix, b: Vector, ratio: Vector | None) -> Vector:
@@ -181,7 +294,7 @@ def _complete(at: Transmission | Transmissions, index: int | None) -> Matrix:
     return one.G
 
 
-def _ranges(robot: Robot, motors: tuple[str, ...], joints: tuple[str, ...]) -> tuple[Vector, Vector, Vector]:
+def _ranges(robot: Robot, motors: tuple[str, ...]) -> tuple[Vector, Vector, Vector]:
     """Smallest and largest torque, and largest velocity, of each motor."""
     control = dict(zip(robot.actuation.idx_v.tolist(), robot.actuation.control.tolist(), strict=True))
     of: dict[str, tuple[float, float, float]] = {}

@@ -19,7 +19,7 @@ from eurdf.transmissions.exceptions import NoTransmission
 from eurdf.transmissions.joint_coordinates import coordinates_of
 from eurdf.transmissions.motors import motors_of
 from eurdf.transmissions.outline import outlines
-from eurdf.transmissions.reach import Reach, Stop
+from eurdf.transmissions.reach import Examined, Reach, Stop
 from eurdf.transmissions.selection import Selection, selection
 from eurdf.transmissions.transmission import Transmission, Transmissions, at_many, at_one
 
@@ -97,7 +97,21 @@ class Workspace:
     @cached_property
     def transmissions(self) -> Transmissions:
         """The transmissions at the points reached, with G and its condition number."""
-        return at_many(self.robot, self._joints, self.q, self._motors)
+        return self.transmissions_at(self.q)
+
+    def transmissions_at(self, q: Matrix) -> Transmissions:
+        """The transmissions at other closed configurations (B, nq)."""
+        return at_many(self.robot, self._joints, q, self._motors)
+
+    def moved(self, q: Matrix, positions: Matrix) -> Matrix:
+        """Configurations (B, nq) after straight motions to positions (B, nJ) of the joints; NaN where they stop before.
+
+        Args:
+            q: Where to start (B, nq): configurations in the workspace.
+            positions: Positions (B, nJ).
+        """
+        found = self._search.moved(q, positions)
+        return np.where(found.reached[:, None], found.q, np.nan)
 
     @property
     def polygon(self) -> Matrix:
@@ -225,6 +239,10 @@ class _Search:
                 if reached:
                     self.reached[node], self.q[node] = True, q
                     wave.append(node)
+
+    def moved(self, q: Matrix, positions: Matrix) -> Examined:
+        """Motions from configurations (B, nq) straight to positions (B, nJ)."""
+        return self._reach.examine(q, positions)
 
     def boundary(self) -> tuple[BoundaryPoint, ...]:
         """The points between a point that is reached and a neighbour that is not."""
