@@ -15,7 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eurdf
-from eurdf.mechanism.constraint import Constraint, Coupling
+from eurdf.mechanism.constraint import Constraint, Coupling, HingeClosure
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import Robot, build_robot
@@ -128,6 +128,68 @@ def test_loops_stay_closed_in_simulation(name: str) -> None:
         opening = max(opening, np.abs(there.data.efc_pos[: there.data.ne]).max())
     assert opening < 1e-3
     assert not any(warning.number for warning in there.data.warning)
+
+
+HANGING = """<robot name="hanging"><link name="base"/>
+{}
+<joint name="j" type="revolute"><parent link="base"/><child link="a"/><axis xyz="0 1 0"/>
+<limit lower="-9" upper="9" effort="9" velocity="9"/></joint>
+<joint name="k" type="revolute"><parent link="base"/><child link="b"/><origin xyz="0.3 0 0"/><axis xyz="0 1 0"/>
+<limit lower="-9" upper="9" effort="9" velocity="9"/>{}</joint>
+<joint name="screw" type="revolute"><parent link="base"/><child link="c"/><axis xyz="0 0 1"/>
+<limit lower="-9" upper="9" effort="9" velocity="9"/></joint></robot>"""
+LINKS = "".join(
+    f'<link name="{name}"><inertial><origin xyz="0.1 0 -0.3"/><mass value="1"/>'
+    '<inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+    for name in "abc"
+)
+
+
+@pytest.mark.parametrize(
+    ("mimic", "description"),
+    [
+        ("", "joints: {screw: {type: helical, pitch: 0.05}}"),
+        ('<mimic joint="j" multiplier="0.5" offset="0.1"/>', "root: fixed"),
+        ("", "couplings: [{name: gear, joints: {j: 1, k: -2}, offset: 0.2}]"),
+        (
+            "",
+            "closures: [{name: rod, type: distance, length: 0.3,"
+            " frames: [{link: a, xyz: [0, 0, -0.5]}, {link: b, xyz: [0, 0, -0.5]}]}]",
+        ),
+    ],
+    ids=["helical", "mimic", "coupling", "distance"],
+)
+def test_soft_relations_hold_in_simulation(mimic: str, description: str) -> None:
+    urdf, text = HANGING.format(LINKS, mimic), f'extended_urdf: "2.1"\n{description}\n'
+    assert_stays_closed_and_moves(InMuJoCo(eurdf.load(text, urdf=urdf), eurdf.export(text, "mjcf", urdf=urdf)))
+
+
+def test_hinge_holds_in_simulation() -> None:
+    robot = eurdf.load("four_bar", geometry=False)
+    q = robot.configurations["assembled"]
+    (closure,) = robot.mechanism.closures
+    pin.forwardKinematics(robot.model, robot.data, q)
+    turn = robot.model.joints[1].createData()
+    robot.model.joints[1].calc(turn, q)
+    axis = robot.data.oMi[1].rotation @ turn.S.reshape(6)[3:]
+    axes = []
+    for end in closure.anchors:
+        site, placement = robot.tree.site(end)
+        axes.append(tuple((robot.data.oMi[site] * placement).rotation.T @ axis))
+    hinge = HingeClosure(closure.name, closure.a, closure.b, axes=(axes[0], axes[1]))
+    robot = build_robot(replace(robot.mechanism, closures=(hinge,)), geometry=False)
+    assert_stays_closed_and_moves(InMuJoCo(robot, eurdf.export(robot, "mjcf")))
+
+
+def assert_stays_closed_and_moves(there: InMuJoCo) -> None:
+    mujoco.mj_resetDataKeyframe(there.model, there.data, there.model.key("assembled").id)
+    opening = moved = 0.0
+    while there.data.time < 2.0:
+        mujoco.mj_step(there.model, there.data)
+        opening = max(opening, np.abs(there.data.efc_pos[: there.data.ne]).max())
+        moved = max(moved, np.abs(there.data.qvel).max())
+    assert opening < 1e-3
+    assert moved > 0.1
 
 
 @given(seed=seeds, root=roots)
