@@ -106,6 +106,22 @@ COMMON = (
         "keep the description beside the file",
     ),
     LossKind(
+        "export-hinge",
+        "3d closure",
+        Effect.EXACT,
+        "becomes a hinge: its bodies turn about one axis against each other",
+        "see the losses of hinge closures",
+        only="--closures hinge",
+    ),
+    LossKind(
+        "export-ball",
+        "3d closure",
+        Effect.EXACT,
+        "stays as it is: its bodies turn about more than one axis against each other, or not at all",
+        "choose a solver that has ball joints in loops",
+        only="--closures hinge",
+    ),
+    LossKind(
         "export-mesh-path",
         "mesh",
         Effect.EXACT,

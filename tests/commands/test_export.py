@@ -14,7 +14,7 @@ import eurdf
 from eurdf.commands import export as command
 from eurdf.commands.main import main
 from eurdf.commands.output_schema import output_schemas
-from eurdf.exporting.export import ACTUATORS, MESH_FILES
+from eurdf.exporting.export import ACTUATORS, CLOSURES, MESH_FILES
 from eurdf.exporting.formats import FORMATS
 from eurdf.exporting.table import with_table
 from eurdf.loss import CONCEPTS, Effect
@@ -30,6 +30,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_command_knows_all_choices() -> None:
     assert tuple(FORMATS) == command.FORMATS
     assert ACTUATORS == command.ACTUATORS
+    assert CLOSURES == command.CLOSURES
     assert MESH_FILES == command.MESH_FILES
 
 

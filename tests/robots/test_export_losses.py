@@ -7,11 +7,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree as ET
 
 import pytest
 
 import eurdf
 from eurdf.exporting.formats import FORMATS
+from eurdf.exporting.hinges import with_hinges
 from eurdf.mechanism.body import Inertia, Shape
 from eurdf.mechanism.constraint import Compliance, Coupling
 from eurdf.mechanism.frame import Frame
@@ -79,6 +81,8 @@ def robots() -> Iterator[tuple[Mechanism, dict[str, Any]]]:
     yield rich, {"actuators": "none"}
     yield replace(rich, actuators=(), motors={}), {}
     yield replace(rich, motors={}), {}
+    for name in ("four_bar", "digit_leg_3d"):
+        yield eurdf.load(name, geometry=False).mechanism, {"closures": "hinge"}
     yield _odd(mechanism, SKEW), {}
     yield replace(_odd(mechanism, PERPENDICULAR), root="fixed"), {}
     # No closed configuration: the ends of the closures are far away from each other.
@@ -149,6 +153,26 @@ def test_every_kind_of_loss_occurs() -> None:
         if name not in MISSING
     }
     assert not any(missing.values()), missing
+
+
+@pytest.mark.parametrize(("name", "code", "kind"), [("four_bar", "hinge", "revolute"), ("delta", "ball", "spherical")])
+def test_balls_that_move_as_hinges_become_hinges(name: str, code: str, kind: str) -> None:
+    export = eurdf.export(name, "loop-joint", closures="hinge")
+    assert {loss.code for loss in export.losses if loss.concept == "3d closure"} == {f"export-{code}"}
+    assert {loop.get("type") for loop in ET.fromstring(export.main).findall("loop_joint")} == {kind}
+
+
+def test_hinges_leave_the_motion_of_the_balls() -> None:
+    for name in ("four_bar", "five_bar_3d", "slider_crank", "planar_3rrr"):
+        robot = eurdf.load(name, geometry=False)
+        q = robot.configurations["assembled"]
+        hinged, losses = with_hinges(robot, q)
+        kinds = {closure.type for closure in hinged.mechanism.closures}
+        assert "3d" not in kinds, losses
+        before, after = eurdf.analyze(robot, q), eurdf.analyze(hinged, q)
+        assert after.mobility == before.mobility
+        moved = eurdf.assemble(robot, q + 0.1).q
+        assert abs(eurdf.residual(hinged, moved)).max() < 1e-9
 
 
 @pytest.mark.parametrize("name", ["drake", "loop-joint", "sdf"])

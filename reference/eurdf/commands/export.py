@@ -32,10 +32,11 @@ _EPILOG = ending(
     "eurdf export my_robot --to mjcf -o simulation --actuators position",
 )
 
-#: Names of the formats, and of what actuators and mesh files become. They are checked against `eurdf.exporting` by the
-#: tests: importing it here would slow every command down.
+#: Names of the formats, and of what actuators, closures and mesh files become. They are checked against
+#: `eurdf.exporting` by the tests: importing it here would slow every command down.
 FORMATS = ("mjcf", "usd", "drake", "loop-joint", "sdf", "urdf")
 ACTUATORS = ("motor", "position", "none")
+CLOSURES = ("stated", "hinge")
 MESH_FILES = ("copy", "reference")
 
 
@@ -62,6 +63,13 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     parser.add_argument(
         "--actuators", choices=ACTUATORS, default="motor", help="what actuators become in MJCF and USD; default: motor"
+    )
+    parser.add_argument(
+        "--closures",
+        choices=CLOSURES,
+        default="stated",
+        help="hinge: 3d closures become hinges where their bodies turn about one axis alone, for solvers that hold no "
+        "ball joint in a loop; default: stated",
     )
     parser.add_argument(
         "--mesh-files",
@@ -94,7 +102,7 @@ def run(args: argparse.Namespace) -> int:
     refusal, paths = "", []
     folder = args.output or f"{_file_name(description.mechanism.name)}_{args.to}"
     try:
-        choices = Choices(args.to, args.configuration, args.actuators, args.mesh_files, args.strict)
+        choices = Choices(args.to, args.configuration, args.actuators, args.closures, args.mesh_files, args.strict)
         exported = export_linked(description, choices, options["package_dirs"])
     except CannotExport as reason:
         losses = reason.losses

@@ -14,7 +14,8 @@ from eurdf.exceptions import InvalidRobot
 from eurdf.exporting.coordinates import Coordinates, OwnVectors, Place
 from eurdf.exporting.exceptions import CannotExport
 from eurdf.exporting.formats import FORMATS
-from eurdf.exporting.written import Actuators, Exportable, MeshFileChoice, Triangles
+from eurdf.exporting.hinges import with_hinges
+from eurdf.exporting.written import Actuators, ClosureChoice, Exportable, MeshFileChoice, Triangles
 from eurdf.kinematics.assembly import assemble
 from eurdf.linking.description import Linked, Unlinked, describe, find_meshes
 from eurdf.loss import Effect, Loss
@@ -30,6 +31,9 @@ ASSEMBLED = "assembled"
 #: What actuators can become.
 ACTUATORS: tuple[str, ...] = get_args(Actuators)
 
+#: What 3d closures can become.
+CLOSURES: tuple[str, ...] = get_args(ClosureChoice)
+
 #: What can be done with mesh files.
 MESH_FILES: tuple[str, ...] = get_args(MeshFileChoice)
 
@@ -41,6 +45,7 @@ class Choices:
     to: str
     configuration: str
     actuators: Actuators
+    closures: ClosureChoice
     mesh_files: MeshFileChoice
     strict: bool
 
@@ -91,6 +96,7 @@ def export(
     root: Root | None = None,
     configuration: str = ASSEMBLED,
     actuators: Actuators = "motor",
+    closures: ClosureChoice = "stated",
     mesh_files: MeshFileChoice = "copy",
     strict: bool = False,
     package_dirs: Sequence[str | os.PathLike[str]] = (),
@@ -104,12 +110,14 @@ def export(
     Args:
         robot: What `eurdf.load` takes, or a robot that it returned, with the geometry that it was loaded with.
         to: Name of the format: ``mjcf``, ``usd``, ``drake``, ``loop-joint``, ``sdf`` or ``urdf``.
-        urdf: As for `eurdf.load`; only if `robot` is not loaded yet, as all below but the next four.
+        urdf: As for `eurdf.load`; only if `robot` is not loaded yet, as all below but the next five.
         root: As for `eurdf.load`.
         configuration: Name of the configuration to start a simulation from. If the description has none of the name
             ``assembled``, one is searched.
         actuators: What actuators become, in a format that distinguishes: ``motor`` (a force or torque on the joint),
             ``position`` or ``none``.
+        closures: ``stated`` keeps the closures of the description; with ``hinge``, each 3d closure whose bodies turn
+            about one axis alone becomes a hinge, for solvers that hold no ball joint in a loop.
         mesh_files: ``copy`` writes them to ``meshes/`` beside the file; with ``reference`` the file names them where
             they are, by their absolute paths.
         strict: Whether to refuse losses that are not exact.
@@ -127,7 +135,7 @@ def export(
         MissingExtra: The format is ``usd``, and the extra ``usd`` is not installed.
         ValueError: There is no such format, configuration or kind of actuator.
     """
-    choices = Choices(to, configuration, actuators, mesh_files, strict)
+    choices = Choices(to, configuration, actuators, closures, mesh_files, strict)
     if isinstance(robot, Robot):
         return _export(robot, files_of_meshes(robot), choices)
     description = describe(robot, urdf, root, package_dirs=package_dirs, xacro_args=xacro_args, confined=confined)
@@ -154,22 +162,28 @@ def _export(robot: Robot, meshes: Mapping[str, Path], choices: Choices) -> Expor
         raise ValueError(f"there is no format '{to}'; {hint}")
     for name, value, allowed in (
         ("actuators", choices.actuators, ACTUATORS),
+        ("closures", choices.closures, CLOSURES),
         ("mesh_files", choices.mesh_files, MESH_FILES),
     ):
         if value not in allowed:
             raise ValueError(f"{name} is {value!r}; it must be one of {', '.join(allowed)}")
+    configurations = _configurations(robot, choices.configuration)
+    replaced: tuple[Loss, ...] = ()
+    if choices.closures == "hinge" and configurations:
+        closed = robot.configuration(next(iter(configurations.values())))
+        robot, replaced = with_hinges(robot, closed)
     written = FORMATS[to].write(
         Exportable(
             robot.mechanism,
             _own_vectors(robot),
-            _configurations(robot, choices.configuration),
+            configurations,
             meshes,
             choices.actuators,
             choices.mesh_files,
             _triangles,
         )
     )
-    losses = written.losses
+    losses = replaced + written.losses
     if choices.strict and (refused := tuple(loss for loss in losses if loss.effect is not Effect.EXACT)):
         more = f"; and {len(refused) - 1} more" if len(refused) > 1 else ""
         raise CannotExport(f"'{robot.mechanism.name}' has losses in the format {to}: {refused[0]}{more}", refused)

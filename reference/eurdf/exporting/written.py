@@ -17,6 +17,9 @@ from eurdf.mechanism.mechanism import Mechanism
 #: What actuators become.
 Actuators = Literal["motor", "position", "none"]
 
+#: What 3d closures become: what the description states, or hinges where they move as hinges.
+ClosureChoice = Literal["stated", "hinge"]
+
 #: Whether mesh files are copied beside the file, or the file names them where they are.
 MeshFileChoice = Literal["copy", "reference"]
 
