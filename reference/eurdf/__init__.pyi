@@ -85,6 +85,7 @@ from eurdf.transmissions.inertia import reflected_inertia as reflected_inertia
 from eurdf.transmissions.limits import CommonLimits as CommonLimits
 from eurdf.transmissions.limits import SerialLimits as SerialLimits
 from eurdf.transmissions.limits import serial_limits as serial_limits
+from eurdf.transmissions.plot import plot_workspace as plot_workspace
 from eurdf.transmissions.polynomial_map import PolynomialMap as PolynomialMap
 from eurdf.transmissions.polytope import Polytope as Polytope
 from eurdf.transmissions.positions import Positions as Positions

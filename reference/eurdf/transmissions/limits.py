@@ -17,7 +17,7 @@ from eurdf.pinocchio.arguments import checked_array
 from eurdf.transmissions.box import box_along, largest_box
 from eurdf.transmissions.exceptions import NoTransmission
 from eurdf.transmissions.polytope import Polytope, image_of_box, preimage_of_box
-from eurdf.transmissions.selection import selection
+from eurdf.transmissions.selection import Selection, selection
 from eurdf.transmissions.transmission import Transmission, Transmissions, transmission
 from eurdf.transmissions.workspace import Workspace
 
@@ -317,6 +317,22 @@ def _ranges(robot: Robot, motors: tuple[str, ...]) -> tuple[Vector, Vector, Vect
             raise ValueError(f"motor '{motor}' has the velocity limit {velocity:g}; expected a positive one")
     lowers, uppers, fastest = np.array([of[motor] for motor in motors]).T
     return lowers, uppers, fastest
+
+
+def unlimited_motors(robot: Robot, motors: Selection) -> list[str]:
+    """The motors without an effort limit or control range, or without a velocity limit."""
+    actuation = robot.actuation
+    ranged = np.isfinite(actuation.control).all(axis=1)
+    controlled = set(actuation.idx_v[ranged].tolist())
+    found = []
+    for name in motors.joints:
+        slot = robot.slots[name]
+        properties = slot.joint.properties
+        fastest, strongest = properties.velocity or (np.inf,), properties.effort or (np.inf,)
+        stated = np.isfinite(strongest).all() or controlled.issuperset(range(slot.idx_v, slot.idx_v + slot.nv))
+        if not (stated and np.isfinite(fastest).all()):
+            found.append(name)
+    return found
 
 
 def _checked_ratio(name: str, ratio: ArrayLike | None, n: int) -> Vector | None:

@@ -21,7 +21,7 @@ from eurdf.pinocchio.robot import build_robot
 from eurdf.transmissions.drive import closed_pose
 from eurdf.transmissions.inertia import reflected_inertia
 from eurdf.transmissions.joint_coordinates import coordinates_of
-from eurdf.transmissions.limits import CommonLimits, serial_limits
+from eurdf.transmissions.limits import CommonLimits, serial_limits, unlimited_motors
 from eurdf.transmissions.linkage_bodies import linkage_bodies
 from eurdf.transmissions.motors import motors_of
 from eurdf.transmissions.polynomial_map import PolynomialMap, fitted, scaled
@@ -315,7 +315,7 @@ def _limits(
     robot: Robot, found: Workspace, joints: Selection, motors: Selection, chosen: Mask, choice: Choice
 ) -> tuple[_Limits, tuple[str, ...]]:
     """The limits of the joints, and what could not be stated."""
-    unlimited = _unlimited(robot, motors)
+    unlimited = unlimited_motors(robot, motors)
     if unlimited:
         none = np.full(len(joints), np.inf)
         listed = ", ".join(f"'{name}'" for name in unlimited)
@@ -330,22 +330,6 @@ def _limits(
         return _Limits(torques.mean(axis=0), velocities.mean(axis=0), *alone), ()
     within = cast(CommonLimits, serial_limits(robot, joints.joints, found.q[chosen], motors.joints))
     return _Limits(within.torque_box, within.velocity_box, *alone), ()
-
-
-def _unlimited(robot: Robot, motors: Selection) -> list[str]:
-    """The motors without an effort limit or control range, or without a velocity limit."""
-    actuation = robot.actuation
-    ranged = np.isfinite(actuation.control).all(axis=1)
-    controlled = set(actuation.idx_v[ranged].tolist())
-    found = []
-    for name in motors.joints:
-        slot = robot.slots[name]
-        properties = slot.joint.properties
-        fastest, strongest = properties.velocity or (np.inf,), properties.effort or (np.inf,)
-        stated = np.isfinite(strongest).all() or controlled.issuperset(range(slot.idx_v, slot.idx_v + slot.nv))
-        if not (stated and np.isfinite(fastest).all()):
-            found.append(name)
-    return found
 
 
 def _losses(robot: Robot, at: Transmission) -> tuple[Vector, Vector]:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise, product
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -93,6 +93,16 @@ class Workspace:
     @cached_property
     def _bounds(self) -> tuple[tuple[BoundaryPoint, ...], tuple[tuple[int, ...], ...]]:
         return self._search.outlined() if len(self.axes) == 2 else (self._search.boundary(), ())
+
+    @property
+    def units(self) -> tuple[Literal["m", "rad"], ...]:
+        """Unit of the position of each joint."""
+        return coordinates_of(self.robot, self._joints).units
+
+    @property
+    def selections(self) -> tuple[Selection, Selection]:
+        """The joints and the motors."""
+        return self._joints, self._motors
 
     @cached_property
     def transmissions(self) -> Transmissions:
