@@ -26,6 +26,7 @@ from eurdf.commands import (
     migrate,
     robots,
     schema,
+    serial,
     transmission,
     view,
 )
@@ -34,7 +35,21 @@ from eurdf.commands.exit_code import BROKEN_PIPE, INTERRUPTED
 from eurdf.exceptions import CannotExpand, MissingExtra
 
 #: The commands, in the order in which the help shows them.
-COMMANDS = (check, info, view, assemble, export, import_robot, transmission, robots, migrate, generate, schema, certify)
+COMMANDS = (
+    check,
+    info,
+    view,
+    assemble,
+    export,
+    import_robot,
+    transmission,
+    serial,
+    robots,
+    migrate,
+    generate,
+    schema,
+    certify,
+)
 
 # Half of the time of a check is start-up. The matrices are too small for a thread pool, and pydantic plugins are not
 # needed.

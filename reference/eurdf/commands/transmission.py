@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.migrate import print_notes, show_refusal
 from eurdf.commands.output import cell, new_table, write_json, write_rendered
-from eurdf.commands.output_file import write_new
+from eurdf.commands.output_file import refuse_to_replace, write_new
 from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
 from eurdf.commands.selection import select_one
 
@@ -36,8 +36,11 @@ _EPILOG = ending(
     "0 shown, 1 the robot has errors or the map does not exist there, 2 the command cannot run.",
     "eurdf transmission unitree_g1_ankle --joints free_pitch free_roll",
     "eurdf transmission unitree_g1_ankle --joints free_pitch free_roll --grid 41 --csv ankle.csv",
+    "eurdf transmission unitree_g1_ankle --joints free_pitch free_roll --plot ankle.pdf --c controller",
 )
 
+# Number of points along each joint in a figure, unless --grid states it.
+_FIGURE = 25
 # Largest number of configurations of a grid.
 _MOST_POSES = 1_000_000
 
@@ -69,17 +72,25 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     parser.add_argument("--json", action="store_true", help="write one JSON object")
     parser.add_argument("--csv", metavar="FILE", help="write a table with one row for each pose")
-    parser.add_argument("--force", action="store_true", help="replace the file of --csv")
+    parser.add_argument(
+        "--plot",
+        metavar="FILE",
+        help="draw what the joints reach, with limits and inertia there, as .png, .svg or .pdf; needs the extra plot",
+    )
+    parser.add_argument(
+        "--c", metavar="FOLDER", help="write the map as C99 without dependencies, for controllers; it starts at --at"
+    )
+    parser.add_argument("--force", action="store_true", help="replace files of --csv, --plot and --c")
     parser.set_defaults(run=run)
 
 
 def run(args: argparse.Namespace) -> int:
     """Show the transmission, and return the exit code."""
-    from eurdf.exceptions import EurdfError, InvalidRobot
+    from eurdf.exceptions import EurdfError, InvalidRobot, MissingExtra
 
     path = select_one(args.path)
-    if args.force and not args.csv:
-        raise CannotRun("--force has no effect without --csv; add --csv FILE")
+    if args.force and not (args.csv or args.plot or args.c):
+        raise CannotRun("--force has no effect without --csv, --plot or --c; add one of them")
     from eurdf.checking.load import load
     from eurdf.transmissions.exceptions import NoTransmission
 
@@ -90,9 +101,14 @@ def run(args: argparse.Namespace) -> int:
         return 1
     try:
         info = _info(robot, args)
+        written = [*_drawn(robot, args), *_generated(robot, args)]
     except NoTransmission as reason:
         print_notes([str(reason)])
         return 1
+    except MissingExtra:
+        raise
+    except FileExistsError as error:
+        raise CannotRun(str(error).replace("; force replaces it", "; --force replaces it")) from None
     except (EurdfError, ValueError) as reason:
         raise CannotRun(str(reason)) from None
     if args.csv:
@@ -101,7 +117,7 @@ def run(args: argparse.Namespace) -> int:
         write_json(info.model_dump(mode="json"))
     else:
         _show(info)
-    print_notes(_notes(info, args))
+    print_notes([*_notes(info, args), *(f"wrote '{each}'" for each in written)])
     return 0 if any(pose.G is not None for pose in info.poses) else 1
 
 
@@ -124,6 +140,30 @@ def _info(robot: Robot, args: argparse.Namespace) -> TransmissionInfo:
     nodes = list(product(*(range(len(axis)) for axis in reached.axes)))
     positions = [[float(axis[i]) for axis, i in zip(reached.axes, node, strict=True)] for node in nodes]
     return transmission_info(robot, joints, motors, [found.get(node) for node in nodes], positions)
+
+
+def _drawn(robot: Robot, args: argparse.Namespace) -> list[str]:
+    """Draw the workspace, if asked; the path of the figure."""
+    if not args.plot:
+        return []
+    from eurdf.transmissions.plot import plot_workspace
+    from eurdf.transmissions.workspace import workspace
+
+    refuse_to_replace(args.plot, args.force)
+    q = None if args.grid is not None else _pose(robot, args.at)
+    found = workspace(robot, args.joints, q, args.motors, grid=_FIGURE if args.grid is None else args.grid)
+    return [os.fspath(plot_workspace(found, args.plot))]
+
+
+def _generated(robot: Robot, args: argparse.Namespace) -> list[str]:
+    """Generate the C, if asked; the paths of the files."""
+    if not args.c:
+        return []
+    from eurdf.transmissions.prepared import prepare_transmission
+
+    q = None if args.grid is not None else _pose(robot, args.at)
+    source = prepare_transmission(robot, args.joints, q, args.motors).c_source()
+    return [os.fspath(each) for each in source.write(args.c, force=args.force)]
 
 
 def _pose(robot: Robot, given: str | None) -> Vector:
