@@ -34,7 +34,7 @@ _EPILOG = ending(
 
 #: Names of the formats. They are checked against `eurdf.importing` by the tests: importing it here would slow every
 #: command down.
-FORMATS = ("mjcf",)
+FORMATS = ("mjcf", "sdf", "loop-joint", "drake", "urdf-plus")
 
 
 def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

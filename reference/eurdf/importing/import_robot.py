@@ -105,7 +105,8 @@ def import_robot(
 
     Args:
         path: The file.
-        format: Name of its format: ``mjcf``. By default it is recognized by its content.
+        format: Name of its format: ``mjcf``, ``sdf``, ``loop-joint``, ``drake`` or ``urdf-plus``. By default it is
+            recognized by its content.
         within: The folder that all files must be in that the file includes; its own by default.
         strict: Whether to refuse losses that are not exact.
 

@@ -15,6 +15,9 @@ class MeshCopies:
         files: Content by path relative to the folder, ``meshes/`` and a name.
     """
 
+    #: Endings of mesh files: no other file is copied, whatever a file names as its mesh.
+    SUFFIXES = frozenset({".stl", ".obj", ".dae", ".ply", ".gltf", ".glb", ".off", ".3ds", ".vtk"})
+
     def __init__(self) -> None:
         self.files: dict[str, bytes] = {}
         self._of: dict[str, str] = {}

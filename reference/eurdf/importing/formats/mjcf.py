@@ -19,6 +19,7 @@ from typing import Any, cast
 from eurdf.importing.exceptions import CannotImport
 from eurdf.importing.mesh_copies import MeshCopies
 from eurdf.importing.mjcf_model import MjcfModel, compile_mjcf
+from eurdf.importing.orientation import orientation
 from eurdf.importing.robot_read import ImportFormat, RobotRead
 from eurdf.importing.xml_files import included_files
 from eurdf.linking.configurations import within_limits
@@ -507,7 +508,7 @@ class _Reader:
                 case _:
                     if math.dist(_cross(axes[0], axes[1]), axes[2]) > _SAME or abs(_dot(axes[0], axes[1])) > _SAME:
                         continue
-                    turn, axes = _orientation(axes[0], axes[1], axes[2]), []
+                    turn, axes = orientation(axes[0], axes[1], axes[2]), []
             return _Step(self.joint_names.new(stem), type_, tuple(joints), anchors[0], tuple(axes), turn, pitch)
         return None
 
@@ -1155,26 +1156,6 @@ def _xyzw(wxyz: Sequence[float]) -> Quaternion:
 
 def _pose(xyz: Sequence[float], wxyz: Sequence[float]) -> Pose:
     return Pose(_vector(xyz), _xyzw(wxyz))
-
-
-def _orientation(x: Vector3, y: Vector3, z: Vector3) -> Pose:
-    """The orientation of a frame with these axes: the largest component is found first, so that none loses digits."""
-    squares = (1.0 + x[0] - y[1] - z[2], 1.0 - x[0] + y[1] - z[2], 1.0 - x[0] - y[1] + z[2], 1.0 + x[0] + y[1] + z[2])
-    products = {
-        (0, 1): x[1] + y[0],
-        (0, 2): x[2] + z[0],
-        (1, 2): y[2] + z[1],
-        (0, 3): y[2] - z[1],
-        (1, 3): z[0] - x[2],
-        (2, 3): x[1] - y[0],
-    }
-    largest = squares.index(max(squares))
-    found = [
-        squares[largest] if index == largest else products[min(index, largest), max(index, largest)]
-        for index in range(4)
-    ]
-    norm = math.hypot(*found)
-    return Pose(quaternion=(found[0] / norm, found[1] / norm, found[2] / norm, found[3] / norm))
 
 
 def _cross(a: Vector3, b: Vector3) -> Vector3:

@@ -1,0 +1,96 @@
+"""URDF with ``<loop_joint>``, the element of Isaac Sim for closed loops.
+
+``link1`` and ``link2`` state the pose of the loop joint in two links; the documentation of Isaac also has two
+``link1``. Isaac states no axis: that of USD is x unless ``<axis>`` states another one, in both poses.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from lxml import etree
+
+from eurdf.importing.elements import named
+from eurdf.importing.robot_read import ImportFormat, RobotRead
+from eurdf.importing.urdf_tree import URDF_LOSSES, UrdfTree, read_tree
+from eurdf.loss import Effect, Losses, LossKind
+from eurdf.mechanism.constraint import Closure, FrameClosure, HingeClosure, PointClosure
+from eurdf.mechanism.frame import Anchor, Frame
+from eurdf.writing.names import UniqueNames
+
+LOSSES = (
+    LossKind(
+        "import-name",
+        "name",
+        Effect.EXACT,
+        "is changed: the name is missing, or used by another element",
+        "give the element a unique name in the file",
+    ),
+    LossKind(
+        "import-loop",
+        "loop joint",
+        Effect.DROPPED,
+        "is left out: loops are closed by spherical, fixed and revolute joints",
+        "let another joint of the loop close it",
+    ),
+    *URDF_LOSSES,
+)
+
+
+def read(path: Path, within: Path) -> RobotRead:
+    """Read a URDF with loop joints.
+
+    Raises:
+        CannotImport: It has an error.
+    """
+    losses = Losses(LOSSES)
+    tree = read_tree(path, within, losses, ("loop_joint", "fixed_frame"))
+    names = UniqueNames(losses, code="import-name")
+    closures = [
+        closure
+        for element in tree.root.iterchildren("loop_joint")
+        if (closure := _closure(element, tree, names, losses))
+    ]
+    mechanism = replace(tree.mechanism, closures=tuple(closures), frames=_frames(tree, losses))
+    return RobotRead(mechanism, losses.found, tree.copies.files, sources=(path,))
+
+
+def _closure(element: etree._Element, tree: UrdfTree, names: UniqueNames, losses: Losses) -> Closure | None:
+    elements = tree.elements
+    ends = [child for child in element if child.tag in ("link1", "link2")]
+    if len(ends) != 2:
+        raise elements.refuse(
+            element, f"{named(element)} has {len(ends)} elements <link1> and <link2>; it must have two"
+        )
+    links = [body.name for body in tree.mechanism.bodies]
+    a, b = (Anchor(elements.link(end, end.get("link"), links), elements.pose(end)) for end in ends)
+    name = names.new(element.get("name") or f"{a.body}_{b.body}")
+    match element.get("type", "spherical"):
+        case "spherical" | "ball":
+            return PointClosure(name, a, b)
+        case "fixed":
+            return FrameClosure(name, a, b)
+        case "revolute" | "continuous":
+            axis = element.find("axis")
+            xyz = (1.0, 0.0, 0.0) if axis is None else elements.vector(axis, "xyz")
+            return HingeClosure(name, a, b, (xyz, xyz))
+    losses.add("import-loop", name, f"is left out: it has the type '{element.get('type')}'")
+    return None
+
+
+def _frames(tree: UrdfTree, losses: Losses) -> tuple[Frame, ...]:
+    """The frames that Isaac calls fixed."""
+    links = [body.name for body in tree.mechanism.bodies]
+    taken = (*links, *(joint.name for joint in tree.mechanism.joints))
+    names = UniqueNames(losses, *taken, code="import-name")
+    found = []
+    for element in tree.root.iterchildren("fixed_frame"):
+        parent = tree.elements.child(element, "parent")
+        body = tree.elements.link(element, parent.get("link"), links)
+        name = names.new(element.get("name") or f"{body}_frame")
+        found.append(Frame(name, body, tree.elements.pose(element.find("origin"))))
+    return tuple(found)
+
+
+FORMAT = ImportFormat("loop-joint", "URDF with the loop joints of Isaac Sim", read, LOSSES)

@@ -1,0 +1,583 @@
+"""SDFormat, the format of Gazebo.
+
+Facts of SDFormat that the importer relies on (its specification, versions 1.6 to 1.12): the pose of a link is in the
+frame of the model, that of a joint in its child, unless ``relative_to`` names another frame; coordinates of joints are
+zero where the links are placed; an axis is in the frame of the joint, unless ``expressed_in`` or (before 1.7)
+``use_parent_model_frame`` says otherwise; ``screw_thread_pitch`` is in m per revolution, right-handed, and the older
+``thread_pitch`` in rad/m, left-handed; the position of a mimic joint is multiplier · (leader - reference) + offset; a
+link without inertia has 1 kg and 1 kg·m².
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from lxml import etree
+
+from eurdf.importing.elements import Elements, named
+from eurdf.importing.mesh_copies import MeshCopies
+from eurdf.importing.robot_read import ImportFormat, RobotRead
+from eurdf.importing.xml_files import inside, read_root
+from eurdf.loss import Effect, Losses, LossKind
+from eurdf.mechanism.body import Body, Inertia, Shape
+from eurdf.mechanism.constraint import Closure, FrameClosure, HingeClosure, PointClosure
+from eurdf.mechanism.frame import Anchor, Frame
+from eurdf.mechanism.joint import Joint, JointProperties
+from eurdf.mechanism.joint_type import COORDINATES, JointType
+from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, Root
+from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic
+from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
+from eurdf.mechanism.spanning_tree import depth_first
+from eurdf.reading.resource import FileFinder
+from eurdf.writing.names import UniqueNames
+
+#: A limit beyond this is none: 1e16 is the default of SDFormat.
+UNLIMITED = 1e15
+
+_WORLD = "world"
+
+#: Joints that have no equal here.
+_GEARBOX = "gearbox"
+
+_TYPES: Mapping[str, JointType] = {
+    "revolute": JointType.REVOLUTE,
+    "continuous": JointType.CONTINUOUS,
+    "prismatic": JointType.PRISMATIC,
+    "fixed": JointType.FIXED,
+    "ball": JointType.SPHERICAL,
+    "universal": JointType.UNIVERSAL,
+    "revolute2": JointType.UNIVERSAL,
+    "screw": JointType.HELICAL,
+}
+
+#: Elements of a model, a link and a joint that are no part of a description.
+_SIMULATION = ("plugin", "sensor", "light", "particle_emitter", "projector", "audio_source", "gripper", "battery")
+
+LOSSES = (
+    LossKind(
+        "import-name",
+        "name",
+        Effect.EXACT,
+        "is changed: the name is missing, reserved, or used by another element",
+        "give the element a unique name in the file",
+    ),
+    LossKind(
+        "import-loop",
+        "joint",
+        Effect.DROPPED,
+        "closes a loop and is left out: loops are closed by ball, fixed and revolute joints",
+        "let another joint of the loop close it",
+    ),
+    LossKind(
+        "import-loop-properties",
+        "joint",
+        Effect.DROPPED,
+        "closes a loop: its limits, springs and losses are left out",
+        "let another joint of the loop close it",
+    ),
+    LossKind(
+        "import-gearbox",
+        "joint",
+        Effect.DROPPED,
+        "is a gearbox and is left out",
+        "describe it by a coupling of the joints that it relates",
+    ),
+    LossKind(
+        "import-default-inertia",
+        "inertia",
+        Effect.EXACT,
+        "is not stated: the link has the default of SDFormat, 1 kg and 1 kg·m²",
+        "state the inertia",
+    ),
+    LossKind(
+        "import-ball-properties",
+        "joint",
+        Effect.DROPPED,
+        "is a ball joint: the limits, springs and losses of its axis are left out",
+        "state the losses in the description",
+    ),
+    LossKind(
+        "import-mimic",
+        "mimic joint",
+        Effect.DROPPED,
+        "is left out: one of the joints has several axes, or none",
+        "describe the relation by a coupling",
+    ),
+    LossKind(
+        "import-shape",
+        "shape",
+        Effect.DROPPED,
+        "is left out: URDF has no such shape",
+        "replace it by boxes, spheres, capsules, cylinders or a mesh",
+    ),
+    LossKind("import-mesh", "mesh", Effect.DROPPED, "is left out: its file was not found", "correct its uri"),
+    LossKind("import-texture", "texture", Effect.DROPPED, "is left out; the color is kept", "add it to the URDF"),
+    LossKind(
+        "import-simulation",
+        "simulation",
+        Effect.DROPPED,
+        "is no part of a description",
+        "keep it in a file of the simulator",
+    ),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class _SdfJoint:
+    """A joint as written, with what it joins.
+
+    Attributes:
+        element: The element.
+        name: Its name.
+        type: As written.
+        parent: Name of the link, or of the world.
+        child: Likewise.
+        in_child: Pose of the joint in its child.
+    """
+
+    element: etree._Element
+    name: str
+    type: str
+    parent: str
+    child: str
+    in_child: Pose
+
+
+def read(path: Path, within: Path) -> RobotRead:
+    """Read an SDFormat file with one model.
+
+    Raises:
+        CannotImport: It is not such a file, has an error, or its links do not hang together.
+    """
+    inside(path, path.resolve(), within)
+    return replace(_Reader(path, read_root(path), within).read(), sources=(path,))
+
+
+class _Reader:
+    """A file while it is read."""
+
+    def __init__(self, path: Path, root: etree._Element, within: Path) -> None:
+        self.path, self.elements = path, Elements(path)
+        self.losses, self.copies = Losses(LOSSES), MeshCopies()
+        self.finder = FileFinder(path.absolute().parent, (within,))
+        if root.tag != "sdf":
+            raise self.elements.refuse(root, f"the root element is {named(root)}; it must be <sdf>")
+        self.model = self._only_model(root)
+        self.links = {self._name(link): link for link in self.model.iterchildren("link")}
+        if not self.links:
+            raise self.elements.refuse(self.model, "the model has no link")
+        self.joints = {self._name(joint): joint for joint in self.model.iterchildren("joint")}
+        self.frames = {self._name(frame): frame for frame in self.model.iterchildren("frame")}
+        for element in self.model.iterchildren("include", "model"):
+            raise self.elements.refuse(element, f"{named(element)} is another model; merge the models into one first")
+        #: Poses in the model.
+        self.poses: dict[str, Pose] = {}
+        self.names = UniqueNames(self.losses, "universe", ROOT_JOINT, code="import-name")
+
+    def _only_model(self, root: etree._Element) -> etree._Element:
+        models = list(root.iterchildren("model"))
+        models += [model for world in root.iterchildren("world") for model in world.iterchildren("model")]
+        if len(models) != 1:
+            shown = ", ".join(f"'{model.get('name')}'" for model in models[:5]) or "none"
+            raise self.elements.refuse(root, f"the file has {len(models)} models: {shown}; it must have one")
+        return models[0]
+
+    def _name(self, element: etree._Element) -> str:
+        name = element.get("name")
+        if not name:
+            raise self.elements.refuse(element, f"{named(element)} has no name")
+        return name
+
+    # -- frames -----------------------------------------------------------------------------------------------------
+
+    def _pose(self, element: etree._Element, default: str = "") -> tuple[Pose, str]:
+        """The pose of an element, and the frame that it is in."""
+        found = element.find("pose")
+        if found is None or not (found.text or "").strip():
+            return IDENTITY, default if found is None else found.get("relative_to") or default
+        if found.get("rotation_format", "euler_rpy") != "euler_rpy" or found.get("degrees", "false") == "true":
+            raise self.elements.refuse(found, "the pose must have roll, pitch and yaw in radians")
+        x, y, z, roll, pitch, yaw = self.elements.numbers(found, found.text, 6, "the pose")
+        return Pose.from_xyz_rpy((x, y, z), (roll, pitch, yaw)), found.get("relative_to") or default
+
+    def _in_model(self, name: str, element: etree._Element, seen: tuple[str, ...] = ()) -> Pose:
+        """The pose of a link, joint or frame in the model."""
+        if name in ("", "__model__"):
+            return IDENTITY
+        if name in self.poses:
+            return self.poses[name]
+        if name in seen:
+            raise self.elements.refuse(element, f"poses refer to each other in a circle: {' -> '.join((*seen, name))}")
+        if name in self.links:
+            found, base = self._pose(self.links[name])
+        elif name in self.joints:
+            joint = self.joints[name]
+            found, base = self._pose(joint, _text(joint, "child"))
+        elif name in self.frames:
+            frame = self.frames[name]
+            found, base = self._pose(frame, frame.get("attached_to", ""))
+        else:
+            raise self.elements.refuse(element, f"there is no link, joint or frame '{name}'")
+        pose = self.poses[name] = self._in_model(base, element, (*seen, name)) * found
+        return pose
+
+    def _link_of(self, name: str, element: etree._Element, seen: tuple[str, ...] = ()) -> str:
+        """The link that a link, joint or frame is fixed to."""
+        if name in self.links or name == _WORLD:
+            return name
+        if name in seen:
+            raise self.elements.refuse(element, f"frames are attached in a circle: {' -> '.join((*seen, name))}")
+        if name in ("", "__model__"):
+            return self._canonical()
+        if name in self.frames:
+            return self._link_of(self.frames[name].get("attached_to", ""), element, (*seen, name))
+        if name in self.joints:
+            return self._link_of(_text(self.joints[name], "child"), element, (*seen, name))
+        raise self.elements.refuse(element, f"there is no link, joint or frame '{name}'")
+
+    def _canonical(self) -> str:
+        return self.model.get("canonical_link") or next(iter(self.links))
+
+    # -- the tree ---------------------------------------------------------------------------------------------------
+
+    def read(self) -> RobotRead:
+        """Read all parts of the robot."""
+        for name, link in self.links.items():
+            self._in_model(name, link)
+        joints = [self._joint(name, element) for name, element in self.joints.items()]
+        tree, loops = self._spanning_tree([joint for joint in joints if joint.type != _GEARBOX])
+        root_link, root = self._root(tree)
+        bodies = {name: self._body(name, link) for name, link in self.links.items()}
+        placed, _ = self._pose(self.model)
+        base = placed
+        if root_link == _WORLD:
+            bodies[_WORLD] = Body(_WORLD)
+            base = IDENTITY
+        built = [self._tree_joint(joint, placed) for joint in tree if joint.parent in bodies and joint.child in bodies]
+        built = self._with_mimics(built)
+        ordered = depth_first(root_link, built)
+        reached = {root_link, *(joint.child for joint in ordered)}
+        if missing := [name for name in bodies if name not in reached]:
+            shown = ", ".join(f"'{name}'" for name in missing[:5])
+            raise self.elements.refuse(
+                self.model, f"no chain of joints leads from '{root_link}' to the links {shown}; join them as children"
+            )
+        closures = tuple(closure for joint in loops if (closure := self._closure(joint)) is not None)
+        mechanism = Mechanism(
+            self.model.get("name") or self.path.stem,
+            "",
+            root,
+            (bodies[root_link], *(bodies[joint.child] for joint in ordered)),
+            tuple(ordered),
+            self._frames(set(bodies) | {joint.name for joint in ordered}),
+            closures,
+        )
+        self._rest()
+        start: dict[str, tuple[float, ...]] = {}
+        if root == "floating":
+            pose = base * self._in_model(root_link, self.model)
+            start[ROOT_JOINT] = (*pose.xyz, *pose.quaternion)
+        return RobotRead(
+            mechanism, self.losses.found, self.copies.files, ("the pose of the links", MappingProxyType(start))
+        )
+
+    def _joint(self, name: str, element: etree._Element) -> _SdfJoint:
+        kind = element.get("type", "")
+        if kind not in _TYPES and kind != _GEARBOX:
+            raise self.elements.refuse(element, f"joint '{name}' has the type '{kind}', which SDFormat does not have")
+        if kind == _GEARBOX:
+            self.losses.add("import-gearbox", name)
+        parent, child = (self._link_of(_text(element, tag), element) for tag in ("parent", "child"))
+        in_model = self._in_model(name, element)
+        in_child = in_model if child == _WORLD else self._in_model(child, element).inverse() * in_model
+        own = element.find("pose")
+        if own is None and _text(element, "child") == child:
+            in_child = IDENTITY
+        elif own is not None and not own.get("relative_to") and _text(element, "child") == child:
+            in_child, _ = self._pose(element)
+        return _SdfJoint(element, name, kind, parent, child, in_child)
+
+    def _spanning_tree(self, joints: Sequence[_SdfJoint]) -> tuple[list[_SdfJoint], list[_SdfJoint]]:
+        """The joints of the spanning tree, and those that close loops: a link hangs from the first joint that may."""
+        tree: dict[str, _SdfJoint] = {}
+        loops = []
+        for joint in joints:
+            above = {joint.child}
+            at = joint.parent
+            while at in tree and at not in above:
+                above.add(at)
+                at = tree[at].parent
+            is_loop = joint.element.findtext("physics/simbody/must_be_loop_joint", "").strip() in ("true", "1")
+            if is_loop or joint.child in tree or at in above or joint.child == _WORLD:
+                loops.append(joint)
+            else:
+                tree[joint.child] = joint
+        return list(tree.values()), loops
+
+    def _root(self, tree: Sequence[_SdfJoint]) -> tuple[str, Root]:
+        """The root link, and whether it is fixed."""
+        to_world = [joint for joint in tree if joint.parent == _WORLD]
+        hanging = {joint.child for joint in tree}
+        if to_world:
+            (first, *others) = to_world
+            placed, _ = self._pose(self.model)
+            if first.type == "fixed" and not others and placed * self._in_model(first.child, first.element) == IDENTITY:
+                return first.child, "fixed"
+            return _WORLD, "fixed"
+        free = [name for name in self.links if name not in hanging]
+        root = self._canonical() if self._canonical() in free else free[0]
+        static = (self.model.findtext("static") or "").strip() in ("true", "1")
+        return root, "fixed" if static else "floating"
+
+    def _tree_joint(self, joint: _SdfJoint, placed: Pose) -> Joint:
+        parent = IDENTITY if joint.parent == _WORLD else placed * self._in_model(joint.parent, joint.element)
+        child = placed * self._in_model(joint.child, joint.element)
+        kind = _TYPES[joint.type]
+        axes = self._axes(joint, placed)
+        name = self.names.new(joint.name)
+        if kind is JointType.FIXED:
+            return Joint(name, kind, joint.parent, joint.child, parent.inverse() * child)
+        placement = parent.inverse() * child * joint.in_child
+        offset = joint.in_child.inverse() if joint.in_child != IDENTITY else IDENTITY
+        pitch = self._pitch(joint) if kind is JointType.HELICAL else 0.0
+        properties = self._properties(joint, kind)
+        limits = (*properties.lower, *properties.upper)
+        if kind is JointType.REVOLUTE and not any(map(math.isfinite, limits)):
+            kind = JointType.CONTINUOUS
+        return Joint(name, kind, joint.parent, joint.child, placement, offset, axes, pitch, properties)
+
+    def _axes(self, joint: _SdfJoint, placed: Pose) -> tuple[Vector3, ...]:
+        """The axes of a joint, in its frame."""
+        kind = _TYPES[joint.type]
+        tags = {JointType.FIXED: (), JointType.SPHERICAL: (), JointType.UNIVERSAL: ("axis", "axis2")}.get(
+            kind, ("axis",)
+        )
+        found = []
+        for tag in tags:
+            axis = joint.element.find(tag)
+            if axis is None:
+                raise self.elements.refuse(joint.element, f"joint '{joint.name}' has no <{tag}>")
+            xyz = axis.find("xyz")
+            x, y, z = (0.0, 0.0, 1.0)
+            if xyz is not None:
+                x, y, z = self.elements.numbers(xyz, xyz.text, 3, f"<xyz> of <{tag}>")
+            if not any((x, y, z)):
+                raise self.elements.refuse(joint.element, f"an axis of joint '{joint.name}' is zero")
+            frame = None if xyz is None else xyz.get("expressed_in")
+            in_model = (axis.findtext("use_parent_model_frame") or "").strip() in ("true", "1")
+            vector: Vector3 = (x, y, z)
+            if frame or in_model:
+                here = self._in_model(joint.child, joint.element) * joint.in_child
+                there = self._in_model(frame, joint.element) if frame else IDENTITY
+                vector = here.inverse().rotate(there.rotate(vector))
+            found.append(vector)
+        return tuple(found)
+
+    def _pitch(self, joint: _SdfJoint) -> float:
+        stated, older = joint.element.find("screw_thread_pitch"), joint.element.find("thread_pitch")
+        if stated is not None:
+            (pitch,) = self.elements.numbers(stated, stated.text, 1, "the pitch")
+        elif older is not None:
+            (turns,) = self.elements.numbers(older, older.text, 1, "the pitch")
+            pitch = -2.0 * math.pi / turns if turns else 0.0
+        else:
+            pitch = -2.0 * math.pi  # the default of thread_pitch is 1 rad/m
+        if not pitch:
+            raise self.elements.refuse(joint.element, f"the pitch of screw joint '{joint.name}' is 0")
+        return pitch
+
+    def _number(self, element: etree._Element | None, path: str, default: float) -> float:
+        found = None if element is None else element.find(path)
+        if found is None or not (found.text or "").strip():
+            return default
+        text = (found.text or "").strip()
+        if text.lstrip("+-").lower() in ("inf", "infinity"):
+            return -math.inf if text.startswith("-") else math.inf
+        return self.elements.numbers(found, text, 1, f"<{found.tag}>")[0]
+
+    def _properties(self, joint: _SdfJoint, kind: JointType) -> JointProperties:
+        free = JointProperties.unlimited(kind)
+        axes = [joint.element.find(tag) for tag in ("axis", "axis2")[: COORDINATES[kind].nv]]
+        if kind is JointType.SPHERICAL:
+            if any(
+                axis is not None and (axis.find("limit") is not None or axis.find("dynamics") is not None)
+                for axis in axes
+            ):
+                self.losses.add("import-ball-properties", joint.name)
+            return free
+
+        def each(path: str, default: float) -> tuple[float, ...]:
+            return tuple(self._number(axis, path, default) for axis in axes)
+
+        lower = tuple(value if value > -UNLIMITED else -math.inf for value in each("limit/lower", -math.inf))
+        upper = tuple(value if value < UNLIMITED else math.inf for value in each("limit/upper", math.inf))
+        if joint.type == "continuous":
+            lower, upper = (-math.inf,), (math.inf,)
+        for low, high in zip(lower, upper, strict=True):
+            if low > high:
+                raise self.elements.refuse(
+                    joint.element, f"joint '{joint.name}': the lower limit is above the upper one"
+                )
+        found: dict[str, Any] = {"lower": lower, "upper": upper}
+        for name in ("effort", "velocity"):  # a negative one is none
+            values = each(f"limit/{name}", -1.0)
+            found[name] = tuple(value if 0.0 <= value < UNLIMITED else math.inf for value in values)
+        for name in ("damping", "friction"):
+            found[name] = each(f"dynamics/{name}", 0.0)
+        stiffness = each("dynamics/spring_stiffness", 0.0)
+        if any(stiffness):
+            found |= {"stiffness": stiffness, "rest": each("dynamics/spring_reference", 0.0)}
+        return replace(free, **found)
+
+    def _with_mimics(self, joints: Sequence[Joint]) -> list[Joint]:
+        """The joints, each that mimics another with its leader."""
+        types = {joint.name: joint.type for joint in joints}
+        found = []
+        for joint in joints:
+            element = self.joints.get(joint.name)
+            mimics = [] if element is None else list(element.iter("mimic"))
+            for mimic in mimics:
+                leader = mimic.get("joint", "")
+                factor = self._number(mimic, "multiplier", 1.0)
+                offset = self._number(mimic, "offset", 0.0) - factor * self._number(mimic, "reference", 0.0)
+                if types.get(leader) in MIMIC_TYPES and joint.type in MIMIC_TYPES and len(mimics) == 1:
+                    joint = replace(joint, mimic=Mimic(leader, factor, offset))
+                else:
+                    self.losses.add("import-mimic", joint.name)
+            found.append(joint)
+        return found
+
+    # -- closures ---------------------------------------------------------------------------------------------------
+
+    def _closure(self, joint: _SdfJoint) -> Closure | None:
+        """The closure that a joint is whose child hangs from another joint."""
+        kind = _TYPES[joint.type]
+        if _WORLD in (joint.parent, joint.child) or kind not in _CLOSING:
+            self.losses.add("import-loop", joint.name)
+            return None
+        parent, child = (self._in_model(name, joint.element) for name in (joint.parent, joint.child))
+        a = Anchor(joint.parent, parent.inverse() * child * joint.in_child)
+        b = Anchor(joint.child, joint.in_child)
+        has = [path for path in ("axis/limit", "axis/dynamics", "axis/mimic") if joint.element.find(path) is not None]
+        if has:
+            self.losses.add("import-loop-properties", joint.name)
+        name = self.names.new(joint.name)
+        if kind is JointType.SPHERICAL:
+            return PointClosure(name, a, b)
+        if kind is JointType.FIXED:
+            return FrameClosure(name, a, b)
+        (axis,) = self._axes(joint, IDENTITY)
+        return HingeClosure(name, a, b, (axis, axis))
+
+    # -- links ------------------------------------------------------------------------------------------------------
+
+    def _body(self, name: str, link: etree._Element) -> Body:
+        visuals, collisions = (
+            tuple(shape for element in link.iterchildren(use) if (shape := self._shape(element, name)) is not None)
+            for use in ("visual", "collision")
+        )
+        return Body(name, self._inertia(name, link), visuals, collisions)
+
+    def _inertia(self, name: str, link: etree._Element) -> Inertia:
+        inertial = link.find("inertial")
+        if inertial is None:
+            self.losses.add("import-default-inertia", name)
+            return Inertia(1.0, IDENTITY, (1.0, 0.0, 0.0, 1.0, 0.0, 1.0))
+        pose, frame = self._pose(inertial)
+        if frame:
+            pose = self._in_model(name, link).inverse() * self._in_model(frame, link) * pose
+        xx, yy, zz = (self._number(inertial, f"inertia/{key}", 1.0) for key in ("ixx", "iyy", "izz"))
+        xy, xz, yz = (self._number(inertial, f"inertia/{key}", 0.0) for key in ("ixy", "ixz", "iyz"))
+        return Inertia(self._number(inertial, "mass", 1.0), pose, (xx, xy, xz, yy, yz, zz))
+
+    def _shape(self, element: etree._Element, link: str) -> Shape | None:
+        pose, frame = self._pose(element)
+        if frame:
+            pose = self._in_model(link, element).inverse() * self._in_model(frame, element) * pose
+        geometry = element.find("geometry")
+        shapes = [] if geometry is None else [child for child in geometry if isinstance(child.tag, str)]
+        color = self._color(element)
+        shown = f"{element.get('name', element.tag)} of {link}"
+        for shape in shapes:
+            match shape.tag:
+                case "box":
+                    size = self.elements.numbers(shape, shape.findtext("size"), 3, "<size>")
+                    return Shape("box", size, pose, color=color)
+                case "sphere":
+                    return Shape("sphere", (self._number(shape, "radius", 1.0),), pose, color=color)
+                case "cylinder" | "capsule":
+                    size = self._number(shape, "radius", 1.0), self._number(shape, "length", 1.0)
+                    return Shape("cylinder" if shape.tag == "cylinder" else "capsule", size, pose, color=color)
+                case "mesh":
+                    return self._mesh(shape, pose, color)
+            self.losses.add("import-shape", shown, f"is left out: URDF has no shape of type {shape.tag}")
+        return None
+
+    def _mesh(self, mesh: etree._Element, pose: Pose, color: tuple[float, float, float, float] | None) -> Shape | None:
+        uri = (mesh.findtext("uri") or "").strip()
+        found = self.finder.find(uri) if uri else None
+        if found is None or Path(found).suffix.lower() not in MeshCopies.SUFFIXES:
+            self.losses.add("import-mesh", uri)
+            return None
+        scale = (1.0, 1.0, 1.0)
+        if mesh.find("scale") is not None:
+            x, y, z = self.elements.numbers(mesh, mesh.findtext("scale"), 3, "<scale>")
+            scale = x, y, z
+        return Shape("mesh", scale, pose, self.copies.file(Path(found)), color)
+
+    def _color(self, element: etree._Element) -> tuple[float, float, float, float] | None:
+        material = element.find("material")
+        if material is None:
+            return None
+        if material.find("script") is not None or material.find(".//albedo_map") is not None:
+            self.losses.add("import-texture", element.get("name", ""))
+        for tag in ("diffuse", "ambient"):
+            found = material.find(tag)
+            if found is not None:
+                words = (found.text or "").split()
+                text = " ".join([*words, "1"] if len(words) == 3 else words)
+                red, green, blue, alpha = self.elements.numbers(found, text, 4, f"<{tag}>")
+                return red, green, blue, alpha
+        return None
+
+    # -- the rest ---------------------------------------------------------------------------------------------------
+
+    def _frames(self, taken: set[str]) -> tuple[Frame, ...]:
+        found = []
+        for name, element in self.frames.items():
+            link = self._link_of(name, element)
+            pose = self._in_model(link, element).inverse() * self._in_model(name, element)
+            own = element.find("pose")
+            if element.get("attached_to") == link and (own is None or not own.get("relative_to")):
+                pose, _ = self._pose(element)
+            shown = name
+            while shown in taken:
+                shown += "_"
+                self.losses.add("import-name", name, f"becomes '{shown}'")
+            taken.add(shown)
+            found.append(Frame(shown, link, pose))
+        return tuple(found)
+
+    def _rest(self) -> None:
+        counts = {tag: sum(1 for _ in self.model.iter(tag)) for tag in _SIMULATION}
+        shown = [f"{count} {tag}" for tag, count in counts.items() if count]
+        surfaces = sum(1 for _ in self.model.iter("surface"))
+        if surfaces:
+            shown.append(f"{surfaces} contact surfaces")
+        if shown:
+            self.losses.add("import-simulation", self.model.get("name") or "", f"left out: {', '.join(shown)}")
+
+
+_CLOSING = (JointType.SPHERICAL, JointType.FIXED, JointType.REVOLUTE, JointType.CONTINUOUS)
+
+
+def _text(element: etree._Element, tag: str) -> str:
+    return (element.findtext(tag) or "").strip()
+
+
+FORMAT = ImportFormat("sdf", "SDFormat, for Gazebo", read, LOSSES)

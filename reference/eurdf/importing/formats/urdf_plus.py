@@ -1,0 +1,128 @@
+"""URDF+, as generalized_rbda reads it: ``<loop>`` and ``<coupling>`` beside the spanning tree.
+
+The successor of a loop is held at its predecessor. A coupling states that ratio times the sum of the coordinates of the
+joints between the nearest common ancestor and the predecessor is that of the joints to the successor. An older spelling
+of a loop is ``<loop_constraint>`` with ``parent``, ``parent_origin``, ``child`` and ``child_origin``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from lxml import etree
+
+from eurdf.importing.elements import named
+from eurdf.importing.robot_read import ImportFormat, RobotRead
+from eurdf.importing.urdf_tree import URDF_LOSSES, UrdfTree, read_tree
+from eurdf.loss import Effect, Losses, LossKind
+from eurdf.mechanism.constraint import Closure, Coupling, FrameClosure, HingeClosure, PointClosure
+from eurdf.mechanism.frame import Anchor
+from eurdf.mechanism.joint_type import JointType
+from eurdf.writing.names import UniqueNames
+
+LOSSES = (
+    LossKind(
+        "import-name",
+        "name",
+        Effect.EXACT,
+        "is changed: the name is missing, or used by another element",
+        "give the element a unique name in the file",
+    ),
+    LossKind(
+        "import-loop",
+        "loop",
+        Effect.DROPPED,
+        "is left out: loops are closed by spherical, fixed and revolute joints",
+        "let another joint of the loop close it",
+    ),
+    LossKind(
+        "import-independent",
+        "joint",
+        Effect.DROPPED,
+        "which coordinates are independent is left out",
+        "name the actuated joints in the description",
+    ),
+    *URDF_LOSSES,
+)
+
+_SCALAR = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
+
+
+def read(path: Path, within: Path) -> RobotRead:
+    """Read a file of URDF+.
+
+    Raises:
+        CannotImport: It has an error.
+    """
+    losses = Losses(LOSSES)
+    tree = read_tree(path, within, losses, ("loop", "loop_constraint", "coupling"))
+    names = UniqueNames(losses, code="import-name")
+    closures = [
+        closure
+        for element in tree.root.iterchildren("loop", "loop_constraint")
+        if (closure := _closure(element, tree, names, losses))
+    ]
+    couplings = tuple(_coupling(element, tree, names) for element in tree.root.iterchildren("coupling"))
+    for element in tree.root.iterchildren("joint"):
+        if element.get("independent") is not None:
+            losses.add("import-independent", tree.mechanism.name)
+    mechanism = replace(tree.mechanism, closures=tuple(closures), couplings=couplings)
+    return RobotRead(mechanism, losses.found, tree.copies.files, sources=(path,))
+
+
+def _closure(element: etree._Element, tree: UrdfTree, names: UniqueNames, losses: Losses) -> Closure | None:
+    elements = tree.elements
+    links = [body.name for body in tree.mechanism.bodies]
+    ends = []
+    for new, old in (("predecessor", "parent"), ("successor", "child")):
+        end = elements.child(element, new, old)
+        origin = end.find("origin") if end.tag == new else element.find(f"{old}_origin")
+        ends.append(Anchor(elements.link(element, end.get("link"), links), elements.pose(origin)))
+    a, b = ends
+    name = names.new(element.get("name") or f"{a.body}_{b.body}")
+    match element.get("type", "spherical"):
+        case "spherical" | "position":
+            return PointClosure(name, a, b)
+        case "fixed":
+            return FrameClosure(name, a, b)
+        case "revolute" | "continuous":
+            axis = elements.vector(elements.child(element, "axis"), "xyz")
+            return HingeClosure(name, a, b, (axis, axis))
+    losses.add("import-loop", name, f"is left out: it has the type '{element.get('type')}'")
+    return None
+
+
+def _coupling(element: etree._Element, tree: UrdfTree, names: UniqueNames) -> Coupling:
+    elements = tree.elements
+    links = [body.name for body in tree.mechanism.bodies]
+    chains = [
+        _joints_above(elements.link(element, elements.child(element, tag).get("link"), links), tree)
+        for tag in ("predecessor", "successor")
+    ]
+    ratio = elements.attribute(elements.child(element, "ratio"), "value")
+    types = {joint.name: joint.type for joint in tree.mechanism.joints}
+    coefficients: dict[str, float] = {}
+    for chain, other, factor in ((chains[0], chains[1], ratio), (chains[1], chains[0], -1.0)):
+        for joint in chain:
+            if joint in other or types[joint] is JointType.FIXED:
+                continue
+            if types[joint] not in _SCALAR:
+                raise elements.refuse(element, f"{named(element)} couples joint '{joint}', which is {types[joint]}")
+            coefficients[joint] = factor
+    if len(coefficients) < 2 or not ratio:
+        raise elements.refuse(element, f"{named(element)} relates fewer than two joints")
+    return Coupling(names.new(element.get("name") or "_".join(coefficients)), tuple(coefficients.items()))
+
+
+def _joints_above(link: str, tree: UrdfTree) -> list[str]:
+    """The joints between the root and a link."""
+    carrying = {joint.child: joint for joint in tree.mechanism.joints}
+    found: list[str] = []
+    while link in carrying:
+        found.insert(0, carrying[link].name)
+        link = carrying[link].parent
+    return found
+
+
+FORMAT = ImportFormat("urdf-plus", "URDF+, of generalized_rbda", read, LOSSES)

@@ -1,0 +1,205 @@
+"""The spanning tree of a robot in a dialect of URDF, read by the reader of this package."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from lxml import etree
+
+from eurdf.diagnostics import Diagnostics, FileError
+from eurdf.format.urdf.read import read_urdf
+from eurdf.importing.elements import Elements, local
+from eurdf.importing.exceptions import CannotImport
+from eurdf.importing.mesh_copies import MeshCopies
+from eurdf.importing.xml_files import inside, read_root
+from eurdf.linking.description import find_meshes
+from eurdf.linking.link import link
+from eurdf.loss import Effect, Losses, LossKind
+from eurdf.mechanism.body import Shape
+from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint_type import JointType
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.motor import Motor
+from eurdf.reading.source import Source, read_source
+from eurdf.reading.xml_reader import read_xml
+from eurdf.writing.urdf_elements import LARGEST
+
+#: Losses of every dialect.
+URDF_LOSSES = (
+    LossKind(
+        "import-mesh",
+        "mesh",
+        Effect.DROPPED,
+        "its file was not found, or is no mesh file; its name is kept",
+        "put the file beside the URDF, and import again",
+    ),
+    LossKind(
+        "import-texture",
+        "texture",
+        Effect.DROPPED,
+        "its file is not copied; its name is kept",
+        "copy the file",
+    ),
+    LossKind(
+        "import-actuator",
+        "actuator",
+        Effect.DROPPED,
+        "is left out: it names no joint that can be actuated",
+        "name the actuated joint in the description",
+    ),
+    LossKind(
+        "import-element",
+        "element",
+        Effect.DROPPED,
+        "is no part of a description",
+        "keep it in a file of the simulator",
+    ),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class UrdfTree:
+    """What a dialect shares with URDF.
+
+    Attributes:
+        root: The root element, as written.
+        elements: Reads its elements.
+        mechanism: The links and joints, with actuators from ``<transmission>``.
+        copies: The mesh files.
+    """
+
+    root: etree._Element
+    elements: Elements
+    mechanism: Mechanism
+    copies: MeshCopies
+
+
+def read_tree(
+    path: Path,
+    within: Path,
+    losses: Losses,
+    known: tuple[str, ...],
+    plain: Callable[[etree._Element], None] | None = None,
+    change: Callable[[Joint], Joint] | None = None,
+) -> UrdfTree:
+    """Read the links and joints of a file.
+
+    Args:
+        path: The file.
+        within: The folder that it must be in.
+        losses: Where to record losses, of `URDF_LOSSES`.
+        known: Local tags of the elements of the robot that the dialect reads itself.
+        plain: Makes the elements of a copy those of plain URDF.
+        change: Makes each joint of the plain URDF that of the dialect.
+
+    Raises:
+        CannotImport: The file has an error.
+    """
+    inside(path, path.resolve(), within)
+    root = read_root(path)
+    diagnostics = Diagnostics()
+    try:
+        source = read_source(path)
+        if plain is not None:
+            copy = read_root(path)
+            plain(copy)
+            text = etree.tostring(copy, encoding="unicode")
+            source = Source(os.fspath(path), text, text.encode(), path.parent)
+        urdf = read_urdf(read_xml(source), diagnostics)
+    except FileError as error:
+        raise CannotImport(path, error.diagnostic.message) from None
+    mechanism = None if urdf is None else link(urdf, None, diagnostics)
+    if urdf is None or mechanism is None:
+        first = diagnostics.errors[0]
+        where = f"{path.name}:{first.line}: " if first.line and plain is None else ""
+        raise CannotImport(path, where + first.message)
+    copies = MeshCopies()
+    found, _ = find_meshes(urdf)
+
+    def copied(shape: Shape) -> Shape:
+        if shape.texture:
+            losses.add("import-texture", shape.texture)
+        if shape.kind != "mesh":
+            return shape
+        file = found.get(shape.filename)
+        if file is None or Path(file).suffix.lower() not in MeshCopies.SUFFIXES:
+            losses.add("import-mesh", shape.filename)
+            return shape
+        return replace(shape, filename=copies.file(Path(file)))
+
+    bodies = tuple(
+        replace(body, visuals=tuple(map(copied, body.visuals)), collisions=tuple(map(copied, body.collisions)))
+        for body in mechanism.bodies
+    )
+    joints = map(_unlimited, mechanism.joints)
+    mechanism = replace(mechanism, bodies=bodies, joints=tuple(joints if change is None else map(change, joints)))
+    for element in root:
+        if isinstance(element.tag, str) and local(element) not in (*_URDF, *known):
+            losses.add("import-element", local(element))
+    elements = Elements(path)
+    return UrdfTree(root, elements, _actuated(mechanism, root, elements, losses), copies)
+
+
+_URDF = ("link", "joint", "material", "transmission")
+
+
+def _unlimited(joint: Joint) -> Joint:
+    """The joint, with no limit where the file has the largest number."""
+    properties = joint.properties
+    changes = {
+        name: tuple(math.copysign(math.inf, value) if abs(value) >= LARGEST else value for value in values)
+        for name in ("lower", "upper", "velocity", "effort")
+        if (values := getattr(properties, name))
+    }
+    properties = replace(properties, **changes)
+    limits = (*properties.lower, *properties.upper)
+    kind = joint.type
+    if kind is JointType.REVOLUTE and not any(map(math.isfinite, limits)):
+        kind = JointType.CONTINUOUS
+    return replace(joint, type=kind, properties=properties)
+
+
+def _actuated(mechanism: Mechanism, root: etree._Element, elements: Elements, losses: Losses) -> Mechanism:
+    """The mechanism with the actuators that transmissions state."""
+    joints = {joint.name: joint for joint in mechanism.joints}
+    actuators: dict[str, Motor | None] = {}
+    for transmission in root.iterchildren("transmission"):
+        joint, actuator = transmission.find("joint"), transmission.find("actuator")
+        name = "" if joint is None else joint.get("name", "")
+        own = joints.get(name)
+        if own is None or own.type is JointType.FIXED or own.mimic is not None or name in actuators:
+            losses.add("import-actuator", name or transmission.get("name", ""))
+            continue
+        shown = name if actuator is None else actuator.get("name") or name
+        actuators[name] = None if shown == name else Motor(shown)
+        joints[name] = own if actuator is None else _geared(own, actuator, elements)
+    return replace(
+        mechanism,
+        joints=tuple(joints[joint.name] for joint in mechanism.joints),
+        actuators=tuple(actuators),
+        motors={name: motor for name, motor in actuators.items() if motor is not None},
+    )
+
+
+def _geared(joint: Joint, actuator: etree._Element, elements: Elements) -> Joint:
+    """A joint with the gear and the rotor that Drake states of an actuator."""
+    values: Mapping[str, float] = {
+        local(child): elements.attribute(child, "value")
+        for child in actuator
+        if isinstance(child.tag, str) and local(child) in ("gear_ratio", "rotor_inertia")
+    }
+    ratio, rotor = values.get("gear_ratio", 1.0), values.get("rotor_inertia", 0.0)
+    if ratio == 1.0 and not rotor:
+        return joint
+    nv = joint.coordinates.nv
+    own = replace(
+        joint.properties,
+        gear_ratio=(ratio,) * nv,
+        rotor_inertia=(rotor,) * nv,
+        armature=(ratio * ratio * rotor,) * nv,
+    )
+    return replace(joint, properties=own)
