@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.assembly import start
 from eurdf.kinematics.batch.arguments import checked_configurations, shape_of
-from eurdf.kinematics.derived import derived
+from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.equation_of_motion import MASSLESS
 from eurdf.kinematics.finite import finite, overflow_refused
-from eurdf.kinematics.mass_matrix import mass_matrix
 from eurdf.kinematics.rank import FLOOR
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array
@@ -104,14 +103,13 @@ def reflected_inertia(
     chosen = selection(robot, joints)
     by = motors_of(robot, chosen) if motors is None else selection(robot, motors, "motors")
     rotors = _rotors(robot, by, armature)
-    linkage = _linkage(robot, chosen, by)
+    bodies, linkage = _linkage(robot, chosen, by)
     several = shape_of(q)[1:] == (robot.tree.nq,)
     configurations = checked_configurations(robot, "q", q) if several else start(robot, q, "q")[None]
     rows = [_terms(robot, linkage, at_one(robot, chosen, each, by), rotors) for each in configurations]
     terms = np.array(rows).reshape(-1, 4, len(chosen), len(chosen))
     finite("the inertia", terms)
     each = terms.swapaxes(0, 1) if several else terms[0]
-    bodies = linkage_bodies(robot, chosen.joints, by.joints)
     return ReflectedInertia(chosen.names, by.names, bodies, *each)
 
 
@@ -121,13 +119,22 @@ def _terms(robot: Robot, linkage: Robot, at: Transmission, rotors: Vector) -> tu
         raise NoTransmission("G", at.reason or "")
     if at.rank_joints < len(at.joints):
         raise NoTransmission("the inertia of the joints", "they depend on each other; leave out some of them")
-    M, M_linkage = mass_matrix(robot, at.q), mass_matrix(linkage, at.q)
+    M, M_linkage = _mass_matrix(robot, at.q), _mass_matrix(linkage, at.q)
     armature = np.array(robot.model.armature)
     N = _embedding(robot, at, M)
     serial = M - M_linkage - np.diag(armature)
     armature[at.motor_index] = 0.0
     terms = (N.T @ M_linkage @ N, N.T @ serial @ N, (N.T * armature) @ N)
     return tuple(0.5 * (term + term.T) for term in ((at.G.T * rotors) @ at.G, *terms))
+
+
+def _mass_matrix(robot: Robot, q: Vector) -> Matrix:
+    with borrowed(robot, _memory) as memory:
+        return robot.tree.mass_times(q, np.eye(robot.tree.nv), memory)
+
+
+def _memory(robot: Robot) -> Any:
+    return robot.tree.memory()
 
 
 def _embedding(robot: Robot, at: Transmission, M: Matrix) -> Matrix:
@@ -165,12 +172,12 @@ def _rotors(robot: Robot, motors: Selection, armature: Mapping[str, float] | Non
     return np.array(list(found.values()))
 
 
-def _linkage(robot: Robot, joints: Selection, motors: Selection) -> Robot:
-    """The robot with the bodies of the linkage alone, without armature; the others have no mass."""
-    made: dict[tuple[tuple[str, ...], ...], Robot] = derived(robot, _made)
+def _linkage(robot: Robot, joints: Selection, motors: Selection) -> tuple[tuple[str, ...], Robot]:
+    """The bodies of the linkage, and the robot with these alone, without armature; the others have no mass."""
+    made: dict[tuple[tuple[str, ...], ...], tuple[tuple[str, ...], Robot]] = derived(robot, _made)
     key = joints.joints, motors.joints
     if key not in made:
-        bodies = set(linkage_bodies(robot, *key))
+        bodies = linkage_bodies(robot, *key)
         mechanism = replace(
             robot.mechanism,
             bodies=tuple(
@@ -180,10 +187,10 @@ def _linkage(robot: Robot, joints: Selection, motors: Selection) -> Robot:
                 replace(joint, properties=replace(joint.properties, armature=())) for joint in robot.mechanism.joints
             ),
         )
-        made[key] = build_robot(mechanism, geometry=False)
+        made[key] = bodies, build_robot(mechanism, geometry=False)
     return made[key]
 
 
-def _made(robot: Robot) -> dict[tuple[tuple[str, ...], ...], Robot]:
-    """The robots of `_linkage`, as far as they were made."""
+def _made(robot: Robot) -> dict[tuple[tuple[str, ...], ...], tuple[tuple[str, ...], Robot]]:
+    """The linkages of `_linkage`, as far as they were made."""
     return {}

@@ -12,13 +12,20 @@ their joints where they are: the motions are those with S_sᵀ Z = 0. The power 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.batch.problem import Problem
 from eurdf.kinematics.batch.tangent import numerical_ranks, tangents
+from eurdf.kinematics.derived import derived
+from eurdf.kinematics.exceptions import NotClosable
+from eurdf.kinematics.residual import all_openings, residual_and_jacobian
+from eurdf.kinematics.tangent_space import TangentSpaces
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
 
 # Largest row of the residual (m, rad) of a closed configuration (EU-CLO-005).
 CLOSED = 1e-6
@@ -76,34 +83,62 @@ def maps(task: Task, q: Matrix) -> Maps:
     at = model.whole.at(np.ascontiguousarray(q.T))
     closed = (np.abs(model.whole.residual(at)) <= CLOSED).all(axis=0)
     nm, nJ = len(task.motors), len(task.joints)
-    G, B_J, condition = np.full((b, nm, nJ), np.nan), np.full((b, nJ, nm), np.nan), np.full(b, np.nan)
-    ranks = np.full((3, b), -1)
-    held, blocked = np.zeros((b, len(task.springs)), dtype=bool), np.zeros(b, dtype=bool)
-    unit_m, unit_J = model.scale[task.motors], model.scale[task.joints]
-    for which, Z in _motions(task, model.whole.jacobian(at), np.flatnonzero(closed), held, blocked):
-        A, B = Z[:, task.motors], Z[:, task.joints]
-        (A_inverse, rank_m), (B_inverse, rank_J) = pseudoinverse(A), pseudoinverse(B)
-        both = np.linalg.svd(np.concatenate((A, B), axis=1), compute_uv=False)
-        rank = np.maximum(numerical_ranks(both, np.ones(len(both))), np.maximum(rank_m, rank_J))
-        ranks[:, which] = rank, rank_m, rank_J
-        own = rank == rank_J
-        forward = A @ B_inverse
-        G[which[own]] = (unit_m[:, None] * forward / unit_J)[own]
-        full = own & (rank_m == min(nm, nJ))
-        values = np.linalg.svd(forward[full], compute_uv=False)
-        condition[which[full]] = values[:, 0] / values[:, -1]
-        own = rank == rank_m
-        B_J[which[own]] = (unit_J[:, None] * (B @ A_inverse) / unit_m)[own]
-    return Maps(G, B_J, ranks[0], ranks[1], ranks[2], condition, held, blocked)
+    nowhere = np.full(b, -1)
+    found = Maps(
+        G=np.full((b, nm, nJ), np.nan),
+        B_J=np.full((b, nJ, nm), np.nan),
+        rank=nowhere.copy(),
+        rank_motors=nowhere.copy(),
+        rank_joints=nowhere.copy(),
+        condition=np.full(b, np.nan),
+        held=np.zeros((b, len(task.springs)), dtype=bool),
+        blocked=np.zeros(b, dtype=bool),
+    )
+    K = model.whole.jacobian(at)
+    which = np.flatnonzero(closed)
+    for space in tangents(model, K[:, :, which]):
+        own = which[space.which]
+        Z, _ = np.linalg.qr(space.basis / model.scale[:, None])
+        # Springs can hold another number of motions at each configuration.
+        for elements, motions in [(own, Z)] if not len(task.springs) else zip(own[:, None], Z[:, None], strict=True):
+            for whole, part in zip(found, _maps(task, motions)[0], strict=True):
+                whole[elements] = part
+    return found
 
 
-def motions(task: Task, q: Vector) -> Matrix:
-    """Orthonormal motions (nv, m), dimensionless, at one closed configuration (nq,)."""
-    model = task.problem
-    K = model.whole.jacobian(model.whole.at(np.ascontiguousarray(q[:, None])))
-    held, blocked = np.zeros((1, len(task.springs)), dtype=bool), np.zeros(1, dtype=bool)
-    ((_, Z),) = _motions(task, K, np.zeros(1, np.intp), held, blocked)
-    return np.asarray(Z[0])
+def maps_at(robot: Robot, task: Task, q: Vector) -> tuple[Maps, Matrix]:
+    """The maps at one configuration (nq,), and its motions (nv, m), orthonormal and dimensionless.
+
+    Raises:
+        NotClosable: The loops are open there.
+    """
+    r, K = residual_and_jacobian(robot, q)
+    if not (np.abs(r) <= CLOSED).all():
+        raise NotClosable("q does not close the loops; call eurdf.assemble first", all_openings(robot, q), q)
+    spaces = derived(robot, TangentSpaces)
+    found, motions = _maps(task, (spaces.at(K).free / spaces.scale[:, None])[None])
+    return found, motions[0]
+
+
+def _maps(task: Task, Z: Matrix) -> tuple[Maps, Matrix]:
+    """The maps of orthonormal motions (c, nv, m), and these without what springs hold; with springs, c is 1."""
+    c, scale = len(Z), task.problem.scale
+    held, blocked = np.zeros((c, len(task.springs)), dtype=bool), np.zeros(c, dtype=bool)
+    if len(task.springs):
+        rigid, held[0], blocked[0] = _with_springs_held(task, Z[0])
+        Z = rigid[None]
+    A, B = Z[:, task.motors], Z[:, task.joints]
+    (A_inverse, rank_m), (B_inverse, rank_J) = pseudoinverse(A), pseudoinverse(B)
+    both = np.linalg.svd(np.concatenate((A, B), axis=1), compute_uv=False)
+    rank = np.maximum(numerical_ranks(both, np.ones(c)), np.maximum(rank_m, rank_J))
+    forward = A @ B_inverse
+    condition, full = np.full(c, np.nan), (rank == rank_J) & (rank_m == min(len(task.motors), len(task.joints)))
+    values = np.linalg.svd(forward[full], compute_uv=False)
+    condition[full] = values[:, 0] / values[:, -1]
+    unit_m, unit_J = scale[task.motors], scale[task.joints]
+    G = np.where((rank == rank_J)[:, None, None], unit_m[:, None] * forward / unit_J, np.nan)
+    B_J = np.where((rank == rank_m)[:, None, None], unit_J[:, None] * (B @ A_inverse) / unit_m, np.nan)
+    return Maps(G, B_J, rank, rank_m, rank_J, condition, held, blocked), Z
 
 
 def pseudoinverse(A: Matrix) -> tuple[Matrix, Indices]:
@@ -113,21 +148,6 @@ def pseudoinverse(A: Matrix) -> tuple[Matrix, Indices]:
     counts = np.arange(values.shape[1]) < ranks[:, None]
     inverse = np.divide(1.0, values, out=np.zeros_like(values), where=counts)
     return np.swapaxes(left * inverse[:, None, :] @ right, 1, 2), ranks
-
-
-def _motions(task: Task, K: Matrix, which: Indices, held: Mask, blocked: Mask) -> list[tuple[Indices, Matrix]]:
-    """Orthonormal motions (c, nv, m), dimensionless, of the configurations, for K (nc, nv, b); with springs, held."""
-    found = []
-    for space in tangents(task.problem, K[:, :, which]):
-        own = which[space.which]
-        Z, _ = np.linalg.qr(space.basis / task.problem.scale[:, None])
-        if not len(task.springs):
-            found.append((own, Z))
-            continue
-        for element, basis in zip(own.tolist(), Z, strict=True):
-            rigid, held[element], blocked[element] = _with_springs_held(task, basis)
-            found.append((np.array([element]), rigid[None]))
-    return found
 
 
 def _with_springs_held(task: Task, Z: Matrix) -> tuple[Matrix, Mask, bool]:

@@ -11,7 +11,7 @@ from eurdf.kinematics.assembly import Assembler, start
 from eurdf.kinematics.batch.problem import problem
 from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.loop import find_loops, independent_groups, joints_of_loops
-from eurdf.transmissions.maps import MOVES, Task, motions, pseudoinverse
+from eurdf.transmissions.maps import MOVES, Task, maps_at, pseudoinverse
 from eurdf.transmissions.selection import Selection, selection
 
 if TYPE_CHECKING:
@@ -95,20 +95,23 @@ def driven_loops(robot: Robot) -> list[tuple[set[int], set[int]]]:
 
 
 def _moved(robot: Robot, velocities: Indices) -> Mask:
-    """Which actuated velocities (nu,) move these velocities at some configurations."""
+    """Which actuated velocities (nu,) move these velocities at some configurations; all if the loops do not close."""
     model, actuated = problem(robot), robot.actuation.idx_v
     task = Task(model, actuated, velocities, actuated, springs_of(robot))
     random = np.random.default_rng(0)
     found = np.zeros(len(actuated), dtype=bool)
     with borrowed(robot, Assembler) as assembler:
         assembler.tolerance, assembler.limits = 1e-10, None
-        q = assembler.assemble(start(robot)).q
+        assembly = assembler.assemble(start(robot))
+        if not assembly.closes:
+            return ~found
+        q = assembly.q
         for _ in range(_TESTS):
-            Q = motions(task, q)
+            _, Q = maps_at(robot, task, q)
             step = Q @ random.uniform(-1.0, 1.0, Q.shape[1])
             step *= _FAR / max(np.abs(step).max(initial=0.0), _FAR)
             near = assembler.closed(robot.tree.integrate(q, model.scale * step))
-            Q = motions(task, q if near is None else near)
+            _, Q = maps_at(robot, task, q if near is None else near)
             inverse, _ = pseudoinverse(Q[None, actuated])
             found |= (np.abs(Q[velocities] @ inverse[0]) > MOVES).any(axis=0)
     return found

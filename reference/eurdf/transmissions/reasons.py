@@ -33,6 +33,10 @@ class Reasons:
     missing: tuple[str, ...]
 
 
+#: Where both maps exist.
+BOTH_EXIST = Reasons(None, None, (), ())
+
+
 def reasons(robot: Robot, motors: Selection, joints: Selection, Q: Matrix, ranks: tuple[int, int, int]) -> Reasons:
     """Why maps do not exist.
 

@@ -15,15 +15,13 @@ from eurdf.kinematics.assembly import start
 from eurdf.kinematics.batch.arguments import checked_configurations, shape_of
 from eurdf.kinematics.batch.blocks import blocks
 from eurdf.kinematics.batch.problem import problem
-from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.finite import overflow_refused
-from eurdf.kinematics.residual import all_openings
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.transmissions.curvature import second_derivative
 from eurdf.transmissions.exceptions import DependentVelocities, NoTransmission
-from eurdf.transmissions.maps import Maps, Task, maps, motions, pseudoinverse
+from eurdf.transmissions.maps import Maps, Task, maps, maps_at, pseudoinverse
 from eurdf.transmissions.motors import motors_of, springs_of
-from eurdf.transmissions.reasons import reasons
+from eurdf.transmissions.reasons import BOTH_EXIST, reasons
 from eurdf.transmissions.selection import Selection, selection
 
 if TYPE_CHECKING:
@@ -311,16 +309,12 @@ def transmission(
 def at_one(robot: Robot, joints: Selection, q: Vector, motors: Selection) -> Transmission:
     """The transmission at one closed configuration (nq,); see `transmission`."""
     task = _task(robot, motors, joints)
-    at = maps(task, q[None])
-    code, _ = _codes(at, len(joints), len(motors))
-    if code[0] == "loops open":
-        raise NotClosable("q does not close the loops; call eurdf.assemble first", all_openings(robot, q), q)
+    at, Q = maps_at(robot, task, q)
     held = _names(robot, task.springs[at.held[0]])
-    if code[0] == "springs block":
+    if at.blocked[0]:
         raise ValueError(f"the springs of {', '.join(held)} cannot all be held while the motors move")
-    Q = motions(task, q)
     ranks = int(at.rank[0]), int(at.rank_motors[0]), int(at.rank_joints[0])
-    why = reasons(robot, motors, joints, Q, ranks)
+    why = BOTH_EXIST if ranks[0] == ranks[1] == ranks[2] else reasons(robot, motors, joints, Q, ranks)
     return Transmission(
         robot,
         q,
