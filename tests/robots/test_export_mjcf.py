@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -162,6 +163,30 @@ LINKS = "".join(
 def test_soft_relations_hold_in_simulation(mimic: str, description: str) -> None:
     urdf, text = HANGING.format(LINKS, mimic), f'extended_urdf: "2.1"\n{description}\n'
     assert_stays_closed_and_moves(InMuJoCo(eurdf.load(text, urdf=urdf), eurdf.export(text, "mjcf", urdf=urdf)))
+
+
+def test_closure_gives_way_as_the_hint_on_compliance_says() -> None:
+    mass, compliance = 1.5, 1e-4
+    urdf = robot_element(
+        link_element("base"),
+        link_element("weight", inertial(mass)),
+        joint_element("lift", "prismatic", "base", "weight", '<axis xyz="0 0 1"/>' + LIMIT),
+    )
+    description = (
+        'extended_urdf: "2.1"\n'
+        f"closures: [{{name: pin, type: 3d, frames: [base, weight], compliance: {{linear: {compliance}}}}}]\n"
+    )
+    export = eurdf.export(description, "mjcf", urdf=urdf)
+    (loss,) = (loss for loss in export.losses if loss.code == "export-compliance")
+    assert loss.message == "0.0001 m/N is left out"
+    factor = float(re.search(r"s = (\S+) · w / compliance", loss.hint)[1])
+    model = mujoco.MjModel.from_xml_string(export.main.decode())
+    data = mujoco.MjData(model)
+    s = factor * model.body_invweight0[:, 0].sum() / compliance
+    model.eq_solref[0] = -s, -2.0 * np.sqrt(s)
+    for _ in range(30000):
+        mujoco.mj_step(model, data)
+    assert data.qpos[0] == pytest.approx(-mass * 9.81 * compliance, rel=1e-2)
 
 
 def test_hinge_holds_in_simulation() -> None:

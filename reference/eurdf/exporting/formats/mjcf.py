@@ -129,8 +129,9 @@ LOSSES = (
         "export-compliance",
         "compliance",
         Effect.DROPPED,
-        "is left out: MuJoCo states the softness of an equality as a time constant",
-        "set solref and solimp of the equality by hand",
+        "is left out: MuJoCo relates the softness of an equality to the inertia that it holds",
+        f"set solref of the equality to '-s -2√s', s = {1.0 - SOLIMP[1]:.0e} · w / compliance, where w is the sum of "
+        "model.body_invweight0[:, 0] of the two bodies",
     ),
     LossKind(
         "export-velocity-limit",
@@ -569,8 +570,10 @@ class _Writer:
     # -- constraints ------------------------------------------------------------------------------------------------
 
     def _closure(self, closure: Closure, tendon: etree._Element, equality: etree._Element) -> None:
-        if closure.compliance.linear or closure.compliance.angular:
-            self.losses.add("export-compliance", closure.name)
+        linear, angular = closure.compliance.linear, closure.compliance.angular
+        if linear or angular:
+            values = f"{linear:g} m/N" + (f", {angular:g} rad/(N·m)" if angular else "")
+            self.losses.add("export-compliance", closure.name, f"{values} is left out")
         name = self.equalities.new(closure.name)
         ends = closure.a, closure.b
 
