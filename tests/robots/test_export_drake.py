@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import eurdf
 from eurdf.pinocchio.robot import Robot
 from support.drake_witness import InDrake
-from support.exported import random_robot, without_armature
+from support.exported import hanging, random_robot, without_armature
 from support.plain_urdf import inertial, joint_element, link_element
 from support.plain_urdf import robot as robot_element
 
@@ -152,18 +152,45 @@ def test_missing_distance_is_a_loss_with_its_points() -> None:
     assert str(closure.length) in loss.message
 
 
-@pytest.mark.parametrize("name", ["four_bar", "delta", "digit_leg"])
-def test_loops_stay_closed_in_drake(name: str) -> None:
+def assert_stays_closed_and_moves(robot: Robot, export: eurdf.Export, q: Any) -> None:
+    """One second of simulation, in which mimic joints follow, too."""
     from pydrake.systems.analysis import Simulator
 
-    robot = eurdf.load(name, geometry=False)
-    there = InDrake(robot, eurdf.export(name, "drake"))
+    there, map_ = InDrake(robot, export), export.coordinates
     simulator = Simulator(there.plant)
     context = there.plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
-    there.plant.SetPositions(context, there.coordinates.to_q(robot.configurations["assembled"]))
-    opening = 0.0
+    start = map_.to_q(q)
+    there.plant.SetPositions(context, start)
+    opening = moved = 0.0
     for time in np.linspace(0.02, 1.0, 50):
         simulator.AdvanceTo(time)
-        q = there.coordinates.from_q(there.plant.GetPositions(context))
-        opening = max(opening, np.abs(eurdf.residual(robot, q)).max())
+        positions = there.plant.GetPositions(context)
+        q = map_.from_q(positions)
+        followers = 2.0 * np.sin((map_.to_q(q) - positions) / 2.0)  # less full turns
+        opening = max([opening, *np.abs(eurdf.residual(robot, q)), *np.abs(followers)])
+        moved = max(moved, np.abs(positions - start).max())
     assert opening < 1e-3
+    assert moved > 1e-3
+
+
+@pytest.mark.parametrize(
+    ("name", "closures"), [("four_bar", "stated"), ("four_bar", "hinge"), ("delta", "stated"), ("digit_leg", "stated")]
+)
+def test_loops_stay_closed_in_drake(name: str, closures: Any) -> None:
+    robot = eurdf.load(name, geometry=False)
+    export = eurdf.export(name, "drake", closures=closures)
+    assert_stays_closed_and_moves(robot, export, robot.configurations["assembled"])
+
+
+@pytest.mark.parametrize(
+    ("mimic", "description"),
+    [
+        ('<mimic joint="j" multiplier="0.5" offset="0.1"/>', "root: fixed"),
+        ("", "couplings: [{name: gear, joints: {j: 1, k: -2}, offset: 0.2}]"),
+    ],
+    ids=["mimic", "coupling"],
+)
+def test_relations_of_joints_hold_in_drake(mimic: str, description: str) -> None:
+    urdf, text = hanging(mimic), f'extended_urdf: "2.1"\n{description}\n'
+    robot = eurdf.load(text, urdf=urdf)
+    assert_stays_closed_and_moves(robot, eurdf.export(text, "drake", urdf=urdf), eurdf.assemble(robot).q)

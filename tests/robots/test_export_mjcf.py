@@ -21,7 +21,7 @@ from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.pose import Pose
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand
-from support.exported import InMuJoCo, random_robot
+from support.exported import InMuJoCo, hanging, random_robot
 from support.plain_urdf import inertial, joint_element, link_element
 from support.plain_urdf import robot as robot_element
 from support.stl import TETRAHEDRON
@@ -131,21 +131,6 @@ def test_loops_stay_closed_in_simulation(name: str) -> None:
     assert not any(warning.number for warning in there.data.warning)
 
 
-HANGING = """<robot name="hanging"><link name="base"/>
-{}
-<joint name="j" type="revolute"><parent link="base"/><child link="a"/><axis xyz="0 1 0"/>
-<limit lower="-9" upper="9" effort="9" velocity="9"/></joint>
-<joint name="k" type="revolute"><parent link="base"/><child link="b"/><origin xyz="0.3 0 0"/><axis xyz="0 1 0"/>
-<limit lower="-9" upper="9" effort="9" velocity="9"/>{}</joint>
-<joint name="screw" type="revolute"><parent link="base"/><child link="c"/><axis xyz="0 0 1"/>
-<limit lower="-9" upper="9" effort="9" velocity="9"/></joint></robot>"""
-LINKS = "".join(
-    f'<link name="{name}"><inertial><origin xyz="0.1 0 -0.3"/><mass value="1"/>'
-    '<inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial></link>'
-    for name in "abc"
-)
-
-
 @pytest.mark.parametrize(
     ("mimic", "description"),
     [
@@ -161,7 +146,7 @@ LINKS = "".join(
     ids=["helical", "mimic", "coupling", "distance"],
 )
 def test_soft_relations_hold_in_simulation(mimic: str, description: str) -> None:
-    urdf, text = HANGING.format(LINKS, mimic), f'extended_urdf: "2.1"\n{description}\n'
+    urdf, text = hanging(mimic), f'extended_urdf: "2.1"\n{description}\n'
     assert_stays_closed_and_moves(InMuJoCo(eurdf.load(text, urdf=urdf), eurdf.export(text, "mjcf", urdf=urdf)))
 
 

@@ -58,6 +58,26 @@ def random_robot(seed: int, root: Root = "fixed", **options: Any) -> tuple[Robot
     return build_robot(mechanism, geometry=False), q
 
 
+_HANGING = """<robot name="hanging"><link name="base"/>
+{}
+<joint name="j" type="revolute"><parent link="base"/><child link="a"/><axis xyz="0 1 0"/>
+<limit lower="-9" upper="9" effort="9" velocity="9"/></joint>
+<joint name="k" type="revolute"><parent link="base"/><child link="b"/><origin xyz="0.3 0 0"/><axis xyz="0 1 0"/>
+<limit lower="-9" upper="9" effort="9" velocity="9"/>{}</joint>
+<joint name="screw" type="revolute"><parent link="base"/><child link="c"/><axis xyz="0 0 1"/>
+<limit lower="-9" upper="9" effort="9" velocity="9"/></joint></robot>"""
+_LINKS = "".join(
+    f'<link name="{name}"><inertial><origin xyz="0.1 0 -0.3"/><mass value="1"/>'
+    '<inertia ixx="0.02" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+    for name in "abc"
+)
+
+
+def hanging(mimic: str = "") -> str:
+    """A URDF of two pendulums, j and k, and a joint called screw about the vertical; ``mimic`` is an element of k."""
+    return _HANGING.format(_LINKS, mimic)
+
+
 def without_armature(robot: Robot) -> Robot:
     """The robot without armatures and rotors, which some formats do not have."""
     joints = tuple(
