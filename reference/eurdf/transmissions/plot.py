@@ -133,6 +133,7 @@ def _maps(figure: Any, found: Workspace, armature: Mapping[str, float] | None) -
             bar.ax.tick_params(labelsize=5.5, width=0.4)
             axis.set_title(field.title)
             _draw_outlines(axis, found, colors)
+            axis.use_sticky_edges = False  # else the filled contours hide half of the outline
             axis.margins(0.04)
             if row == len(fields) - 1:
                 axis.set_xlabel(f"{found.joints[0]} [{units[0]}]")
