@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -11,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 import eurdf
-from robots.picture import VIEWS, Image, picture, save
+from eurdf.viewing.picture import VIEWS, Image, picture, save_picture
 
 _COLUMNS = 7
 _CELL = 170, 190  # width and height of a robot and its name, pixels
@@ -41,14 +40,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     default = Path(__file__).parent / "collection.png"
     parser.add_argument("-o", "--output", type=Path, metavar="FILE", default=default, help="default: collection.png")
     options = parser.parse_args(arguments)
-    if not os.environ.get("DISPLAY"):
-        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
     try:
-        import pyvista  # noqa: F401
-    except ImportError as missing:
-        print(f'{missing}: pictures need pyvista; pip install -e ".[pictures]"', file=sys.stderr)
+        save_picture(sheet(eurdf.collection_names()), options.output)
+    except eurdf.MissingExtra as missing:
+        print(missing, file=sys.stderr)
         return 2
-    save(sheet(eurdf.collection_names()), options.output)
     return 0
 
 

@@ -13,7 +13,7 @@ from eurdf.commands.main import COMMANDS, main
 NAMES = [command.__name__.rpartition(".")[2].removesuffix("_robot") for command in COMMANDS]
 
 #: The commands that link a robot, and those that read a URDF alone.
-OF_ROBOTS = ("check", "info", "view", "assemble", "export", "transmission", "serial", "migrate")
+OF_ROBOTS = ("check", "info", "view", "picture", "assemble", "export", "transmission", "serial", "migrate")
 OF_URDFS = ("generate", "schema")
 
 

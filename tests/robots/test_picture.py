@@ -11,30 +11,73 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
 import eurdf
-from robots import picture, sheet
+from eurdf.commands.main import main
+from eurdf.viewing.picture import picture
+from robots import picture as pictures
+from robots import sheet
 
 ROOT = Path(__file__).parents[2]
 
 
 def test_missing_renderer_says_what_to_install(monkeypatch, capsys, tmp_path):
     monkeypatch.setitem(sys.modules, "pyvista", None)
-    assert picture.main(["four_bar", "-o", str(tmp_path / "picture.png")]) == 2
-    assert 'pip install -e ".[pictures]"' in capsys.readouterr().err
+    assert pictures.main(["four_bar"]) == 2
+    assert sheet.main(["-o", str(tmp_path / "sheet.png")]) == 2
+    assert main(["picture", "four_bar", "-o", str(tmp_path / "picture.png")]) == 2
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 3
+    assert all("pictures need pyvista; install it with: " in line and "[pictures]" in line for line in lines)
 
 
-def test_undrawable_robot_is_reported(monkeypatch, capsys, tmp_path):
+def test_undrawable_robot_is_reported(capsys, tmp_path):
     pytest.importorskip("pyvista", reason="pyvista is not installed: pip install -e '.[pictures]'")
-    assert picture.main(["no_such_robot"]) == 1
+    assert pictures.main(["no_such_robot"]) == 1
     (tmp_path / "robot.urdf").write_text('<robot name="bare"><link name="base"/></robot>')
-    assert picture.main([str(tmp_path)]) == 1
+    assert main(["picture", str(tmp_path), "-o", str(tmp_path / "picture.png")]) == 2
     no_such, bare = capsys.readouterr().err.splitlines()
-    assert no_such.startswith("no_such_robot: there is no")
-    assert bare == f"{tmp_path}: it has no visual shapes"
+    assert no_such.startswith("no_such_robot: it is not in the collection")
+    assert bare.startswith(f"eurdf: '{tmp_path}': there is nothing to draw")
+
+
+@pytest.mark.slow
+def test_command_draws_a_configuration_with_its_loops(capsys, tmp_path):
+    pytest.importorskip("pyvista", reason="pyvista is not installed: pip install -e '.[pictures]'")
+    from PIL import Image
+
+    folder = Path(__file__).parents[2] / "robots/four_bar"
+    yaml = (folder / "robot.yaml").read_text()
+    (tmp_path / "robot.yaml").write_text(yaml.replace("assembled: {}", "assembled: {}\n  apart: {motor_crank: 0.7}"))
+    (tmp_path / "robot.urdf").write_text((folder / "robot.urdf").read_text())
+    drawn = {}
+    for name, options in {
+        "assembled": [],
+        "loops": ["--loops"],
+        "apart": ["--loops", "--configuration", "apart"],
+        "neutral": ["--configuration", "neutral"],
+    }.items():
+        file = tmp_path / f"{name}.png"
+        assert main(["picture", str(tmp_path), "-o", str(file), *options]) == 0
+        drawn[name] = np.asarray(Image.open(file).convert("RGB")).astype(int)
+    red = {name: ((pixels[..., 0] - pixels[..., 1:].max(axis=2)) > 120).sum() for name, pixels in drawn.items()}
+    assert red["apart"] > 100  # the line across the open closure
+    assert red["loops"] < 20
+    assert (drawn["assembled"] != 255).any()
+    assert drawn["assembled"].shape == drawn["neutral"].shape  # the assembled configuration is the neutral one
+    assert main(["picture", str(tmp_path), "-o", str(file)]) == 2
+    assert "already exists; --force replaces it" in capsys.readouterr().err
+    assert main(["picture", str(tmp_path), "-o", str(file), "--force", "--configuration", "aparr"]) == 2
+    assert "there is no configuration 'aparr'; did you mean 'apart'?" in capsys.readouterr().err
+
+
+def test_robot_without_shapes_is_drawn_as_lines(tmp_path):
+    pytest.importorskip("pyvista", reason="pyvista is not installed: pip install -e '.[pictures]'")
+    image = picture(eurdf.load("four_bar", geometry=False))
+    assert ((image < 200).any(axis=2)).sum() > 200
 
 
 def test_views_fill_picture_within_margin():
     pytest.importorskip("pyvista", reason="pyvista is not installed: pip install -e '.[pictures]'")
-    image = picture.picture(eurdf.load("four_bar"))
+    image = picture(eurdf.load("four_bar"))
     height, width, _ = image.shape
     assert abs(width - 780) <= 3
     assert height <= 860
@@ -58,9 +101,3 @@ def test_sheet_shows_each_robot_with_name():
     assert (two[:, :width] == one[:, :width]).all()
     for part in (two[: height - 22, width : 2 * width], two[height - 22 :, width : 2 * width]):
         assert (part < 128).any()
-
-
-def test_sheet_without_renderer_says_what_to_install(monkeypatch, capsys, tmp_path):
-    monkeypatch.setitem(sys.modules, "pyvista", None)
-    assert sheet.main(["-o", str(tmp_path / "sheet.png")]) == 2
-    assert 'pip install -e ".[pictures]"' in capsys.readouterr().err

@@ -101,6 +101,17 @@ class Figure:
         self._add_lines(f"{root}/axes", "joint axes", len(scene.axes), colors, 3.0, scene.axis_lines)
         colors = [color for _ in scene.links for color in (_CLOSURE, _OPEN, _CLOSURE)]
         self._add_lines(f"{root}/closures", "closures", len(colors), colors, 2.0, self._closure_lines)
+        self._dots: Any = None
+        if scene.links:
+            self._dots = self._api.add_point_cloud(
+                f"{root}/closure_frames",
+                np.zeros((2 * len(scene.links), 3)),
+                colors=_CLOSURE,
+                point_size=0.012 * scene.size,
+                point_shape="circle",
+                precision="float32",
+            )
+            self._add("closures", self._dots)
         self._labels = [
             self._api.add_label(f"{root}/closure{number}", link.name) for number, link in enumerate(scene.links)
         ]
@@ -180,6 +191,8 @@ class Figure:
         for layer, (node, at) in self._lines.items():
             if self.shown[layer]:
                 node.points = at(placed)
+        if self._dots is not None and self.shown["closures"]:
+            self._dots.points = self.scene.closure_lines(placed)[:, 1].reshape(-1, 3)
         if self.shown["link frames"]:
             self._axes.batched_positions = np.array([pose.translation for pose in placed.poses])
             self._axes.batched_wxyzs = np.array([_wxyz(pose) for pose in placed.poses])

@@ -37,7 +37,8 @@ class PlayTab:
 
     def refresh(self) -> None:
         """Bring the button to whether something plays."""
-        self._pause.label = "pause" if self._page.worker.is_playing else "continue"
+        playing = self._page.worker.is_playing
+        self._pause.label = "pause" if playing or self._frames is None else "continue"
         self._pause.disabled = self._frames is None
 
     def play(self, trajectory: Trajectory) -> None:

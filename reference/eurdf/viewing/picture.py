@@ -1,0 +1,236 @@
+"""Still pictures of a robot, rendered without a window by VTK (pyvista, extra ``pictures``; it needs OpenGL or EGL)."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pinocchio as pin
+
+from eurdf.diagnostics.extras import install_command
+from eurdf.exceptions import MissingExtra
+from eurdf.kinematics.array import Vector
+from eurdf.pinocchio.robot import Robot
+from eurdf.viewing.scene import Scene
+from eurdf.viewing.session import ASSEMBLED
+from eurdf.viewing.surface import Surface
+
+Points = npt.NDArray[np.float64]
+Image = npt.NDArray[np.uint8]
+#: Red, green, blue, alpha from 0 to 1.
+Color = tuple[float, ...]
+
+_MOST_WIDTH, _MOST_HEIGHT = 780, 860  # of the picture, pixels
+_MARGIN = 12  # around each view, pixels
+_OVERSAMPLING = 2  # pixels drawn for one of the picture, along each side: VTK smooths edges, and this does the rest
+_COLORS = 255  # of the picture: enough for primitives, and it keeps the file small
+
+_LINE = 2.5  # width of a line, pixels
+_DOT = 12  # diameter of a dot, pixels
+_TRANSLUCENT = 0.3  # opacity of shapes behind which closures are shown
+_SKELETON: Color = (0.35, 0.35, 0.35)
+_CLOSURE: Color = (0.55, 0.2, 0.8)
+_OPEN: Color = (0.9, 0.1, 0.1)
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """A view without perspective.
+
+    Attributes:
+        toward_camera: From the robot to the camera, in the world; any length.
+    """
+
+    toward_camera: tuple[float, float, float]
+
+    @property
+    def axes(self) -> Points:
+        """Unit vectors to the right, up and toward the camera, in the world, as rows (3, 3)."""
+        toward = np.array(self.toward_camera) / np.linalg.norm(self.toward_camera)
+        right = np.cross((0.0, 0.0, 1.0), toward)
+        right /= np.linalg.norm(right)
+        return np.array((right, np.cross(toward, right), toward))
+
+
+#: From the right, from the front right above, from behind.
+VIEWS = (View((0.0, -1.0, 0.0)), View((1.0, -0.75, 0.45)), View((-1.0, 0.3, 0.25)))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Drawn:
+    """What a picture shows, in the world, m.
+
+    Attributes:
+        solids: Surfaces and their colours.
+        lines: Lines (n, 2, 3) and their colours.
+        dots: Points (n, 3) that are marked: the frames of the closures.
+        points: All points (n, 3) that the picture has to contain.
+    """
+
+    solids: list[tuple[Surface, Color]]
+    lines: list[tuple[Points, Color]]
+    dots: Points
+    points: Points
+
+
+def picture(robot: Robot, views: Sequence[View] = VIEWS, *, q: Vector | None = None, loops: bool = False) -> Image:
+    """Views of a robot side by side, all at one scale, on white.
+
+    It shows the visual shapes, or lines from link to link if there are none.
+
+    Args:
+        robot: The robot, with its visual geometry.
+        views: From where it is seen.
+        q: Its configuration (nq,); by default ``assembled``, or the neutral one.
+        loops: Whether to show the closures: dots at their frames, lines to them from the origins of their links, and,
+            if a closure is open, a red line between its frames. The shapes are then translucent.
+
+    Returns:
+        Pixels (height, width, 3).
+
+    Raises:
+        MissingExtra: The extra ``pictures`` is not installed.
+        InvalidRobot: A mesh is missing.
+        ValueError: There is nothing to draw.
+    """
+    _renderer()
+    drawn = _drawn(robot, q, loops)
+    boxes = []
+    for view in views:
+        seen = drawn.points @ view.axes.T
+        boxes.append((seen.min(axis=0), seen.max(axis=0)))
+    sizes = [(high - low)[:2] for low, high in boxes]
+    width, height = sum(size[0] for size in sizes), max(size[1] for size in sizes)
+    scale = min(
+        (_MOST_WIDTH - 2 * _MARGIN * len(views)) / max(width, 1e-3 * height),
+        (_MOST_HEIGHT - 2 * _MARGIN) / max(height, 1e-3 * width),
+    )
+    rows = round(scale * height) + 2 * _MARGIN
+    images = []
+    for view, (low, high), size in zip(views, boxes, sizes, strict=True):
+        pixels = round(scale * size[0]) + 2 * _MARGIN, rows
+        images.append(_seen(drawn, view, (low + high) / 2.0, pixels, scale))
+    return np.concatenate(images, axis=1)
+
+
+def save_picture(image: Image, file: str | os.PathLike[str]) -> None:
+    """Write pixels (height, width, 3) to a PNG file; an existing one is replaced.
+
+    Raises:
+        OSError: It cannot be written.
+    """
+    from PIL import Image as Pillow
+
+    palette = Pillow.fromarray(image).quantize(_COLORS, kmeans=1, dither=Pillow.Dither.NONE)
+    palette.save(file, format="PNG", optimize=True)
+
+
+def _drawn(robot: Robot, q: Vector | None, loops: bool) -> _Drawn:
+    """What is shown of a robot.
+
+    Raises:
+        InvalidRobot: A mesh is missing.
+        ValueError: There is nothing to draw.
+    """
+    visual_model = robot.visual_model  # raises if a mesh is missing
+    if q is None:
+        q = robot.configurations.get(ASSEMBLED)
+    q = pin.neutral(robot.model) if q is None else q
+    scene = Scene(robot, q)
+    placed = scene.at(q)
+    solids: list[tuple[Surface, Color]] = []
+    lines: list[tuple[Points, Color]] = []
+    for part in scene.parts:
+        if part.kind == "visual":
+            oMp = placed.poses[part.body] * part.pose
+            vertices = part.surface.vertices @ oMp.rotation.T + oMp.translation
+            alpha = part.color[3] * (_TRANSLUCENT if loops else 1.0)
+            solids.append((replace(part.surface, vertices=vertices), (*part.color[:3], alpha)))
+    if visual_model is None or not solids:
+        lines.append((scene.skeleton(placed), _SKELETON))
+    dots = np.empty((0, 3))
+    if loops:
+        closures = scene.closure_lines(placed)
+        dots = closures[:, 1].reshape(-1, 3)
+        lines.append((closures[:, [0, 2]].reshape(-1, 2, 3), _CLOSURE))
+        lines.append((closures[:, 1], _OPEN))
+    points = [*(surface.vertices for surface, _ in solids), *(each.reshape(-1, 3) for each, _ in lines)]
+    together = np.concatenate(points)
+    if not (len(together) and np.ptp(together, axis=0).any()):
+        raise ValueError("there is nothing to draw: it has no visual shapes, and all links are at one point")
+    return _Drawn(solids, lines, dots, together)
+
+
+def _renderer() -> Any:
+    """The renderer, pyvista.
+
+    Raises:
+        MissingExtra: It is not installed.
+    """
+    if not os.environ.get("DISPLAY"):
+        # Else VTK looks for a screen first, and says so.
+        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+    try:
+        import pyvista
+    except ImportError:
+        command = install_command("pictures")
+        raise MissingExtra(f"pictures need pyvista; install it with: {command}", "pictures") from None
+    return pyvista
+
+
+def _seen(drawn: _Drawn, view: View, center: Points, pixels: tuple[int, int], scale: float) -> Image:
+    """One view: pixels (height, width, 3).
+
+    Args:
+        drawn: What is shown.
+        view: From where it is seen.
+        center: Of the view, seen along its axes, m.
+        pixels: Width and height.
+        scale: Pixels a metre.
+    """
+    from PIL import Image as Pillow
+
+    pv = _renderer()
+    plotter = pv.Plotter(off_screen=True, window_size=[_OVERSAMPLING * side for side in pixels], lighting="none")
+    plotter.set_background("white")
+    for surface, color in drawn.solids:
+        faces = np.column_stack((np.full(len(surface.triangles), 3), surface.triangles))
+        plotter.add_mesh(
+            pv.PolyData(surface.vertices, faces),
+            color=color[:3],
+            opacity=color[3],
+            smooth_shading=surface.smooth,
+            ambient=0.32,
+            diffuse=0.8,
+            specular=0.1,
+            specular_power=20.0,
+        )
+    for lines, color in drawn.lines:
+        long = lines[np.ptp(lines, axis=1).any(axis=1)]
+        if len(long):
+            plotter.add_lines(long.reshape(-1, 3), color=color, width=_LINE * _OVERSAMPLING)
+    if len(drawn.dots):
+        plotter.add_points(
+            drawn.dots, color=_CLOSURE, point_size=_DOT * _OVERSAMPLING, render_points_as_spheres=True, lighting=False
+        )
+    right, up, toward = view.axes
+    focus = center @ view.axes
+    reach = float(np.linalg.norm(np.ptp(drawn.points, axis=0)))
+    # Over the viewer's left shoulder, and a weak one from the other side, so that no side is black.
+    for direction, intensity in ((-0.4 * right + 0.4 * up + toward, 0.75), (right - 0.3 * up + 0.6 * toward, 0.35)):
+        light = pv.Light(light_type="scene light", intensity=intensity)
+        light.position, light.focal_point = focus + reach * direction, focus
+        plotter.add_light(light)
+    camera = plotter.camera
+    camera.parallel_projection = True
+    camera.focal_point, camera.position, camera.up = focus, focus + 2.0 * reach * toward, up
+    camera.parallel_scale = pixels[1] / scale / 2.0
+    camera.clipping_range = (0.5 * reach, 3.5 * reach)
+    plotter.enable_anti_aliasing("ssaa")
+    drawn = plotter.screenshot(return_img=True)
+    plotter.close()
+    return np.asarray(Pillow.fromarray(drawn).resize(pixels, Pillow.Resampling.LANCZOS))
