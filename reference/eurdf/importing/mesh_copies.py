@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 
-_ODD = re.compile(r"[^A-Za-z0-9._-]")
+from eurdf.writing.file_names import FileNames
 
 
 class MeshCopies:
@@ -21,13 +20,13 @@ class MeshCopies:
     def __init__(self) -> None:
         self.files: dict[str, bytes] = {}
         self._of: dict[str, str] = {}
-        self._used: set[str] = set()
+        self._names = FileNames()
 
     def file(self, path: Path) -> str:
         """Copy a file; returns its path relative to the folder."""
         key = str(path)
         if key not in self._of:
-            self._of[key] = self._new(path.stem, path.suffix.lower(), path.read_bytes())
+            self._of[key] = self._new(path.stem, path.suffix, path.read_bytes())
         return self._of[key]
 
     def content(self, name: str, suffix: str, content: bytes) -> str:
@@ -38,12 +37,6 @@ class MeshCopies:
         return self._of[key]
 
     def _new(self, stem: str, suffix: str, content: bytes) -> str:
-        stem, suffix = _ODD.sub("_", stem).lstrip(".") or "mesh", _ODD.sub("_", suffix)
-        name, count = stem + suffix, 1
-        while name.lower() in self._used:
-            count += 1
-            name = f"{stem}_{count}{suffix}"
-        self._used.add(name.lower())
-        path = f"meshes/{name}"
+        path = f"meshes/{self._names.new(stem, suffix)}"
         self.files[path] = content
         return path
