@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,8 @@ import numpy as np
 import pytest
 
 import eurdf
+from eurdf.mechanism.joint import JointProperties
+from eurdf.pinocchio.robot import build_robot
 from support.compiled import NOT_CLOSED, NOT_FINITE, OK, SINGULAR, TOO_FAR, Compiled
 from support.one_loop import one_loop
 
@@ -170,3 +173,23 @@ def test_motors_in_the_chain_are_their_own() -> None:
     motors, G = prepared.at_joints([0.4, 0.1])
     assert prepared.motors[0] == "motor_knee"
     assert (motors[0], G[0].tolist()) == (0.4, [1.0, 0.0])
+
+
+def test_springs_that_no_motor_controls_are_held(tmp_path: Path) -> None:
+    mechanism = one_loop(["revolute"] * 5, "3d", 31).mechanism
+    spring = JointProperties(stiffness=(10.0,), rest=(0.0,))
+    joints = tuple(replace(joint, properties=spring) if joint.name == "j4" else joint for joint in mechanism.joints)
+    robot = build_robot(replace(mechanism, joints=joints), geometry=False)
+    prepared = eurdf.prepare_transmission(robot, "j0")
+    compiled = Compiled(prepared, tmp_path)
+    at = robot.slots["j4"].idx_q
+    start, deflection = prepared.at_joints(robot.mechanism.configurations["assembled"]["j0"]), prepared.q[at]
+    for step in range(20):
+        point = np.array(robot.mechanism.configurations["assembled"]["j0"]) + 0.005 * step
+        motors, G = prepared.at_joints(point)
+        assert prepared.q[at] == pytest.approx(deflection, abs=1e-12)
+        assert pytest.approx(eurdf.transmission(robot, "j0", prepared.q).G, abs=1e-9) == G
+        status, c_motors, c_G = compiled.at_joints(point)
+        assert (status, c_motors) == (OK, pytest.approx(motors, abs=1e-9))
+        assert c_G == pytest.approx(G, abs=1e-9)
+    assert abs(motors - start.positions) > 1e-3

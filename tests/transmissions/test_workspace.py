@@ -38,7 +38,7 @@ def test_polygon_separates_reachable_poses_from_others(ankle: eurdf.Robot, found
     # Chords cut off less than this of the curved sides.
     margin = 2e-3
     seen = set()
-    for point in random.uniform([-0.95, -0.3], [0.6, 0.3], (25, 2)):
+    for point in random.uniform([-0.95, -0.3], [0.6, 0.3], (14, 2)):
         around = [inside(found.polygon, point + margin * np.array(step)) for step in ((1, 0), (-1, 0), (0, 1), (0, -1))]
         if len(set(around)) == 2:
             continue
@@ -84,6 +84,17 @@ def test_slider_ends_at_the_dead_points_of_its_crank() -> None:
     reached = sorted((float(point.position[0]), point.stop.kind) for point in found.boundary)
     assert [position for position, _ in reached] == pytest.approx(ends, abs=1e-6)
     assert {kind for _, kind in reached} <= {"singular", "not closed"}
+
+
+@pytest.mark.slow
+def test_singular_poses_bound_the_workspace() -> None:
+    robot = eurdf.load("five_bar", geometry=False)
+    joints = ["motor_1", "free_elbow_1"]
+    ends = [point for point in eurdf.workspace(robot, joints, grid=9).boundary if point.stop.kind == "singular"]
+    assert ends
+    for point in ends:
+        condition = eurdf.transmission(robot, joints, point.q).condition
+        assert condition is None or condition > 100.0
 
 
 def test_three_joints_have_samples() -> None:

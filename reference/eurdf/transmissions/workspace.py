@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 # Bisections of the step from a point that the joints reach to one that they do not.
-_BISECTIONS = 24
+_BISECTIONS = 20
 # Corners of an outline are looked for until its points are this part of a cell apart.
 _FINEST = 1.0 / 64.0
 # Number of points of a grid, about, and along one joint, at most, where the caller does not say how fine it is.
@@ -167,7 +167,7 @@ def workspace(
     From the pose q, the joints move from each point of a grid to its neighbours, all on one branch. They stop where a
     joint of the loops, passive or a motor, would leave its limits; where det G changes its sign or a map between motors
     and joints does not exist, so that motors would not hold the joints; and where the loops do not close. The boundary
-    between a point that is reached and one that is not is bisected to rounding.
+    between a point that is reached and one that is not is bisected to a millionth of a cell.
 
     Args:
         robot: The robot.
