@@ -159,7 +159,7 @@ def test_random_robot_of_all_joints_and_closures_is_the_same(seed: int, root: An
 
 
 def test_robots_of_the_collection_are_the_same(tmp_path: Path) -> None:
-    for name in ("delta", "kangaroo_leg", "digit_leg", "slider_crank", "stewart_platform"):
+    for name in ("delta", "kangaroo_leg"):  # universal joints; 3d and 6d closures
         robot = eurdf.load(name, geometry=False)
         export = eurdf.export(robot, "usd")
         assert_same_robot(InUsd(export, tmp_path / name), robot, robot.configurations["assembled"])
