@@ -198,6 +198,13 @@ def test_springs_hold_what_no_motor_decides() -> None:
     assert np.abs(eurdf.spring_force(deflected, q)).max() > 10.0
     np.testing.assert_allclose(at.motions.T @ eurdf.spring_force(deflected, q), 0.0, atol=1e-9)
 
+    # Two springs on one motion: one of them would deflect.
+    with pytest.raises(ValueError, match="the springs of j2, j3 cannot all be held while the motors move"):
+        eurdf.transmission(sprung(robot, "j3"), "j4", q)
+    many = eurdf.transmission(sprung(robot, "j3"), "j4", q[None])
+    assert many.reason == many.inverse_reason == ("springs block",)
+    assert np.isnan(many.G).all()
+
     # A spring beside the motors holds nothing.
     ankle, q = posed(G1[0])
     beside = eurdf.transmission(sprung(ankle, "free_pitch"), G1[1], q)

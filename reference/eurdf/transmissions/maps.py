@@ -132,12 +132,13 @@ def _maps(task: Task, Z: Matrix) -> tuple[Maps, Matrix]:
     both = np.linalg.svd(np.concatenate((A, B), axis=1), compute_uv=False)
     rank = np.maximum(numerical_ranks(both, np.ones(c)), np.maximum(rank_m, rank_J))
     forward = A @ B_inverse
-    condition, full = np.full(c, np.nan), (rank == rank_J) & (rank_m == min(len(task.motors), len(task.joints)))
+    has_G, has_B = ~blocked & (rank == rank_J), ~blocked & (rank == rank_m)
+    condition, full = np.full(c, np.nan), has_G & (rank_m == min(len(task.motors), len(task.joints)))
     values = np.linalg.svd(forward[full], compute_uv=False)
     condition[full] = values[:, 0] / values[:, -1]
     unit_m, unit_J = scale[task.motors], scale[task.joints]
-    G = np.where((rank == rank_J)[:, None, None], unit_m[:, None] * forward / unit_J, np.nan)
-    B_J = np.where((rank == rank_m)[:, None, None], unit_J[:, None] * (B @ A_inverse) / unit_m, np.nan)
+    G = np.where(has_G[:, None, None], unit_m[:, None] * forward / unit_J, np.nan)
+    B_J = np.where(has_B[:, None, None], unit_J[:, None] * (B @ A_inverse) / unit_m, np.nan)
     return Maps(G, B_J, rank, rank_m, rank_J, condition, held, blocked), Z
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -106,6 +107,8 @@ def _moved(robot: Robot, velocities: Indices) -> Mask:
         if not assembly.closes:
             return ~found
         q = assembly.q
+        if maps_at(robot, task, q)[0].blocked[0]:
+            task = replace(task, springs=np.empty(0, np.intp))
         for _ in range(_TESTS):
             _, Q = maps_at(robot, task, q)
             step = Q @ random.uniform(-1.0, 1.0, Q.shape[1])
