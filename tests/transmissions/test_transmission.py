@@ -11,8 +11,10 @@ import pytest
 
 import eurdf
 from eurdf.pinocchio.robot import build_robot
-from support.described import load
+from support.described import body, load
 from support.linkage import described, n_bar
+from support.plain_urdf import joint_element
+from support.plain_urdf import robot as urdf
 from support.transmissions import DRIVEN, four_bar, posed, slider_crank
 
 G1 = "unitree_g1_ankle", DRIVEN["unitree_g1_ankle"]
@@ -93,6 +95,32 @@ def test_slider_crank_obeys_its_closed_form() -> None:
     assert at.B_J[0, 0] == pytest.approx(first, rel=1e-9)
     # θ(x) is the inverse function: θ'' = -x''/x'³.
     assert at.hessian[0, 0, 0] == pytest.approx(-second / first**3, rel=1e-9)
+
+
+def test_differential_of_couplings_has_its_matrix() -> None:
+    limit = '<axis xyz="0 1 0"/><limit lower="-3" upper="3" effort="4" velocity="3"/>'
+    tree = (
+        ("motor_1", "base", "gear_1"),
+        ("motor_2", "base", "gear_2"),
+        ("pitch", "base", "cross"),
+        ("roll", "cross", "foot"),
+    )
+    joints = [joint_element(name, "revolute", parent, child, limit) for name, parent, child in tree]
+    text = urdf(body("base"), *(body(child) for _, _, child in tree), *joints)
+    yaml = (
+        'extended_urdf: "2.1"\nactuators: [motor_1, motor_2]\ncouplings:\n'
+        "  - {name: sum, joints: {pitch: 2, motor_1: -1, motor_2: -1}}\n"
+        "  - {name: difference, joints: {roll: 4, motor_1: -1, motor_2: 1}}\n"
+    )
+    robot = load(text, yaml)
+    at = eurdf.transmission(robot, ["pitch", "roll"])
+    np.testing.assert_allclose(at.G, [[1.0, 2.0], [1.0, -2.0]], atol=1e-12)
+    np.testing.assert_array_equal(at.hessian, 0.0)
+    limits = eurdf.serial_limits(robot, ["pitch", "roll"])
+    np.testing.assert_allclose(limits.torque_axes[:, 1], [8.0, 16.0])  # 4 N·m each
+    np.testing.assert_allclose(limits.torque_box, [4.0, 8.0])
+    found = eurdf.actuator_values(robot, {"pitch": 0.3, "roll": -0.1})
+    assert found.values == pytest.approx({"motor_1": 0.1, "motor_2": 0.5})
 
 
 def test_dead_points_leave_the_map_that_exists() -> None:
