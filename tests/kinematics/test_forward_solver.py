@@ -158,6 +158,23 @@ def test_what_is_kept_changes_no_decision(seed: int, size: float, change: float)
     assert not fresh.is_shown(near) or values[2] ** 2 * INDEPENDENT >= values[0] ** 2
 
 
+@pytest.mark.parametrize("off", [0.0, 1e-14, 1e-9, 1e-5, 1e-1])
+@pytest.mark.parametrize("moved", [0.0, 1e-4, 1e-1, 10.0])
+def test_kept_redundant_rows_change_no_forces(moved: float, off: float) -> None:
+    random = np.random.default_rng(0)
+    mix, rows = np.array([[1.0, 0.0], [0.0, 1.0], [0.6, -0.8]]), random.normal(size=(2, 5))
+    after, fresh = Independence(np.ones(3), np.ones(5)), Independence(np.ones(3), np.ones(5))
+    assert after.least_forces(mix @ rows, np.ones(3)) is not None
+    # Near or far, with the same redundancy or another rank.
+    K = mix @ (rows + moved * random.normal(size=(2, 5))) + off * random.normal(size=(3, 5))
+    lambdas = random.normal(size=3)
+    found, expected = after.least_forces(K, lambdas), fresh.least_forces(K, lambdas)
+    assert (found is None) == (expected is None) == (off in (1e-9, 1e-5))
+    if found is not None and expected is not None:
+        np.testing.assert_allclose(found, expected, atol=1e-9)
+        np.testing.assert_allclose(K.T @ found, K.T @ lambdas, atol=1e-9 * np.abs(K).max())
+
+
 def test_open_mechanism_is_eliminated(eliminations: Counted) -> None:
     robot = eurdf.load("cassie_leg", geometry=False)
     q, v = state(robot)

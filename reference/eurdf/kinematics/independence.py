@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -19,12 +19,28 @@ INDEPENDENT = 1e6
 _ZERO = 1e-12
 
 
+class _Kept(NamedTuple):
+    """A decomposed K, which others are compared with.
+
+    Attributes:
+        K: (nc, nv).
+        size: Frobenius' norm of the dimensionless A.
+        bound: Its smallest singular value that is not zero, or a bound of it from below.
+        null: Orthonormal basis (nc, k) of its left null space: the combinations of rows that are redundant.
+    """
+
+    K: Matrix
+    size: float
+    bound: float
+    null: Matrix
+
+
 class Independence:
     """Judges the K of one robot at one configuration after the other, by one thread at a time.
 
     The last K that was decomposed is kept. Singular values change by no more than the norm of a change of the matrix
-    (Weyl), so that near it no other decomposition is needed to know that one would find the rows independent. So what
-    is found does not depend on what is kept.
+    (Weyl), so that near it no other decomposition is needed to know that one would find the same rank. So what is found
+    does not depend on what is kept.
     """
 
     def __init__(self, row_scale: Vector, velocity_scale: Vector) -> None:
@@ -32,19 +48,13 @@ class Independence:
         self._row_scale = row_scale
         self._scale = row_scale[:, None] * velocity_scale
         self._largest_scale = float(self._scale.max(initial=0.0))
-        # A matrix K, the norm of its dimensionless A, and a bound of the smallest singular value of A from below.
-        self._kept: tuple[Matrix, float, float] | None = None
+        self._kept: _Kept | None = None
 
     def is_shown(self, K: Matrix) -> bool:
         """Whether ‖A Aᵀ‖ ‖(A Aᵀ)⁻¹‖ is at most `INDEPENDENT`, with A the dimensionless K (nc, nv)."""
-        if self._kept is not None:
-            change = K - self._kept[0]
-            # A bound of the norm of the scaled change, and only if that does not suffice the norm itself.
-            if self._is_near(self._largest_scale * norm(change.ravel())):
-                return True
-            change *= self._scale
-            if self._is_near(norm(change.ravel())):
-                return True
+        kept = self._kept
+        if kept is not None and not kept.null.shape[1] and self._is_near(kept, K):
+            return True
         A = K * self._scale
         square = A @ A.T
         try:
@@ -53,33 +63,57 @@ class Independence:
             return False
         if not norm(square.ravel()) * inverse <= INDEPENDENT:
             return False
-        self._kept = np.array(K), norm(A.ravel()), 1.0 / math.sqrt(inverse)
+        self._kept = _Kept(np.array(K), norm(A.ravel()), 1.0 / math.sqrt(inverse), np.empty((len(K), 0)))
         return True
-
-    def _is_near(self, change: float) -> bool:
-        """Whether a change of so much of the kept A, in Frobenius' norm, leaves its rows independent beyond doubt."""
-        assert self._kept is not None
-        K, size, bound = self._kept
-        least, most = bound - change, size + change
-        return least > 0.0 and math.sqrt(len(K)) * most * most <= INDEPENDENT * least * least
 
     def least_forces(self, K: Matrix, lambdas: Vector) -> Vector | None:
         """The λ (nc,) of least norm, in units of the characteristic length, with the same Kᵀ λ.
 
         They are None if the rank of K (nc, nv) is in doubt.
         """
-        if len(K) <= K.shape[1] and self.is_shown(K):
-            return lambdas
+        kept = self._kept
+        if kept is None or not kept.null.shape[1]:
+            if len(K) <= K.shape[1] and self.is_shown(K):
+                return lambdas
+        elif self._is_near(kept, K) and self._annihilates(kept, K):
+            return self._without(kept.null, lambdas)
+        A = K * self._scale
         try:
-            left, values, _ = np.linalg.svd(K * self._scale, full_matrices=False)
+            left, values, _ = np.linalg.svd(A)
         except np.linalg.LinAlgError:
             return None
         largest = float(values.max(initial=0.0))
         rank = int(np.count_nonzero(values > _ZERO * largest))
         if not 0.0 < largest < math.inf or values[rank - 1] ** 2 * INDEPENDENT < largest**2:
             return None
-        basis = left[:, :rank]
-        return np.asarray(self._row_scale * (basis @ (basis.T @ (lambdas / self._row_scale))))
+        kept = self._kept = _Kept(np.array(K), norm(A.ravel()), float(values[rank - 1]), left[:, rank:])
+        return self._without(kept.null, lambdas)
+
+    def _is_near(self, kept: _Kept, K: Matrix) -> bool:
+        """Whether K has at least the rank of the kept one beyond doubt."""
+        change = K - kept.K
+        # A bound of the norm of the scaled change, and only if that does not suffice the norm itself.
+        if _is_small(self._largest_scale * norm(change.ravel()), kept):
+            return True
+        change *= self._scale
+        return _is_small(norm(change.ravel()), kept)
+
+    def _annihilates(self, kept: _Kept, K: Matrix) -> bool:
+        """Whether the combinations of rows that are redundant in the kept K are so in K, beyond doubt."""
+        A = K * self._scale
+        # The largest singular value of A is at least its norm over √nc.
+        return norm(kept.null.T.dot(A).ravel()) * math.sqrt(len(K)) <= _ZERO * norm(A.ravel())
+
+    def _without(self, null: Matrix, lambdas: Vector) -> Vector:
+        """The λ without its part in the left null space."""
+        scaled = lambdas / self._row_scale
+        return np.asarray(self._row_scale * (scaled - null.dot(null.T.dot(scaled))))
+
+
+def _is_small(change: float, kept: _Kept) -> bool:
+    """Whether a change of so much of the kept A, in Frobenius' norm, leaves its rank at least as it is."""
+    least, most = kept.bound - change, kept.size + change
+    return least > 0.0 and math.sqrt(len(kept.K)) * most * most <= INDEPENDENT * least * least
 
 
 def norm(values: Any) -> float:
