@@ -6,8 +6,10 @@
 from __future__ import annotations
 
 import argparse
+import inspect
 import sys
-from collections.abc import Callable
+from pathlib import Path
+from types import ModuleType
 
 from benchmarks import (
     assembly,
@@ -22,36 +24,48 @@ from benchmarks import (
     inverse_kinematics,
     load,
     loops,
+    page,
     simulation,
     transmission,
 )
 from benchmarks.fuzz import campaign
 from benchmarks.simulators import table as simulators
 
-MEASUREMENTS: dict[str, Callable[[], None]] = {
-    "load": load.main,
-    "growth": growth.main,
-    "check": check.main,
-    "hostile": hostile.main,
-    "assembly": assembly.main,
-    "loops": loops.main,
-    "forward_kinematics": forward_kinematics.main,
-    "inverse_kinematics": inverse_kinematics.main,
-    "derivatives": derivatives.main,
-    "dynamics": dynamics.main,
-    "simulation": simulation.main,
-    "batch": batch.main,
-    "transmission": transmission.main,
-    "conformance": conformance.main,
+MEASUREMENTS: dict[str, ModuleType] = {
+    "load": load,
+    "growth": growth,
+    "check": check,
+    "hostile": hostile,
+    "assembly": assembly,
+    "loops": loops,
+    "forward_kinematics": forward_kinematics,
+    "inverse_kinematics": inverse_kinematics,
+    "derivatives": derivatives,
+    "dynamics": dynamics,
+    "simulation": simulation,
+    "batch": batch,
+    "transmission": transmission,
+    "conformance": conformance,
 }
 
 
-def _first_line(run: Callable[[], None]) -> str:
-    return (sys.modules[run.__module__].__doc__ or "").splitlines()[0]
+def _first_line(module: ModuleType) -> str:
+    return (module.__doc__ or "").splitlines()[0]
+
+
+def _run(module: ModuleType, markdown: bool) -> None:
+    if not hasattr(module, "tables"):
+        module.main()
+        return
+    if markdown:
+        print(inspect.cleandoc(module.__doc__ or ""), end="\n\n")
+    # A page names robots of the collection alone.
+    for table in load.tables(published=False) if markdown and module is load else module.tables():
+        print(table.markdown() if markdown else table.text(), end="\n\n", flush=True)
 
 
 def main() -> int:
-    """Run the measurements named on the command line, all of them where none is named; or what has its own options."""
+    """Run the measurements named on the command line, all if none is; or write a page; or what has its own options."""
     if sys.argv[1:2] == ["fuzz"]:
         return campaign.main(sys.argv[2:])
     if sys.argv[1:2] == ["simulators"]:
@@ -60,13 +74,19 @@ def main() -> int:
         prog="python -m benchmarks",
         description="Measure, as ratios to a named peer in the same run.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog="\n".join(f"{name:20}{_first_line(run)}" for name, run in MEASUREMENTS.items())
-        + f"\n{'fuzz':20}{(campaign.__doc__ or '').splitlines()[0]} See `fuzz --help`."
-        + f"\n{'simulators':20}{(simulators.__doc__ or '').splitlines()[0]} See `simulators --help`.",
+        epilog="\n".join(f"{name:20}{_first_line(module)}" for name, module in MEASUREMENTS.items())
+        + f"\n{'fuzz':20}{_first_line(campaign)} See `fuzz --help`."
+        + f"\n{'simulators':20}{_first_line(simulators)} See `simulators --help`.",
     )
     parser.add_argument("names", nargs="*", choices=[*MEASUREMENTS, []], help="which to run; all by default")
-    for name in parser.parse_args().names or MEASUREMENTS:
-        MEASUREMENTS[name]()
+    parser.add_argument("--markdown", action="store_true", help="print tables in Markdown, where there are any")
+    parser.add_argument("--page", type=Path, metavar="FILE", help="write the page of the documentation instead")
+    options = parser.parse_args()
+    if options.page is not None:
+        page.write(options.page)
+        return 0
+    for name in options.names or MEASUREMENTS:
+        _run(MEASUREMENTS[name], options.markdown)
     return 0
 
 

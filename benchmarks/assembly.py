@@ -12,8 +12,6 @@ import dataclasses
 import importlib
 import statistics
 import sys
-import time
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -22,6 +20,7 @@ import pinocchio as pin
 from scipy.optimize import fmin_slsqp
 
 import eurdf
+from benchmarks.interleaved import timed
 from benchmarks.load import ROOT, robots
 from eurdf.kinematics.assembly import assemble
 from eurdf.kinematics.residual import residual, residual_and_jacobian
@@ -116,13 +115,6 @@ def compare(name: str, where: str, robot: eurdf.Robot, places: list[Vector]) -> 
     q = places[0]
     one = min(timed(lambda: residual_and_jacobian(robot, q))[0] for _ in range(100))
     print(f"{'':32} {ours / one:8.1f} times one call of `residual_and_jacobian`, {one * 1e6:.0f} µs")
-
-
-def timed(function: Callable[[], Any]) -> tuple[float, Any]:
-    """Processor time of a call, s, and what it returned."""
-    begin = time.process_time()
-    result = function()
-    return time.process_time() - begin, result
 
 
 def slsqp_over_v(robot: eurdf.Robot, q: Vector) -> Vector:

@@ -1,35 +1,52 @@
 """`eurdf.residual_and_jacobian` against Pinocchio's own Jacobians, and `eurdf.dq_dq_actuated` against the toolbox.
 
 Pinocchio computes neither log6 of the closures nor its derivative; with both in Python, it is the second peer. The
-toolbox of Batto, De Matteïs and Mansard, 2025, takes the pseudoinverse of the columns of K that are not actuated.
+toolbox of Batto, De Matteïs and Mansard, 2025, takes the pseudoinverse of the columns of K that are not actuated. All
+are at an assembled configuration. In a chain of four-bars, the peer evaluates one four-bar, N times; K of the whole
+chain has 9 N² numbers.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import partial
 
 import eurdf
 from benchmarks.interleaved import least_times
-from benchmarks.nearby import ROBOTS
 from benchmarks.plain_newton import PlainNewton
+from benchmarks.robots import CHAINS, ROBOTS, chain, chains, robot_called
+from benchmarks.table import Table, duration, ratio
 
 
-def main() -> None:
-    """Print a table, of the least processor times, at an assembled configuration."""
-    head = f"{'robot':18} {'r and K':>9} {'pin':>9} {'log6 too':>9} {'ratio':>6} {'ratio':>6}"
-    print(f"{head}   {'dq_dq_act.':>10} {'formula':>9} {'ratio':>6}")
-    for name in ROBOTS:
-        robot = eurdf.load(name, geometry=False)
-        newton, q = PlainNewton(robot), eurdf.assemble(robot).q
-        calls = (
-            partial(eurdf.residual_and_jacobian, robot, q),
-            partial(newton.constraint_jacobian_alone, q),
-            partial(newton.closures, q),
-            partial(eurdf.dq_dq_actuated, robot, q),
-            partial(newton.dq_dq_actuated, q),
-        )
-        K, alone, with_log6, D, formula = (1e6 * time for time in least_times(calls, 200))
-        print(
-            f"{name:18} {K:6.1f} µs {alone:6.1f} µs {with_log6:6.1f} µs {K / alone:6.2f} {K / with_log6:6.2f}   "
-            f"{D:7.1f} µs {formula:6.1f} µs {D / formula:6.2f}"
-        )
+def tables() -> Iterator[Table]:
+    """Of single robots and of chains."""
+    yield Table(
+        ("robot", "r and K", "pin", "with log6", "ratio", "to log6", "`dq_dq_actuated`", "formula", "ratio of these"),
+        [_row(name) for name in (*ROBOTS, "kangaroo_2legs", chains()[0])],
+    )
+    yield Table(
+        ("chain of N four-bars", "r and K, per loop", "with log6", "ratio"),
+        [_chain_row(count) for count in CHAINS],
+    )
+
+
+def _row(name: str) -> tuple[str, ...]:
+    robot = robot_called(name)
+    newton, q = PlainNewton(robot), eurdf.assemble(robot).q
+    calls = (
+        partial(eurdf.residual_and_jacobian, robot, q),
+        partial(newton.constraint_jacobian_alone, q),
+        partial(newton.closures, q),
+        partial(eurdf.dq_dq_actuated, robot, q),
+        partial(newton.dq_dq_actuated, q),
+    )
+    K, alone, with_log6, D, formula = least_times(calls, 200)
+    of_K = duration(K), duration(alone), duration(with_log6), ratio(K, alone), ratio(K, with_log6)
+    return name, *of_K, duration(D), duration(formula), ratio(D, formula)
+
+
+def _chain_row(count: int) -> tuple[str, ...]:
+    robot, one = chain(count), chain(1)
+    q, newton, q_one = eurdf.assemble(robot).q, PlainNewton(one), eurdf.assemble(one).q
+    ours, alone = least_times((partial(eurdf.residual_and_jacobian, robot, q), partial(newton.closures, q_one)), 5)
+    return str(count), duration(ours / count), duration(alone), ratio(ours / count, alone)

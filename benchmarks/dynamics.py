@@ -3,33 +3,36 @@
 Both forward dynamics take motor torques and return the acceleration and the forces of the closures.
 `pin.constraintDynamics` runs to 1e-14 with μ = 1e-8, its memory made beforehand; it judges neither ranks nor its
 solution. The plain inverse dynamics take Pinocchio's Jacobian and bias, a basis of the free motions from a singular
-value decomposition of K, and pseudoinverses; they check nothing. States are twenty closed ones along a path. Then the
-time and memory of 100 four-bars, where a `pin.Data` would take 1.7 GB.
+value decomposition of K, and pseudoinverses; they check nothing. States are twenty closed ones along a path.
+
+In a chain of 100 four-bars, a `pin.Data` would take 1.7 GB. There the peer is `mj_forward` of MuJoCo, whose closures
+are soft (`connect`); it reads no XML that is nested as deeply as a chain of 1,000. Memory is what the first call adds
+to the process.
 """
 
 from __future__ import annotations
 
-import resource
 import time
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
+import mujoco
 import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
 import eurdf
-from benchmarks.interleaved import least_times
-from benchmarks.loops import four_bars
-from eurdf.mechanism.body import Inertia
-from eurdf.mechanism.pose import Pose
-from eurdf.pinocchio.robot import build_robot
+from benchmarks.interleaved import least_times, peak_memory
+from benchmarks.mujoco_model import move, mujoco_model
+from benchmarks.robots import CHAINS, ROBOTS, chain, chains, robot_called
+from benchmarks.table import Table, duration, ratio
 
 Vector = npt.NDArray[np.float64]
 
-ROBOTS = ("digit_leg", "digit_2legs", "kangaroo_leg", "stewart_platform", "cassie_leg", "five_bar", "four_bar")
+
+# Of four-bars in series: MuJoCo reads no XML that is nested deeper.
+_MOST_NESTED = 100
 
 
 def states(robot: eurdf.Robot, count: int = 20) -> list[tuple[Vector, Vector]]:
@@ -84,9 +87,18 @@ def each(function: Callable[..., Any], arguments: list[tuple[Any, ...]]) -> None
         function(*given)
 
 
-def compare(name: str) -> None:
-    """Print a row."""
-    robot = eurdf.load(name, geometry=False)
+def tables() -> Iterator[Table]:
+    """Of forward dynamics, inverse dynamics and chains."""
+    forward, inverse = zip(*[_rows(name) for name in (*ROBOTS, "five_bar", "four_bar", chains()[0])], strict=True)
+    columns = ("robot", "nv", "eurdf, with `data=`", "pin", "ratio", "without `data=`", "ratio to with")
+    yield Table(columns, forward, "Forward dynamics")
+    yield Table(("robot", "nv", "eurdf", "NumPy", "ratio"), inverse, "Inverse dynamics")
+    columns = ("chain of N four-bars", "nv", "first call", "later", "MuJoCo", "ratio", "memory")
+    yield Table(columns, [_chain_row(count) for count in CHAINS], "Forward dynamics of chains")
+
+
+def _rows(name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    robot = robot_called(name)
     peers, data, u = Peers(robot), robot.model.createData(), np.ones(len(robot.actuation.idx_v))
     given = states(robot)
     motions = []
@@ -103,36 +115,23 @@ def compare(name: str) -> None:
     )
     times = least_times([partial(each, *call) for call in calls], 60)
     ours, alone, pinocchio, inverse, plain = (taken / len(given) for taken in times)
-    print(
-        f"{name:18} {robot.model.nv:4} {ours * 1e6:8.0f} µs {pinocchio * 1e6:6.0f} µs {ours / pinocchio:6.1f} "
-        f"{alone / ours:10.2f}   {inverse * 1e6:8.0f} µs {plain * 1e6:6.0f} µs {inverse / plain:6.1f}"
-    )
+    head = name, str(robot.model.nv)
+    forward = duration(ours), duration(pinocchio), ratio(ours, pinocchio), duration(alone), ratio(alone, ours)
+    return (*head, *forward), (*head, duration(inverse), duration(plain), ratio(inverse, plain))
 
 
-def many_loops(count: int, in_series: bool) -> None:
-    """Print a row."""
-    mechanism = four_bars(count, in_series).mechanism
-    inertia = Inertia(1.0, Pose((0.5, 0.0, 0.0)), (0.1, 0.0, 0.0, 0.1, 0.0, 0.1))
-    bodies = tuple(replace(body, inertia=inertia) for body in mechanism.bodies)
-    robot = build_robot(replace(mechanism, bodies=bodies), geometry=False)
-    q = eurdf.assemble(robot, np.tile([0.9, -0.7, 1.9], count)).q
+def _chain_row(count: int) -> tuple[str, ...]:
+    robot = chain(count)
+    q = eurdf.assemble(robot).q
     v = eurdf.project_velocity(robot, q, np.ones(robot.model.nv))
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    begin = time.process_time()
+    before, begin = peak_memory(), time.process_time()
     eurdf.forward_dynamics(robot, q, v)
-    first = time.process_time() - begin
-    (later,) = least_times([lambda: eurdf.forward_dynamics(robot, q, v)], 5)
-    more = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024.0
-    kind = "in series" if in_series else "side by side"
-    print(f"{count:4} {kind:13} {robot.model.nv:5} {first * 1e3:8.1f} ms {later * 1e3:8.1f} ms {more:8.0f} MB")
-
-
-def main() -> None:
-    """Print tables, of the least processor times."""
-    print("four-bars               nv      first      later   memory")
-    for in_series in (True, False):
-        many_loops(100, in_series)
-    head = f"{'robot':18} {'nv':>4} {'forward':>11} {'pin':>9} {'ratio':>6} {'no data':>10}"
-    print(f"\n{head}   {'inverse':>11} {'NumPy':>9} {'ratio':>6}")
-    for name in ROBOTS:
-        compare(name)
+    first, grown = time.process_time() - begin, peak_memory() - before
+    calls = [partial(eurdf.forward_dynamics, robot, q, v)]
+    if count <= _MOST_NESTED:
+        model, data = mujoco_model(robot, 1e-3)
+        move(robot, model, data, q, v)
+        calls.append(partial(mujoco.mj_forward, model, data))
+    later, *peer = least_times(calls, 5)
+    shown = str(count), str(robot.model.nv), duration(first), duration(later)
+    return *shown, *([duration(peer[0]), ratio(later, peer[0])] if peer else ["-", "-"]), f"{grown:.0f} MB"

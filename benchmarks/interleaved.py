@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import resource
 import time
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -18,3 +19,15 @@ def least_times(functions: Sequence[Callable[[], Any]], repeats: int = 15) -> li
             function()
             least[index] = min(least[index], time.process_time() - begin)
     return least
+
+
+def timed(function: Callable[[], Any]) -> tuple[float, Any]:
+    """Processor time of a call, s, and what it returned."""
+    begin = time.process_time()
+    result = function()
+    return time.process_time() - begin, result
+
+
+def peak_memory() -> float:
+    """The largest memory of the process so far, MB."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024

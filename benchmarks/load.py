@@ -9,14 +9,18 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import pinocchio as pin
 
 import eurdf
-from eurdf.collection import find_robot
+from benchmarks.growth import write_loops
+from benchmarks.robots import CHAINS, chain, chains
+from benchmarks.table import Table, duration, ratio
 
 ROOT = Path(__file__).parents[1]
 
@@ -28,18 +32,22 @@ def robots() -> list[Path]:
 
 
 #: Whole processes as arguments of Python, each with its peer.
-PROCESSES = (
+PROCESSES: tuple[tuple[str, tuple[str, ...], str, tuple[str, ...]], ...] = (
     (
-        'eurdf.load("digit_leg")',
+        '`eurdf.load("digit_leg", geometry=False)`',
         ("-c", "import eurdf; eurdf.load('digit_leg', geometry=False)"),
         "importing pinocchio, lxml, yaml, pydantic",
         ("-c", "import pinocchio, lxml.etree, yaml, pydantic"),
     ),
-    (
-        "eurdf check digit_like",
-        ("-m", "eurdf", "check", str(ROOT.parent / "shared" / "wild" / "digit_like")),
-        "importing pinocchio",
-        ("-c", "import pinocchio"),
+    *(
+        (
+            f"`eurdf check {folder.name}`",
+            ("-m", "eurdf", "check", str(folder)),
+            "importing pinocchio",
+            ("-c", "import pinocchio"),
+        )
+        for folder in (ROOT / "robots" / "digit_leg", ROOT.parent / "shared" / "wild" / "digit_like")
+        if folder.exists()
     ),
 )
 
@@ -73,18 +81,38 @@ def run(arguments: tuple[str, ...]) -> None:
     subprocess.run([sys.executable, *arguments], check=False, capture_output=True)
 
 
-def main() -> None:
-    """Print two tables."""
-    print(f"{'robot':24} {'joints':>7} {'eurdf.load':>12} {'pin':>10} {'ratio':>7}")
-    for folder in robots():
-        urdf = str(folder / "robot.urdf")
-        assert find_robot(folder).description is not None
-        joints = eurdf.load(folder, geometry=False).model.njoints - 1
-        ours, peer = alternate(lambda f=folder: eurdf.load(f, geometry=False), lambda u=urdf: pin.buildModelFromUrdf(u))  # type: ignore[misc]
-        print(f"{folder.name:24} {joints:7} {ours * 1e3:9.2f} ms {peer * 1e3:7.2f} ms {ours / peer:6.2f}x")
-    print()
-    for name, arguments, peer_name, peer_arguments in PROCESSES:
-        if arguments[-2] == "check" and not Path(arguments[-1]).exists():
-            continue
-        ours, peer = alternate(lambda a=arguments: run(a), lambda a=peer_arguments: run(a), 10.0, of_children)  # type: ignore[misc]
-        print(f"{name:24} {ours * 1e3:9.0f} ms; {peer_name} {peer * 1e3:.0f} ms {ours / peer:6.2f}x")
+def tables(published: bool = True) -> Iterator[Table]:
+    """Of robots, of chains and of whole processes.
+
+    Args:
+        published: Whether to measure published robots, too, where they are present beside the checkout.
+    """
+    columns = ("robot", "joints", "`eurdf.load`", "pin", "ratio")
+    folders = [folder for folder in robots() if published or folder.parent == ROOT / "robots"]
+    yield Table(columns, [_row(folder) for folder in folders])
+    with tempfile.TemporaryDirectory() as folder:
+        paths = [(Path(folder) / name, chain(count)) for name, count in zip(chains(), CHAINS, strict=True)]
+        yield Table(columns, [_row(write_loops(robot.mechanism, _made(path))) for path, robot in paths])
+    columns = ("process", "eurdf", "peer", "its time", "ratio")
+    yield Table(
+        columns, [_process_row(*process) for process in PROCESSES if published or "digit_like" not in process[0]]
+    )
+
+
+def _made(folder: Path) -> Path:
+    folder.mkdir()
+    return folder
+
+
+def _row(folder: Path) -> tuple[str, ...]:
+    load = partial(eurdf.load, folder, geometry=False)
+    joints = load().model.njoints - 1
+    ours, peer = alternate(load, partial(pin.buildModelFromUrdf, str(folder / "robot.urdf")))
+    return folder.name, str(joints), duration(ours), duration(peer), ratio(ours, peer)
+
+
+def _process_row(
+    name: str, arguments: tuple[str, ...], peer_name: str, peer_arguments: tuple[str, ...]
+) -> tuple[str, ...]:
+    ours, peer = alternate(partial(run, arguments), partial(run, peer_arguments), 10.0, of_children)
+    return name, duration(ours), peer_name, duration(peer), ratio(ours, peer)

@@ -8,14 +8,13 @@ called twice: the first call prepares the loops. A `pin.Data` of the whole model
 
 from __future__ import annotations
 
-import resource
 from functools import partial
 
 import numpy as np
 import pinocchio as pin
 
 import eurdf
-from benchmarks.assembly import timed
+from benchmarks.interleaved import peak_memory, timed
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.constraint import PointClosure
 from eurdf.mechanism.frame import Anchor
@@ -84,8 +83,3 @@ def main() -> None:
                 f"{count:6} {kind:12} {each[0]:9.2f} {assembly.iterations:12} {each[1]:9.2f} {each[2]:9.2f} "
                 f"{each[3]:6.2f} {grown:11.0f} MB {64e-6 * robot.model.nv**3:9.0f} MB"
             )
-
-
-def peak_memory() -> float:
-    """The largest memory of the process so far, MB."""
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024

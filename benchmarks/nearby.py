@@ -10,8 +10,6 @@ from benchmarks.plain_newton import NotConverged, PlainNewton
 
 Vector = npt.NDArray[np.float64]
 
-ROBOTS = ("digit_leg", "digit_2legs", "kangaroo_leg", "kangaroo_2legs", "stewart_platform", "cassie_leg")
-
 ANGLE, LENGTH = 0.05, 1e-3  # how far each motor moves, rad and m
 
 

@@ -135,6 +135,10 @@ def inverse_dynamics(
     (Nakamura, Ghodoussi, *Dynamics computation of closed-link robot mechanisms with nonredundant and redundant
     actuators*, 1989.) It is the inverse of `forward_dynamics`.
 
+    If, with the motors locked, the singular values of the dimensionless K all exceed 1e-4 times its norm, u and λ are
+    the only solution. It is computed without N, and forward dynamics tell whether the motion is possible. Otherwise
+    singular values decide, which is slower.
+
     A motion that opens the closures is refused: project it onto them first. A motion that the motors cannot produce is
     refused, too; `achievable_acceleration` returns the nearest one that they can produce.
 
