@@ -385,6 +385,22 @@ def test_bad_file_is_refused_with_one_error(
     assert sorted(os.listdir(home)) == ["link.xml", "robot.xml"]
 
 
+def test_long_chain_of_includes_is_refused(tmp_path: Path) -> None:
+    for index in range(60):
+        write(tmp_path, f'<mujoco><include file="f{index + 1}.xml"/></mujoco>', f"f{index}.xml")
+    with pytest.raises(eurdf.CannotImport, match="files include each other more than 50 deep"):
+        eurdf.import_robot(tmp_path / "f0.xml")
+
+
+def test_compiler_that_takes_too_long_is_stopped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from eurdf.importing import mjcf_model
+
+    monkeypatch.setattr(mjcf_model, "SECONDS", 1)
+    many = small(f'<replicate count="30000000" offset="0 0 1"><body><joint/>{LINK}</body></replicate>')
+    with pytest.raises(eurdf.CannotImport, match="MuJoCo does not compile it within 1 s"):
+        eurdf.import_robot(write(tmp_path, many))
+
+
 def test_files_within_a_named_folder_are_read(tmp_path: Path) -> None:
     (tmp_path / "scene").mkdir()
     write(tmp_path, "<mujoco><worldbody>" + ARM + "</worldbody></mujoco>", "arm.xml")

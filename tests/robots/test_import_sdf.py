@@ -218,6 +218,10 @@ def test_shapes_have_sizes_poses_and_colors(tmp_path: Path) -> None:
             ),
             "poses refer to each other in a circle: a -> b -> a",
         ),
+        (
+            sdf(link("f999", "0 0 0 0 0 0"), *(f'<frame name="f{i}" attached_to="f{i + 1}"/>' for i in range(999))),
+            "'f0' is attached to more than 200 others in turn",
+        ),
         (sdf(link("a", "0 0 0 0 0 0"), joint("j", "revolute", "a", "z")), "there is no link, joint or frame 'z'"),
         (sdf(*SQUARE[:2], joint("j", "hinge", "base", "left")), "joint 'j' has the type 'hinge'"),
         (sdf(*SQUARE[:2], joint("j", "revolute", "base", "left")), "joint 'j' has no <axis>"),

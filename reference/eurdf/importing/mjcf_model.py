@@ -18,7 +18,7 @@ from eurdf.exceptions import MissingExtra
 from eurdf.importing.exceptions import CannotImport
 
 #: Processor time (s) and memory (bytes) that compiling a file may take.
-SECONDS, MEMORY = 120, 6 << 30
+SECONDS, MEMORY = 60, 6 << 30
 
 _PROGRAM = Path(__file__).with_name("mjcf_process.py")
 

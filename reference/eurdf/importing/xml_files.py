@@ -13,6 +13,9 @@ from eurdf.importing.exceptions import CannotImport
 from eurdf.reading.source import read_source
 from eurdf.reading.xml_reader import read_xml
 
+#: Files that may include each other in turn.
+DEPTH_LIMIT = 50
+
 
 def read_root(path: Path) -> etree._Element:
     """The root element of an XML file.
@@ -45,6 +48,8 @@ def included_files(path: Path, within: Path) -> tuple[Path, ...]:
         if file in chain:
             shown = " -> ".join(f"'{each.name}'" for each in (*chain[chain.index(file) :], file))
             raise CannotImport(path, f"a file includes itself: {shown}; remove one of these includes")
+        if len(chain) > DEPTH_LIMIT:
+            raise CannotImport(path, f"files include each other more than {DEPTH_LIMIT} deep")
         root = read_root(file)
         found[file] = None
         for name in _included(root):

@@ -39,6 +39,9 @@ from eurdf.writing.names import UniqueNames
 #: A limit beyond this is none: 1e16 is the default of SDFormat.
 UNLIMITED = 1e15
 
+#: Frames that a pose may refer to in turn.
+DEPTH_LIMIT = 200
+
 _WORLD = "world"
 
 #: Joints that have no equal here.
@@ -211,6 +214,10 @@ class _Reader:
             return IDENTITY
         if name in self.poses:
             return self.poses[name]
+        if len(seen) > DEPTH_LIMIT:
+            raise self.elements.refuse(
+                element, f"the pose of '{seen[0]}' refers to more than {DEPTH_LIMIT} others in turn"
+            )
         if name in seen:
             raise self.elements.refuse(element, f"poses refer to each other in a circle: {' -> '.join((*seen, name))}")
         if name in self.links:
@@ -230,6 +237,8 @@ class _Reader:
         """The link that a link, joint or frame is fixed to."""
         if name in self.links or name == _WORLD:
             return name
+        if len(seen) > DEPTH_LIMIT:
+            raise self.elements.refuse(element, f"'{seen[0]}' is attached to more than {DEPTH_LIMIT} others in turn")
         if name in seen:
             raise self.elements.refuse(element, f"frames are attached in a circle: {' -> '.join((*seen, name))}")
         if name in ("", "__model__"):
