@@ -8,7 +8,9 @@ import sys
 import threading
 import urllib.request
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -17,6 +19,7 @@ import eurdf
 from eurdf.commands.main import main
 from eurdf.viewing import text
 from eurdf.viewing.files import RobotOnDisk
+from eurdf.viewing.graph import graph_svg
 from eurdf.viewing.server import is_allowed
 from eurdf.viewing.session import Session
 from eurdf.viewing.worker import Worker
@@ -210,6 +213,23 @@ def test_names_are_text_of_the_page() -> None:
     shown = text.status(1.0, [opening], [hostile])
     assert "<img" not in shown
     assert "&lt;img src=x onerror=alert(1)&gt;" in shown
+
+
+def test_graph_has_a_line_for_each_link_and_an_arc_for_each_closure() -> None:
+    mechanism = eurdf.load("digit_leg", geometry=False).mechanism
+    svg = ElementTree.fromstring(graph_svg(mechanism))
+    space = {"svg": "http://www.w3.org/2000/svg"}
+    lines = svg.findall(".//svg:text", space)
+    assert [line.text for line in lines] == [body.name for body in mechanism.bodies]
+    joints = [line.find("svg:title", space).text for line in lines[1:]]
+    assert joints == [f"{joint.type} joint {joint.name}" for joint in mechanism.joints]
+    arcs = [title.text for title in svg.findall(".//svg:path/svg:title", space)]
+    assert arcs == [f"{closure.name} ({closure.type})" for closure in mechanism.closures]
+    assert sum(line.get("font-weight") is not None for line in lines) == len(mechanism.actuators)
+    attack = "<img src=x onerror=alert(1)>"
+    hostile = graph_svg(replace(mechanism, bodies=(replace(mechanism.bodies[0], name=attack),), joints=(), closures=()))
+    assert "<img" not in hostile
+    assert attack in [element.text for element in ElementTree.fromstring(hostile).iter()]
 
 
 def test_command_refuses_invalid_robot(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

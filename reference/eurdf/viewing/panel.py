@@ -9,6 +9,7 @@ from typing import Any
 from eurdf.exceptions import EurdfError, InvalidRobot
 from eurdf.viewing import text
 from eurdf.viewing.figure import LAYERS
+from eurdf.viewing.graph import graph_svg
 from eurdf.viewing.move_tab import MoveTab
 from eurdf.viewing.page import Page
 from eurdf.viewing.play_tab import PlayTab
@@ -33,13 +34,15 @@ class Panel:
         self._closed = threading.Event()
         self._status = gui.add_html("")
         tabs = gui.add_tab_group()
-        self._tabs: dict[str, Any] = {name: tabs.add_tab(name) for name in ("Move", "Play", "Show", "Robot")}
+        self._tabs: dict[str, Any] = {name: tabs.add_tab(name) for name in ("Move", "Play", "Show", "Robot", "Graph")}
         self._folders: dict[str, Any] = {}
         with self._tabs["Robot"]:
             self._gauge = gui.add_html("")
             self._bar = gui.add_progress_bar(0.0)
             self._dimensions = gui.add_html("")
             self._diagnostics = gui.add_html("")
+        with self._tabs["Graph"]:
+            self._graph = gui.add_html("")
         self._fill()
         page.shown.on_place = self._refresh
         if page.files is not None:
@@ -63,6 +66,7 @@ class Panel:
         self._in_tab("Show", self._checkboxes)
         self._dimensions.content = text.dimensions(session.analysis)
         self._diagnostics.content = text.diagnostics(robot.diagnostics)
+        self._graph.content = graph_svg(robot.mechanism)
         self._farthest = 0.0
 
     def _in_tab(self, name: str, make: Callable[[], Any]) -> Any:
