@@ -179,8 +179,8 @@ def serial_twin(
     The bodies of the linkage are left out, and their masses are lumped onto the bodies that carry them, as they are at
     q. The armature of a joint is the diagonal of M_J less the inertia of the twin, at least 0, so that no mass counts
     twice. ``conservative``: positions in a box inside the workspace; torques and velocities that the motors reach
-    together at all points of the grid in it; the largest armature there. ``fitted``: the range of the workspace, and the means over
-    its points of the torques, velocities and armatures.
+    together at all points of the grid in it; the largest armature there. ``fitted``: the range of the workspace, and
+    the means over its points of the torques, velocities and armatures.
 
     Args:
         robot: The robot, with the geometry that it was loaded with.
