@@ -164,7 +164,7 @@ def _import(format_: str, path: Path, read: RobotRead) -> Import:
 
 
 def _without_open_assembled(mechanism: Mechanism, losses: Losses) -> Mechanism:
-    """EU-CFG-005: the loops are closed at a configuration of that name; another one is renamed."""
+    """The mechanism without a configuration ``assembled`` at which loops are open: it gets another name."""
     configurations = dict(mechanism.configurations)
     if ASSEMBLED not in configurations or not mechanism.constraints:
         return mechanism

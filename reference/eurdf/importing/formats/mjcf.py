@@ -687,7 +687,7 @@ class _Reader:
         return Shape("mesh", given.scale, pose * own.inverse(), uri, color)
 
     def _color(self, geom: int) -> tuple[float, float, float, float] | None:
-        """EU-URD-029: the color of a shape; None where the file states none."""
+        """The color of a shape; None where the file states none."""
         model = self.model
         rgba, material = tuple(model["geom_rgba"][geom]), model["geom_matid"][geom]
         if material >= 0 and rgba == _DEFAULT_RGBA:
