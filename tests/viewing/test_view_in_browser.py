@@ -102,6 +102,28 @@ def test_slider_moves_the_robot_with_loops_closed(chromium: Any) -> None:
         page.close()
 
 
+def test_dragged_frame_moves_the_robot_with_loops_closed(chromium: Any) -> None:
+    with eurdf.view("digit_leg", port=0) as viewer:
+        page, errors = opened(chromium, viewer.url)
+        page.set_viewport_size({"width": 1200, "height": 800})
+        page.get_by_text("loops are closed").wait_for()
+        page.locator("input[value='(none)']").first.click()
+        page.get_by_role("option", name="foot", exact=True).click()
+        until(lambda: viewer._panel._move._gizmo._handle is not None, page)
+        page.wait_for_timeout(2000)  # until it is drawn
+        first = viewer.q
+        page.mouse.move(623, 563)  # the arrow up, as the camera sees it at the start
+        page.wait_for_timeout(500)
+        page.mouse.down()
+        page.mouse.move(623, 530, steps=6)
+        page.wait_for_timeout(500)
+        page.mouse.up()
+        until(lambda: np.abs(viewer.q - first).max() > 0.05, page)
+        assert np.abs(eurdf.residual(viewer.robot, viewer.q)).max() < 1e-9
+        assert errors == []
+        page.close()
+
+
 def test_motion_plays_and_pauses(chromium: Any) -> None:
     with eurdf.view("four_bar", port=0) as viewer:
         page, errors = opened(chromium, viewer.url)

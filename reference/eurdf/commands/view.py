@@ -74,17 +74,16 @@ def run(args: argparse.Namespace) -> int:
         write_reports([Report(refusal.path, tuple(refusal.diagnostics))])
         return 1
     with viewer:
-        write_lines([[(f"{viewer.robot.mechanism.name}: ", ""), (viewer.url, "bold")]], sys.stdout)
-        sys.stdout.flush()
-        if args.trajectory is not None:
-            try:
-                viewer.replay(args.trajectory)
-            except ValueError as reason:
-                raise CannotRun(f"'{args.trajectory}': {reason}") from None
         try:
+            write_lines([[(f"{viewer.robot.mechanism.name}: ", ""), (viewer.url, "bold")]], sys.stdout)
+            sys.stdout.flush()
+            if args.trajectory is not None:
+                viewer.replay(args.trajectory)
             threading.Event().wait()
+        except ValueError as reason:
+            raise CannotRun(f"'{args.trajectory}': {reason}") from None
         except KeyboardInterrupt:
-            write_lines([[]], sys.stdout)
+            pass  # this is how it ends
     return 0
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -55,18 +54,17 @@ class Gizmo:
         self._handle = self._page.server.scene.add_transform_controls(
             "/gizmo", scale=0.12 * scene.size, disable_rotations=not self._turn.value, depth_test=False
         )
-        self._handle.on_update(partial(self._dragged, False))
-        self._handle.on_drag_end(partial(self._dragged, True))
+        self._handle.on_update(self._dragged)
         self.refresh(scene.at(self._page.shown.session.q))
 
-    def _dragged(self, ends: bool, event: Any) -> None:
+    def _dragged(self, event: Any) -> None:
         frame = str(self._choice.value)
         position = np.array(event.target.position, dtype=float)
         w, x, y, z = np.array(event.target.wxyz, dtype=float)
         target = pin.XYZQUATToSE3([*position, x, y, z, w]) if self._turn.value else position
 
         def drag() -> str | None:
-            self._held = not ends
+            self._held = event.phase != "end"
             return self._page.shown.session.drag(frame, target)
 
         self._page.ask("drag", drag)
