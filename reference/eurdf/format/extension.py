@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from eurdf.mechanism.constraint import Compliance
 from eurdf.mechanism.mechanism import Root
@@ -20,8 +20,7 @@ from eurdf.reading.yaml_reader import YamlDocument
 NewType = Literal["spherical", "universal", "cylindrical", "helical", "fixed"]
 
 
-@dataclass(frozen=True, slots=True)
-class FrameReference:
+class FrameReference(NamedTuple):
     """A frame by its name, or as a pose on a link or on a joint's frame.
 
     Attributes:
@@ -39,8 +38,7 @@ class FrameReference:
     rpy: Vector3 = (0.0, 0.0, 0.0)
 
 
-@dataclass(frozen=True, slots=True)
-class ClosureEntry:
+class ClosureEntry(NamedTuple):
     """A loop closure as written.
 
     Attributes:
@@ -66,8 +64,7 @@ class ClosureEntry:
     compliance: Compliance | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class CouplingEntry:
+class CouplingEntry(NamedTuple):
     """A linear relation of joint coordinates as written.
 
     Attributes:
@@ -83,8 +80,7 @@ class CouplingEntry:
     offset: float = 0.0
 
 
-@dataclass(frozen=True, slots=True)
-class JointEntry:
+class JointEntry(NamedTuple):
     """The entry of one joint in the description.
 
     Attributes:
@@ -126,8 +122,7 @@ class JointEntry:
     freed: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class ActuatorEntry:
+class ActuatorEntry(NamedTuple):
     """An actuated joint; what is not written is None.
 
     Attributes:
@@ -147,8 +142,7 @@ class ActuatorEntry:
     control: tuple[float, float] | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class FrameEntry:
+class FrameEntry(NamedTuple):
     """A named frame on a link or on a joint's frame."""
 
     pointer: Pointer
@@ -156,8 +150,7 @@ class FrameEntry:
     reference: FrameReference
 
 
-@dataclass(frozen=True, slots=True)
-class ConfigurationEntry:
+class ConfigurationEntry(NamedTuple):
     """A named configuration: for each joint its coordinates as written, always as a tuple."""
 
     pointer: Pointer

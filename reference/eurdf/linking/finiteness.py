@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from itertools import chain
 from operator import add
 
 from eurdf.diagnostics import Diagnostics, Place
@@ -64,22 +65,15 @@ def _not_finite(mechanism: Mechanism, urdf: Urdf, extension: Extension | None) -
 
 def _is_moderate(mechanism: Mechanism) -> bool:
     """Whether all lengths, masses and moments together are so small that no pose and no inertia can overflow."""
-    total = 0.0
-    for joint in mechanism.joints:
-        x, y, z = joint.placement.xyz
-        u, v, w = joint.offset.xyz
-        total += abs(x) + abs(y) + abs(z) + abs(u) + abs(v) + abs(w)
-    for body in mechanism.bodies:
-        inertia = body.inertia
-        if inertia is not None:
-            x, y, z = inertia.pose.xyz
-            total += abs(inertia.mass) + abs(x) + abs(y) + abs(z) + sum(map(abs, inertia.moments))
-    poses = [frame.pose for frame in mechanism.frames]
+    inertias = [body.inertia for body in mechanism.bodies if body.inertia is not None]
+    poses = [inertia.pose for inertia in inertias]
+    poses += [joint.placement for joint in mechanism.joints]
+    poses += [joint.offset for joint in mechanism.joints if joint.offset is not IDENTITY]
+    poses += [frame.pose for frame in mechanism.frames]
     poses += [anchor.pose for closure in mechanism.closures for anchor in closure.anchors]
-    for pose in poses:
-        x, y, z = pose.xyz
-        total += abs(x) + abs(y) + abs(z)
-    return total < _MODERATE
+    numbers = [pose.xyz for pose in poses] + [inertia.moments for inertia in inertias]
+    masses = [inertia.mass for inertia in inertias]
+    return sum(map(abs, chain(chain.from_iterable(numbers), masses))) < _MODERATE
 
 
 def _poses_and_inertias_not_finite(

@@ -201,6 +201,8 @@ def _own_keys(extension: Extension, urdf: Urdf, reporter: YamlReporter) -> None:
 
 def _vanished(urdf: Urdf, joints: dict[str, Joint]) -> tuple[Frame, ...]:
     """EU-FRM-004: a joint of the URDF that the description split or renamed is still found by name, as a frame."""
+    if joints.keys() >= urdf.joints.keys():
+        return ()
     return tuple(Frame(joint.name, joint.child, kind="joint") for joint in urdf.walk() if joint.name not in joints)
 
 

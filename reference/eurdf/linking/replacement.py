@@ -282,10 +282,18 @@ class _Replacement:
 
     def _spread(self, joint: Joint, kind: JointType) -> Joint:
         """EU-JNT-020, -021: the joint with another type; its rates and dynamics are those of each of its velocities."""
-        each = {
-            name: getattr(joint.properties, name) * COORDINATES[kind].nv
-            for name in ("velocity", "effort", "damping", "friction", "armature", "gear_ratio", "rotor_inertia")
-        }
+        nv, own, free = COORDINATES[kind].nv, joint.properties, JointProperties.unlimited(kind)
+        properties = JointProperties(
+            free.lower,
+            free.upper,
+            own.velocity * nv,
+            own.effort * nv,
+            own.damping * nv,
+            own.friction * nv,
+            own.armature * nv,
+            own.gear_ratio * nv,
+            own.rotor_inertia * nv,
+        )
         return Joint(
             joint.name,
             kind,
@@ -293,7 +301,7 @@ class _Replacement:
             joint.child,
             joint.placement,
             axes=() if kind is JointType.SPHERICAL else joint.axes,
-            properties=replace(JointProperties.unlimited(kind), **each),
+            properties=properties,
         )
 
     def universal(self, joint: Joint) -> Joint | None:

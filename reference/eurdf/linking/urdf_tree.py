@@ -8,8 +8,8 @@ from eurdf.format.urdf.data import Limit, Urdf, UrdfJoint
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.pose import IDENTITY
 
+_NONE = JointProperties()
 _UNLIMITED = Limit(-math.inf, math.inf, math.inf, math.inf)
 _AXIAL = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC})
 
@@ -26,32 +26,29 @@ def joint_of(joint: UrdfJoint) -> Joint:
     their coordinates, of different units.
     """
     kind = joint.type
+    properties = _NONE if kind is JointType.FIXED else JointProperties.unlimited(kind)
     if kind not in _AXIAL:
-        properties = JointProperties() if kind is JointType.FIXED else JointProperties.unlimited(kind)
         return Joint(joint.name, kind, joint.parent, joint.child, joint.placement, properties=properties)
-    lower, upper, velocity, effort = joint.limit or _UNLIMITED
-    if kind is JointType.CONTINUOUS:
-        lower, upper = -math.inf, math.inf
-    properties = JointProperties(
-        (lower,),
-        (upper,),
-        (velocity,),
-        (effort,),
-        (joint.damping,),
-        (joint.friction,),
-        armature=(0.0,),
-        gear_ratio=(1.0,),
-        rotor_inertia=(0.0,),
-    )
+    if joint.limit is not None or joint.damping or joint.friction:
+        lower, upper, velocity, effort = joint.limit or _UNLIMITED
+        properties = JointProperties(
+            properties.lower if kind is JointType.CONTINUOUS else (lower,),
+            properties.upper if kind is JointType.CONTINUOUS else (upper,),
+            (velocity,),
+            (effort,),
+            (joint.damping,),
+            (joint.friction,),
+            properties.armature,
+            properties.gear_ratio,
+            properties.rotor_inertia,
+        )
     return Joint(
         joint.name,
         kind,
         joint.parent,
         joint.child,
         joint.placement,
-        IDENTITY,
-        (joint.axis,),
-        0.0,
-        properties,
-        joint.mimic,
+        axes=(joint.axis,),
+        properties=properties,
+        mimic=joint.mimic,
     )

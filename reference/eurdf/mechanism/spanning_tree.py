@@ -14,7 +14,8 @@ def depth_first(root: str, joints: Iterable[Joint]) -> list[Joint]:
     for joint in joints:
         children.setdefault(joint.parent, []).append(joint)
     for siblings in children.values():
-        siblings.sort(key=lambda joint: joint.name, reverse=True)
+        if len(siblings) > 1:
+            siblings.sort(key=lambda joint: joint.name, reverse=True)
     ordered: list[Joint] = []
     stack = list(children.get(root, ()))
     while stack:

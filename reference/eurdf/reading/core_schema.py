@@ -26,14 +26,13 @@ _NUMBER_BEGINS = frozenset("+-.0123456789")
 
 def resolve(text: str) -> Scalar:
     """EU-YML-011: value of a plain scalar without a tag; a number beyond the range of a double is an infinity."""
+    if text[:1] not in _NUMBER_BEGINS:
+        return _WORDS.get(text, text)
     if text in _WORDS:
         return _WORDS[text]
-    if text[0] in _NUMBER_BEGINS:
-        if _INT.fullmatch(text):
-            return _integer(text)
-        if _FLOAT.fullmatch(text):
-            return float(text)
-    return text
+    if _INT.fullmatch(text):
+        return _integer(text)
+    return float(text) if _FLOAT.fullmatch(text) else text
 
 
 def resolve_tagged(tag: str, text: str) -> Scalar:

@@ -138,6 +138,7 @@ def _parser(recover: bool = False) -> etree.XMLParser:
         no_network=True,
         load_dtd=False,
         huge_tree=False,
+        remove_blank_text=True,  # no text of a URDF has a meaning
         remove_comments=True,
         remove_pis=True,
         collect_ids=False,

@@ -127,7 +127,7 @@ class _Reader:
     """Builds the nodes of one document from libyaml's events, without recursion."""
 
     def __init__(self, source: Source, next_event: Any, original: dict[int, str]) -> None:
-        self._source = source
+        self._source, self._text = source, source.text
         self._next_event = next_event
         self._original = original
         self._anchors: dict[str, tuple[Any, Span | Collection]] = {}
@@ -185,12 +185,13 @@ class _Reader:
         self._next_node()
         text = event.value.translate(self._original) if self._original else event.value
         value: Any = text
-        if event.tag is None:
+        tag = event.tag
+        if tag is None:
             if event.implicit[0]:  # plain
                 value = resolve(text)
-        elif event.tag != "!":
+        elif tag != "!":
             try:
-                value = resolve_tagged(event.tag, text)
+                value = resolve_tagged(tag, text)
             except ValueError:
                 raise self._tag_error(event, _quote(text)) from None
         span = _span(event)
@@ -199,7 +200,7 @@ class _Reader:
             self._anchors[event.anchor] = value, span
         around = self._open[-1]
         if around.awaits_key:
-            self._key(value, event)
+            self._key(value, event, span)
             return
         if type(value) is float and not isfinite(value):
             what = "is not a finite number" if "n" in text.lower() else "is too large for a number"
@@ -207,14 +208,14 @@ class _Reader:
         around.add(value, span)
 
     def _begin(self, event: Any, data: dict[str, Any] | list[Any], tag: str) -> None:
+        start, end = _span(event)
         if self._open[-1].awaits_key:
-            self._key(data, event)
+            self._key(data, event, (start, end))
         if len(self._open) > DEPTH_LIMIT:
             message = f"mappings and lists are nested more than {DEPTH_LIMIT} deep"
             raise self._error("yaml-too-deep", message, event)
         if event.tag not in (None, "!", TAG_PREFIX + tag):
             raise self._tag_error(event, _kind(data))
-        start, end = _span(event)
         collection = Collection(data, (start, end if event.flow_style else None), self._size())
         self._next_node()
         if event.anchor is not None:
@@ -230,7 +231,8 @@ class _Reader:
             collection.span = start, _span(event)[1]
         collection.size = self._size() - collection.size
         around = self._open[-1]
-        around.height = max(around.height, collection.height + 1)
+        if around.height <= collection.height:
+            around.height = collection.height + 1
         around.add(collection.data, collection)
 
     def _alias(self, event: AliasEvent) -> None:
@@ -251,7 +253,7 @@ class _Reader:
             raise self._error("yaml-alias", message, event)
         around = self._open[-1]
         if around.awaits_key:
-            self._key(value, event)
+            self._key(value, event, _span(event))
         elif collection is None:
             around.add(value, _span(event))
         else:
@@ -268,11 +270,10 @@ class _Reader:
         if text[begin + len(name) : begin + len(name) + 1].strip(" \t\r\n,[]{}"):
             raise unusual_name(self._source.place(begin, begin + len(name)))
 
-    def _key(self, value: Any, event: Event) -> None:
+    def _key(self, value: Any, event: Event, span: tuple[int, int]) -> None:
         """Take a value as the next key of the innermost mapping."""
         mapping = self._open[-1]
-        begin, _ = _span(event)
-        if self._source.text[begin - 1 : begin] == "?":
+        if self._text.startswith("?", span[0] - 1) and span[0]:
             # EU-YML-012: within braces, to libyaml it marks a key whatever follows.
             message = "a '?' is not allowed directly before a key inside braces or brackets"
             raise self._error("yaml-syntax", message, event, "quote the key, and its '?' if it is a part of it")
@@ -287,7 +288,7 @@ class _Reader:
             message = f"the key {_quote(value)} occurs twice in one mapping"
             raise self._error("yaml-duplicate-key", message, event, f"it first occurs on line {line}")
         mapping.key, mapping.awaits_key = value, False
-        mapping.keys[value] = _span(event)
+        mapping.keys[value] = span
 
     def _expect_end(self) -> None:
         end = self._next_event()
