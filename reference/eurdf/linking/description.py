@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import difflib
 import os
-import shlex
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -18,7 +16,6 @@ from eurdf.format.extension import ClosureEntry, CouplingEntry, Extension
 from eurdf.format.read_extension import read_extension, version_of
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.urdf.read import read_urdf
-from eurdf.format.yaml_text import scalar
 from eurdf.linking.inertia import check_inertias, check_leaves
 from eurdf.linking.link import link
 from eurdf.mechanism.mechanism import Mechanism, Root
@@ -320,6 +317,12 @@ def _urdf_not_found(path: Path, extension: Extension, diagnostics: Diagnostics) 
 
 def _urdf_hint(path: Path, home: Path, extension: Extension) -> str:
     """A hint with the paths of nearby URDFs from the description."""
+    # Only now: few descriptions name a URDF that does not exist.
+    import difflib
+    import shlex
+
+    from eurdf.format.yaml_text import scalar
+
     near = _files_near(path, home, ".urdf")
     xacro = None if near else next(iter(_files_near(path, home, ".xacro")), None)
     if xacro is not None:

@@ -6,7 +6,6 @@ import json
 import os
 import signal
 import stat
-import subprocess
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -158,6 +157,8 @@ def _read(files: list[_File]) -> dict[str, Mesh | str]:
 
 def _run(files: list[_File]) -> tuple[Iterator[Mesh | str], int]:
     """What a process reads of files, as far as it comes, and its exit code."""
+    import subprocess  # only now: often no mesh is read
+
     request = {
         "patience": PATIENCE,
         "files": [{"path": file.path, "seconds": file.seconds, "memory": file.memory} for file in files],

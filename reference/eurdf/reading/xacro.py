@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
 import sys
 from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
@@ -84,6 +83,8 @@ def expand(
 
 
 def _answer(file: str, request: Mapping[str, object]) -> dict[str, Any]:
+    import subprocess  # only now: few robots are a xacro
+
     # -P: a module of the working directory named xacro is not the one that is meant.
     command = [sys.executable, "-P", str(_PROGRAM)]
     try:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import statistics
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from typing import TYPE_CHECKING
@@ -44,7 +43,9 @@ def advise_on_lengths(description: Linked, meshes: Mapping[str, Mesh], diagnosti
     joints = [found for found in _between_joints(urdf) if found[0] > 0.0]
     if not joints:
         return
-    median = statistics.median(length for length, _, _ in joints)
+    ordered = sorted(length for length, _, _ in joints)
+    half = len(ordered) // 2
+    median = 0.5 * (ordered[half] + ordered[-half - 1])
     if _LONG < median <= _MOST:
         mass = sum(link.inertia.mass for link in urdf.links.values() if link.inertia is not None)
         if mass <= _HEAVY * median:

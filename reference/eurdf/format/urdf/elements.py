@@ -282,7 +282,7 @@ class UrdfReader:
         if element is None:
             return IDENTITY
         xyz_text, rpy_text = text = element.get("xyz"), element.get("rpy")
-        if xyz_text is None or rpy_text is None or len(element.attrib) > 2:
+        if len(element.keys()) > (xyz_text is not None) + (rpy_text is not None):
             self.attributes(element)
         pose = self._poses.get(text)
         if pose is None:

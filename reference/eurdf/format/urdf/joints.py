@@ -7,9 +7,10 @@ from eurdf.format.urdf.data import Limit, UrdfJoint
 from eurdf.format.urdf.elements import RANGED, URDF_JOINT_TYPES, UrdfReader, named
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mimic import Mimic
-from eurdf.mechanism.pose import Vector3
+from eurdf.mechanism.pose import IDENTITY, Vector3
 from eurdf.reading.reporter import Element
 
+_X: Vector3 = (1.0, 0.0, 0.0)
 _AXLESS = frozenset({JointType.FIXED, JointType.FLOATING})
 
 # Attributes of one number each, and their defaults.
@@ -26,10 +27,10 @@ def read_joint(reader: UrdfReader, element: Element) -> UrdfJoint | None:
     parent_element, child_element = reader.need(element, found, "parent"), reader.need(element, found, "child")
     parent = reader.name(parent_element, "link") if parent_element is not None else None
     child = reader.name(child_element, "link") if child_element is not None else None
-    placement = reader.origin(found.get("origin"))
+    placement = reader.origin(found["origin"]) if "origin" in found else IDENTITY
     if kind is None:
         return None
-    axis = _axis(reader, name, kind, found.get("axis"))
+    axis = _axis(reader, name, kind, found["axis"]) if "axis" in found else _X
     limit = _limit(reader, name, kind, element, found.get("limit"))
     damping = friction = 0.0
     if "dynamics" in found:
@@ -56,10 +57,8 @@ def _type(reader: UrdfReader, element: Element) -> JointType | None:
     return kind
 
 
-def _axis(reader: UrdfReader, name: str | None, kind: JointType, element: Element | None) -> Vector3 | None:
+def _axis(reader: UrdfReader, name: str | None, kind: JointType, element: Element) -> Vector3 | None:
     """EU-URD-013, EU-URD-035: the axis of a joint that turns about it or slides along it; x if left out."""
-    if element is None:
-        return (1.0, 0.0, 0.0)
     text = element.get("xyz")
     if text is None:
         reader.missing_attribute(element, "xyz")
@@ -69,7 +68,7 @@ def _axis(reader: UrdfReader, name: str | None, kind: JointType, element: Elemen
         return None
     x, y, z = axis
     if kind in _AXLESS:
-        return (1.0, 0.0, 0.0)
+        return _X
     if kind is JointType.PLANAR:
         if x != 0.0 or y != 0.0:
             reader.report(
