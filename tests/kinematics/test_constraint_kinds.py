@@ -266,9 +266,18 @@ def test_distance_at_one_point_has_a_direction() -> None:
 REFERENCE = Path(eurdf.__file__).parent
 
 
-#: What states, suggests or writes a constraint by its kind; and the batch, which evaluates each kind at many
+#: What states, suggests, reads or writes a constraint by its kind; and the batch, which evaluates each kind at many
 #: configurations.
-STATING = ("checking/", "exporting/", "format/", "linking/", "kinematics/batch/")
+STATING = (
+    "checking/",
+    "exporting/",
+    "format/",
+    "importing/",
+    "linking/",
+    "kinematics/batch/",
+    "transmissions/c_source.py",
+    "writing/",
+)
 
 
 def files_with(pattern: str, folder: str = "") -> set[str]:
