@@ -14,7 +14,7 @@ import numpy as np
 
 from eurdf.kinematics.analysis import Analysis, analyze
 from eurdf.kinematics.array import Vector
-from eurdf.kinematics.assembly import Assembly, assemble
+from eurdf.kinematics.assembly import Assembly, assemble, start
 from eurdf.kinematics.branch import Branch, Point
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.exceptions import NotClosable
@@ -113,7 +113,7 @@ class Session:
             ValueError: ``q`` is not a configuration.
         """
         self.robot = robot
-        assembly = assemble(robot, q, tolerance=_TOLERANCE)
+        assembly = assemble(robot, start(robot, q, "q"), tolerance=_TOLERANCE)
         self.q: Vector = assembly.q
         self.first: Vector = assembly.q
         self.analysis: Analysis = analyze(robot, assembly.q)
