@@ -320,7 +320,7 @@ def test_configuration_is_not_written_to_standard_input(folder: Path) -> None:
     text = (FOUR_BAR / "robot.yaml").read_text(encoding="utf-8")
     done = eurdf_with(text, "assemble", "-", "--urdf", str(FOUR_BAR / "robot.urdf"), "--write")
     assert (done.returncode, done.stdout) == (2, "")
-    assert "--write needs a file" in done.stderr
+    assert "saving needs a file" in done.stderr
 
 
 # --- a folder whose files cannot be read -----------------------------------------------------------------------------
