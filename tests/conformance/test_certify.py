@@ -82,6 +82,7 @@ def test_the_reference_is_certified_at_every_level_of_all_versions(shared_run: R
     assert asked == planned
 
 
+@pytest.mark.slow
 def test_accept_all_fails_exactly_the_invalid_cases(shared_run: Run) -> None:
     certificate = read_certificate(Path(shared_run("--parser", ACCEPTS, *SOME).certificate))
     failed = {failure.id for failure in certificate.failures}
@@ -93,6 +94,7 @@ def test_accept_all_fails_exactly_the_invalid_cases(shared_run: Run) -> None:
     assert not any(level.certified for level in certificate.levels)
 
 
+@pytest.mark.slow
 def test_reject_all_fails_exactly_the_valid_cases(shared_run: Run) -> None:
     certificate = read_certificate(Path(shared_run("--parser", REJECTS, *SOME).certificate))
     failed = {failure.id for failure in certificate.failures}
@@ -101,6 +103,7 @@ def test_reject_all_fails_exactly_the_valid_cases(shared_run: Run) -> None:
     assert not any(level.certified for level in certificate.levels)
 
 
+@pytest.mark.slow
 def test_a_failure_is_shown_with_reason_and_command(shared_run: Run) -> None:
     done = shared_run("--parser", ACCEPTS, *SOME)
     assert done.returncode == 1
@@ -395,6 +398,7 @@ def test_control_characters_of_a_parser_that_fails_are_escaped(folder: Path) -> 
     assert "\x1b" not in done.stderr
 
 
+@pytest.mark.slow
 def test_a_comparison_is_one_page_of_all_its_certificates(folder: Path, shared_run: Run) -> None:
     a, b = (shared_run("--parser", parser, *SOME).certificate for parser in (REJECTS, ACCEPTS))
     assert main(["certify", "--compare", a, f"{b}/certificate.json", "-o", "page.html"]) == 0

@@ -132,7 +132,7 @@ def test_same_seed_gives_same_damage() -> None:
         ("os.write(2, b'from C++')", "noise: from C++"),
         ("os.abort()", "the process ended with -6"),
         ("[None for _ in iter(int, 1)]", "the process ended with -27"),
-        ("time.sleep(1000)", "the process ended with hangs"),
+        pytest.param("time.sleep(1000)", "the process ended with hangs", marks=pytest.mark.slow),
     ],
 )
 def test_misbehaviour_on_damaged_robot_is_detected(harm: str, told: str) -> None:

@@ -19,8 +19,7 @@ def start() -> int:
     Returns:
         The exit code of `eurdf.commands.main.main`.
     """
-    # Nearly all that a command imports and reads stays until it ends; to look for garbage in it so often takes a tenth
-    # of a check.
+    # Nearly all that a command imports and reads stays until it ends: there is little garbage to look for.
     gc.set_threshold(100_000, 50, 50)
     try:
         handled = signal.getsignal(signal.SIGINT) is signal.default_int_handler
