@@ -247,11 +247,21 @@ def test_command_refuses_invalid_robot(tmp_path: Path, capsys: pytest.CaptureFix
 def test_command_ends_with_an_interrupt() -> None:
     pytest.importorskip("viser", reason=MISSING)
     command = [sys.executable, "-m", "eurdf", "view", "four_bar", "--no-browser", "--port", "0"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
-        assert running.stdout is not None
-        assert running.stdout.readline().startswith("four_bar: http://127.0.0.1:")
-        running.send_signal(signal.SIGINT)
-        assert running.communicate(timeout=30) == ("", "")
+    with subprocess.Popen(
+        command,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        # Where the tests run as a background job of a script, SIGINT is ignored, also by what they start.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    ) as running:
+        try:
+            assert running.stdout is not None
+            assert running.stdout.readline().startswith("four_bar: http://127.0.0.1:")
+            running.send_signal(signal.SIGINT)
+            assert running.communicate(timeout=30) == ("", "")
+        finally:
+            running.kill()
     assert running.returncode == 0
 
 
