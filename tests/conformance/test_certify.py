@@ -407,6 +407,7 @@ def test_a_comparison_is_one_page_of_all_its_certificates(folder: Path, shared_r
     assert "Clauses with different results" in page
 
 
+@pytest.mark.slow
 def test_a_comparison_overwrites_nothing_unasked(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     certify("--parser", REJECTS, "--smoke", "--certificate", "a")
     Path("page.html").write_text("of somebody else", encoding="utf-8")
@@ -417,6 +418,7 @@ def test_a_comparison_overwrites_nothing_unasked(folder: Path, capsys: pytest.Ca
     assert "always_rejected 1" in Path("page.html").read_text(encoding="utf-8")
 
 
+@pytest.mark.slow
 def test_a_page_distinguishes_parsers_with_the_same_name(folder: Path) -> None:
     certify("--parser", REJECTS, "--smoke", "--certificate", "a")
     (Path("a") / "certificate.json").rename("one.json")

@@ -28,8 +28,8 @@ NEAR = 1e-9
 @pytest.mark.parametrize(
     ("version", "closures", "count"),
     [
-        ("1", 1, 50),
-        ("2", 1, 50),
+        ("1", 1, 25),
+        ("2", 1, 25),
         pytest.param("1", 1, 100, marks=pytest.mark.slow),
         pytest.param("2", 0, 100, marks=pytest.mark.slow),
         pytest.param("2", 1, 150, marks=pytest.mark.slow),

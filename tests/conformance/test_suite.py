@@ -431,6 +431,7 @@ def suite(
 FEW = "closures/parallelogram-3d-closure or frames/closure-at-unknown-frame"
 
 
+@pytest.mark.slow
 def test_a_correct_parser_passes_and_gets_a_certificate(tmp_path: Path) -> None:
     # Of the older version, which has fewer cases.
     topics = ["protocol", "closures", "names"]

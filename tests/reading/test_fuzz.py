@@ -109,6 +109,7 @@ def test_kept_finding_is_reproduced(tmp_path: Path, capsys: pytest.CaptureFixtur
     assert capsys.readouterr().out.startswith(f"{folder}: raised: KeyError")
 
 
+@pytest.mark.slow
 def test_campaign_states_its_seed_and_what_it_came_to(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--seed", "1", "--count", "12", "--minutes", "5", "--findings", str(tmp_path)]) == 0
     out = capsys.readouterr().out

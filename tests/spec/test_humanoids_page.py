@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from support.page_reader import PageReader
 
 ROOT = Path(__file__).parents[2]
 
 
+@pytest.mark.slow
 def test_commands_and_code_give_what_page_shows(tmp_path: Path) -> None:
     reader = PageReader(ROOT / "docs" / "humanoids.md", tmp_path)
     reader.follow()
