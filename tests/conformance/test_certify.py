@@ -69,6 +69,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 # --- what it says ----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_the_reference_is_certified_at_every_level_of_all_versions(shared_run: Run) -> None:
     """The one run of the tests in which the reference answers every case and every property."""
     done = shared_run("--parser", REFERENCE, "--seed", "0", "--date", "2026-01-31")
