@@ -30,9 +30,9 @@ NEAR = 1e-9
     [
         ("1", 1, 25),
         ("2", 1, 25),
-        pytest.param("1", 1, 100, marks=pytest.mark.slow),
-        pytest.param("2", 0, 100, marks=pytest.mark.slow),
-        pytest.param("2", 1, 150, marks=pytest.mark.slow),
+        pytest.param("1", 1, 50, marks=pytest.mark.slow),
+        pytest.param("2", 0, 60, marks=pytest.mark.slow),
+        pytest.param("2", 1, 75, marks=pytest.mark.slow),
     ],
 )
 def test_mechanisms_agree_within_a_billionth_of_their_size(
