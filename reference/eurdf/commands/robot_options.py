@@ -22,6 +22,14 @@ def add_robot_path(parser: argparse.ArgumentParser, *, several: bool = False) ->
         parser.add_argument("path", metavar="PATH", help=_PATH)
 
 
+def add_serial_joints(parser: argparse.ArgumentParser) -> None:
+    """Add the options for the joints of a serial robot, and for the motors that drive them."""
+    parser.add_argument("--joints", nargs="+", required=True, metavar="JOINT", help="joints of the serial robot")
+    parser.add_argument(
+        "--motors", nargs="+", metavar="JOINT", help="the motors; default: the actuated joints that move the joints"
+    )
+
+
 def add_urdf_path(parser: argparse.ArgumentParser) -> None:
     """Add the argument for a URDF."""
     parser.add_argument("urdf", metavar="URDF", help="a .urdf or .xacro file, or - for standard input")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.migrate import print_notes, show_refusal
 from eurdf.commands.output import cell, new_table, write_rendered
-from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
+from eurdf.commands.robot_options import add_robot_options, add_robot_path, add_serial_joints, ending, robot_options
 from eurdf.commands.selection import select_one
 
 if TYPE_CHECKING:
@@ -41,10 +41,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     add_robot_path(parser)
     add_robot_options(parser)
-    parser.add_argument("--joints", nargs="+", required=True, metavar="JOINT", help="joints of the serial robot")
-    parser.add_argument(
-        "--motors", nargs="+", metavar="JOINT", help="the motors; default: the actuated joints that move the joints"
-    )
+    add_serial_joints(parser)
     parser.add_argument("-o", "--output", required=True, metavar="FOLDER", help="the folder to write to")
     parser.add_argument(
         "--limits",

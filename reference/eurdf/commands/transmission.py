@@ -15,7 +15,7 @@ from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.migrate import print_notes, show_refusal
 from eurdf.commands.output import cell, new_table, write_json, write_rendered
 from eurdf.commands.output_file import refuse_to_replace, write_new
-from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
+from eurdf.commands.robot_options import add_robot_options, add_robot_path, add_serial_joints, ending, robot_options
 from eurdf.commands.selection import select_one
 
 if TYPE_CHECKING:
@@ -56,10 +56,7 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     )
     add_robot_path(parser)
     add_robot_options(parser)
-    parser.add_argument("--joints", nargs="+", required=True, metavar="JOINT", help="joints of the serial robot")
-    parser.add_argument(
-        "--motors", nargs="+", metavar="JOINT", help="the motors; default: the actuated joints that move the joints"
-    )
+    add_serial_joints(parser)
     poses = parser.add_mutually_exclusive_group()
     poses.add_argument(
         "--at",

@@ -46,8 +46,8 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--host",
         default=_LOOPBACK,
         metavar="ADDRESS",
-        help=f"address to listen on; default: {_LOOPBACK}, for this machine alone. Whoever reaches another one can "
-        "move the robot, and save configurations to its file",
+        help=f"address to listen on; default: {_LOOPBACK}, for this machine alone. With another one, other machines "
+        "can move the robot, and save configurations to its file",
     )
     parser.add_argument(
         "--trajectory",

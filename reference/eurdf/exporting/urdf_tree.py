@@ -91,6 +91,13 @@ _ON_AXES = tuple(
 #: Losses of a tree that has only the joint types of URDF.
 PLAIN_LOSSES = (
     LossKind(
+        "export-coupling-dropped",
+        "coupling",
+        Effect.DROPPED,
+        "is left out: URDF has mimic joints alone",
+        "where it relates two joints, let one of them mimic the other in the URDF",
+    ),
+    LossKind(
         "export-floating-root",
         "floating root",
         Effect.DROPPED,

@@ -31,6 +31,13 @@ from eurdf.writing.urdf_elements import LARGEST
 #: Losses of every dialect.
 URDF_LOSSES = (
     LossKind(
+        "import-name",
+        "name",
+        Effect.EXACT,
+        "is changed: the name is missing, or used by another element",
+        "give the element a unique name in the file",
+    ),
+    LossKind(
         "import-mesh",
         "mesh",
         Effect.DROPPED,

@@ -25,7 +25,7 @@ FORMATS = ("png", "svg", "pdf")
 # A figure is as wide as a page of a paper with two columns, in.
 _WIDTH = 7.16
 _DOTS_PER_INCH = 200
-# Colors that are told apart without red and green (Okabe, Ito, 2008).
+# Colors for readers who do not distinguish red and green (Okabe, Ito, 2008).
 _COLORS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#999999")
 _SINGULAR = "#000000"
 _STYLES: dict[str, Any] = {

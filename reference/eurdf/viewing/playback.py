@@ -44,7 +44,7 @@ def sweep_frames(session: Session, index: int, show: Show) -> Iterator[float]:
 
 
 def trajectory_frames(session: Session, trajectory: Trajectory, show: Show) -> Iterator[float]:
-    """A trajectory, once: the joints of its columns go where they are told, the others follow.
+    """A trajectory, once: the joints of its columns have its values, and the others follow.
 
     Yields:
         How long to show each frame, s.

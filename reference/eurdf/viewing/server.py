@@ -42,7 +42,7 @@ def start_server(host: str, port: int | None, title: str) -> viser.ViserServer:
         raise MissingExtra(f"the viewer needs viser; install it with: {install_command('view')}", "view") from None
     with contextlib.redirect_stdout(io.StringIO()):  # it prints its address, and so do we
         server = viser.ViserServer(host, _free_port(host, port), label=title, verbose=False)
-    # Whoever sees the page could ask for a public address of it.
+    # Otherwise any visitor of the page could ask for a public address of it.
     for message in (messages.ShareUrlRequest, messages.ShareUrlDisconnect):
         server._websock_server.unregister_handler(message)
     server.gui.configure_theme(show_logo=False, show_share_button=False, control_width="large")

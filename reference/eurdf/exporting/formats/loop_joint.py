@@ -33,13 +33,6 @@ LOSSES = (
         "is left out: there is no such loop joint",
         "describe the rod as a link, with a joint at each end",
     ),
-    LossKind(
-        "export-coupling-dropped",
-        "coupling",
-        Effect.DROPPED,
-        "is left out: URDF has mimic joints alone",
-        "where it relates two joints, let one of them mimic the other in the URDF",
-    ),
     *PLAIN_LOSSES,
 )
 

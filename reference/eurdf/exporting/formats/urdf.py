@@ -20,13 +20,6 @@ def _closure(kind: str) -> LossKind:
 
 LOSSES = (
     *(_closure(kind) for kind in ("3d", "6d", "hinge", "distance")),
-    LossKind(
-        "export-coupling-dropped",
-        "coupling",
-        Effect.DROPPED,
-        "is left out: URDF has mimic joints alone",
-        "where it relates two joints, let one of them mimic the other in the URDF",
-    ),
     *PLAIN_LOSSES,
 )
 

@@ -709,7 +709,7 @@ class _Writer:
         self.losses.add("export-coupling-dropped", coupling.name)
 
     def _no_contacts(self) -> None:
-        """No contacts of bodies on either side of a joint, but for those that a USD joint excludes by itself."""
+        """Exclude contacts between bodies that a joint connects, except where a USD joint already excludes them."""
         mechanism = self.mechanism
         hosts = {name: path for name, (path, _) in self.hosts.items()}
         pairs = [(hosts[a], hosts[b]) for a, b in neighbours(mechanism, LEAST)]

@@ -45,13 +45,6 @@ _KNOWN = (
 
 LOSSES = (
     LossKind(
-        "import-name",
-        "name",
-        Effect.EXACT,
-        "is changed: the name is missing, or used by another element",
-        "give the element a unique name in the file",
-    ),
-    LossKind(
         "import-tendon",
         "tendon constraint",
         Effect.DROPPED,

@@ -21,13 +21,6 @@ from eurdf.writing.names import UniqueNames
 
 LOSSES = (
     LossKind(
-        "import-name",
-        "name",
-        Effect.EXACT,
-        "is changed: the name is missing, or used by another element",
-        "give the element a unique name in the file",
-    ),
-    LossKind(
         "import-loop",
         "loop joint",
         Effect.DROPPED,

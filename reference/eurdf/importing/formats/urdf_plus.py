@@ -23,13 +23,6 @@ from eurdf.writing.names import UniqueNames
 
 LOSSES = (
     LossKind(
-        "import-name",
-        "name",
-        Effect.EXACT,
-        "is changed: the name is missing, or used by another element",
-        "give the element a unique name in the file",
-    ),
-    LossKind(
         "import-loop",
         "loop",
         Effect.DROPPED,
