@@ -61,7 +61,7 @@ VIEWS = (View((0.0, -1.0, 0.0)), View((1.0, -0.75, 0.45)), View((-1.0, 0.3, 0.25
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Drawn:
+class Drawn:
     """What a picture shows, in the world, m.
 
     Attributes:
@@ -98,11 +98,11 @@ def picture(robot: Robot, views: Sequence[View] = VIEWS, *, q: Vector | None = N
         ValueError: There is nothing to draw.
     """
     _renderer()
-    drawn = _drawn(robot, q, loops)
+    shown = drawn(robot, q, loops)
     boxes = []
     for view in views:
-        seen = drawn.points @ view.axes.T
-        boxes.append((seen.min(axis=0), seen.max(axis=0)))
+        points = shown.points @ view.axes.T
+        boxes.append((points.min(axis=0), points.max(axis=0)))
     sizes = [(high - low)[:2] for low, high in boxes]
     width, height = sum(size[0] for size in sizes), max(size[1] for size in sizes)
     scale = min(
@@ -113,7 +113,7 @@ def picture(robot: Robot, views: Sequence[View] = VIEWS, *, q: Vector | None = N
     images = []
     for view, (low, high), size in zip(views, boxes, sizes, strict=True):
         pixels = round(scale * size[0]) + 2 * _MARGIN, rows
-        images.append(_seen(drawn, view, (low + high) / 2.0, pixels, scale))
+        images.append(seen(shown, view, (low + high) / 2.0, pixels, scale))
     return np.concatenate(images, axis=1)
 
 
@@ -129,8 +129,8 @@ def save_picture(image: Image, file: str | os.PathLike[str]) -> None:
     palette.save(file, format="PNG", optimize=True)
 
 
-def _drawn(robot: Robot, q: Vector | None, loops: bool) -> _Drawn:
-    """What is shown of a robot.
+def drawn(robot: Robot, q: Vector | None, loops: bool) -> Drawn:
+    """What is shown of a robot; see `picture`.
 
     Raises:
         InvalidRobot: A mesh is missing.
@@ -162,7 +162,7 @@ def _drawn(robot: Robot, q: Vector | None, loops: bool) -> _Drawn:
     together = np.concatenate(points)
     if not (len(together) and np.ptp(together, axis=0).any()):
         raise ValueError("there is nothing to draw: it has no visual shapes, and all links are at one point")
-    return _Drawn(solids, lines, dots, together)
+    return Drawn(solids, lines, dots, together)
 
 
 def _renderer() -> Any:
@@ -182,11 +182,11 @@ def _renderer() -> Any:
     return pyvista
 
 
-def _seen(drawn: _Drawn, view: View, center: Points, pixels: tuple[int, int], scale: float) -> Image:
+def seen(shown: Drawn, view: View, center: Points, pixels: tuple[int, int], scale: float) -> Image:
     """One view: pixels (height, width, 3).
 
     Args:
-        drawn: What is shown.
+        shown: What is shown.
         view: From where it is seen.
         center: Of the view, seen along its axes, m.
         pixels: Width and height.
@@ -197,7 +197,7 @@ def _seen(drawn: _Drawn, view: View, center: Points, pixels: tuple[int, int], sc
     pv = _renderer()
     plotter = pv.Plotter(off_screen=True, window_size=[_OVERSAMPLING * side for side in pixels], lighting="none")
     plotter.set_background("white")
-    for surface, color in drawn.solids:
+    for surface, color in shown.solids:
         faces = np.column_stack((np.full(len(surface.triangles), 3), surface.triangles))
         plotter.add_mesh(
             pv.PolyData(surface.vertices, faces),
@@ -209,17 +209,17 @@ def _seen(drawn: _Drawn, view: View, center: Points, pixels: tuple[int, int], sc
             specular=0.1,
             specular_power=20.0,
         )
-    for lines, color in drawn.lines:
+    for lines, color in shown.lines:
         long = lines[np.ptp(lines, axis=1).any(axis=1)]
         if len(long):
             plotter.add_lines(long.reshape(-1, 3), color=color, width=_LINE * _OVERSAMPLING)
-    if len(drawn.dots):
+    if len(shown.dots):
         plotter.add_points(
-            drawn.dots, color=_CLOSURE, point_size=_DOT * _OVERSAMPLING, render_points_as_spheres=True, lighting=False
+            shown.dots, color=_CLOSURE, point_size=_DOT * _OVERSAMPLING, render_points_as_spheres=True, lighting=False
         )
     right, up, toward = view.axes
     focus = center @ view.axes
-    reach = float(np.linalg.norm(np.ptp(drawn.points, axis=0)))
+    reach = float(np.linalg.norm(np.ptp(shown.points, axis=0)))
     # Over the viewer's left shoulder, and a weak one from the other side, so that no side is black.
     for direction, intensity in ((-0.4 * right + 0.4 * up + toward, 0.75), (right - 0.3 * up + 0.6 * toward, 0.35)):
         light = pv.Light(light_type="scene light", intensity=intensity)
@@ -231,6 +231,6 @@ def _seen(drawn: _Drawn, view: View, center: Points, pixels: tuple[int, int], sc
     camera.parallel_scale = pixels[1] / scale / 2.0
     camera.clipping_range = (0.5 * reach, 3.5 * reach)
     plotter.enable_anti_aliasing("ssaa")
-    drawn = plotter.screenshot(return_img=True)
+    pixels_drawn = plotter.screenshot(return_img=True)
     plotter.close()
-    return np.asarray(Pillow.fromarray(drawn).resize(pixels, Pillow.Resampling.LANCZOS))
+    return np.asarray(Pillow.fromarray(pixels_drawn).resize(pixels, Pillow.Resampling.LANCZOS))
