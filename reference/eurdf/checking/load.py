@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 from eurdf.checking.loops import closure_diagnostics
 from eurdf.checking.mesh_files import read_mesh_files
+from eurdf.diagnostics import Diagnostic, Severity
 from eurdf.exceptions import InvalidRobot
-from eurdf.linking.description import Unlinked, describe, find_meshes
+from eurdf.linking.description import Linked, Unlinked, describe, find_meshes, inertia_diagnostics
 from eurdf.mechanism.mechanism import Root
 from eurdf.pinocchio.meshes import Mesh
 from eurdf.pinocchio.robot import Robot, build_robot
@@ -32,8 +33,8 @@ def load(
     """Load a robot.
 
     Errors that leave something to guess are refused (EU-CNF-001). Unphysical inertias and loops that cannot close are
-    not: real files have them, and their kinematics are still of use. They are in ``robot.diagnostics`` (EU-CNF-003);
-    whether loops can close is looked for only if `check_loops` says so.
+    not: real files have them, and their kinematics are still of use. They are in ``robot.diagnostics`` (EU-CNF-003),
+    for which they are looked for when it is first used; whether loops can close, only if `check_loops` says so.
 
     Args:
         path: A folder, a YAML file, a bare URDF or xacro, the name of a robot of the collection, ``-`` for standard
@@ -79,30 +80,45 @@ def load(
         package_dirs=package_dirs,
         xacro_args=xacro_args,
         confined=confined,
+        inertias=False,
     )
-    diagnostics = description.diagnostics
     if isinstance(description, Unlinked):
-        raise InvalidRobot(description.path, tuple(diagnostics))
+        raise InvalidRobot(description.path, tuple(description.diagnostics))
     files: dict[str, str] = {}
     meshes: dict[str, Mesh] = {}
-    lacks_mesh = False
-    no_geometry = f"the geometry of {description.path} cannot be built; load it with geometry=False"
+    of_meshes: tuple[Diagnostic, ...] = ()
+    without_geometry: Callable[[], Exception] | None = None
     if geometry:
         files, missing = find_meshes(description.urdf, package_dirs)
         meshes, unreadable = read_mesh_files(description.urdf, files)
-        for found in (*missing, *unreadable):
-            diagnostics.add(found)
+        of_meshes = (*missing, *unreadable)
+        no_geometry = f"the geometry of {description.path} cannot be built; load it with geometry=False"
         if unreadable.error_count:
-            raise InvalidRobot(description.path, tuple(diagnostics), no_geometry)
-        lacks_mesh = any(found.code == "urdf-mesh-missing" for found in missing)
-    robot = build_robot(description.mechanism, geometry=geometry and not lacks_mesh, resolve=files.get, meshes=meshes)
-    if strict or check_loops or "assembled" in description.mechanism.configurations:
-        for found in closure_diagnostics(description, robot):
-            diagnostics.add(found)
-    if strict and diagnostics.error_count:
-        raise InvalidRobot(description.path, tuple(diagnostics))
-    return robot.diagnosed(
-        tuple(diagnostics),
-        # The kinematics need no mesh, so that what `check` passes is loaded; but shapes are not left out in silence.
-        partial(InvalidRobot, description.path, tuple(missing), no_geometry) if lacks_mesh else None,
+            found = (*description.diagnostics, *inertia_diagnostics(description), *of_meshes)
+            raise InvalidRobot(description.path, found, no_geometry)
+        if any(found.code == "urdf-mesh-missing" for found in missing):
+            # The kinematics need no mesh, so that what `check` passes is loaded; but shapes are not left out in
+            # silence.
+            without_geometry = partial(InvalidRobot, description.path, tuple(missing), no_geometry)
+    loops = strict or check_loops or "assembled" in description.mechanism.configurations
+    robot = build_robot(
+        description.mechanism,
+        geometry=geometry and without_geometry is None,
+        resolve=files.get,
+        meshes=meshes,
+        no_geometry=without_geometry,
+        diagnose=partial(_diagnostics, description, of_meshes, loops),
     )
+    if strict or check_loops:  # a solver runs now, not when the diagnostics are first used
+        errors = [found for found in robot.diagnostics if found.severity is Severity.ERROR]
+        if strict and errors:
+            raise InvalidRobot(description.path, robot.diagnostics)
+    return robot
+
+
+def _diagnostics(
+    description: Linked, of_meshes: Sequence[Diagnostic], loops: bool, robot: Robot
+) -> tuple[Diagnostic, ...]:
+    """All diagnostics of a robot that was loaded, in the order of `eurdf.check`."""
+    of_loops = closure_diagnostics(description, robot) if loops else ()
+    return (*description.diagnostics, *inertia_diagnostics(description), *of_meshes, *of_loops)

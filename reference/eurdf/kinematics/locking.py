@@ -83,6 +83,7 @@ def lock(
     _check_closed(robot, q, {constraint.name for constraint in locked.constraints}, tolerance)
     built = build_robot(locked.mechanism, geometry=False)
     idx_q, idx_v = _free_indices(robot, built)
+    diagnostics = robot.diagnostics
     return LockedRobot(
         built.mechanism,
         built.model,
@@ -91,7 +92,7 @@ def lock(
         built.configurations,
         carried_over(robot, built),
         robot.no_geometry,
-        robot.diagnostics,
+        lambda _: diagnostics,
         locked_joints=locked.joints,
         dropped_closures=tuple(constraint.name for constraint in locked.constraints),
         dropped_actuators=locked.actuators,

@@ -94,6 +94,7 @@ def describe(
     package_dirs: Sequence[str | os.PathLike[str]] = (),
     xacro_args: Mapping[str, str] | None = None,
     confined: bool = False,
+    inertias: bool = True,
 ) -> Unlinked | Linked:
     """Read and link the files of a robot, and check its inertias.
 
@@ -109,6 +110,7 @@ def describe(
         package_dirs: Folders to look for packages in, which a xacro finds files in.
         xacro_args: Values of the arguments of a xacro.
         confined: Whether a URDF that the description names must be in the folder of the description.
+        inertias: Whether to check the inertias of a robot that can be linked. If not, `inertia_diagnostics` does.
 
     Raises:
         RobotNotFound: Where there are no such files.
@@ -149,13 +151,25 @@ def describe(
     mechanism = None
     if extension is not None or files.description is None:
         mechanism = link(tree, extension, diagnostics, root, mimic=mimic)
-    faulty = check_inertias(tree, diagnostics)
     if mechanism is None:
+        check_inertias(tree, diagnostics)
         return Unlinked(name, diagnostics, tree)
-    check_leaves(mechanism, tree, diagnostics, faulty)
+    if inertias:
+        _check_inertias_and_leaves(tree, mechanism, diagnostics)
     if extension is None:
         return Linked(name, diagnostics, tree, mechanism)
     return Described(name, diagnostics, tree, mechanism, extension)
+
+
+def inertia_diagnostics(description: Linked) -> Diagnostics:
+    """What is wrong with the inertias of a robot that `describe` did not check."""
+    diagnostics = Diagnostics()
+    _check_inertias_and_leaves(description.urdf, description.mechanism, diagnostics)
+    return diagnostics
+
+
+def _check_inertias_and_leaves(urdf: Urdf, mechanism: Mechanism, diagnostics: Diagnostics) -> None:
+    check_leaves(mechanism, urdf, diagnostics, check_inertias(urdf, diagnostics))
 
 
 def read_urdf_alone(

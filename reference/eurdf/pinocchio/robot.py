@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -52,9 +52,7 @@ class Robot:
         geometry: Its shapes; None without geometry.
         no_geometry: What makes the error that `visual_model` and `collision_model` raise, where the geometry was asked
             for and cannot be built; else None.
-        diagnostics: What was found wrong with the robot when it was loaded, but did not keep it from being built.
-            Whether its loops can close is among it only where the robot has a configuration ``assembled``, or was
-            loaded with ``check_loops=True``.
+        diagnose: Finds the `diagnostics` of a robot that was loaded; else None.
         derived: What functions of `eurdf.kinematics` have computed from the robot and keep with it.
     """
 
@@ -65,16 +63,17 @@ class Robot:
     configurations: Mapping[str, Vector]
     geometry: Geometry | None = None
     no_geometry: Callable[[], Exception] | None = None
-    diagnostics: tuple[Diagnostic, ...] = ()
+    diagnose: Callable[[Robot], tuple[Diagnostic, ...]] | None = None
     derived: dict[Any, Any] = field(default_factory=dict, init=False)
 
-    def diagnosed(
-        self, diagnostics: tuple[Diagnostic, ...], no_geometry: Callable[[], Exception] | None = None
-    ) -> Robot:
-        """The same robot with diagnostics; it keeps what was derived from it."""
-        robot = replace(self, diagnostics=diagnostics, no_geometry=no_geometry)
-        robot.derived.update(self.derived)
-        return robot
+    @cached_property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """What is wrong with the robot that was loaded, but does not keep it from being built.
+
+        Whether its loops can close is among it only if the robot has a configuration ``assembled``, or was loaded with
+        ``check_loops=True``. Inertias and this configuration are checked when the diagnostics are first used.
+        """
+        return () if self.diagnose is None else self.diagnose(self)
 
     @property
     def constraints(self) -> tuple[Constraint, ...]:
@@ -181,6 +180,8 @@ def build_robot(
     geometry: bool,
     resolve: Resolve | None = None,
     meshes: Mapping[str, Mesh] | None = None,
+    no_geometry: Callable[[], Exception] | None = None,
+    diagnose: Callable[[Robot], tuple[Diagnostic, ...]] | None = None,
 ) -> Robot:
     """Build the robot of a mechanism.
 
@@ -189,6 +190,8 @@ def build_robot(
         geometry: Whether to build the visual and collision geometry.
         resolve: Path of the file that a URI of the URDF means; needed for geometry with meshes.
         meshes: The meshes by path, where they were read already.
+        no_geometry: See `Robot`.
+        diagnose: See `Robot`.
 
     Raises:
         UnreadableMesh: A mesh file cannot be read as a mesh.
@@ -217,6 +220,8 @@ def build_robot(
             }
         ),
         shapes,
+        no_geometry,
+        diagnose,
     )
 
 
