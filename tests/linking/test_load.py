@@ -234,6 +234,16 @@ def test_massless_leaf_is_diagnosed_and_refused_if_strict(tmp_path: Path) -> Non
     assert [found.code for found in caught.value.diagnostics] == ["leaf-without-inertia"]
 
 
+def test_diagnostics_are_of_files_as_loaded(tmp_path: Path) -> None:
+    folder = _write(tmp_path, LOOSE, APART + "configurations: {assembled: {}}\n")
+    loaded = eurdf.load(folder)
+    expected = [(found.code, found.line) for found in eurdf.check(folder).diagnostics if found.clause]
+    for name in ("robot.urdf", "robot.yaml"):
+        (folder / name).write_text("", encoding="utf-8")
+    assert [(found.code, found.line) for found in loaded.diagnostics] == expected
+    assert {"leaf-without-inertia", "assembled-open"} == {code for code, _ in expected}
+
+
 def test_warnings_are_not_refused_if_strict(tmp_path: Path) -> None:
     folder = _write(tmp_path, URDF.replace("</robot>", "<loop/></robot>"), YAML)
     loaded = eurdf.load(folder, strict=True)
