@@ -5,13 +5,14 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
+from spec.site.pages import address
+
 project = "Extended URDF"
 author = "the Extended URDF authors"
 html_title = "Extended URDF 2.0"
 language = "en"
 
 extensions = ["myst_parser", "spec.site.sphinx_extension"]
-exclude_patterns = ["README.md", "_build", "examples", "site"]
 
 nitpicky = True
 smartquotes = False  # what stands in the text is what one types
@@ -21,6 +22,7 @@ myst_enable_extensions = ["attrs_inline", "colon_fence", "deflist", "dollarmath"
 myst_heading_anchors = 4
 
 html_theme = "furo"
+html_baseurl = address("Documentation") + "/"
 html_math_renderer = "mathml"
 html_static_path = ["site/static"]
 html_css_files = ["specification.css"]

@@ -6,11 +6,13 @@ import argparse
 import shutil
 import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from sphinx.cmd.build import main as sphinx_build
 
 from spec.site.clause import SPEC
 from spec.site.links import site_errors
+from spec.site.pages import gather
 
 BUILD = SPEC / "_build"
 
@@ -21,7 +23,7 @@ def build(output: Path, builder: str = "html", source: Path = SPEC) -> int:
     Args:
         output: Folder that the site is written into.
         builder: ``html``, or ``linkcheck`` to look the addresses of other sites up.
-        source: Folder of the text.
+        source: Folder of the specification, beside that of the other pages.
 
     Returns:
         0, or another number where something is wrong; what is, is printed.
@@ -29,7 +31,10 @@ def build(output: Path, builder: str = "html", source: Path = SPEC) -> int:
     if (output / ".buildinfo").exists():  # an earlier build: a page that is gone would still be there
         shutil.rmtree(output)
     doctrees = str(output.parent / f"{output.name}.doctrees")
-    failed = sphinx_build(["-b", builder, "-q", "-E", "-a", "-n", "-W", "-d", doctrees, str(source), str(output)])
+    with TemporaryDirectory() as pages:
+        gather(Path(pages), source.resolve())
+        options = ["-q", "-E", "-a", "-n", "-W", "-d", doctrees, "-c", str(source)]
+        failed = sphinx_build(["-b", builder, *options, pages, str(output)])
     if failed or builder != "html":
         return failed
     errors = site_errors(output)

@@ -13,7 +13,6 @@ from docutils.parsers.rst import directives
 from sphinx.util.docutils import SphinxDirective
 
 from eurdf.diagnostics import REGISTRY
-from eurdf.exporting.table import details, overview
 from spec.site.blocks import Directive
 from spec.site.clause import ROOT, without_code
 from spec.site.domain import NAME, SpecificationDomain, reference_to
@@ -370,15 +369,6 @@ def _table(*heads: str, rows: Iterable[Iterable[Node]]) -> nodes.container:
 
 
 #: Every directive, by its name in the chapters.
-class LossesDirective(SpecificationDirective):
-    """``{losses} overview`` or ``{losses} mjcf``: what exports lose, of all formats or of one."""
-
-    def run(self) -> list[Node]:
-        """The table."""
-        name = self.arguments[0]
-        return self.parsed(overview() if name == "overview" else details(name))
-
-
 DIRECTIVES: dict[str, type[SpecificationDirective]] = {
     "clause": ClauseDirective,
     "withdrawn": WithdrawnDirective,
@@ -388,5 +378,4 @@ DIRECTIVES: dict[str, type[SpecificationDirective]] = {
     "all-clauses": AllClausesDirective,
     "all-diagnostics": AllDiagnosticsDirective,
     "schema": SchemaDirective,
-    "losses": LossesDirective,
 }

@@ -6,7 +6,7 @@ from typing import Any
 
 from sphinx.application import Sphinx
 
-from spec.site import figures, math
+from spec.site import figures, math, pages
 from spec.site.directives import DIRECTIVES
 from spec.site.domain import NameRole, SpecificationDomain
 
@@ -20,4 +20,5 @@ def setup(app: Sphinx) -> dict[str, Any]:
         app.add_role(what, NameRole(what), override=True)
     math.setup(app)
     figures.setup(app)
+    pages.setup(app)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

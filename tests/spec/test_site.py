@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from eurdf.diagnostics import REGISTRY
-from eurdf.exporting.formats import FORMATS
 from spec.site.clause import SPEC, read_chapters, read_clauses
+from spec.site.pages import address
 
 ROOT = Path(__file__).parents[2]
 
@@ -54,10 +54,11 @@ def test_every_clause_has_anchor_in_its_chapter(site: Path) -> None:
         assert _anchors(site, clause.chapter).count(clause.id) == 1, clause.id
 
 
-def test_losses_of_every_format_are_shown(site: Path) -> None:
-    page = (site / "export.html").read_text(encoding="utf-8")
-    for each in FORMATS.values():
-        assert all(kind.code in page for kind in each.losses), each.name
+def test_pages_of_docs_are_on_the_site(site: Path) -> None:
+    assert [page.stem for page in (ROOT / "docs").glob("*.md") if not (site / f"{page.stem}.html").exists()] == []
+    assert 'href="simulators.html"' in (site / "export.html").read_text(encoding="utf-8")
+    adapters = (site / "write_an_adapter.html").read_text(encoding="utf-8")
+    assert f"{address('Source')}/blob/main/conformance/eurdf_conformance/certificate/" in adapters
 
 
 def test_every_diagnostic_has_anchor(site: Path) -> None:
@@ -222,3 +223,11 @@ def test_drawing_has_page_colours_and_alt_text() -> None:
         '<svg role="img" class="eu-drawing" aria-label="a &quot;bar&quot;" viewBox="0 0 1 1">'
         '<path id="bar-a"/><use href="#bar-a"/><path fill="url(#bar-a)"/></svg>'
     )
+
+
+def test_code_schemas_and_pages_state_no_address_of_the_project() -> None:
+    addresses = address("Documentation"), address("Source")
+    folders = "conformance/eurdf_conformance", "docs", "reference", "schema", "spec"
+    files = [path for folder in folders for kind in ("json", "md", "py") for path in (ROOT / folder).rglob(f"*.{kind}")]
+    assert len(files) > 500
+    assert [path for path in files if any(url in path.read_text(encoding="utf-8") for url in addresses)] == []
