@@ -8,6 +8,7 @@ at zero, and every loop is closed there because both its sides are the same poin
 from robots.builder.drawing import Drawing, End
 from robots.builder.joint import Joint, Motor, Spring, ball, cross, prismatic, revolute, unit, universal
 from robots.builder.shape import Box, Cylinder, Shape, Sphere, Vector3, midpoint
+from robots.builder.solid import Solid
 from robots.builder.write import write
 
 __all__ = [
@@ -18,6 +19,7 @@ __all__ = [
     "Joint",
     "Motor",
     "Shape",
+    "Solid",
     "Sphere",
     "Spring",
     "Vector3",

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
 from robots.builder.joint import Joint, ball, cross, unit, universal
-from robots.builder.mirror import mirrored_joint, mirrored_shape, mirrored_vector
+from robots.builder.mirror import mirrored_joint, mirrored_shape, mirrored_solid, mirrored_vector
 from robots.builder.shape import Cylinder, Matrix3, Shape, Sphere, Vector3, midpoint
+from robots.builder.solid import Solid
 
 Color = tuple[float, float, float, float]
 
@@ -28,6 +29,7 @@ class Body:
         shapes: What it is made of.
         contacts: Those of its shapes that may touch other things.
         material: Name of its colour.
+        solid: Mass, centre of mass and inertia, where they are not those of its shapes.
     """
 
     name: str
@@ -35,6 +37,7 @@ class Body:
     shapes: tuple[Shape, ...]
     contacts: tuple[Shape, ...]
     material: str
+    solid: Solid | None = None
 
     @property
     def origin(self) -> Vector3:
@@ -79,6 +82,21 @@ class Coupling:
     joints: Mapping[str, float]
 
 
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """A named frame of a body, such as a sole or an IMU. Its axes are along those of the world.
+
+    Attributes:
+        name: Unique among frames.
+        body: The body it is on.
+        at: Its origin in the world, m.
+    """
+
+    name: str
+    body: str
+    at: Vector3
+
+
 class Drawing:
     """A robot as it is drawn: bodies, each with the joint that carries it, and closures.
 
@@ -90,6 +108,8 @@ class Drawing:
         bodies: By name; parents before their children.
         closures: In the order drawn.
         couplings: Likewise.
+        frames: Likewise.
+        configurations: Beside the drawn one, by name: coordinates (rad, m) by joint; those left out are 0.
     """
 
     def __init__(
@@ -106,6 +126,8 @@ class Drawing:
         self.bodies: dict[str, Body] = {}
         self.closures: list[Closure] = []
         self.couplings: list[Coupling] = []
+        self.frames: list[Frame] = []
+        self.configurations: dict[str, Mapping[str, float]] = {}
 
     @property
     def joints(self) -> list[Joint]:
@@ -113,7 +135,13 @@ class Drawing:
         return [body.joint for body in self.bodies.values() if body.joint]
 
     def body(
-        self, name: str, joint: Joint | None, *shapes: Shape, material: str, contacts: tuple[Shape, ...] = ()
+        self,
+        name: str,
+        joint: Joint | None,
+        *shapes: Shape,
+        material: str,
+        contacts: tuple[Shape, ...] = (),
+        solid: Solid | None = None,
     ) -> None:
         """Draws a body and the joint that carries it (None for the root, which comes first).
 
@@ -123,6 +151,7 @@ class Drawing:
             shapes: What it is made of.
             material: Name of its colour.
             contacts: Those of its shapes that may touch other things.
+            solid: Its mass, centre of mass and inertia where they are known; those of the shapes do not count then.
 
         Raises:
             ValueError: If the name is taken, the material or the parent is not drawn, or it is a second root.
@@ -137,7 +166,7 @@ class Drawing:
             raise ValueError(f"there are two joints '{joint.name}'")
         if joint and joint.parent not in self.bodies:
             raise ValueError(f"joint '{joint.name}' hangs from '{joint.parent}', which is not drawn yet")
-        self.bodies[name] = Body(name, joint, shapes, contacts, material)
+        self.bodies[name] = Body(name, joint, shapes, contacts, material, solid)
 
     def close(self, name: str, type: Literal["3d", "6d"], body_a: str, body_b: str, at: Vector3) -> None:  # noqa: A002
         """Closes a loop: holds two bodies together at a point of the world (m).
@@ -169,10 +198,33 @@ class Drawing:
         Raises:
             ValueError: If a joint is not drawn.
         """
-        for joint in joints:
-            if joint not in (other.name for other in self.joints):
-                raise ValueError(f"coupling '{name}' is of '{joint}', which is not drawn")
+        self._require_joints(f"coupling '{name}'", joints)
         self.couplings.append(Coupling(name, joints))
+
+    def frame(self, name: str, body: str, at: Vector3) -> None:
+        """Names a frame of a body, at a point of the world (m).
+
+        Raises:
+            ValueError: If the body is not drawn.
+        """
+        if body not in self.bodies:
+            raise ValueError(f"frame '{name}' is on '{body}', which is not drawn")
+        self.frames.append(Frame(name, body, at))
+
+    def configure(self, name: str, **joints: float) -> None:
+        """Names a configuration by the coordinates (rad, m) of joints, seen from the drawn pose.
+
+        Raises:
+            ValueError: If a joint is not drawn.
+        """
+        self._require_joints(f"configuration '{name}'", joints)
+        self.configurations[name] = joints
+
+    def _require_joints(self, what: str, joints: Iterable[str]) -> None:
+        drawn = {joint.name for joint in self.joints}
+        for joint in joints:
+            if joint not in drawn:
+                raise ValueError(f"{what} is of '{joint}', which is not drawn")
 
     def _add(self, closure: Closure) -> None:
         for body in closure.bodies:
@@ -253,7 +305,9 @@ class Drawing:
                 joint = mirrored_joint(body.joint, renamed) if body.joint else None
                 contacts = tuple(map(mirrored_shape, body.contacts))
                 shapes = map(mirrored_shape, body.shapes)
-                self.body(renamed(body.name), joint, *shapes, material=body.material, contacts=contacts)
+                solid = body.solid and mirrored_solid(body.solid)
+                name = renamed(body.name)
+                self.body(name, joint, *shapes, material=body.material, contacts=contacts, solid=solid)
         for closure in list(self.closures):
             a, b = closure.bodies
             if side in closure.name:
@@ -267,6 +321,9 @@ class Drawing:
             if side in coupling.name:
                 joints = {renamed(joint): factor for joint, factor in coupling.joints.items()}
                 self.couplings.append(Coupling(renamed(coupling.name), joints))
+        for frame in list(self.frames):
+            if side in frame.name:
+                self.frame(renamed(frame.name), renamed(frame.body), mirrored_vector(frame.at))
 
 
 def _rod_joint(kind: End, rod: str, start: tuple[str, Vector3], toward: Vector3) -> Joint:

@@ -26,12 +26,16 @@ class Motor:
         velocity: Largest velocity of the joint, rad/s; m/s at one that slides.
         damping: N·m·s/rad; N·s/m.
         friction: N·m; N.
+        gear_ratio: Revolutions of the rotor per revolution of the joint; rad/m at a joint that slides.
+        rotor_inertia: Of the rotor, before the gear, kg·m².
     """
 
     effort: float
     velocity: float
     damping: float = 0.0
     friction: float = 0.0
+    gear_ratio: float = 1.0
+    rotor_inertia: float = 0.0
 
 
 #: Of a joint that nothing drives; the velocity is there because URDF requires one for every joint with stops.
@@ -45,10 +49,12 @@ class Spring:
     Attributes:
         stiffness: N·m/rad, N/m.
         rest: Angle (rad) or travel (m) at which it has no force, seen from the drawn pose.
+        damping: Of the damper beside it, N·m·s/rad; N·s/m.
     """
 
     stiffness: float
     rest: float = 0.0
+    damping: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +87,16 @@ class Joint:
     def rotation(self) -> Matrix3:
         """Orientation of its frame in the world, 3 x 3: the columns are its axes."""
         return np.array(self.axes).T
+
+    @property
+    def damping(self) -> float:
+        """That of its motor and of its damper, N·m·s/rad; N·s/m."""
+        return (self.motor.damping if self.motor else 0.0) + (self.spring.damping if self.spring else 0.0)
+
+    @property
+    def friction(self) -> float:
+        """That of its motor, N·m; N."""
+        return self.motor.friction if self.motor else 0.0
 
 
 def revolute(

@@ -9,8 +9,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
+
 from robots.builder.joint import WORLD, Joint
 from robots.builder.shape import Box, Cylinder, Shape, Sphere, Vector3
+from robots.builder.solid import Solid
 
 #: Gives what is drawn on one side the name it has on the other.
 Renamed = Callable[[str], str]
@@ -36,6 +39,12 @@ def mirrored_shape(shape: Shape) -> Shape:
     if isinstance(shape, Cylinder):
         return replace(shape, start=mirrored_vector(shape.start), end=mirrored_vector(shape.end))
     return Sphere(mirrored_vector(shape.center), shape.radius, shape.mass)
+
+
+def mirrored_solid(solid: Solid) -> Solid:
+    """The mirror image of what is known of a body."""
+    mirror = np.diag((1.0, -1.0, 1.0))
+    return Solid(solid.mass, mirrored_vector(solid.center), mirror @ solid.inertia @ mirror)
 
 
 def mirrored_joint(joint: Joint, renamed: Renamed) -> Joint:

@@ -51,16 +51,16 @@ def _write_joint(robot: etree._Element, joint: Joint, child: str, parent: Body) 
             limit.set("upper", number_text(joint.stops[1]))
         limit.set("effort", number_text(motor.effort))
         limit.set("velocity", number_text(motor.velocity))
-    if joint.motor and (joint.motor.damping or joint.motor.friction):
+    if joint.damping or joint.friction:
         dynamics = etree.SubElement(element, "dynamics")
-        dynamics.set("damping", number_text(joint.motor.damping))
-        dynamics.set("friction", number_text(joint.motor.friction))
+        dynamics.set("damping", number_text(joint.damping))
+        dynamics.set("friction", number_text(joint.friction))
 
 
 def _write_link(robot: etree._Element, body: Body) -> None:
     link = etree.SubElement(robot, "link", name=body.name)
-    if body.shapes:
-        solid = solid_of(body.shapes)
+    solid = body.solid or (solid_of(body.shapes) if body.shapes else None)
+    if solid:
         inertial = etree.SubElement(link, "inertial")
         # The moments are about the body's own axes, so that the inertial frame need not be turned.
         _write_origin(inertial, solid.center, (0.0, 0.0, 0.0), body)

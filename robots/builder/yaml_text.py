@@ -7,9 +7,12 @@ import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 
-from robots.builder.drawing import Closure, Drawing
+import numpy as np
+
+from robots.builder.drawing import Body, Closure, Drawing, Frame
 from robots.builder.joint import Joint
-from robots.builder.number_text import number_text
+from robots.builder.number_text import DECIMALS, number_text
+from robots.builder.shape import rpy_of
 
 Value = str | float | Sequence["Value"] | Mapping[str, "Value"]
 
@@ -31,8 +34,9 @@ def yaml_text(drawing: Drawing) -> str:
         "closures": [_closure(closure) for closure in drawing.closures],
         "couplings": [{"name": coupling.name, "joints": coupling.joints} for coupling in drawing.couplings],
         "joints": {joint.name: _type_2(joint) for joint in _replaced(drawing)} | _springs(drawing),
-        "actuators": [joint.name for joint in drawing.joints if joint.motor],
-        "configurations": {"assembled": {}},
+        "actuators": [_actuator(joint) for joint in drawing.joints if joint.motor],
+        "frames": [_frame(frame, drawing.bodies[frame.body]) for frame in drawing.frames],
+        "configurations": {"assembled": {}, **drawing.configurations},
         "metadata": drawing.metadata,
     }
     return _SCHEMA.format(version) + _HEAD + _text(content)
@@ -82,6 +86,24 @@ def _springs(drawing: Drawing) -> dict[str, Value]:
         for joint in drawing.joints
         if joint.spring
     }
+
+
+def _actuator(joint: Joint) -> Value:
+    """A joint with a motor; a mapping where the gear or the rotor is known."""
+    assert joint.motor
+    gear = {} if joint.motor.gear_ratio == 1.0 else {"gear_ratio": joint.motor.gear_ratio}
+    rotor = {"rotor_inertia": joint.motor.rotor_inertia} if joint.motor.rotor_inertia else {}
+    return {"joint": joint.name, **gear, **rotor} if gear or rotor else joint.name
+
+
+def _frame(frame: Frame, body: Body) -> Value:
+    """A frame on its body, whose own axes may be turned."""
+    place = {
+        "xyz": (body.rotation.T @ np.subtract(frame.at, body.origin)).tolist(),
+        "rpy": rpy_of(body.rotation.T),
+    }
+    turned = {key: [round(float(value), DECIMALS) for value in values] for key, values in place.items() if any(values)}
+    return {"name": frame.name, "link": frame.body, **turned}
 
 
 def _type_1(joint: Joint) -> str:

@@ -16,7 +16,20 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 
 import eurdf
 from eurdf.pinocchio.configuration import configuration_vector
-from robots.builder import Box, Cylinder, Drawing, Motor, Sphere, Spring, ball, prismatic, revolute, universal, write
+from robots.builder import (
+    Box,
+    Cylinder,
+    Drawing,
+    Motor,
+    Solid,
+    Sphere,
+    Spring,
+    ball,
+    prismatic,
+    revolute,
+    universal,
+    write,
+)
 from robots.builder.mirror import mirrored_shape
 from robots.builder.number_text import length_text, mass_text, number_text
 from robots.builder.shape import rotation_of, rpy_of
@@ -303,6 +316,44 @@ def test_springs_are_written_in_version_2_1_and_mirrored(tmp_path):
     assert first.endswith("extended-urdf-2.1.schema.json")
 
 
+def test_motors_frames_configurations_and_solids_are_written_and_mirrored(tmp_path):
+    robot = Drawing("legs", materials={"steel": (0.5, 0.5, 0.5, 1.0)}, metadata={}, root="floating")
+    robot.body("trunk", None, Sphere((0.0, 0.0, 1.0), 0.1, mass=5.0), material="steel")
+    motor = Motor(50.0, 6.0, damping=0.5, gear_ratio=9.0, rotor_inertia=1e-3)
+    inertia = np.array([[0.03, 0.001, 0.002], [0.001, 0.04, 0.003], [0.002, 0.003, 0.05]])
+    at, damper = (0.0, 0.2, 0.5), Spring(900.0, damping=1.5)
+    robot.body("left_leg", universal("left_hip", "trunk", at, (0.6, 0.8, 0.0), (0.0, 0.0, 1.0)), material="steel")
+    robot.body(
+        "left_foot",
+        revolute("left_knee", "left_leg", at, (0.0, 1.0, 0.0), motor=motor, spring=damper),
+        Sphere((0.0, 0.2, 0.3), 0.1, mass=1.0),
+        material="steel",
+        solid=Solid(2.0, (0.01, 0.22, 0.3), inertia),
+    )
+    robot.frame("left_sole", "left_foot", (0.1, 0.25, 0.0))
+    robot.frame("left_mark", "left_leg", (0.1, 0.3, 0.5))
+    robot.mirror("left", "right")
+    robot.configure("bent", left_knee=0.4, right_knee=0.4)
+    write(robot, tmp_path)
+    loaded = eurdf.load(tmp_path)
+    for knee in (joint for joint in loaded.mechanism.joints if "knee" in joint.name):
+        found = knee.properties
+        assert (found.gear_ratio, found.rotor_inertia, found.damping) == ((9.0,), (1e-3,), (2.0,))
+    data = loaded.model.createData()
+    pin.framesForwardKinematics(loaded.model, data, loaded.configurations["assembled"])
+    flip = np.diag([1.0, -1.0, 1.0])
+    for side, mirror in (("left", np.eye(3)), ("right", flip)):
+        solid = loaded.model.inertias[loaded.model.getJointId(f"{side}_knee")]
+        assert solid.mass == 2.0
+        assert solid.inertia == pytest.approx(mirror @ inertia @ mirror, abs=1e-15)
+        for name, place in (("sole", (0.1, 0.25, 0.0)), ("mark", (0.1, 0.3, 0.5))):
+            pose = data.oMf[loaded.model.getFrameId(f"{side}_{name}")]
+            assert pose.translation == pytest.approx(mirror @ place, abs=1e-12)
+            assert pose.rotation == pytest.approx(np.eye(3), abs=1e-12)
+    expected = configuration_vector(loaded.mechanism, loaded.model, {"left_knee": [0.4], "right_knee": [0.4]})
+    assert loaded.configurations["bent"] == pytest.approx(expected)
+
+
 def test_drawing_without_springs_is_written_in_version_2_0():
     assert yaml.safe_load(yaml_text(limb()))["extended_urdf"] == "2.0"
 
@@ -330,6 +381,11 @@ def test_mirrored_shape_has_mirrored_inertia(shape):
         (lambda robot, ball: robot.body("tip", None, material="steel"), "second root"),
         (lambda robot, ball: robot.body("tip", ball("b", "base"), material="gold"), "'gold', which is no material"),
         (lambda robot, ball: robot.close("loop", "3d", "arm", "tip", (0.0, 0.0, 0.0)), "'tip', which is not drawn"),
+        (
+            lambda robot, ball: robot.frame("sole", "tip", (0.0, 0.0, 0.0)),
+            "frame 'sole' is on 'tip', which is not drawn",
+        ),
+        (lambda robot, ball: robot.configure("bent", b=1.0), "configuration 'bent' is of 'b', which is not drawn"),
         (lambda robot, ball: rod_between(robot, ("point", "ball")), "starts in a point"),
         (lambda robot, ball: universal("u", "arm", (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0)), "perpendicular"),
         (lambda robot, ball: robot.mirror("arm", "leg"), "body 'arm' and joint 'swing', one is named 'arm' only"),
