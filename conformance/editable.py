@@ -1,10 +1,10 @@
 """Lets an editable install of the repository offer the command of the suite, as an installed suite does."""
 
-import tomllib
 from pathlib import Path
 from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+from hatchling.metadata.core import load_toml
 
 
 class EntryPoints(BuildHookInterface):  # type: ignore[misc]
@@ -13,5 +13,5 @@ class EntryPoints(BuildHookInterface):  # type: ignore[misc]
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Add them before the metadata are written."""
         if version == "editable":
-            suite = tomllib.loads(Path(self.root, "conformance", "pyproject.toml").read_text(encoding="utf-8"))
+            suite = load_toml(str(Path(self.root, "conformance", "pyproject.toml")))
             self.metadata.core.entry_points.update(suite["project"]["entry-points"])

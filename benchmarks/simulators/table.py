@@ -11,7 +11,7 @@ import platform
 import re
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from datetime import UTC, datetime
+from datetime import datetime, timezone
 from functools import partial
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
@@ -62,7 +62,7 @@ def main(argv: Sequence[str]) -> int:
 
 def table(robots: Sequence[str], simulators: dict[str, Simulator], versions: str) -> Iterator[str]:
     """The lines of the table in Markdown, and where it was made."""
-    yield f"{datetime.now(UTC):%d %B %Y}; {versions}; one thread of {_processor()}; {platform.system()}."
+    yield f"{datetime.now(timezone.utc):%d %B %Y}; {versions}; one thread of {_processor()}; {platform.system()}."
     yield ""
     yield from _HEAD
     for name in robots:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from typing import Literal
+
+from eurdf_conformance.text_enum import TextEnum
 
 #: "2" is version 2.0.
 Version = Literal["1", "2", "2.1"]
@@ -11,7 +12,7 @@ Version = Literal["1", "2", "2.1"]
 VERSIONS: tuple[Version, ...] = ("1", "2", "2.1")
 
 
-class Level(StrEnum):
+class Level(TextEnum):
     """A level of conformance, certified apart: chapter Conformance of the specification."""
 
     ACCEPT = "accept"

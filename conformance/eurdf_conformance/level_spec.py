@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from enum import StrEnum
 
 from eurdf_conformance.level import Level
 from eurdf_conformance.protocol.message import Quantity
+from eurdf_conformance.text_enum import TextEnum
 
 
-class Compared(StrEnum):
+class Compared(TextEnum):
     """The part of an answer that is compared with what is expected."""
 
     #: Whether the files are accepted.

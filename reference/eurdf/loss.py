@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import StrEnum
+
+from eurdf.text_enum import TextEnum
 
 
-class Effect(StrEnum):
+class Effect(TextEnum):
     """How much of an element is left in what is written.
 
     ``exact``: all that has an effect on the robot, in other terms. ``approximate``: it behaves almost as it should.

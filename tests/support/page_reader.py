@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import os
 import re
 import shlex
 from collections.abc import Iterator
@@ -37,8 +38,12 @@ class PageReader:
 
     def follow(self) -> None:
         """Do all that is shown, in order."""
-        with contextlib.chdir(self.folder):
+        before = Path.cwd()
+        os.chdir(self.folder)
+        try:
             self._follow(read_blocks(self.page.read_text(encoding="utf-8")))
+        finally:
+            os.chdir(before)
 
     def _follow(self, blocks: Iterator[Block]) -> None:
         printed: str | None = None

@@ -6,7 +6,7 @@ import os
 import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable
-from datetime import UTC, datetime
+from datetime import datetime, timezone
 from functools import cache
 from importlib.metadata import version
 
@@ -72,7 +72,7 @@ def issue(run: Run) -> Certificate:
 def _date(epoch: str | None) -> str | None:
     if epoch is None or not epoch.isdecimal():
         return None
-    return datetime.fromtimestamp(int(epoch), UTC).date().isoformat()
+    return datetime.fromtimestamp(int(epoch), timezone.utc).date().isoformat()
 
 
 def _clause_results(results: Iterable[Result]) -> Iterable[ClauseResult]:

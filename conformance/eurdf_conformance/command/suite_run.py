@@ -12,7 +12,7 @@ import os
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from datetime import UTC, date, datetime, time
+from datetime import date, datetime, time, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -141,7 +141,7 @@ def _environment(run: SuiteRun) -> Iterator[None]:
             del os.environ[name]
     os.environ["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
     if run.date is not None:
-        os.environ["SOURCE_DATE_EPOCH"] = f"{datetime.combine(run.date, time(), UTC).timestamp():.0f}"
+        os.environ["SOURCE_DATE_EPOCH"] = f"{datetime.combine(run.date, time(), timezone.utc).timestamp():.0f}"
     try:
         yield
     finally:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, TypeAdapter, model_validator
+from typing_extensions import Self
 
 from eurdf_conformance import json_schema
 from eurdf_conformance.corpus.content import Content, Edit, FilePath, Part

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
+from eurdf_conformance.text_enum import TextEnum
 
 
-class Verdict(StrEnum):
+class Verdict(TextEnum):
     """The verdict on an item. Only `PASSED` is a pass."""
 
     PASSED = "passed"

@@ -7,10 +7,11 @@ is advice of this parser (EU-DIA-006): a warning that no clause requires.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import StrEnum
+
+from eurdf.text_enum import TextEnum
 
 
-class Phase(StrEnum):
+class Phase(TextEnum):
     """The stage of the pipeline that reports an error; an error suppresses the later ones that it would cause."""
 
     YAML = "yaml"
@@ -30,7 +31,7 @@ OWN_PREFIX = "x-"
 REFUSED_PHASES = frozenset({Phase.YAML, Phase.SCHEMA, Phase.URDF, Phase.LINK, Phase.SEMANTIC})
 
 
-class Severity(StrEnum):
+class Severity(TextEnum):
     """An error violates a MUST of the specification; a warning violates a SHOULD, or is advice."""
 
     ERROR = "error"

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import ClassVar, Literal, Self
+from typing import ClassVar, Literal
+
+from typing_extensions import Self
 
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.pose import Vector3

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import StrEnum
+
+from eurdf.text_enum import TextEnum
 
 
-class JointType(StrEnum):
+class JointType(TextEnum):
     """URDF's own joint types and the four that it lacks."""
 
     FIXED = "fixed"

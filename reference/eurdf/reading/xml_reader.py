@@ -17,7 +17,10 @@ TAG_LIMIT = 1_000_000
 _TOO_DEEP = etree.XPath(f"boolean({'/*' * (DEPTH_LIMIT + 1)})")
 
 _DECLARED_ENCODING = re.compile(r"""<\?xml\s[^>]*?\sencoding\s*=\s*(["'])(.*?)\1""")
-_BEFORE_DOCTYPE = re.compile(r"(?:[ \t\r\n]+|<\?.*?\?>|<!--.*?-->)*+", re.DOTALL)
+
+#: Some of what may precede a DOCTYPE: a match keeps memory for each repetition, so it has a limited number of them.
+_BEFORE_DOCTYPE = re.compile(r"(?:[ \t\r\n]+|<\?.*?\?>|<!--.*?-->){1,1000}", re.DOTALL)
+
 _ATTRIBUTE = re.compile(r"""\s*([^\s=/>]+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
 
 #: In a well-formed file without DOCTYPE: ``<`` and a name begin an element, the rest is skipped.
@@ -170,7 +173,9 @@ def _refuse_other_encoding(source: Source) -> None:
 
 def _refuse_doctype(source: Source) -> None:
     """Check what precedes it, so that no parser ever sees an entity being declared."""
-    before = _BEFORE_DOCTYPE.match(source.text)
-    if before is not None and source.text.startswith("<!DOCTYPE", before.end()):
-        place = source.place(before.end(), before.end() + len("<!DOCTYPE"))
+    at = 0
+    while before := _BEFORE_DOCTYPE.match(source.text, at):
+        at = before.end()
+    if source.text.startswith("<!DOCTYPE", at):
+        place = source.place(at, at + len("<!DOCTYPE"))
         raise FileError("xml-doctype", "the file has a document type declaration", place, "remove it")

@@ -21,9 +21,13 @@ ClosureType = Literal["3d", "6d"]
 
 _ROTARY = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS})
 
-# Atomic groups, (?>…), bound the number of attempts to match a name of any length.
 
-_LOOP_WORD = r"(?>.*(?:closed_?loop|fermeture))"
+def _atomic(pattern: str) -> str:
+    """Match in one way only, as ``(?>…)`` of Python 3.11 does: it bounds the attempts to match a name of any length."""
+    return rf"(?=(?P<atom>{pattern}))(?P=atom)"
+
+
+_LOOP_WORD = _atomic(r".*(?:closed_?loop|fermeture)")
 _SIDE = r"(?:[_.-]|(?<=\d))(?P<side>[ab])"
 
 #: ``closedloop1_A`` and ``closedloop1_B``, ``closedloop3D_1A``, ``closed_loop_knee_a``; and with ``_frame`` behind it,
@@ -35,7 +39,7 @@ TYPE_LAST_CLOSURE = rf"(?is)(?P<loop>{_LOOP_WORD}.*){_SIDE}_?(?P<type>[36]d)(?:_
 
 #: ``closing_knee_1`` and ``closing_knee_2``, as onshape-to-robot names the frames of a mate ``closing_knee``; and
 #: ``closing_knee_1_z`` and ``closing_knee_2_z``, on the axis of a mate that is revolute.
-MATE_CLOSURE = r"(?s)(?P<loop>(?>.*closing_).+)_(?P<side>[12])(?P<axis>_z)?(?:_frame)?"
+MATE_CLOSURE = rf"(?s)(?P<loop>{_atomic('.*closing_')}.+)_(?P<side>[12])(?P<axis>_z)?(?:_frame)?"
 
 #: A pattern of closures, as the user writes it on the command line.
 EXAMPLE_CLOSURE = r"--closure '(?P<loop>rod\d+)_(?P<side>top|bottom)'"
