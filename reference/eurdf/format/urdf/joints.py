@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from eurdf.diagnostics import did_you_mean
 from eurdf.format.urdf.data import Limit, UrdfJoint
-from eurdf.format.urdf.elements import RANGED, URDF_JOINT_TYPES, UrdfReader, named
+from eurdf.format.urdf.elements import RANGED, RESERVED, URDF_JOINT_TYPES, UrdfReader, named
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Vector3
@@ -14,7 +16,7 @@ _X: Vector3 = (1.0, 0.0, 0.0)
 _AXLESS = frozenset({JointType.FIXED, JointType.FLOATING})
 
 # Attributes of one number each, and their defaults.
-_LIMIT = {"effort": None, "velocity": None, "lower": "0", "upper": "0"}
+_LIMIT = {"lower": "0", "upper": "0", "effort": None, "velocity": None}
 _DYNAMICS = {"damping": "0", "friction": "0"}
 _MIMIC = {"multiplier": "1", "offset": "0"}
 
@@ -24,9 +26,7 @@ def read_joint(reader: UrdfReader, element: Element) -> UrdfJoint | None:
     name = reader.name(element)
     found = reader.children(element)
     kind = _type(reader, element)
-    parent_element, child_element = reader.need(element, found, "parent"), reader.need(element, found, "child")
-    parent = reader.name(parent_element, "link") if parent_element is not None else None
-    child = reader.name(child_element, "link") if child_element is not None else None
+    parent, child = _link(reader, element, found, "parent"), _link(reader, element, found, "child")
     placement = reader.origin(found["origin"]) if "origin" in found else IDENTITY
     if kind is None:
         return None
@@ -38,8 +38,14 @@ def read_joint(reader: UrdfReader, element: Element) -> UrdfJoint | None:
     mimic = _mimic(reader, name, kind, found["mimic"]) if "mimic" in found else None
     if name is None or parent is None or child is None or axis is None:
         return None
-    reader.refuse_reserved(name, element)
+    if name == RESERVED:
+        reader.refuse_reserved(element)
     return UrdfJoint(name, kind, element, parent, child, placement, axis, limit, damping, friction, mimic)
+
+
+def _link(reader: UrdfReader, joint: Element, found: Mapping[str, Element], tag: str) -> str | None:
+    element = reader.need(joint, found, tag)
+    return None if element is None else reader.name(element, "link")
 
 
 def _type(reader: UrdfReader, element: Element) -> JointType | None:
@@ -90,11 +96,10 @@ def _limit(
     if element is None:
         _check_needs_no_limit(reader, name, kind, joint)
         return None
-    reader.attributes(element)
     values = reader.single_numbers(element, _LIMIT)
     if values is None:
         return None
-    effort, velocity, lower, upper = values
+    lower, upper, effort, velocity = values
     if effort < 0.0 or velocity < 0.0:
         _report_negative(reader, element, effort=effort, velocity=velocity)
     if lower > upper and kind in RANGED:
@@ -125,7 +130,6 @@ def _report_reversed(reader: UrdfReader, name: str | None, lower: float, upper: 
 
 
 def _dynamics(reader: UrdfReader, element: Element) -> tuple[float, ...]:
-    reader.attributes(element)
     damping, friction = reader.single_numbers(element, _DYNAMICS) or (0.0, 0.0)
     if damping < 0.0 or friction < 0.0:
         _report_negative(reader, element, damping=damping, friction=friction)
@@ -143,7 +147,6 @@ def _report_negative(reader: UrdfReader, element: Element, **values: float) -> N
 def _mimic(reader: UrdfReader, name: str | None, kind: JointType, element: Element) -> Mimic | None:
     """EU-URD-036: a fixed joint has no coordinate, so a `<mimic>` in it has no effect."""
     joint = reader.name(element, "joint")
-    reader.attributes(element)
     values = reader.single_numbers(element, _MIMIC)
     if joint is None or values is None:
         return None

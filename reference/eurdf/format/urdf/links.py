@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from eurdf.format.urdf.data import UrdfLink
-from eurdf.format.urdf.elements import UrdfReader
+from eurdf.format.urdf.elements import RESERVED, UrdfReader
 from eurdf.format.urdf.materials import Materials
 from eurdf.format.urdf.shapes import read_shape
 from eurdf.mechanism.body import Inertia, Shape
 from eurdf.reading.reporter import Element
 
 # Attributes of one number each.
-_MASS = {"value": None}
 _INERTIA = dict.fromkeys(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
 
 
@@ -21,7 +20,7 @@ def read_link(reader: UrdfReader, element: Element, materials: Materials | None)
     inertial: Element | None = None
     visuals: list[Shape] = []
     collisions: list[Shape] = []
-    for child in element:
+    for child in element[:]:  # type: ignore[index]  # a list, which lxml makes in half the time
         tag = child.tag
         if tag == "inertial":
             if inertial is not None:
@@ -37,7 +36,8 @@ def read_link(reader: UrdfReader, element: Element, materials: Materials | None)
             reader.unknown(element, child)
     if name is None:
         return None
-    reader.refuse_reserved(name, element)
+    if name == RESERVED:
+        reader.refuse_reserved(element)
     return UrdfLink(name, element, inertia, inertial, tuple(visuals), tuple(collisions))
 
 
@@ -48,7 +48,7 @@ def _inertial(reader: UrdfReader, element: Element) -> Inertia | None:
     inertia_element = reader.need(element, found, "inertia")
     if mass_element is None or inertia_element is None:
         return None
-    mass, moments = reader.single_numbers(mass_element, _MASS), reader.single_numbers(inertia_element, _INERTIA)
+    mass, moments = reader.number(mass_element, "value"), reader.single_numbers(inertia_element, _INERTIA)
     if mass is None or moments is None:
         return None
-    return Inertia(mass[0], pose, moments)  # type: ignore[arg-type]
+    return Inertia(mass, pose, moments)  # type: ignore[arg-type]

@@ -13,8 +13,7 @@ from eurdf.reading.reporter import Element
 
 _Primitive = Literal["box", "cylinder", "sphere", "capsule"]
 
-# Attributes of one number each, and their defaults.
-_SPHERE = {"radius": None}
+# Attributes of one number each.
 _CYLINDER = {"radius": None, "length": None}
 
 
@@ -62,7 +61,8 @@ def _primitive(reader: UrdfReader, element: Element, pose: Pose, look: Look) -> 
     if kind == "box":
         size = _size_of_box(reader, element)
     elif kind == "sphere":
-        size = reader.single_numbers(element, _SPHERE)
+        radius = reader.number(element, "radius")
+        size = None if radius is None else (radius,)
     elif kind in ("cylinder", "capsule"):
         size = reader.single_numbers(element, _CYLINDER)
     else:

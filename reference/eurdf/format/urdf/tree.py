@@ -36,7 +36,10 @@ def build_tree(reader: UrdfReader, name: str, links: Sequence[UrdfLink], joints:
     children: dict[str, list[UrdfJoint]] = {}
     for joint in joints:
         children.setdefault(joint.parent, []).append(joint)
-    ordered = {link: tuple(sorted(of, key=lambda joint: joint.name)) for link, of in children.items()}
+    for siblings in children.values():
+        if len(siblings) > 1:
+            siblings.sort(key=lambda joint: joint.name)
+    ordered = {link: tuple(siblings) for link, siblings in children.items()}
     roots = [link for link in links if link.name not in parent_joint]
     urdf = Urdf(document, name, link_by_name, joint_by_name, roots[0].name if roots else "", ordered)
     return urdf if _is_acyclic(reader, urdf, roots, parent_joint) and _has_one_root(reader, roots) else None
@@ -65,6 +68,8 @@ def _joints_by_name(reader: UrdfReader, joints: Sequence[UrdfJoint]) -> dict[str
 def _check_links_of_joints(reader: UrdfReader, joints: Sequence[UrdfJoint], links: Mapping[str, UrdfLink]) -> None:
     """EU-URD-014: the links that a joint names exist."""
     for joint in joints:
+        if joint.parent in links and joint.child in links:
+            continue
         for tag, name in (("parent", joint.parent), ("child", joint.child)):
             if name not in links:
                 reader.report(
