@@ -45,7 +45,7 @@ def is_mirrored(candidate: Candidate) -> list[str] | None:
         return [f"'{name}' has no counterpart: there is no element of the mirrored name" for name in alone]
     # Mimic joints get their own coordinates, because they have to be mirrored, too.
     robot = eurdf.load(candidate.path, geometry=False, mimic=False)
-    at = slots(robot.mechanism, robot.model)
+    at = slots(robot.mechanism)
     joints = [(at[left], at[right]) for left, right in pairs.items() if left in at and right in at]
     signs = _signs(robot, joints)
     for (left, right), sign in zip(joints, signs, strict=True):

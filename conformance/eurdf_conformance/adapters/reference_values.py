@@ -138,7 +138,7 @@ def _columns(robot: Robot) -> list[tuple[str, int]]:
     columns = [("", 0)] * robot.model.nv
     if robot.mechanism.root == "floating":
         columns[:6] = [(ROOT_JOINT, index) for index in range(6)]
-    for name, slot in slots(robot.mechanism, robot.model).items():
+    for name, slot in slots(robot.mechanism).items():
         columns[slot.idx_v : slot.idx_v + slot.nv] = [(name, index) for index in range(slot.nv)]
     return columns
 

@@ -363,7 +363,7 @@ def _joint_infos(robot: Robot) -> Iterator[JointInfo]:
             stiffness=(),
             rest=(),
         )
-    at, actuated = slots(mechanism, robot.model), set(robot.actuation.joints)
+    at, actuated = slots(mechanism), set(robot.actuation.joints)
     for joint in mechanism.joints:
         if joint.type is JointType.FIXED:
             continue

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass
 
 from eurdf.text_enum import TextEnum
@@ -23,6 +24,12 @@ class JointType(TextEnum):
 
     # The hash of the string it equals: Enum's own is a Python function, and lookups by type are frequent.
     __hash__ = str.__hash__
+
+
+if sys.version_info < (3, 12):
+    # There, a member is looked up through a descriptor written in Python, which takes four times as long.
+    for _member in JointType:
+        type.__setattr__(JointType, _member.name, _member)
 
 
 @dataclass(frozen=True, slots=True)

@@ -58,11 +58,11 @@ def build_actuation(mechanism: Mechanism, model: pin.Model, at: Mapping[str, Slo
     Args:
         mechanism: The mechanism.
         model: The result of `build_model`.
-        at: The `slots` of the two, if the caller has them.
+        at: The `slots` of the mechanism, if the caller has them.
     """
     if not mechanism.actuators:
         return Actuation((), np.empty(0, np.intp), np.empty(0, np.intp), model.nv, (), np.empty((0, 2)))
-    at = slots(mechanism, model) if at is None else at
+    at = slots(mechanism) if at is None else at
     actuated = [at[name] for name in mechanism.actuators]
     idx_q = np.array([slot.idx_q + k for slot in actuated for k in range(slot.nq)], np.intp)
     idx_v = np.array([slot.idx_v + k for slot in actuated for k in range(slot.nv)], np.intp)

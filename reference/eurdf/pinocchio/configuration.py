@@ -32,7 +32,7 @@ def configuration_vector(
         coordinates: For each joint its coordinates as files have them (`eurdf.mechanism.joint_type.COORDINATES`), for a
             floating root those of a floating joint under ``root_joint``. Other joints are
             neutral. Quaternions are normalized. Coordinates of mimic joints are ignored.
-        at: The `slots` of mechanism and model, if the caller has them.
+        at: The `slots` of the mechanism, if the caller has them.
 
     Returns:
         q, of shape (nq,).
@@ -42,7 +42,7 @@ def configuration_vector(
             quaternion of length 0.
     """
     q: Vector = pin.neutral(model)
-    at = slots(mechanism, model) if at is None else at
+    at = slots(mechanism) if at is None else at
     mimics = {joint.name for joint in mechanism.joints if joint.mimic is not None}
     for name, given in coordinates.items():
         values = [float(value) for value in given]
@@ -82,7 +82,7 @@ def own_coordinates(mechanism: Mechanism, model: pin.Model, q: Vector) -> dict[s
     found: dict[str, tuple[float, ...]] = {}
     if mechanism.root == "floating":
         found[ROOT_JOINT] = tuple(numbers[:7])
-    for name, slot in slots(mechanism, model).items():
+    for name, slot in slots(mechanism).items():
         own = numbers[slot.idx_q : slot.idx_q + slot.nq]
         if slot.nq > len(slot.joint.coordinates.names):
             own[-2:] = [math.atan2(own[-1], own[-2])]

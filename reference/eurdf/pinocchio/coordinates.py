@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import pinocchio as pin
-
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import COORDINATES, JointType
 from eurdf.mechanism.mechanism import Mechanism
@@ -30,27 +28,24 @@ class Slot(NamedTuple):
     nv: int
 
 
-def slots(mechanism: Mechanism, model: pin.Model) -> dict[str, Slot]:
-    """The slots of all joints except fixed joints and mimic joints.
+def slots(mechanism: Mechanism) -> dict[str, Slot]:
+    """The slots of all joints except fixed joints and mimic joints, in the order of the mechanism's joints.
 
     Args:
-        mechanism: The mechanism.
-        model: The result of `build_model`.
+        mechanism: The mechanism; the indices are those in the model that `build_model` makes of it.
     """
     led = following(mechanism)
-    idx_qs, idx_vs = model.idx_qs.tolist(), model.idx_vs.tolist()
-    joint_id = 1 + (mechanism.root == "floating") + len(led.late)
     mimics, unwrapped = led.mimics, led.unwrapped
-    found = {}
-    for joint in mechanism.joints:
+    idx_q, idx_v = (7, 6) if mechanism.root == "floating" else (0, 0)
+    found: dict[str, Slot] = {}
+    for joint in (*led.late, *mechanism.joints):
         kind, name = joint.type, joint.name
-        if kind is JointType.FIXED:
+        if kind is JointType.FIXED or name in mimics or name in found:
             continue
-        if name not in mimics:
-            coordinates = COORDINATES[kind]
-            nq = len(coordinates.names)
-            if kind is JointType.PLANAR or (kind is JointType.CONTINUOUS and name not in unwrapped):
-                nq += 1  # Pinocchio has their angle as (cos, sin)
-            found[name] = Slot(joint, idx_qs[joint_id], nq, idx_vs[joint_id], coordinates.nv)
-        joint_id += 1
-    return found
+        coordinates = COORDINATES[kind]
+        nq, nv = len(coordinates.names), coordinates.nv
+        if kind is JointType.PLANAR or (kind is JointType.CONTINUOUS and name not in unwrapped):
+            nq += 1  # Pinocchio has their angle as (cos, sin)
+        found[name] = Slot(joint, idx_q, nq, idx_v, nv)
+        idx_q, idx_v = idx_q + nq, idx_v + nv
+    return {joint.name: found[joint.name] for joint in mechanism.joints if joint.name in found} if led.late else found

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 import pinocchio as pin
 
 from eurdf.mechanism.joint import Joint
@@ -14,6 +15,8 @@ from eurdf.mechanism.joint_type import JointType
 # Pinocchio bounds a cosine, a sine and each component of a unit quaternion by this: never reached, and finite.
 _UNIT = 1.01
 _INF = math.inf
+
+Vector = npt.NDArray[np.float64]
 
 
 def set_limits(model: pin.Model, joints: Sequence[tuple[Joint, int]], root_nq: int, root_nv: int) -> None:
@@ -28,11 +31,17 @@ def set_limits(model: pin.Model, joints: Sequence[tuple[Joint, int]], root_nq: i
         root_nq: Number of coordinates of the root joint; 0 without one.
         root_nv: Number of its velocities.
     """
-    lower, upper = model.lowerPositionLimit[:root_nq].tolist(), model.upperPositionLimit[:root_nq].tolist()
-    velocity, effort = model.upperVelocityLimit[:root_nv].tolist(), model.upperEffortLimit[:root_nv].tolist()
-    friction, damping = model.upperDryFrictionLimit[:root_nv].tolist(), model.damping[:root_nv].tolist()
-    armature, rotor_inertia = model.armature[:root_nv].tolist(), model.rotorInertia[:root_nv].tolist()
-    gear_ratio = model.rotorGearRatio[:root_nv].tolist()
+    lower, upper = _first(root_nq, model.lowerPositionLimit, model.upperPositionLimit)
+    velocity, effort, friction, damping, armature, rotor_inertia, gear_ratio = _first(
+        root_nv,
+        model.upperVelocityLimit,
+        model.upperEffortLimit,
+        model.upperDryFrictionLimit,
+        model.damping,
+        model.armature,
+        model.rotorInertia,
+        model.rotorGearRatio,
+    )
     for joint, nq in joints:
         lowest, highest = _position_bounds(joint, nq)
         lower += lowest
@@ -59,6 +68,11 @@ def set_limits(model: pin.Model, joints: Sequence[tuple[Joint, int]], root_nq: i
     model.armature = np.array(armature)
     model.rotorInertia = np.array(rotor_inertia)
     model.rotorGearRatio = np.array(gear_ratio)
+
+
+def _first(count: int, *vectors: Vector) -> list[list[float]]:
+    """The first numbers of each vector."""
+    return [vector[:count].tolist() if count else [] for vector in vectors]
 
 
 def _position_bounds(joint: Joint, nq: int) -> tuple[tuple[float, ...], tuple[float, ...]]:

@@ -89,7 +89,9 @@ def build_model_and_sites(mechanism: Mechanism) -> tuple[pin.Model, dict[str, Si
         name = joint.name
         parent_joint, parent_placement = sites[joint.parent]
         parent_frame = frames[joint.parent]
-        placement = parent_placement * placement_of(joint.placement)
+        placement = placement_of(joint.placement)
+        if parent_placement is not _HERE:
+            placement = parent_placement * placement
         if joint.type is JointType.FIXED:
             if joint.offset is not IDENTITY:
                 placement = placement * placement_of(joint.offset)

@@ -124,7 +124,7 @@ class Robot:
     @cached_property
     def slots(self) -> Mapping[str, Slot]:
         """Each joint that has coordinates of its own, by name, with the indices of these and of its velocities."""
-        return MappingProxyType(slots(self.mechanism, self.model))
+        return MappingProxyType(slots(self.mechanism))
 
     def configuration(self, coordinates: Mapping[str, Sequence[float]]) -> Vector:
         """The configuration (nq,) in which joints have the given coordinates: the inverse of `coordinates`.
@@ -207,7 +207,7 @@ def build_robot(
             build_geometry(mechanism, model, pin.GeometryType.VISUAL, find, meshes, cache),
             build_geometry(mechanism, model, pin.GeometryType.COLLISION, find, meshes, cache),
         )
-    at = slots(mechanism, model)
+    at = slots(mechanism)
     return Robot(
         mechanism,
         model,

@@ -66,7 +66,7 @@ def build_springs(mechanism: Mechanism, at: Mapping[str, Slot]) -> Springs:
 
     Args:
         mechanism: The mechanism.
-        at: The `slots` of mechanism and model.
+        at: The `slots` of the mechanism.
     """
     sprung = [joint for joint in mechanism.joints if any(joint.properties.stiffness)]
     if not sprung:

@@ -321,7 +321,7 @@ def build_tree(
         mechanism: The mechanism.
         model: The result of `build_model`.
         sites: For each body where its frame is, if the caller has it.
-        at: The `slots` of the two, if the caller has them.
+        at: The `slots` of the mechanism, if the caller has them.
     """
     if sites is None:
         frames = model.frames
@@ -329,7 +329,7 @@ def build_tree(
             name: Site(frames[index].parentJoint, pin.SE3(frames[index].placement))
             for name, index in body_frame_ids(mechanism).items()
         }
-    at = slots(mechanism, model) if at is None else at
+    at = slots(mechanism) if at is None else at
     first = {name: (slot.idx_q, slot.nq, slot.idx_v, slot.nv) for name, slot in at.items()}
     return PinocchioTree(model, sites, first, build_springs(mechanism, at))
 

@@ -93,7 +93,7 @@ class BatchTree:
         self.nq, self.nv = robot.tree.nq, robot.tree.nv
         world = MovingJoint(0, np.eye(3), np.zeros(3), Screw(np.zeros(3), 0.0, 0.0), 0, 0)
         self.joints: list[MovingJoint] = [world]
-        at = slots(mechanism, robot.model)
+        at = slots(mechanism)
         places: dict[str, tuple[int, Pose]] = {mechanism.bodies[0].name: (0, IDENTITY)}
         if mechanism.root == "floating":
             self.joints.append(MovingJoint(0, np.eye(3), np.zeros(3), Floating(), 0, 0))
