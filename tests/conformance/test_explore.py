@@ -22,7 +22,7 @@ from eurdf_conformance.properties.catalogue import property_of
 from eurdf_conformance.properties.culprit import culprit
 from eurdf_conformance.properties.document import configuration
 from eurdf_conformance.properties.example import DRAWN_VERSIONS, frozen_examples
-from eurdf_conformance.properties.explore import Trial, explore, search, try_property
+from eurdf_conformance.properties.explore import Trial, explore, search, try_fresh, try_property
 from eurdf_conformance.properties.harness import Harness
 from eurdf_conformance.properties.mechanism import Mechanism
 from eurdf_conformance.properties.smaller import smaller
@@ -99,6 +99,19 @@ def test_the_written_case_separates_wrong_parser_and_reference(found: tuple[Path
     assert judge(case, Level.KINEMATICS, Conversation(InProcess(UniversalBackwards()))).verdict == Verdict.FAILED
     for level in case.levels:
         assert judge(case, level, Conversation(InProcess(PARSER))).verdict == Verdict.PASSED, level
+
+
+def test_failure_on_a_fresh_example_is_reduced(tmp_path: Path) -> None:
+    # The frozen examples in place of drawn ones: several have a universal joint.
+    trial = Trial(InProcess(UniversalBackwards()), "2", 0, tmp_path, SEED, frozen_examples("2"))
+    harness = Harness(trial.parser, trial.folder)
+    judgement = try_fresh(property_of("agreement"), Level.KINEMATICS, trial, harness)
+    assert (judgement.verdict, f"drawn from seed {SEED}: " in judgement.reason) == (Verdict.FAILED, True)
+    urdf = next(Path(line) for line in judgement.log.splitlines() if line.endswith(".urdf"))
+    assert urdf.read_text().count("<joint ") == 1
+    right = Trial(InProcess(OracleParser()), "2", 0, tmp_path, SEED, frozen_examples("2")[:8])
+    harness = Harness(right.parser, right.folder)
+    assert try_fresh(property_of("agreement"), Level.KINEMATICS, right, harness).verdict == Verdict.PASSED
 
 
 @pytest.mark.slow

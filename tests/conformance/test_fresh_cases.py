@@ -16,8 +16,9 @@ from eurdf_conformance.adapters.reference import PARSER
 from eurdf_conformance.certificate.issue import issue
 from eurdf_conformance.command.replay import replay_differences
 from eurdf_conformance.corpus.read import all_cases
-from eurdf_conformance.fresh.case import COUNT, FRESH, FreshCase, drawn_hash, fresh_cases
-from eurdf_conformance.fresh.fault import FAULTS, with_fault
+from eurdf_conformance.fresh.case import FRESH, FreshCase, drawn_hash, fresh_cases, fresh_examples
+from eurdf_conformance.fresh.fault import FAULTS, Subject, with_fault
+from eurdf_conformance.fresh.kind import COUNTS, FreshKind
 from eurdf_conformance.judging.conversation import Conversation
 from eurdf_conformance.judging.judge import judge
 from eurdf_conformance.judging.verdict import Verdict
@@ -49,12 +50,16 @@ def test_seed_decides_the_fresh_cases(cases: dict[str, FreshCase]) -> None:
     assert drawn_hash(1) != drawn_hash(0)
 
 
-def test_every_version_has_valid_and_invalid_fresh_cases(cases: dict[str, FreshCase]) -> None:
-    kinds = Counter((case.case.version, case.case.valid) for case in cases.values())
-    assert kinds == dict.fromkeys(product(DRAWN_VERSIONS, (True, False)), COUNT)
+def test_every_version_has_fresh_cases_of_every_kind(cases: dict[str, FreshCase]) -> None:
+    kinds = Counter((case.drawn.version, case.drawn.kind) for case in cases.values())
+    assert kinds == {(version, kind): count for version, (kind, count) in product(DRAWN_VERSIONS, COUNTS.items())}
     assert len({tuple(case.files.items()) for case in cases.values()}) == len(cases)
-    faults = Counter((case.drawn.error, case.drawn.code) for case in cases.values() if not case.case.valid)
-    assert max(faults.values()) <= len(DRAWN_VERSIONS)  # different errors before the same one again
+    subjects = {fault.name: fault.subject for fault in FAULTS}
+    for version in DRAWN_VERSIONS:
+        drawn = [case.drawn for case in cases.values() if case.drawn.version == version]
+        assert {subjects[each.error] for each in drawn if each.error} == set(Subject)
+        errors = [each.error for each in drawn if each.kind is FreshKind.INVALID]
+        assert len(set(errors)) == len(errors)  # different errors before the same one again
 
 
 def test_items_are_those_of_the_cases_whatever_is_drawn(cases: dict[str, FreshCase]) -> None:
@@ -109,7 +114,8 @@ def test_reference_reports_each_fault_alone_and_at_its_place(version: Version, t
                 (tmp_path / name).write_text(text, encoding="utf-8")
             found = [
                 (each.code, Path(each.file or "").name, each.line, each.column)
-                for each in eurdf.check(tmp_path / DESCRIPTION).errors
+                for each in eurdf.check(tmp_path / DESCRIPTION).diagnostics
+                if not each.code.startswith("x-")
             ]
             expected = (fault.code, fault.file, faulty.line, faulty.column)
             if fault.code in ("yaml-syntax", "xml-syntax"):  # EU-DIA-013: each parser has its own place

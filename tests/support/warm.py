@@ -20,6 +20,9 @@ from pathlib import Path
 #: Seconds after which a program that has not ended is killed.
 TIMEOUT = 300
 
+#: The seed whose fresh cases that process has drawn: a run of the suite with it need not draw them.
+SEED = 0
+
 
 def run_module(
     module: str, arguments: Sequence[str], *, cwd: Path | None = None, environment: Mapping[str, str] | None = None
@@ -68,8 +71,10 @@ def _serve() -> None:
     for name in ("pytest", "hypothesis", "numpy", "eurdf.commands.main", "eurdf_conformance.suite.plugin"):
         importlib.import_module(name)
     from eurdf_conformance.corpus.read import all_cases
+    from eurdf_conformance.fresh.case import fresh_cases
 
     all_cases()
+    fresh_cases(SEED)
     gc.freeze()
     answers = os.fdopen(os.dup(1), "w")
     for line in sys.stdin:

@@ -7,37 +7,29 @@ import json
 import re
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from pydantic import Field, TypeAdapter
 
-from eurdf_conformance.corpus.case import CasePlace, InvalidCase, ValidCase
+from eurdf_conformance.corpus.case import CasePlace, ExpectedWarning, InvalidCase, ValidCase
 from eurdf_conformance.corpus.content import Part
 from eurdf_conformance.corpus.expected import Expected
 from eurdf_conformance.corpus.read import CorpusCase, suite_cases
+from eurdf_conformance.fresh.kind import TITLES, FreshKind, accept_clause, fresh_levels
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.level_spec import Compared, levels_comparing
+from eurdf_conformance.properties.example import DRAWN_VERSIONS, Example
 from eurdf_conformance.properties.files import DESCRIPTION, URDF
 
 #: Topic of fresh cases: the first part of their names.
 FRESH = "fresh"
 
-#: Fresh cases of each version and validity.
-COUNT = 8
-
 #: What was drawn from a seed.
 _texts: dict[int, str] = {}
-
-_CLAUSES = {True: "EU-CNF-002", False: "EU-CNF-001"}
-
-_TITLES = {
-    True: "A mechanism that was drawn for this run.",
-    False: "A mechanism that was drawn for this run, with one error.",
-}
 
 _NUMBER = re.compile(r"(?<![\w.])-?\d+\.\d+(e-?\d+)?")
 
@@ -53,20 +45,22 @@ class Drawn(Part):
 
     Attributes:
         version: Version of the format.
-        valid: Whether it is valid.
+        kind: Its kind.
         files: Texts by name.
+        example: The mechanism that the files are of, before an error was put into them.
         configurations: Of a valid case, where the robot is evaluated.
         frames: Of a valid case, names of frames whose poses are asked for.
         expected: Of a valid case, what the oracle expects.
-        error: Of an invalid case: what is wrong, in words.
-        code: Of an invalid case: of its diagnostic.
-        place: Of an invalid case: of its diagnostic.
-        fix: Of an invalid case: what to do about the error, as a sentence.
+        error: What is wrong, in words.
+        code: Of the diagnostic of the error.
+        place: Of the diagnostic of the error.
+        fix: What to do about the error, as a sentence.
     """
 
     version: Version
-    valid: bool
+    kind: FreshKind
     files: dict[str, str]
+    example: Example
     configurations: list[dict[str, list[float]]] = Field(default=[])
     frames: list[str] = Field(default=[])
     expected: Expected | None = None
@@ -99,22 +93,12 @@ class FreshCase(CorpusCase):
     @property
     def levels(self) -> tuple[Level, ...]:
         """The levels at which it is tested."""
-        return fresh_levels(self.drawn.valid)
+        return fresh_levels(self.drawn.kind)
 
 
-def fresh_levels(valid: bool) -> tuple[Level, ...]:
-    """The levels at which a fresh case is tested. Of a valid one no warnings are known."""
-    return levels_comparing(Compared.OUTCOME, *((Compared.ROBOT, Compared.VALUES) if valid else (Compared.ISSUES,)))
-
-
-def fresh_name(version: Version, valid: bool, number: int) -> str:
+def fresh_name(version: Version, kind: FreshKind, number: int) -> str:
     """The name of a fresh case."""
-    return f"{FRESH}/{'valid' if valid else 'invalid'}-{version.replace('.', '-')}-{number}"
-
-
-def fresh_title(valid: bool) -> str:
-    """The title of a fresh case, whatever it is."""
-    return _TITLES[valid]
+    return f"{FRESH}/{kind}-{version.replace('.', '-')}-{number}"
 
 
 def keep_drawn(seed: int, text: str) -> None:
@@ -149,6 +133,13 @@ def fresh_cases(seed: int) -> dict[str, FreshCase]:
     return {case.name: case for case in _cases(drawn_text(seed))}
 
 
+def fresh_examples(seed: int, version: Version) -> tuple[Example, ...]:
+    """The mechanisms of the valid fresh cases of a seed, for properties; those of version 2 are also of version 2.1."""
+    drawn_as = version if version in DRAWN_VERSIONS else "2"
+    cases = (case.drawn for case in fresh_cases(seed).values())
+    return tuple(each.example for each in cases if each.kind is FreshKind.VALID and each.version == drawn_as)
+
+
 def drawn_hash(seed: int) -> str:
     """A hash that shows whether two runs drew the same files, but for the last digits of their numbers.
 
@@ -161,11 +152,11 @@ def drawn_hash(seed: int) -> str:
 
 @cache
 def _cases(text: str) -> Sequence[FreshCase]:
-    numbers: dict[tuple[Version, bool], int] = {}
+    numbers = Counter[tuple[Version, FreshKind]]()
     cases = []
     for drawn in _DRAWN.validate_json(text):
-        kind = drawn.version, drawn.valid
-        numbers[kind] = numbers.get(kind, 0) + 1
+        kind = drawn.version, drawn.kind
+        numbers[kind] += 1
         name = fresh_name(*kind, numbers[kind])
         cases.append(FreshCase(_said(drawn), name, Path(f"{name}.yaml"), suite_cases(), drawn))
     return cases
@@ -174,16 +165,18 @@ def _cases(text: str) -> Sequence[FreshCase]:
 def _said(drawn: Drawn) -> ValidCase | InvalidCase:
     common: dict[str, Any] = {
         "id": "fresh0",
-        "title": _TITLES[drawn.valid],
+        "title": TITLES[drawn.kind],
         "version": drawn.version,
-        "clauses": [_CLAUSES[drawn.valid]],
+        "clauses": [accept_clause(drawn.kind)],
         "description": DESCRIPTION,
         "urdf": URDF,
     }
-    if drawn.valid:
-        return ValidCase(valid=True, configurations=drawn.configurations, frames=drawn.frames, **common)
-    valid: Literal[False] = False
+    if drawn.kind in (FreshKind.VALID, FreshKind.WARNED):
+        warnings = [ExpectedWarning(code=drawn.code, place=drawn.place)] if drawn.place else []
+        at: dict[str, Any] = {"configurations": drawn.configurations, "frames": drawn.frames}
+        return ValidCase(valid=True, warnings=warnings, **at, **common)
+    either = drawn.kind is FreshKind.EITHER
     # Not checked: the valid twin and the edit are not those of a stored case.
     return InvalidCase.model_construct(
-        valid=valid, code=drawn.code, place=drawn.place, fix=drawn.fix, either=False, features=[], **common
+        valid=False, code=drawn.code, place=drawn.place, fix=drawn.fix, either=either, features=[], **common
     )

@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import islice
 from pathlib import Path
+from typing import Any
 
 import hypothesis
 from hypothesis import HealthCheck, Phase, given, settings
@@ -14,8 +16,9 @@ from hypothesis import strategies as st
 
 from eurdf_conformance.corpus.case import CasePlace
 from eurdf_conformance.corpus.expect import expected_of
-from eurdf_conformance.fresh.case import COUNT, Drawn
-from eurdf_conformance.fresh.fault import FAULTS, with_fault
+from eurdf_conformance.fresh.case import Drawn
+from eurdf_conformance.fresh.fault import FAULTS, Fault, with_fault
+from eurdf_conformance.fresh.kind import COUNTS, FreshKind
 from eurdf_conformance.level import Version
 from eurdf_conformance.oracle import read
 from eurdf_conformance.properties.chance import Chance
@@ -26,75 +29,104 @@ from eurdf_conformance.properties.mechanism import Mechanism
 from eurdf_conformance.properties.query import Query, query_of
 from eurdf_conformance.properties.strategies.mechanisms import mechanisms
 
-#: Mechanisms drawn for each that is kept: those are kept that differ most in what they use.
-_DRAWN = 2
+#: For so many mechanisms that are kept one more is drawn: those are kept that differ most in what they use.
+_KEPT = 3
 
 
 def draw(seed: int) -> Iterator[Drawn]:
-    """The fresh cases of a seed: for each version the valid ones, then the invalid ones."""
+    """The fresh cases of a seed, in the order of their versions and kinds."""
     for version in DRAWN_VERSIONS:
-        found = drawn_mechanisms(version, seed)
-        yield from (_valid(query_of(mechanism, version)) for mechanism in found[:COUNT])
-        yield from _invalid([query_of(mechanism, version) for mechanism in found[COUNT:]], Chance(seed))
+        faults = [fault for fault in FAULTS if version in fault.versions]
+        left = iter(drawn_examples(version, seed))
+        for kind, count in COUNTS.items():
+            examples = list(islice(left, count))
+            if kind is FreshKind.VALID:
+                yield from (_valid(kind, version, example) for example in examples)
+            else:
+                of_kind = [fault for fault in faults if fault.makes is kind]
+                yield from _faulty(kind, version, examples, of_kind, Chance(seed))
 
 
-def drawn_mechanisms(version: Version, seed: int) -> list[Mechanism]:
-    """Twice `COUNT` mechanisms that a version of the format can express, most of them with closures."""
+def drawn_examples(version: Version, seed: int) -> list[Example]:
+    """Mechanisms that a version of the format can express, most of them with closures: one for each fresh case."""
     found: list[Example] = []
+    count = sum(COUNTS.values())
     any_number = st.sampled_from([0, 1, 1, 2]).flatmap(lambda closures: mechanisms(version, closures))
 
     @hypothesis.seed(seed)
     @settings(
-        max_examples=2 * COUNT * _DRAWN,
+        max_examples=count + count // _KEPT,
         database=None,
         deadline=None,
         derandomize=False,
         phases=[Phase.generate],
         suppress_health_check=list(HealthCheck),
     )
-    @given(any_number)
-    def keep(mechanism: Mechanism) -> None:
-        found.append(Example(mechanism=mechanism))
+    @given(any_number, st.integers(0, 10**6))
+    def keep(mechanism: Mechanism, variation: int) -> None:
+        found.append(Example(mechanism=mechanism, seed=variation))
 
     keep()
-    return Chance(seed).shuffled(example.mechanism for example in chosen(found, 2 * COUNT))
+    return Chance(seed).shuffled(chosen(found, count))
 
 
-def _valid(query: Query) -> Drawn:
+def _valid(
+    kind: FreshKind, version: Version, example: Example, files: Mapping[str, str] | None = None, **error: Any
+) -> Drawn:
+    """A valid case, with the answers of the oracle on its files: those of the mechanism unless others are given."""
+    query = query_of(example.mechanism, version)
+    files = files or _texts(query)
     with tempfile.TemporaryDirectory() as folder:
-        robot = read(*query.files.write(Path(folder)), query.version)
+        for name, text in files.items():
+            Path(folder, name).write_text(text, encoding="utf-8", newline="")
+        robot = read(Path(folder, DESCRIPTION), Path(folder, URDF), version)
     configurations = [{name: list(q) for name, q in each.items()} for each in query.configurations]
     return Drawn(
-        version=query.version,
-        valid=True,
-        files={DESCRIPTION: query.files.description.decode(), URDF: query.files.urdf.decode()},
+        version=version,
+        kind=kind,
+        files=dict(files),
+        example=example,
         configurations=configurations,
         frames=list(query.frames),
         expected=expected_of(robot, configurations, query.frames),
+        **error,
     )
 
 
-def _invalid(queries: Sequence[Query], chance: Chance) -> Iterator[Drawn]:
-    """Each of the mechanisms with one error, as many different errors as possible."""
-    left = [fault for fault in chance.shuffled(FAULTS) if queries[0].version in fault.versions]
-    for query in queries:
-        files = {DESCRIPTION: query.files.description.decode(), URDF: query.files.urdf.decode()}
+def _faulty(
+    kind: FreshKind, version: Version, examples: Iterable[Example], faults: Iterable[Fault], chance: Chance
+) -> Iterator[Drawn]:
+    """Each of the mechanisms with one error: first one about each subject, then as many different ones as possible."""
+    left = _one_about_each_subject_first(chance.shuffled(faults))
+    for example in examples:
+        files = _texts(query_of(example.mechanism, version))
         for fault in left:
             faulty = with_fault(fault, files[fault.file], chance)
             if faulty is not None:
                 break
         else:
-            raise AssertionError("any URDF can have a second root")
+            raise AssertionError("any robot can have a second root, and has an inertia")
         left = [*(other for other in left if other is not fault), fault]  # it is the last to be used again
-        yield Drawn(
-            version=query.version,
-            valid=False,
-            files={**files, fault.file: faulty.text},
-            error=fault.name,
-            code=fault.code,
-            place=CasePlace(file=fault.file, line=faulty.line, column=faulty.column),
-            fix=fault.fix,
-        )
+        texts = {**files, fault.file: faulty.text}
+        error: dict[str, Any] = {
+            "error": fault.name,
+            "code": fault.code,
+            "place": CasePlace(file=fault.file, line=faulty.line, column=faulty.column),
+            "fix": fault.fix,
+        }
+        if kind is FreshKind.WARNED:
+            yield _valid(kind, version, example, texts, **error)
+        else:
+            yield Drawn(version=version, kind=kind, files=texts, example=example, **error)
+
+
+def _one_about_each_subject_first(faults: Sequence[Fault]) -> list[Fault]:
+    first = {fault.subject: fault for fault in reversed(faults)}.values()
+    return [*first, *(fault for fault in faults if fault not in first)]
+
+
+def _texts(query: Query) -> dict[str, str]:
+    return {DESCRIPTION: query.files.description.decode(), URDF: query.files.urdf.decode()}
 
 
 if __name__ == "__main__":

@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
+from enum import StrEnum
 
+import numpy as np
+
+from eurdf_conformance.fresh.kind import FreshKind
 from eurdf_conformance.level import Version
 from eurdf_conformance.properties.chance import Chance
 from eurdf_conformance.properties.files import DESCRIPTION, URDF
+from eurdf_conformance.properties.mechanism import Pose, Vector
+from eurdf_conformance.properties.placement import matrix_of
 
 #: In `Fault.text`: the place of the diagnostic.
 _PLACE = "¦"
@@ -19,28 +26,49 @@ _AXIS = r'(?s)(<joint name="\w+" type="(?:revolute|continuous|prismatic)">(?:(?!
 _TWO: tuple[Version, ...] = ("2",)
 _BOTH: tuple[Version, ...] = ("1", "2")
 
+#: By which part of the largest principal moment an inertia departs from what is allowed: EU-INR-002, EU-INR-003 allow
+#: 1e-6.
+_LEAST, _MOST = 1e-5, 1e-1
+
+
+class Subject(StrEnum):
+    """What an error is about. Every run has at least one error about each subject, in each version."""
+
+    DANGLING = "dangling name"
+    DUPLICATE = "duplicate name"
+    CYCLE = "cycle"
+    TREE = "tree"
+    INERTIA = "inertia"
+    SYNTAX = "syntax"
+    VALUE = "value"
+
 
 @dataclass(frozen=True, slots=True)
 class Fault:
-    """One error.
+    """One error, or what deserves a warning.
 
     Attributes:
         name: What is wrong, in words.
+        subject: What it is about.
         code: Code of its diagnostic.
         file: The file that has it.
         pattern: Regular expression of the text that is replaced, in any of the places where it occurs.
-        text: The replacement, as `re.Match.expand` reads it; a broken bar is before the place of the diagnostic.
+        text: The replacement, as `re.Match.expand` reads it, or what gives it; a broken bar is before the place of the
+            diagnostic.
         fix: What to do about it.
         versions: Versions of the format of the descriptions that can have it.
+        makes: The kind of case that it makes of a valid one.
     """
 
     name: str
+    subject: Subject
     code: str
     file: str
     pattern: str
-    text: str
+    text: str | Callable[[Chance], str]
     fix: str
     versions: tuple[Version, ...] = _BOTH
+    makes: FreshKind = FreshKind.INVALID
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,10 +83,17 @@ class Faulty:
 
 FAULTS = (
     Fault(
-        "unknown parent", "urdf-unknown-link", URDF, r'<parent link="(\w+)', r'<parent link="¦\1_gone', "Name a link."
+        "unknown parent",
+        Subject.DANGLING,
+        "urdf-unknown-link",
+        URDF,
+        r'<parent link="(\w+)',
+        r'<parent link="¦\1_gone',
+        "Name a link.",
     ),
     Fault(
         "second link of a name",
+        Subject.DUPLICATE,
         "urdf-duplicate-link",
         URDF,
         r'(?s)(<link name="(\w+)".*)(</robot>)',
@@ -66,10 +101,17 @@ FAULTS = (
         "Give the link another name.",
     ),
     Fault(
-        "second root", "urdf-two-roots", URDF, "(</robot>)", r'<link name="¦loose" />\1', "Connect the link by a joint."
+        "second root",
+        Subject.TREE,
+        "urdf-two-roots",
+        URDF,
+        "(</robot>)",
+        r'<link name="¦loose" />\1',
+        "Connect the link by a joint.",
     ),
     Fault(
         "number with a unit",
+        Subject.VALUE,
         "urdf-bad-number",
         URDF,
         r'<mass value="([^"]+)"',
@@ -78,6 +120,7 @@ FAULTS = (
     ),
     Fault(
         "unknown joint type",
+        Subject.VALUE,
         "urdf-joint-type",
         URDF,
         r'(<joint name="\w+" type=")\w+',
@@ -86,38 +129,70 @@ FAULTS = (
     ),
     Fault(
         "no child",
+        Subject.TREE,
         "urdf-missing-element",
         URDF,
         r'(?s)(<joint name="\w+")((?:(?!</joint>).)*?)<child link="\w+" />',
         r"¦\1\2",
         "Name the child.",
     ),
-    Fault("open element", "xml-syntax", URDF, r"</robot>\s*\Z", r"¦", "Close the element."),
-    Fault("negative effort", "urdf-negative-limit", URDF, r'effort="[^"]+"', r'effort="¦-1.0"', "Write the magnitude."),
-    Fault("zero axis", "urdf-zero-axis", URDF, _AXIS, r'\1¦0 0 0"', "Write a direction."),
+    Fault("open element", Subject.SYNTAX, "xml-syntax", URDF, r"</robot>\s*\Z", r"¦", "Close the element."),
+    Fault(
+        "negative effort",
+        Subject.VALUE,
+        "urdf-negative-limit",
+        URDF,
+        r'effort="[^"]+"',
+        r'effort="¦-1.0"',
+        "Write the magnitude.",
+    ),
+    Fault("zero axis", Subject.VALUE, "urdf-zero-axis", URDF, _AXIS, r'\1¦0 0 0"', "Write a direction."),
     Fault(
         "text that is not finite",
+        Subject.VALUE,
         "urdf-bad-number",
         URDF,
         r'<mass value="[^"]+"',
         r'<mass value="¦inf"',
         "Write a number.",
     ),
-    Fault("unknown key", "unknown-key", DESCRIPTION, _END, r"\1\n¦closurs: []\n", "Write `closures`.", _TWO),
+    Fault(
+        "unknown key", Subject.VALUE, "unknown-key", DESCRIPTION, _END, r"\1\n¦closurs: []\n", "Write `closures`.", _TWO
+    ),
     Fault(
         "second key of a name",
+        Subject.DUPLICATE,
         "yaml-duplicate-key",
         DESCRIPTION,
         r"(?m)^(\w+)(:(?s:.*))\Z",
         r"\1\2¦\1: 1\n",
         "Remove one.",
     ),
-    Fault("open bracket", "yaml-syntax", DESCRIPTION, _END, r"\1\n¦x-more: [1, 2\n", "Close the bracket."),
-    Fault("second document", "yaml-several-documents", DESCRIPTION, _END, r"\1\n¦---\nx-more: 1\n", "Remove it."),
-    Fault("unknown tag", "yaml-unknown-tag", DESCRIPTION, _END, r"\1\nx-more: ¦!own 1\n", "Remove the tag."),
-    Fault("unknown alias", "yaml-alias", DESCRIPTION, _END, r"\1\nx-more: ¦*gone\n", "Set the anchor."),
+    Fault(
+        "open bracket", Subject.SYNTAX, "yaml-syntax", DESCRIPTION, _END, r"\1\n¦x-more: [1, 2\n", "Close the bracket."
+    ),
+    Fault(
+        "second document",
+        Subject.SYNTAX,
+        "yaml-several-documents",
+        DESCRIPTION,
+        _END,
+        r"\1\n¦---\nx-more: 1\n",
+        "Remove it.",
+    ),
+    Fault(
+        "unknown tag",
+        Subject.SYNTAX,
+        "yaml-unknown-tag",
+        DESCRIPTION,
+        _END,
+        r"\1\nx-more: ¦!own 1\n",
+        "Remove the tag.",
+    ),
+    Fault("unknown alias", Subject.SYNTAX, "yaml-alias", DESCRIPTION, _END, r"\1\nx-more: ¦*gone\n", "Set the anchor."),
     Fault(
         "unknown version",
+        Subject.VALUE,
         "unsupported-version",
         DESCRIPTION,
         r'extended_urdf: "2.0"',
@@ -125,12 +200,29 @@ FAULTS = (
         "Write 2.0.",
         _TWO,
     ),
-    Fault("closure of no type", "wrong-value", DESCRIPTION, r'type: "[36]d"', 'type: ¦"4d"', "Write 3d or 6d.", _TWO),
     Fault(
-        "unknown frame", "unknown-frame", DESCRIPTION, r"(frames: \[.*, )(\w+)\]", r"\1¦\2_gone]", "Name a frame.", _TWO
+        "closure of no type",
+        Subject.VALUE,
+        "wrong-value",
+        DESCRIPTION,
+        r'type: "[36]d"',
+        'type: ¦"4d"',
+        "Write 3d or 6d.",
+        _TWO,
     ),
     Fault(
         "unknown frame",
+        Subject.DANGLING,
+        "unknown-frame",
+        DESCRIPTION,
+        r"(frames: \[.*, )(\w+)\]",
+        r"\1¦\2_gone]",
+        "Name a frame.",
+        _TWO,
+    ),
+    Fault(
+        "unknown frame",
+        Subject.DANGLING,
         "unknown-frame",
         DESCRIPTION,
         r"(?m)^(  - \[\w+, )(\w+)\]$",
@@ -140,6 +232,7 @@ FAULTS = (
     ),
     Fault(
         "unknown actuated joint",
+        Subject.DANGLING,
         "unknown-actuator",
         DESCRIPTION,
         r"(name_mot: \[)(\w+)",
@@ -149,6 +242,7 @@ FAULTS = (
     ),
     Fault(
         "unknown actuated joint",
+        Subject.DANGLING,
         "unknown-actuator",
         DESCRIPTION,
         r"(  - \{joint: |actuators: \[)(\w+)",
@@ -158,6 +252,7 @@ FAULTS = (
     ),
     Fault(
         "root of no kind",
+        Subject.VALUE,
         "wrong-value",
         DESCRIPTION,
         r'(extended_urdf: "2.0"\n)(?:root: floating\n)?',
@@ -167,6 +262,7 @@ FAULTS = (
     ),
     Fault(
         "number that is not finite",
+        Subject.VALUE,
         "yaml-not-finite",
         DESCRIPTION,
         r"gear_ratio: [^,}]+",
@@ -176,6 +272,7 @@ FAULTS = (
     ),
     Fault(
         "unknown joint in a configuration",
+        Subject.DANGLING,
         "configuration-joint",
         DESCRIPTION,
         r"(  (?:assembled|open): \{)(\w+:)",
@@ -184,7 +281,71 @@ FAULTS = (
         _TWO,
     ),
     Fault(
-        "unknown joint", "unknown-joint", DESCRIPTION, r"(joints:\n)", r"\1  ¦nowhere: fixed\n", "Name a joint.", _TWO
+        "unknown joint",
+        Subject.DANGLING,
+        "unknown-joint",
+        DESCRIPTION,
+        r"(joints:\n)",
+        r"\1  ¦nowhere: fixed\n",
+        "Name a joint.",
+        _TWO,
+    ),
+    Fault(
+        "second joint of a name",
+        Subject.DUPLICATE,
+        "urdf-duplicate-joint",
+        URDF,
+        r'(?s)(<joint name="(\w+)".*?<parent link="(\w+)".*)(</robot>)',
+        r'\1<link name="loose" /><joint name="¦\2" type="fixed"><parent link="\3" /><child link="loose" /></joint>\4',
+        "Give the joint another name.",
+    ),
+    Fault(
+        "link that hangs from itself",
+        Subject.CYCLE,
+        "urdf-cycle",
+        URDF,
+        r'(?s)(<joint name="\w+"(?:(?!<parent).)*<parent link=")\w+("\s*/>\s*<child link="(\w+)")',
+        r"¦\1\3\2",
+        "Name the link that it hangs from.",
+    ),
+    Fault(
+        "link of two parents",
+        Subject.TREE,
+        "urdf-two-parents",
+        URDF,
+        r'(?s)(<parent link="(\w+)"\s*/>\s*<child link="(\w+)".*)(</robot>)',
+        r'\1<joint name="second_parent" type="fixed"><parent link="\2" /><child link="¦\3" /></joint>\4',
+        "Describe the loop as a closure.",
+    ),
+    Fault(
+        "negative mass",
+        Subject.INERTIA,
+        "negative-mass",
+        URDF,
+        r'<mass value="[^"]+"',
+        r'<mass value="¦-1e-06"',
+        "Write the mass.",
+        makes=FreshKind.EITHER,
+    ),
+    Fault(
+        "negative principal moment",
+        Subject.INERTIA,
+        "inertia-not-psd",
+        URDF,
+        "<inertia [^>]*>",
+        lambda chance: _inertia(chance, (1.0, 1.0, -_little(chance))),
+        "Write the moments of a solid.",
+        makes=FreshKind.EITHER,
+    ),
+    Fault(
+        "moment larger than the sum of the other two",
+        Subject.INERTIA,
+        "inertia-triangle",
+        URDF,
+        "<inertia [^>]*>",
+        lambda chance: _inertia(chance, (0.5, 0.4, 0.9 + _little(chance))),
+        "Write the moments of a solid.",
+        makes=FreshKind.WARNED,
     ),
 )
 
@@ -195,6 +356,19 @@ def with_fault(fault: Fault, text: str, chance: Chance) -> Faulty | None:
     if not found:
         return None
     match = chance.one_of(found)
-    wrong = text[: match.start()] + match.expand(fault.text) + text[match.end() :]
+    replacement = match.expand(fault.text) if isinstance(fault.text, str) else fault.text(chance)
+    wrong = text[: match.start()] + replacement + text[match.end() :]
     before, _, after = wrong.partition(_PLACE)
     return Faulty(fault, before + after, before.count("\n") + 1, len(before) - before.rfind("\n"))
+
+
+def _inertia(chance: Chance, principal: Vector) -> str:
+    """An `<inertia>` with principal moments, kg·m², along random axes."""
+    R = matrix_of(Pose(rpy=(chance.between(-3.0, 3.0), chance.between(-1.5, 1.5), chance.between(-3.0, 3.0))))[:3, :3]
+    xx, xy, xz, yy, yz, zz = (R @ np.diag(principal) @ R.T)[np.triu_indices(3)].tolist()
+    return f'¦<inertia ixx="{xx!r}" ixy="{xy!r}" ixz="{xz!r}" iyy="{yy!r}" iyz="{yz!r}" izz="{zz!r}" />'
+
+
+def _little(chance: Chance) -> float:
+    """A part of a moment, from almost nothing to a tenth, evenly in its logarithm."""
+    return float(_LEAST * (_MOST / _LEAST) ** chance.between(0.0, 1.0))

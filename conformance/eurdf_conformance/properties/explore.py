@@ -1,8 +1,9 @@
-"""Searches beyond the frozen examples, and reduces a failure to the smallest mechanism that shows it."""
+"""Tries a property beyond the frozen examples, and reduces a failure to the smallest mechanism that shows it."""
 
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -24,7 +25,7 @@ from eurdf_conformance.properties.harness import Harness
 from eurdf_conformance.properties.property import LARGEST, Property
 from eurdf_conformance.properties.smaller import smaller
 from eurdf_conformance.properties.strategies.mechanisms import mechanisms
-from eurdf_conformance.properties.trying import try_example, try_frozen, with_log
+from eurdf_conformance.properties.trying import queried, try_example, try_frozen, with_log
 from eurdf_conformance.properties.write_case import how_to_keep, write_case
 
 #: Where cases are written that were found, from where the suite is run.
@@ -45,9 +46,10 @@ class Trial:
     Attributes:
         parser: The parser that answers.
         version: Version of the format that the files are of.
-        explore: Number of further random mechanisms to try; 0 for the frozen ones alone.
+        explore: Number of further random mechanisms to try.
         folder: Empty, to write files into.
         seed: What further mechanisms are drawn from.
+        fresh: Examples that were drawn for this run.
     """
 
     parser: Parser
@@ -55,18 +57,36 @@ class Trial:
     explore: int
     folder: Path
     seed: int = 0
+    fresh: Sequence[Example] = ()
 
 
 def try_property(prop: Property, level: Level, trial: Trial) -> Judgement:
     """Whether a property holds of a parser; if the user explores, also whether it fails on a smaller mechanism."""
     harness = Harness(trial.parser, trial.folder)
     judgement = try_frozen(prop, level, trial.version, harness)
+    if judgement.verdict == Verdict.PASSED:
+        judgement = try_fresh(prop, level, trial, harness)
     if not trial.explore:
         return judgement
     further = explore(prop, level, trial, harness)
     if judgement.verdict == Verdict.PASSED:
         return further
     return with_log(judgement, further.log)
+
+
+def try_fresh(prop: Property, level: Level, trial: Trial, harness: Harness) -> Judgement:
+    """Try a property on the examples that were drawn for this run, and make the first one on which it fails small."""
+    for example in () if prop.family else trial.fresh:
+        if len(example.mechanism.closures) < prop.closures or not prop.applies(example.mechanism):
+            continue
+        judgement = try_example(prop, level, trial.version, harness, example)
+        if judgement.verdict != Verdict.PASSED:
+            small, _ = _reduced(prop, level, trial.version, harness, example, judgement)
+            # Once more, so that the files are those of its queries.
+            judgement = try_example(prop, level, trial.version, harness, small)
+            reason = f"on a mechanism drawn from seed {trial.seed}: {judgement.reason}"
+            return with_log(replace(judgement, reason=reason), *queried(harness, judgement))
+    return PASSED
 
 
 def explore(prop: Property, level: Level, trial: Trial, harness: Harness, folder: Path = EXPLORED) -> Judgement:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from eurdf_conformance.judging.failure_text import where_it_stood
@@ -21,12 +21,16 @@ def try_frozen(prop: Property, level: Level, version: Version, harness: Harness)
         judgement = try_example(prop, level, version, harness, example)
         if judgement.verdict != Verdict.PASSED:
             found = replace(judgement, reason=f"example {number}: {judgement.reason}")
-            return with_log(found, *dict.fromkeys(_files(harness, judgement)))
+            return with_log(found, *queried(harness, judgement))
     return PASSED
 
 
-def _files(harness: Harness, judgement: Judgement) -> Iterator[str]:
-    """The files of the queries, and the configuration of each robot at the first difference."""
+def queried(harness: Harness, judgement: Judgement) -> Iterable[str]:
+    """The files of the queries since `Harness.begin`, and the configuration of each robot at the first difference."""
+    return dict.fromkeys(_queried(harness, judgement))
+
+
+def _queried(harness: Harness, judgement: Judgement) -> Iterator[str]:
     for query, paths in harness.queries:
         yield from map(str, paths)
         yield from where_it_stood(judgement, query.configurations)

@@ -10,7 +10,8 @@ from eurdf_conformance.corpus.case import InvalidCase
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.protocol_rule import RULES, ProtocolRule
 from eurdf_conformance.corpus.read import CorpusCase
-from eurdf_conformance.fresh.case import COUNT, fresh_levels, fresh_name, fresh_title
+from eurdf_conformance.fresh.case import fresh_name
+from eurdf_conformance.fresh.kind import COUNTS, TITLES, accept_clause, fresh_levels
 from eurdf_conformance.judging.result import Item
 from eurdf_conformance.level import VERSIONS, Level, Version
 from eurdf_conformance.level_spec import LEVELS
@@ -78,11 +79,10 @@ class FreshItem:
 
 def fresh_items() -> Iterator[FreshItem]:
     """The items on fresh cases: whatever is drawn, their ids, levels and clauses are the same."""
-    for version, valid in product(DRAWN_VERSIONS, (True, False)):
-        for number, level in product(range(1, COUNT + 1), fresh_levels(valid)):
-            general = LEVELS[level].clause if valid or level is not Level.ACCEPT else "EU-CNF-001"
-            name = fresh_name(version, valid, number)
-            yield FreshItem(Item(name, level, version, (general,), fresh_title(valid)))
+    for version, (kind, count) in product(DRAWN_VERSIONS, COUNTS.items()):
+        for number, level in product(range(1, count + 1), fresh_levels(kind)):
+            general = accept_clause(kind) if level is Level.ACCEPT else LEVELS[level].clause
+            yield FreshItem(Item(fresh_name(version, kind, number), level, version, (general,), TITLES[kind]))
 
 
 def planned_items(cases: Iterable[CorpusCase]) -> Iterator[Item]:

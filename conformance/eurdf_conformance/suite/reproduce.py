@@ -51,9 +51,9 @@ def command_line(setting: Setting, item_id: str, level: str) -> str:
     settings = [f"--parser={setting.parser}"]
     settings += [f"--parser-timeout={setting.timeout:g}"] * (setting.timeout != TIMEOUT)
     settings += [f"--parser-start-timeout={setting.start_timeout:g}"] * (setting.start_timeout != START_TIMEOUT)
-    explores = setting.explore and item_id.startswith("properties/")
-    settings += [f"--explore={setting.explore}"] if explores else []
-    settings += [f"--seed={setting.seed}"] if explores or item_id.startswith(f"{FRESH}/") else []
+    of_property = item_id.startswith("properties/")
+    settings += [f"--explore={setting.explore}"] if setting.explore and of_property else []
+    settings += [f"--seed={setting.seed}"] if of_property or item_id.startswith(f"{FRESH}/") else []
     return shlex.join(["pytest", *setting.suite, *settings, "-k", f"{item_id}/{level}"])
 
 

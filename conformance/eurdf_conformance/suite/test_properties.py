@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from eurdf_conformance.fresh.case import fresh_examples
 from eurdf_conformance.judging.judge import Judgement
 from eurdf_conformance.properties.explore import Trial, try_property
 from eurdf_conformance.suite.item import PropertyItem, property_items
@@ -31,13 +32,15 @@ def test_property(
 
 
 def try_item(item: PropertyItem, item_runner: ItemRunner, folder: Path) -> Judgement:
-    """Try the property on the frozen examples, and on further random mechanisms if requested."""
-    level, version, count = item.item.level, item.item.version, item_runner.options.explore
-    if not count:
-        return try_property(item.property, level, Trial(item_runner.session, version, 0, folder))
+    """Try the property on the frozen and the fresh examples, and on further random mechanisms if requested."""
+    level, version, options = item.item.level, item.item.version, item_runner.options
+    fresh = fresh_examples(options.seed, version)
+    if not options.explore:
+        trial = Trial(item_runner.session, version, 0, folder, options.seed, fresh)
+        return try_property(item.property, level, trial)
     # Shrinking repeats requests that crash the parser, so it uses a session of its own.
     with item_runner.new_session() as session:
-        trial = Trial(session, version, count, folder, item_runner.options.seed)
+        trial = Trial(session, version, options.explore, folder, options.seed, fresh)
         judgement = try_property(item.property, level, trial)
     item_runner.session.seconds_in_parser += session.seconds_in_parser
     item_runner.session.left += session.left
