@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import re
 import shutil
-import tomllib
 from functools import cache
 from pathlib import Path
 
+import tomllib
 from sphinx.application import Sphinx
 from sphinx.util import logging
 

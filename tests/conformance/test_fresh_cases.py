@@ -16,7 +16,7 @@ from eurdf_conformance.adapters.reference import PARSER
 from eurdf_conformance.certificate.issue import issue
 from eurdf_conformance.command.replay import replay_differences
 from eurdf_conformance.corpus.read import all_cases
-from eurdf_conformance.fresh.case import FRESH, FreshCase, drawn_hash, fresh_cases, fresh_examples
+from eurdf_conformance.fresh.case import FRESH, FreshCase, drawn_hash, fresh_cases
 from eurdf_conformance.fresh.fault import FAULTS, Subject, with_fault
 from eurdf_conformance.fresh.kind import COUNTS, FreshKind
 from eurdf_conformance.judging.conversation import Conversation
