@@ -1,6 +1,6 @@
 """`eurdf.residual_and_jacobian` against Pinocchio's own Jacobians, and `eurdf.dq_dq_actuated` against the toolbox.
 
-Pinocchio computes neither log6 of the closures nor its derivative; with both in Python, it is the second peer. The
+Pinocchio computes neither log₆ of the closures nor its derivative; with both in Python, it is the second peer. The
 toolbox of Batto, De Matteïs and Mansard, 2025, takes the pseudoinverse of the columns of K that are not actuated. All
 are at an assembled configuration. In a chain of four-bars, the peer evaluates one four-bar, N times; K of the whole
 chain has 9 N² numbers.
@@ -21,11 +21,11 @@ from benchmarks.table import Table, duration, ratio
 def tables() -> Iterator[Table]:
     """Of single robots and of chains."""
     yield Table(
-        ("robot", "r and K", "pin", "with log6", "ratio", "to log6", "`dq_dq_actuated`", "formula", "ratio of these"),
+        ("robot", "r and K", "pin", "with log₆", "ratio", "to log₆", "`dq_dq_actuated`", "formula", "ratio of these"),
         [_row(name) for name in (*ROBOTS, "kangaroo_2legs", chains()[0])],
     )
     yield Table(
-        ("chain of N four-bars", "r and K, per loop", "with log6", "ratio"),
+        ("chain of N four-bars", "r and K, per loop", "with log₆", "ratio"),
         [_chain_row(count) for count in CHAINS],
     )
 

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 #: Directives whose body is not Markdown.
-VERBATIM = frozenset({"code", "code-block", "example", "math", "raw", "sourcecode", "toctree", "transcript"})
+VERBATIM = frozenset({"api", "code", "code-block", "example", "math", "raw", "sourcecode", "toctree", "transcript"})
 
 _FENCE = re.compile(r"^(?P<indent> *)(?P<marks>`{3,}|~{3,}|:{3,}) *(?P<info>.*?) *$")
 _DIRECTIVE = re.compile(r"^\{(?P<name>[A-Za-z0-9_:-]+)\} *(?P<argument>.*)$")

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from html import escape
 from typing import Any, ClassVar, cast
 
 from docutils import nodes
@@ -14,9 +15,11 @@ from sphinx.util.docutils import SphinxDirective
 
 from eurdf.diagnostics import REGISTRY
 from spec.site.blocks import Directive
+from spec.site.citation import Citation
 from spec.site.clause import ROOT, without_code
 from spec.site.domain import NAME, SpecificationDomain, reference_to
 from spec.site.example import EXAMPLES, Edit, NotAnEdit, Outcome, ShownDiagnostic, diagnostic_of, example_of
+from spec.site.pages import source_url
 from spec.site.registry import clauses_with_references
 from spec.site.schema_page import property_anchors, schema_sections
 
@@ -104,11 +107,11 @@ class ClauseDirective(SpecificationDirective):
         if entry["codes"]:
             yield _fact("Diagnostic", _spaced(self.reference("code", code) for code in entry["codes"]))
         if entry["functions"]:
-            yield _fact("Enforced by", _spaced(nodes.literal(name, name) for name in entry["functions"]))
+            yield from _folded("Enforced by", "function", entry["functions"])
         if entry["unenforced"]:
             yield _fact("Not enforced", [nodes.Text(entry["unenforced"])])
         if entry["cases"]:
-            yield _fact("Tested by", _spaced(nodes.literal(name, name) for name in entry["cases"]))
+            yield from _folded("Tested by", "case", entry["cases"])
         if entry["untested"]:
             yield _fact("Not tested", [nodes.Text(entry["untested"])])
 
@@ -281,6 +284,18 @@ def _line(classes: str, *children: Node) -> nodes.paragraph:
 
 def _fact(label: str, said: Iterable[Node]) -> nodes.paragraph:
     return _line("eu-fact", nodes.inline("", label, classes=["eu-label"]), nodes.Text(" "), *said)
+
+
+def _folded(label: str, kind: str, citations: Sequence[Citation]) -> Iterator[Node]:
+    """What cites a clause: its number, and on a click its names, each with a link to its file."""
+    count = f"{len(citations)} {kind}" if len(citations) == 1 else f"{len(citations)} {kind}s"
+    opening = f'<details class="eu-citing"><summary><span class="eu-label">{label}</span> {count}</summary><ul>'
+    items = "".join(f'<li><a href="{_url(each)}"><code>{escape(each.source)}</code></a></li>' for each in citations)
+    yield nodes.raw("", f"{opening}{items}</ul></details>", format="html")
+
+
+def _url(citation: Citation) -> str:
+    return escape(source_url(citation.path.relative_to(ROOT).as_posix(), citation.line))
 
 
 def _spaced(values: Iterable[Node]) -> Iterator[Node]:

@@ -37,23 +37,29 @@ def mathml(latex: str, display: bool) -> str:
 
 
 def _visit_math(self: HTML5Translator, node: nodes.math) -> None:
-    self.body.append(_shown(node, display=False))
+    self.body.append(_shown(node, node.astext(), display=False))
     raise nodes.SkipNode
 
 
 def _visit_math_block(self: HTML5Translator, node: nodes.math_block) -> None:
     anchor = f' id="{escape(node["ids"][0])}"' if node["ids"] else ""
     number = f'<span class="eqno">({escape(str(node["number"]))})</span>' if node.get("number") else ""
-    self.body.append(f'<div class="eu-equation"{anchor}>{_shown(node, display=True)}{number}</div>\n')
+    parts = "".join(_shown(node, part, display=True) for part in separate_equations(node.astext()))
+    self.body.append(f'<div class="eu-equation"{anchor}>{parts}{number}</div>\n')
     raise nodes.SkipNode
 
 
-def _shown(node: nodes.math | nodes.math_block, display: bool) -> str:
+def separate_equations(latex: str) -> list[str]:
+    """The equations of a line, which are separated by a wide space: a narrow screen shows them one below another."""
+    return [latex] if r"\begin" in latex else [part for part in latex.split(r"\qquad") if part.strip()]
+
+
+def _shown(node: nodes.math | nodes.math_block, latex: str, display: bool) -> str:
     try:
-        return mathml(node.astext(), display)
+        return mathml(latex, display)
     except ValueError as error:
         _LOGGER.warning(str(error), location=node)
-        return f"<code>{escape(node.astext())}</code>"
+        return f"<code>{escape(latex)}</code>"
 
 
 def setup(app: Sphinx) -> None:

@@ -8,14 +8,19 @@ from __future__ import annotations
 
 import re
 import shutil
+import sys
 from functools import cache
 from pathlib import Path
 
-import tomllib
 from sphinx.application import Sphinx
 from sphinx.util import logging
 
 from spec.site.clause import ROOT
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
 
 _LOGGER = logging.getLogger(__name__)
 
@@ -69,6 +74,7 @@ def address(label: str) -> str:
     return url.rstrip("/")
 
 
+@cache
 def source_url(path: str, line: int | None = None) -> str:
     """The address of a file or folder of the repository at the code host."""
     kind = "tree" if (ROOT / path).is_dir() else "blob"

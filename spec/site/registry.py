@@ -75,10 +75,10 @@ def current_registry(folder: Path = SPEC) -> dict[str, Any]:
 def clauses_with_references() -> dict[str, dict[str, Any]]:
     """The clauses of the current text by id, each with what refers to it.
 
-    ``codes``: the diagnostics that report it; ``functions``: what enforces it; ``cases``: what tests it.
+    ``codes``: the diagnostics that report it; ``functions``, ``cases``: citations by what enforces and tests it.
     """
     content = current_registry()
-    codes, functions, cases = defaultdict(list), _sources(function_citations()), _sources(suite_citations() or ())
+    codes, functions, cases = defaultdict(list), _by_clause(function_citations()), _by_clause(suite_citations() or ())
     for diagnostic in content["diagnostics"]:
         codes[diagnostic["clause"]].append(diagnostic["code"])
     return {
@@ -113,11 +113,11 @@ def main() -> None:
     IDS.write_text("".join(f"{given}\n" for given in sorted(ids | set(read_ids()))), encoding="utf-8")
 
 
-def _sources(citations: Iterable[Citation]) -> defaultdict[str, list[str]]:
-    found: defaultdict[str, set[str]] = defaultdict(set)
+def _by_clause(citations: Iterable[Citation]) -> defaultdict[str, list[Citation]]:
+    found: defaultdict[str, dict[str, Citation]] = defaultdict(dict)
     for citation in citations:
-        found[citation.clause].add(citation.source)
-    return defaultdict(list, {clause: sorted(sources) for clause, sources in found.items()})
+        found[citation.clause].setdefault(citation.source, citation)
+    return defaultdict(list, {clause: [each[name] for name in sorted(each)] for clause, each in found.items()})
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ from typing import Any
 
 from sphinx.application import Sphinx
 
-from spec.site import figures, math, pages
+from spec.site import api, figures, math, pages
 from spec.site.directives import DIRECTIVES
 from spec.site.domain import NameRole, SpecificationDomain
 
@@ -21,4 +21,5 @@ def setup(app: Sphinx) -> dict[str, Any]:
     math.setup(app)
     figures.setup(app)
     pages.setup(app)
+    api.setup(app)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

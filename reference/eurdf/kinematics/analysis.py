@@ -174,7 +174,7 @@ def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
     of K, closed again. K is dimensionless (lengths divided by the characteristic length of the robot); the rank of each
     group of loops is its `numerical_rank`.
 
-    The finite mobility is that at q itself: see `eurdf.kinematics.finite_mobility`. Limits of joints are ignored.
+    The finite mobility is that at q itself, see `LoopAnalysis.evidence`. Limits of joints are ignored.
 
     Args:
         robot: The robot.

@@ -53,7 +53,7 @@ class Robot:
         no_geometry: What makes the error that `visual_model` and `collision_model` raise, where the geometry was asked
             for and cannot be built; else None.
         diagnose: Finds the `diagnostics` of a robot that was loaded; else None.
-        derived: What functions of `eurdf.kinematics` have computed from the robot and keep with it.
+        derived: What the functions of kinematics have computed from the robot and keep with it.
     """
 
     mechanism: Mechanism

@@ -1,0 +1,171 @@
+"""The reference of the Python functions: ``{api}`` lists public names, and autodoc shows their docstrings."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import re
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+from docutils import nodes
+from docutils.nodes import Element, Node, system_message
+from docutils.parsers.rst import directives
+from sphinx.addnodes import pending_xref
+from sphinx.application import Sphinx
+from sphinx.environment import BuildEnvironment
+from sphinx.util.docutils import SphinxDirective, SphinxRole
+from sphinx.util.inspect import stringify_signature
+from sphinx.util.typing import stringify_annotation
+
+from eurdf.diagnostics import REGISTRY
+from spec.site.domain import reference_to
+
+PACKAGE = "eurdf"
+
+# Marks the reference of a name in backticks.
+_QUOTED = "eu-quoted"
+
+#: Types that the first page explains, and those of other packages.
+EXPLAINED = frozenset({"ArrayLike", "Executor", "Matrix", "Path", "Vector", "os.PathLike"})
+
+# A name in an annotation that may be an alias.
+_ALIAS = re.compile(r"(?<![\w.'\"])[A-Z]\w*\b(?![.'\"])")
+
+_CODE = re.compile(r"(`+[^`]*`+)")
+_CLAUSE = re.compile(r"(?<![`\w-])EU-[A-Z]{3}-[0-9]{3}(?!`)")
+
+
+class ApiDirective(SphinxDirective):
+    """``{api}``: public functions and classes, one name per line; ``:of: eurdf.batch`` names another module."""
+
+    has_content = True
+    option_spec: ClassVar = {"of": directives.unchanged_required}
+
+    def run(self) -> list[Node]:
+        """Their documentation."""
+        module = self.options.get("of", PACKAGE)
+        entries = [f"{_directive_of(module, name)}:: {module}.{name}" for name in "\n".join(self.content).split()]
+        lines = ["```{eval-rst}", f".. py:currentmodule:: {module}\n", *(f".. {entry}\n" for entry in entries), "```"]
+        return self.parse_text_to_nodes("\n".join(lines), offset=self.content_offset)
+
+
+def _directive_of(module: str, name: str) -> str:
+    value = getattr(importlib.import_module(module), name)
+    if inspect.isclass(value):
+        return "autoexception" if issubclass(value, BaseException) else "autoclass"
+    return "autofunction" if inspect.isfunction(value) else "autodata"
+
+
+class DocstringName(SphinxRole):
+    """What a docstring has in single backticks: a link to the public name or diagnostic, or else code."""
+
+    def run(self) -> tuple[list[Node], list[system_message]]:
+        """The link; it is resolved after all pages are read."""
+        if self.text in REGISTRY:
+            return [reference_to("code", self.text, self.env.current_document.docname)], []
+        text = nodes.literal("", self.text, classes=["py", "py-obj"])
+        scope = {name: self.env.ref_context.get(name) for name in ("py:module", "py:class")}
+        reference = pending_xref(
+            "",
+            text,
+            refdomain="py",
+            reftype="obj",
+            reftarget=self.text,
+            refdoc=self.env.current_document.docname,
+            refexplicit=False,
+            refwarn=False,
+            **scope,
+            **{_QUOTED: True},
+        )
+        self.set_source_info(reference)
+        return [reference], []
+
+
+def _signature(
+    app: Sphinx, what: str, name: str, value: Any, options: Any, shown: str | None, returned: str | None
+) -> tuple[str, str] | None:
+    """The signature with the annotations of the source; an alias that is not public becomes what it means.
+
+    Classes have none: functions return their objects.
+    """
+    if what in ("class", "exception"):
+        return None if shown is None else ("", "")
+    if what not in ("function", "method") or not inspect.isfunction(value):
+        return None
+    signature = inspect.signature(value)
+    names = inspect.getmodule(value).__dict__
+    parameters = [
+        each.replace(annotation=_spelled_out(each.annotation, names)) for each in signature.parameters.values()
+    ]
+    shown = stringify_signature(
+        signature.replace(parameters=parameters[1:] if what == "method" else parameters), show_return_annotation=False
+    )
+    result = signature.return_annotation
+    return shown, "" if result is signature.empty else _spelled_out(result, names)
+
+
+def _spelled_out(annotation: Any, names: Mapping[str, Any]) -> Any:
+    """An annotation with aliases of types in place of their names, except those that the pages explain."""
+    if not isinstance(annotation, str):
+        return annotation
+
+    def meaning(match: re.Match[str]) -> str:
+        value = names.get(match[0])
+        if (
+            value is None
+            or isinstance(value, type)
+            or match[0] in EXPLAINED
+            or value.__class__.__module__ == "builtins"
+        ):
+            return match[0]
+        return stringify_annotation(value, "smart").replace("~", "")
+
+    return _ALIAS.sub(meaning, annotation)
+
+
+def _docstring(app: Sphinx, what: str, name: str, value: Any, options: Any, lines: list[str]) -> None:
+    """Make a docstring reStructuredText: link the clauses that it cites; a bar and what is returned are plain text."""
+    returns = what in ("attribute", "property")
+    for index, line in enumerate(lines):
+        pieces = _CODE.split(line)
+        pieces[::2] = [_CLAUSE.sub(r":clause:`\g<0>`", text).replace("|", r"\|") for text in pieces[::2]]
+        lines[index] = "".join(pieces)
+        if returns and line.strip():  # else words before a colon would be taken for a type
+            indent = len(line) - len(line.lstrip())
+            lines[index] = f"{lines[index][:indent]}: {lines[index][indent:]}"
+        returns = line.strip() == "Returns:"
+
+
+def _skipped(app: Sphinx, what: str, name: str, value: Any, skip: bool, options: Any) -> bool | None:
+    """Leave out the fields of a named tuple as members: the docstring of the class explains them."""
+    return True if type(value).__name__ == "_tuplegetter" else None
+
+
+def _colons(app: Sphinx, document: nodes.document) -> None:
+    """Show a colon after the name of a parameter instead of two hyphens."""
+    for field in document.findall(nodes.field_body):
+        for text in list(field.findall(nodes.Text)):
+            if text == " -- ":
+                text.parent.replace(text, nodes.Text(": "))
+
+
+def _unresolved(app: Sphinx, env: BuildEnvironment, node: pending_xref, text: Element) -> Element | None:
+    """A type that has no page is text, and so is what is in backticks unless it is a dotted name of the package."""
+    if node["refdomain"] != "py":
+        return None
+    is_public_name = node.get(_QUOTED) and str(node["reftarget"]).startswith(f"{PACKAGE}.")
+    return None if is_public_name else text
+
+
+def setup(app: Sphinx) -> None:
+    """Add the directive and the role, and connect to autodoc."""
+    app.setup_extension("sphinx.ext.autodoc")
+    app.setup_extension("sphinx.ext.napoleon")
+    app.add_directive("api", ApiDirective)
+    app.add_role("docstring-name", DocstringName())
+    app.connect("autodoc-process-signature", _signature)
+    app.connect("autodoc-process-docstring", _docstring, priority=400)  # before napoleon
+    app.connect("autodoc-skip-member", _skipped)
+    app.connect("doctree-read", _colons)
+    app.connect("missing-reference", _unresolved)
