@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from robots.builder.joint import Joint, ball, cross, unit, universal
-from robots.builder.mirror import mirrored_joint, mirrored_shape, mirrored_solid, mirrored_vector
+from robots.builder.mirror import mirrored_joint, mirrored_shape, mirrored_solid, mirrored_turn, mirrored_vector
 from robots.builder.shape import Cylinder, Matrix3, Shape, Sphere, Vector3, midpoint
 from robots.builder.solid import Solid
 
@@ -84,17 +84,19 @@ class Coupling:
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """A named frame of a body, such as a sole or an IMU. Its axes are along those of the world.
+    """A named frame of a body, such as a sole or an IMU.
 
     Attributes:
         name: Unique among frames.
         body: The body it is on.
         at: Its origin in the world, m.
+        rpy: Its orientation in the world: roll, pitch, yaw about the fixed axes, rad.
     """
 
     name: str
     body: str
     at: Vector3
+    rpy: Vector3 = (0.0, 0.0, 0.0)
 
 
 class Drawing:
@@ -201,15 +203,15 @@ class Drawing:
         self._require_joints(f"coupling '{name}'", joints)
         self.couplings.append(Coupling(name, joints))
 
-    def frame(self, name: str, body: str, at: Vector3) -> None:
-        """Names a frame of a body, at a point of the world (m).
+    def frame(self, name: str, body: str, at: Vector3, rpy: Vector3 = (0.0, 0.0, 0.0)) -> None:
+        """Names a frame of a body, at a point of the world (m), with a roll, pitch and yaw in the world (rad).
 
         Raises:
             ValueError: If the body is not drawn.
         """
         if body not in self.bodies:
             raise ValueError(f"frame '{name}' is on '{body}', which is not drawn")
-        self.frames.append(Frame(name, body, at))
+        self.frames.append(Frame(name, body, at, rpy))
 
     def configure(self, name: str, **joints: float) -> None:
         """Names a configuration by the coordinates (rad, m) of joints, seen from the drawn pose.
@@ -281,15 +283,15 @@ class Drawing:
     def mirror(self, side: str, other: str) -> None:
         """Draws once more, mirrored in the plane y = 0, all that has ``side`` in its name, with ``other`` in its place.
 
-        Where a joint and its mirror image have the same coordinate (a quaternion: with x and z negated), what they
-        carry is mirrored too.
+        Configurations are not mirrored. Where a joint and its mirror image have the same coordinate (a
+        quaternion: with x and z negated), what they carry is mirrored too.
 
         Args:
             side: Part of the names of the bodies, joints and closures to be mirrored: ``left``.
             other: What replaces it in the names of the mirror images: ``right``.
 
         Raises:
-            ValueError: If something hangs from or holds a body of that side but is not named so.
+            ValueError: If something hangs from, holds or is on a body of that side but is not named so.
         """
 
         def renamed(name: str) -> str:
@@ -323,7 +325,11 @@ class Drawing:
                 self.couplings.append(Coupling(renamed(coupling.name), joints))
         for frame in list(self.frames):
             if side in frame.name:
-                self.frame(renamed(frame.name), renamed(frame.body), mirrored_vector(frame.at))
+                self.frame(
+                    renamed(frame.name), renamed(frame.body), mirrored_vector(frame.at), mirrored_turn(frame.rpy)
+                )
+            elif side in frame.body:
+                raise ValueError(f"frame '{frame.name}' is on '{frame.body}' but is not named '{side}'")
 
 
 def _rod_joint(kind: End, rod: str, start: tuple[str, Vector3], toward: Vector3) -> Joint:

@@ -28,6 +28,9 @@ class Motor:
         friction: N·m; N.
         gear_ratio: Revolutions of the rotor per revolution of the joint; rad/m at a joint that slides.
         rotor_inertia: Of the rotor, before the gear, kg·m².
+        armature: Reflected inertia, kg·m²; kg. None: that of the rotor through the gear.
+        name: Of the actuator; empty for the name of the joint.
+        control: Smallest and largest torque (N·m) or force (N) to control it with; None where unknown.
     """
 
     effort: float
@@ -36,6 +39,14 @@ class Motor:
     friction: float = 0.0
     gear_ratio: float = 1.0
     rotor_inertia: float = 0.0
+    armature: float | None = None
+    name: str = ""
+    control: tuple[float, float] | None = None
+
+    @property
+    def reflected_inertia(self) -> float:
+        """The armature, stated or from the rotor, kg·m²; kg."""
+        return self.gear_ratio**2 * self.rotor_inertia if self.armature is None else self.armature
 
 
 #: Of a joint that nothing drives; the velocity is there because URDF requires one for every joint with stops.

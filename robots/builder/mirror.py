@@ -26,7 +26,7 @@ def mirrored_vector(vector: Vector3) -> Vector3:
 
 
 def mirrored_turn(axis: Vector3) -> Vector3:
-    """The axis about which a mirrored turn has the same angle."""
+    """The axis about which a mirrored turn has the same angle; or the roll, pitch and yaw of a mirrored frame."""
     x, y, z = axis
     return (-x, y, -z)
 
@@ -34,8 +34,7 @@ def mirrored_turn(axis: Vector3) -> Vector3:
 def mirrored_shape(shape: Shape) -> Shape:
     """The mirror image of a shape, of the same mass."""
     if isinstance(shape, Box):
-        roll, pitch, yaw = shape.rpy
-        return replace(shape, center=mirrored_vector(shape.center), rpy=(-roll, pitch, -yaw))
+        return replace(shape, center=mirrored_vector(shape.center), rpy=mirrored_turn(shape.rpy))
     if isinstance(shape, Cylinder):
         return replace(shape, start=mirrored_vector(shape.start), end=mirrored_vector(shape.end))
     return Sphere(mirrored_vector(shape.center), shape.radius, shape.mass)
@@ -50,11 +49,13 @@ def mirrored_solid(solid: Solid) -> Solid:
 def mirrored_joint(joint: Joint, renamed: Renamed) -> Joint:
     """The mirror image of a joint: where both have the same coordinate, what it carries is mirrored."""
     x, y, z = joint.axes
+    motor = joint.motor
     return replace(
         joint,
         name=renamed(joint.name),
         parent=renamed(joint.parent),
         at=mirrored_vector(joint.at),
         axis=(mirrored_vector if joint.type == "prismatic" else mirrored_turn)(joint.axis),
+        motor=motor and replace(motor, name=renamed(motor.name)),
         axes=WORLD if joint.axes == WORLD else (mirrored_turn(x), mirrored_turn(y), mirrored_turn(z)),
     )

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from eurdf.writing.angles import angles_with_yaw
+
 Vector3 = tuple[float, float, float]
 Matrix3 = npt.NDArray[np.float64]
 
@@ -66,12 +68,6 @@ class Cylinder:
         return math.dist(self.start, self.end)
 
     @property
-    def rpy(self) -> Vector3:
-        """The orientation that turns z along the cylinder, without roll: about the fixed axes, rad."""
-        x, y, z = (end - start for start, end in zip(self.start, self.end, strict=True))
-        return (0.0, math.atan2(math.hypot(x, y), z), math.atan2(y, x))
-
-    @property
     def inertia(self) -> Matrix3:
         """Inertia about the centre, in world axes, kg·m², 3 x 3: m (3r² + l²) / 12 across, m r² / 2 along."""
         axis = (np.array(self.end) - np.array(self.start)) / self.length
@@ -93,11 +89,6 @@ class Sphere:
     center: Vector3
     radius: float
     mass: float
-
-    @property
-    def rpy(self) -> Vector3:
-        """A sphere has no orientation of its own."""
-        return (0.0, 0.0, 0.0)
 
     @property
     def inertia(self) -> Matrix3:
@@ -124,16 +115,21 @@ def rotation_of(rpy: Vector3) -> Matrix3:
 
 
 def rpy_of(rotation: Matrix3) -> Vector3:
-    """The roll, pitch and yaw (rad) that ``rotation_of`` turns into a rotation (3 x 3); where pitch is ±90°, too.
+    """The roll, pitch and yaw (rad) that ``rotation_of`` turns into a rotation (3 x 3).
 
-    Roll is taken from the rotation with the yaw taken off, so that both agree where yaw is nothing but rounding. Half a
-    turn is π, not -π, however it is rounded.
+    Where yaw can be 0, it is. Half a turn is π, not -π, however it is rounded.
     """
-    (r00, r01, r02), (r10, r11, r12), (r20, _, _) = rotation.tolist()
-    yaw = math.atan2(r10, r00)
-    sy, cy = math.sin(yaw), math.cos(yaw)
-    roll, pitch = math.atan2(sy * r02 - cy * r12, cy * r11 - sy * r01), math.atan2(-r20, cy * r00 + sy * r10)
-    return (_positive_half_turn(roll), pitch, _positive_half_turn(yaw))
+    x, y, z = ((column[0], column[1], column[2]) for column in rotation.T.tolist())
+    roll, pitch, yaw = angles_with_yaw(0.0 if abs(x[1]) < _ROUNDING else math.atan2(x[1], x[0]), x, y, z)
+    return (_positive_half_turn(roll), _positive_half_turn(pitch), _positive_half_turn(yaw))
+
+
+def along(axis: npt.NDArray[np.float64]) -> Vector3:
+    """The roll and pitch (rad), without yaw, that turn z into the line of an axis (3,); upward, if it is not level."""
+    x, y, z = (0.0 if abs(value) < _ROUNDING else value for value in axis / np.linalg.norm(axis))
+    if (z, x, -y) < (0.0, 0.0, 0.0):
+        x, y, z = 0.0 - x, 0.0 - y, 0.0 - z
+    return (math.atan2(-y, math.hypot(x, z)), math.atan2(x, z), 0.0)
 
 
 def _positive_half_turn(angle: float) -> float:

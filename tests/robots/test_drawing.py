@@ -30,12 +30,10 @@ from robots.builder import (
     universal,
     write,
 )
+from robots.builder.mechanism import mechanism_of
 from robots.builder.mirror import mirrored_shape
-from robots.builder.number_text import length_text, mass_text, number_text
-from robots.builder.shape import rotation_of, rpy_of
+from robots.builder.shape import along, rotation_of, rpy_of
 from robots.builder.solid import solid_of
-from robots.builder.urdf_text import urdf_text
-from robots.builder.yaml_text import version_1_text, yaml_text
 
 coordinate = st.floats(-1.0, 1.0)
 point = st.tuples(coordinate, coordinate, coordinate)
@@ -43,6 +41,13 @@ size = st.floats(0.01, 1.0)
 boxes = st.builds(Box, point, st.tuples(size, size, size), size, point)
 cylinders = st.builds(Cylinder, point, point, size, size).filter(lambda cylinder: cylinder.length > 0.01)
 spheres = st.builds(Sphere, point, size, size)
+
+
+def orientation(shape):
+    """Roll, pitch and yaw of a shape in the world."""
+    if isinstance(shape, Cylinder):
+        return along(np.subtract(shape.end, shape.start))
+    return shape.rpy if isinstance(shape, Box) else (0.0, 0.0, 0.0)
 
 
 def points_of(shape):
@@ -55,7 +60,7 @@ def points_of(shape):
         local = [np.array([r * x, r * y, h * z]) for x, y in ((1, 0), (-1, 0), (0, 1), (0, -1)) for z in signs]
     else:
         local = [sign * axis * shape.radius * math.sqrt(0.6) for axis in np.eye(3) for sign in signs]
-    rotation = rotation_of(shape.rpy)
+    rotation = rotation_of(orientation(shape))
     return [(shape.mass / len(local), np.array(shape.center) + rotation @ at) for at in local]
 
 
@@ -73,20 +78,19 @@ def test_body_mass_matches_sampled_shapes(shapes):
 
 @given(cylinders)
 def test_cylinder_is_aligned_with_its_ends(cylinder):
-    half = rotation_of(cylinder.rpy) @ [0.0, 0.0, cylinder.length / 2.0]
-    assert cylinder.center + half == pytest.approx(cylinder.end, abs=1e-12)
-
-
-@given(st.floats(allow_nan=False, allow_infinity=False))
-def test_number_survives_round_trip(value):
-    assert float(number_text(value)) == value
+    axis = np.subtract(cylinder.end, cylinder.start)
+    aligned = rotation_of(along(axis)) @ [0.0, 0.0, cylinder.length]
+    assert aligned == pytest.approx(math.copysign(1.0, aligned @ axis) * axis, abs=1e-10)
 
 
 def test_numbers_are_short_and_without_noise():
-    assert number_text(-0.0) == "0"
-    assert number_text(2.0) == "2"
-    assert length_text((0.1 + 0.2, -1e-17, -1.5)) == "0.3 0 -1.5"
-    assert mass_text(0.1 + 0.2) == "0.3"
+    robot = pendulum()
+    robot.body(
+        "tip", ball("tip_ball", "arm", (0.1 + 0.2, 0.1, 1.0)), Sphere((0.3, 0.1, 1.0), 0.1, 0.1 + 0.2), material="steel"
+    )
+    mechanism = mechanism_of(robot)
+    assert mechanism.joints[1].placement.xyz == (0.3, 0.0, 0.0)
+    assert mechanism.bodies[2].inertia.mass == 0.3
 
 
 def pendulum():
@@ -99,42 +103,57 @@ def pendulum():
     return robot
 
 
-def test_joint_is_at_its_drawn_pose():
+@pytest.fixture
+def written(tmp_path):
+    """Writes a drawing, and returns the root of its URDF and its description in YAML."""
+
+    def files(robot):
+        write(robot, tmp_path)
+        return etree.parse(tmp_path / "robot.urdf").getroot(), yaml.safe_load((tmp_path / "robot.yaml").read_text())
+
+    return files
+
+
+def version_1(folder):
+    return yaml.safe_load((folder / "robot.v1.yaml").read_text())
+
+
+def test_joint_is_at_its_drawn_pose(written):
     robot = pendulum()
     robot.body("tip", ball("tip_ball", "arm", (0.3, 0.1, 0.4)), Sphere((0.3, 0.1, 0.4), 0.1, 1.0), material="steel")
-    joints = {joint.get("name"): joint for joint in etree.fromstring(urdf_text(robot).encode()).iterfind("joint")}
+    joints = {joint.get("name"): joint for joint in written(robot)[0].iterfind("joint")}
     assert joints["swing"].find("origin").get("xyz") == "0 0.1 1"
     assert joints["tip_ball"].find("origin").get("xyz") == "0.3 0 -0.6"
     assert joints["tip_ball"].get("type") == "continuous"
 
 
-def test_axis_is_unit_and_limits_are_relative():
-    joint = etree.fromstring(urdf_text(pendulum()).encode()).find("joint")
+def test_axis_is_unit_and_limits_are_relative(written):
+    joint = written(pendulum())[0].find("joint")
     assert joint.find("axis").get("xyz") == "0 1 0"
     limit = {key: float(value) for key, value in joint.find("limit").attrib.items()}
     assert limit == {"lower": -1.5708, "upper": 1.0472, "effort": 3.0, "velocity": 4.0}
     assert dict(joint.find("dynamics").attrib) == {"damping": "0.1", "friction": "0"}
 
 
-def test_only_contact_shapes_are_collision_shapes():
-    base, arm = etree.fromstring(urdf_text(pendulum()).encode()).iterfind("link")
+def test_only_contact_shapes_are_collision_shapes(written):
+    base, arm = written(pendulum())[0].iterfind("link")
     assert base.find("collision/geometry/box").get("size") == "0.2 0.2 0.1"
     assert arm.find("visual/geometry/sphere").get("radius") == "0.1"
     assert arm.find("collision") is None
 
 
-def test_rod_is_two_halves_joined_by_balls():
+def test_rod_is_two_halves_joined_by_balls(written, tmp_path):
     robot = pendulum()
     robot.rod("link", ("base", (0.2, 0.0, 1.0)), ("arm", (0.2, 0.1, 0.4)), radius=0.01, mass=0.4, material="steel")
     assert [joint.name for joint in robot.joints] == ["swing", "ball_link_start", "ball_link_end"]
     assert sum(solid_of(robot.bodies[f"link_{side}"].shapes).mass for side in ("start", "end")) == pytest.approx(0.4)
-    description = yaml.safe_load(yaml_text(robot))
+    description = written(robot)[1]
     assert description["closures"] == [{"name": "link", "type": "6d", "frames": ["link_a", "link_b"]}]
     assert description["joints"] == {"ball_link_start": "spherical", "ball_link_end": "spherical"}
-    assert yaml.safe_load(version_1_text(robot))["joint_type"] == ["SPHERICAL", "SPHERICAL"]
+    assert version_1(tmp_path)["joint_type"] == ["SPHERICAL", "SPHERICAL"]
     welds = {
         joint.get("name"): np.array(joint.find("origin").get("xyz").split(), dtype=float)
-        for joint in etree.fromstring(urdf_text(robot).encode()).iterfind("joint[@type='fixed']")
+        for joint in written(robot)[0].iterfind("joint[@type='fixed']")
     }
     assert welds["weld_link_a"] == pytest.approx([0.0, 0.05, -0.3])
     assert welds["weld_link_b"] == pytest.approx([0.0, -0.05, 0.3])
@@ -143,10 +162,10 @@ def test_rod_is_two_halves_joined_by_balls():
 @pytest.mark.parametrize(
     "text", ["yes", "No", "null", "1.0", "1e3", "012", "a: b", "- a", "", " a", "a ", "a #b", "é", "~", "3d"]
 )
-def test_text_survives_round_trip(text):
+def test_text_survives_round_trip(text, written):
     robot = pendulum()
     robot.metadata = {"note": text}
-    assert yaml.safe_load(yaml_text(robot))["metadata"] == {"note": text}
+    assert written(robot)[1]["metadata"] == {"note": text}
 
 
 def rod_between(robot, ends, name="link"):
@@ -175,26 +194,24 @@ def test_rotation_matches_roll_pitch_yaw(rpy):
     assert rotation_of(rpy_of(rotation)) == pytest.approx(rotation, abs=1e-12)
 
 
-def test_slider_travel_is_relative_to_drawn_pose():
+def test_slider_travel_is_relative_to_drawn_pose(written):
     robot = pendulum()
     slider = prismatic("slide", "arm", (0.0, 0.1, 0.3), (0.0, 0.0, -3.0), metres=(0.1, 0.4), drawn=0.25)
     robot.body("piston", slider, Sphere((0.0, 0.1, 0.2), 0.1, mass=1.0), material="steel")
-    joint = etree.fromstring(urdf_text(robot).encode()).find("joint[@name='slide']")
+    joint = written(robot)[0].find("joint[@name='slide']")
     assert (joint.get("type"), joint.find("axis").get("xyz")) == ("prismatic", "0 0 -1")
     assert (joint.find("limit").get("lower"), joint.find("limit").get("upper")) == ("-0.15", "0.15")
 
 
-def test_rod_with_point_end_is_one_body():
+def test_rod_with_point_end_is_one_body(written):
     robot = pendulum()
     rod_between(robot, ("ball", "point"))
     assert [joint.name for joint in robot.joints] == ["swing", "ball_link"]
     assert solid_of(robot.bodies["link"].shapes).mass == pytest.approx(0.4)
-    assert yaml.safe_load(yaml_text(robot))["closures"] == [
-        {"name": "link", "type": "3d", "frames": ["link_a", "link_b"]}
-    ]
+    assert written(robot)[1]["closures"] == [{"name": "link", "type": "3d", "frames": ["link_a", "link_b"]}]
 
 
-def test_closures_and_couplings_of_version_2_1_are_drawn_closed(tmp_path):
+def test_closures_and_couplings_of_version_2_1_are_drawn_closed(written, tmp_path):
     robot = pendulum()
     for side, y in (("left", 0.3), ("right", -0.3)):
         at = (0.0, y, 0.5)
@@ -207,13 +224,13 @@ def test_closures_and_couplings_of_version_2_1_are_drawn_closed(tmp_path):
     robot.hinge("pin", "left_crank", "right_crank", (0.0, 0.0, 0.5), (0.0, 3.0, 4.0))
     robot.distance("tie", ("arm", (0.1, 0.0, 0.2)), ("left_crank", (0.1, 0.3, 0.6)))
     robot.couple("gear", left_turn=1.0, right_turn=-2.0)
-    description = yaml.safe_load(yaml_text(robot))
+    (tmp_path / "robot.v1.yaml").write_text("# of an earlier drawing")
+    description = written(robot)[1]
     assert description["extended_urdf"] == "2.1"
     assert [closure["type"] for closure in description["closures"]] == ["hinge", "distance"]
     assert description["closures"][1]["length"] == pytest.approx(0.5)
     assert description["couplings"] == [{"name": "gear", "joints": {"left_turn": 1.0, "right_turn": -2.0}}]
-    assert "closed_loop" not in version_1_text(robot)
-    write(robot, tmp_path)
+    assert not (tmp_path / "robot.v1.yaml").exists()
     built = eurdf.load(tmp_path, geometry=False)
     assert [constraint.type for constraint in built.constraints] == ["hinge", "distance", "coupling"]
     assert np.abs(eurdf.residual(built, built.configurations["assembled"])).max() < 1e-12
@@ -234,13 +251,12 @@ def test_mirror_repeats_hinges_distances_and_couplings():
     assert robot.couplings[1].joints == {"right_turn": 1.0, "right_bend": -1.0}
 
 
-def test_rod_on_universal_joint_cannot_spin(tmp_path):
+def test_rod_on_universal_joint_cannot_spin(written, tmp_path):
     robot = pendulum()
     rod_between(robot, ("ball", "universal"))
-    description = yaml.safe_load(yaml_text(robot))
+    description = written(robot)[1]
     assert description["joints"]["universal_link_end"] == {"type": "universal", "axes": "xy"}
-    assert yaml.safe_load(version_1_text(robot))["joint_type"] == ["SPHERICAL", "UJOINT_XY"]
-    write(robot, tmp_path)
+    assert version_1(tmp_path)["joint_type"] == ["SPHERICAL", "UJOINT_XY"]
     loaded = eurdf.load(tmp_path)
     assert not loaded.diagnostics
     analysis = eurdf.analyze(loaded)
@@ -319,7 +335,9 @@ def test_springs_are_written_in_version_2_1_and_mirrored(tmp_path):
 def test_motors_frames_configurations_and_solids_are_written_and_mirrored(tmp_path):
     robot = Drawing("legs", materials={"steel": (0.5, 0.5, 0.5, 1.0)}, metadata={}, root="floating")
     robot.body("trunk", None, Sphere((0.0, 0.0, 1.0), 0.1, mass=5.0), material="steel")
-    motor = Motor(50.0, 6.0, damping=0.5, gear_ratio=9.0, rotor_inertia=1e-3)
+    motor = Motor(
+        50.0, 6.0, damping=0.5, gear_ratio=9.0, rotor_inertia=1e-3, armature=0.1, name="left_drive", control=(-5.0, 6.0)
+    )
     inertia = np.array([[0.03, 0.001, 0.002], [0.001, 0.04, 0.003], [0.002, 0.003, 0.05]])
     at, damper = (0.0, 0.2, 0.5), Spring(900.0, damping=1.5)
     robot.body("left_leg", universal("left_hip", "trunk", at, (0.6, 0.8, 0.0), (0.0, 0.0, 1.0)), material="steel")
@@ -331,7 +349,7 @@ def test_motors_frames_configurations_and_solids_are_written_and_mirrored(tmp_pa
         solid=Solid(2.0, (0.01, 0.22, 0.3), inertia),
     )
     robot.frame("left_sole", "left_foot", (0.1, 0.25, 0.0))
-    robot.frame("left_mark", "left_leg", (0.1, 0.3, 0.5))
+    robot.frame("left_mark", "left_leg", (0.1, 0.3, 0.5), rpy=(0.3, 0.2, 0.1))
     robot.mirror("left", "right")
     robot.configure("bent", left_knee=0.4, right_knee=0.4)
     write(robot, tmp_path)
@@ -339,6 +357,9 @@ def test_motors_frames_configurations_and_solids_are_written_and_mirrored(tmp_pa
     for knee in (joint for joint in loaded.mechanism.joints if "knee" in joint.name):
         found = knee.properties
         assert (found.gear_ratio, found.rotor_inertia, found.damping) == ((9.0,), (1e-3,), (2.0,))
+        assert found.armature == (0.1,)
+        assert loaded.mechanism.motors[knee.name].name == knee.name.replace("knee", "drive")
+        assert loaded.mechanism.motors[knee.name].control == (-5.0, 6.0)
     data = loaded.model.createData()
     pin.framesForwardKinematics(loaded.model, data, loaded.configurations["assembled"])
     flip = np.diag([1.0, -1.0, 1.0])
@@ -346,16 +367,17 @@ def test_motors_frames_configurations_and_solids_are_written_and_mirrored(tmp_pa
         solid = loaded.model.inertias[loaded.model.getJointId(f"{side}_knee")]
         assert solid.mass == 2.0
         assert solid.inertia == pytest.approx(mirror @ inertia @ mirror, abs=1e-15)
-        for name, place in (("sole", (0.1, 0.25, 0.0)), ("mark", (0.1, 0.3, 0.5))):
+        mark = rotation_of((0.3, 0.2, 0.1))
+        for name, place, turn in (("sole", (0.1, 0.25, 0.0), np.eye(3)), ("mark", (0.1, 0.3, 0.5), mark)):
             pose = data.oMf[loaded.model.getFrameId(f"{side}_{name}")]
             assert pose.translation == pytest.approx(mirror @ place, abs=1e-12)
-            assert pose.rotation == pytest.approx(np.eye(3), abs=1e-12)
+            assert pose.rotation == pytest.approx(mirror @ turn @ mirror, abs=1e-12)
     expected = configuration_vector(loaded.mechanism, loaded.model, {"left_knee": [0.4], "right_knee": [0.4]})
     assert loaded.configurations["bent"] == pytest.approx(expected)
 
 
-def test_drawing_without_springs_is_written_in_version_2_0():
-    assert yaml.safe_load(yaml_text(limb()))["extended_urdf"] == "2.0"
+def test_drawing_without_springs_is_written_in_version_2_0(written):
+    assert written(limb())[1]["extended_urdf"] == "2.0"
 
 
 def unit_quaternion(random):

@@ -154,6 +154,7 @@ class Diagnostics:
     def __init__(self) -> None:
         self._found: list[Diagnostic] = []
         self._count: Counter[str] = Counter()  # by code, listed or not
+        self._total = 0
         self._last: dict[str, int] = {}  # by code, the index in `_found` of the last one listed
 
     def report(self, code: str, message: str, place: Place | Callable[[], Place], hint: Hint = None) -> None:
@@ -171,6 +172,7 @@ class Diagnostics:
     def _counts_in(self, code: str) -> bool:
         """Count a diagnostic; return whether to list it."""
         self._count[code] += 1
+        self._total += 1
         if self._count[code] > LISTED:
             return False
         self._last[code] = len(self._found)
@@ -183,7 +185,7 @@ class Diagnostics:
 
     def __len__(self) -> int:
         """Number of diagnostics, listed or not."""
-        return self._count.total()
+        return self._total
 
     @property
     def error_count(self) -> int:

@@ -16,7 +16,7 @@ from eurdf.format.extension import (
     FrameReference,
     JointEntry,
 )
-from eurdf.format.own_key import is_own_key
+from eurdf.format.own_key import is_own_key, may_have_own_keys
 from eurdf.mechanism.constraint import Compliance
 from eurdf.mechanism.pose import Vector3
 from eurdf.reading.yaml_node import Pointer
@@ -110,7 +110,7 @@ def from_version2(version: Literal["2.0", "2.1"], document: YamlDocument) -> Ext
             ]
         ),
         metadata=data.get("metadata", {}),
-        own_data=dict(_own_data(data, ())),
+        own_data=dict(_own_data(data, ())) if may_have_own_keys(document.source.text) else {},
     )
 
 

@@ -137,11 +137,13 @@ def describe(
         if given is not None:
             read = partial(_own_source, given)
         else:
-            named = _named_urdf(files.description, extension, document)
-            if not _may_read(named, files.description, extension, diagnostics, confined):
+            folder = _folder(files.description)
+            named = _named_urdf(folder, extension, document)
+            is_inside = _is_inside(named, folder)
+            if not _may_read(named, is_inside, files.description, extension, diagnostics, confined):
                 return Unlinked(name, diagnostics)
             # Another file that the description names may be anyone's: no line of it is shown.
-            read = partial(read_source, named, is_quoted=_is_inside(named, _folder(files.description)))
+            read = partial(read_source, named, is_quoted=is_inside)
         # Without a version, whether a mimic has an effect is not known.
         version = None if document is None else version_of(document)
         mimic_errors = "ignored" if version in (None, "1") else "refused" if mimic else "kept"
@@ -237,16 +239,16 @@ def _read_urdf(
     return urdf
 
 
-def _named_urdf(description: Path | Source, extension: Extension | None, document: YamlDocument | None) -> Path:
+def _named_urdf(folder: Path, extension: Extension | None, document: YamlDocument | None) -> Path:
     name = "robot.urdf"
     if extension is not None:
         name = extension.urdf
     elif document is not None and isinstance(document.data, dict) and isinstance(document.data.get("urdf"), str):
         name = document.data["urdf"]
     try:
-        return _folder(description) / name
+        return folder / name
     except ValueError:
-        return _folder(description) / "robot.urdf"
+        return folder / "robot.urdf"
 
 
 def _folder(description: Path | Source) -> Path:
@@ -287,13 +289,17 @@ def _is_inside(path: Path, folder: Path) -> bool:
 
 
 def _may_read(
-    path: Path, description: Path | Source, extension: Extension | None, diagnostics: Diagnostics, confined: bool
+    path: Path,
+    is_inside: bool,
+    description: Path | Source,
+    extension: Extension | None,
+    diagnostics: Diagnostics,
+    confined: bool,
 ) -> bool:
     """Whether the URDF that the description names exists, and is in its folder if files are confined to it.
 
     If the description could not be read, its URDF is a guess, so a second error would be wrong.
     """
-    is_inside = _is_inside(path, _folder(description))
     if confined and not is_inside:
         if extension is not None:
             message = f"the URDF '{path}' is outside the folder of the description, and files are confined to it"

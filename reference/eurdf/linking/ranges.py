@@ -22,7 +22,13 @@ def check_ranges(urdf: Urdf, joints: Mapping[str, Joint], diagnostics: Diagnosti
             no range in the URDF.
         diagnostics: Gets what is found.
     """
-    found = [joint for joint in urdf.joints.values() if _has_no_range(joint, joints.get(joint.name))]
+    found = [
+        joint
+        for joint in urdf.joints.values()
+        if (limit := joint.limit) is not None
+        and limit.lower == limit.upper == 0.0
+        and _has_no_range(joint, joints.get(joint.name))
+    ]
     if not found:
         return
     names = quoted([joint.name for joint in found])
@@ -36,11 +42,9 @@ def check_ranges(urdf: Urdf, joints: Mapping[str, Joint], diagnostics: Diagnosti
 
 
 def _has_no_range(joint: UrdfJoint, made: Joint | None) -> bool:
-    limit = joint.limit
+    """Whether the range from 0 to 0 of a joint of the URDF is that of its joint in the mechanism."""
     return (
         joint.type in _RANGED
-        and limit is not None
-        and limit.lower == limit.upper == 0.0
         and made is not None
         and made.type in _RANGED
         and made.properties.lower == made.properties.upper == (0.0,)

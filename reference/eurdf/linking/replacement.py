@@ -6,6 +6,7 @@ import math
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
+from operator import attrgetter
 
 from eurdf.diagnostics import Hint, did_you_mean
 from eurdf.format.extension import JointEntry, NewType
@@ -178,9 +179,8 @@ class _Replacement:
         EU-JNT-030: since version 2.1, a mimic joint may have losses, an armature and springs of its own.
         """
         stays = self.entry.type is None and not self.entry.merges
-        limited = any(getattr(self.entry, key) is not None for key in ("lower", "upper", "velocity", "effort"))
         if joint.name in self.mimicking and stays and self.version == "2.1":
-            if not limited:
+            if all(getattr(self.entry, key) is None for key in ("lower", "upper", "velocity", "effort")):
                 return False
             leader = self.mimicking[joint.name]
             self.reporter.report(
@@ -282,18 +282,20 @@ class _Replacement:
 
     def _spread(self, joint: Joint, kind: JointType) -> Joint:
         """EU-JNT-020, -021: the joint with another type; its rates and dynamics are those of each of its velocities."""
-        nv, own, free = COORDINATES[kind].nv, joint.properties, JointProperties.unlimited(kind)
-        properties = JointProperties(
-            free.lower,
-            free.upper,
-            own.velocity * nv,
-            own.effort * nv,
-            own.damping * nv,
-            own.friction * nv,
-            own.armature * nv,
-            own.gear_ratio * nv,
-            own.rotor_inertia * nv,
-        )
+        own, properties = joint.properties, JointProperties.unlimited(kind)
+        if own is not JointProperties.unlimited(joint.type):
+            nv = COORDINATES[kind].nv
+            properties = JointProperties(
+                properties.lower,
+                properties.upper,
+                own.velocity * nv,
+                own.effort * nv,
+                own.damping * nv,
+                own.friction * nv,
+                own.armature * nv,
+                own.gear_ratio * nv,
+                own.rotor_inertia * nv,
+            )
         return Joint(
             joint.name,
             kind,
@@ -408,15 +410,12 @@ class _Replacement:
     def override(self, joint: Joint) -> Joint | None:
         """EU-JNT-009, EU-JNT-010, EU-JNT-031: properties in the description replace those of the URDF."""
         entry = self.entry
-        if joint.type is JointType.FIXED:
-            stated = [key for key in _PROPERTIES if getattr(entry, key) is not None]
-            if stated:
-                keys = _PROPERTIES[stated[0]]
-                self.report(
-                    "joint-property", f"fixed joint '{joint.name}' cannot have the property '{keys[-1]}'", *keys
-                )
-                return None
+        if _stated(entry) == _NOTHING:
             return joint
+        if joint.type is JointType.FIXED:
+            keys = next(keys for attribute, keys in _PROPERTIES.items() if getattr(entry, attribute) is not None)
+            self.report("joint-property", f"fixed joint '{joint.name}' cannot have the property '{keys[-1]}'", *keys)
+            return None
         changes: dict[str, tuple[float, ...]] = {}
         for attribute, keys in _PROPERTIES.items():
             stated = getattr(entry, attribute)
@@ -440,8 +439,6 @@ class _Replacement:
                 )
                 return None
             changes[attribute] = values
-        if not changes:
-            return joint
         if "stiffness" in changes:
             changes.setdefault("rest", (0.0,) * joint.coordinates.nv)
         properties = replace(joint.properties, **changes)
@@ -479,3 +476,7 @@ _PROPERTIES: dict[str, tuple[str, ...]] = {
     "stiffness": ("stiffness",),
     "rest": ("rest",),
 }
+
+#: What an entry states of these, None for what it does not.
+_stated = attrgetter(*_PROPERTIES)
+_NOTHING = (None,) * len(_PROPERTIES)

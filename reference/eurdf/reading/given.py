@@ -40,10 +40,10 @@ def is_text(given: Given) -> bool:
     """Whether it is a text and no path: bytes, or a string that begins with ``<`` or has several lines."""
     if isinstance(given, bytes):
         return True
-    if not isinstance(given, str) or os.path.lexists(given):
+    if not isinstance(given, str):
         return False
     text = given.strip("\ufeff" + _SPACE)
-    return "\n" in text or text.startswith("<")
+    return ("\n" in text or text.startswith("<")) and not os.path.lexists(given)
 
 
 def shown(given: Given) -> str:

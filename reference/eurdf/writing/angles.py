@@ -10,17 +10,24 @@ from eurdf.mechanism.pose import Pose, Vector3
 def rpy_of(pose: Pose) -> Vector3:
     """Roll, pitch and yaw of an orientation, rad: the shortest numbers that give exactly its quaternion, if any do.
 
-    Pitch is from -π/2 to π/2. The roll is found from the yaw, so that rounding is not amplified near these two.
+    Pitch is from -π/2 to π/2, or slightly beyond by rounding. Where it is ±π/2, only the sum or the difference of roll
+    and yaw is determined, so that no yaw is tried first.
     """
-    (r00, r10, r20), (r01, r11, _), (r02, r12, _) = (
-        pose.rotate(axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-    )
-    yaw = math.atan2(r10, r00)
-    s, c = math.sin(yaw), math.cos(yaw)
-    pitch = math.atan2(-r20, c * r00 + s * r10)
-    roll = math.atan2(s * r02 - c * r12, c * r11 - s * r01)
+    x, y, z = (pose.rotate(axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
+    exact = angles_with_yaw(math.atan2(x[1], x[0]), x, y, z)
+    level = angles_with_yaw(0.0, x, y, z)
     for digits in range(17):
-        rounded = round(roll, digits), round(pitch, digits), round(yaw, digits)
-        if Pose.from_xyz_rpy(pose.xyz, rounded).quaternion == pose.quaternion:
-            return rounded
-    return roll, pitch, yaw
+        for roll, pitch, yaw in (level, exact):
+            rounded = round(roll, digits), round(pitch, digits), round(yaw, digits)
+            if Pose.from_xyz_rpy(pose.xyz, rounded).quaternion == pose.quaternion:
+                return rounded
+    return exact
+
+
+def angles_with_yaw(yaw: float, x: Vector3, y: Vector3, z: Vector3) -> Vector3:
+    """Roll, pitch and this yaw, rad, of the frame with these axes, if it has this yaw.
+
+    The roll is found from the yaw, so that rounding is not amplified where the pitch is near ±π/2.
+    """
+    s, c = math.sin(yaw), math.cos(yaw)
+    return math.atan2(s * z[0] - c * z[1], c * y[1] - s * y[0]), math.atan2(-x[2], c * x[0] + s * x[1]), yaw

@@ -14,7 +14,7 @@ from typing import Any, Literal, cast
 from lxml import etree
 
 from eurdf.format.own_key import is_own_key
-from eurdf.format.yaml_text import Entry, Value, lines_of, lines_of_item, modeline, section, text_of
+from eurdf.format.yaml_text import Entry, Value, item_of_mapping, lines_of, lines_of_item, modeline, section, text_of
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, HingeClosure
 from eurdf.mechanism.frame import Anchor
@@ -26,10 +26,12 @@ from eurdf.mechanism.same_model import with_universal_joints
 from eurdf.writing.angles import rpy_of
 from eurdf.writing.urdf_elements import (
     LARGEST,
+    Color,
     add_dynamics,
     add_inertial,
     add_joint,
     add_limit,
+    add_material,
     add_mimic,
     add_shape,
 )
@@ -85,6 +87,7 @@ def describe_mechanism(
     urdf_path: str = "robot.urdf",
     schema: str | None = None,
     comments: Sequence[str] = (),
+    materials: Mapping[str, Color] | None = None,
 ) -> DescriptionFiles:
     """The two files of a mechanism. Read again, they are the same mechanism, but for what follows.
 
@@ -97,6 +100,8 @@ def describe_mechanism(
         urdf_path: Path of the URDF from the folder of the YAML file.
         schema: Path of the schema from there, for the first line; None for no such line.
         comments: Lines of text to put at the head of both files.
+        materials: Colors by name, red, green, blue, alpha from 0 to 1: the URDF declares each once, and the shapes of
+            that color use it by name. Any other color is stated at each shape.
 
     Raises:
         NotWritable: A name cannot be in such a file, or a joint has properties that its type does not have.
@@ -113,7 +118,7 @@ def describe_mechanism(
         for name in names:
             if representable(name) != name or not name:
                 raise NotWritable(f"the {kind} {name!r} has a name that XML cannot contain; give it another one")
-    urdf = _Urdf(mechanism)
+    urdf = _Urdf(mechanism, materials or {})
     content = {
         "extended_urdf": version,
         "urdf": urdf_path,
@@ -130,11 +135,13 @@ def describe_mechanism(
 class _Urdf:
     """The URDF of a mechanism: each joint just before the link that it carries."""
 
-    def __init__(self, mechanism: Mechanism) -> None:
-        self.mechanism = mechanism
+    def __init__(self, mechanism: Mechanism, materials: Mapping[str, Color]) -> None:
+        self.names_of_colors = {color: name for name, color in reversed(list(materials.items()))}
         self.links = {body.name for body in mechanism.bodies}
         self.joints = {joint.name for joint in mechanism.joints}
         self.robot = etree.Element("robot", name=mechanism.name)
+        for name, color in materials.items():
+            add_material(self.robot, name, color)
         self._link(mechanism.bodies[0])
         for joint, body in zip(mechanism.joints, mechanism.bodies[1:], strict=True):
             self._joint(joint)
@@ -152,7 +159,7 @@ class _Urdf:
             add_inertial(link, body.inertia)
         for use, shapes in (("visual", body.visuals), ("collision", body.collisions)):
             for shape in shapes:
-                add_shape(link, use, shape, shape.filename, shape.texture)
+                add_shape(link, use, shape, shape.filename, shape.texture, self.names_of_colors)
 
     def _joint(self, joint: Joint) -> None:
         kind, axis = _in_urdf(joint)
@@ -434,7 +441,9 @@ def _inside(place: Any, key: str) -> Any:
 
 def _entries(content: Mapping[str, Any]) -> Iterator[Entry]:
     for key, value in content.items():
-        if key in ("closures", "couplings", "frames"):
+        if key == "closures":
+            yield section(key, [Entry(item_of_mapping(item)) for item in value])
+        elif key in ("couplings", "frames"):
             yield section(key, [Entry(lines_of_item(cast(Value, item))) for item in value])
         elif key in ("joints", "configurations", "metadata"):
             yield section(key, [Entry(lines_of(name, cast(Value, item))) for name, item in value.items()])

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
 from lxml import etree
 
@@ -13,6 +14,10 @@ from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 from eurdf.writing.angles import rpy_of
 from eurdf.writing.xml_text import numbers, representable
+
+Color = tuple[float, float, float, float]
+
+NO_MATERIALS: Mapping[Color, str] = MappingProxyType({})
 
 #: What is written where there is no limit, but URDF wants a number: rad, m, their rates, N·m or N.
 LARGEST = sys.float_info.max
@@ -29,7 +34,20 @@ def add_inertial(link: etree._Element, inertia: Inertia) -> None:
     etree.SubElement(inertial, "inertia", moments)
 
 
-def add_shape(link: etree._Element, use: str, shape: Shape, filename: str = "", texture: str = "") -> None:
+def add_material(robot: etree._Element, name: str, color: Color) -> None:
+    """Declare a material, for shapes to use by its name."""
+    material = etree.SubElement(robot, "material", name=representable(name))
+    etree.SubElement(material, "color", rgba=numbers(color))
+
+
+def add_shape(
+    link: etree._Element,
+    use: str,
+    shape: Shape,
+    filename: str = "",
+    texture: str = "",
+    materials: Mapping[Color, str] = NO_MATERIALS,
+) -> None:
     """Add a shape, with its color if it is visual.
 
     Args:
@@ -38,6 +56,7 @@ def add_shape(link: etree._Element, use: str, shape: Shape, filename: str = "", 
         shape: The shape.
         filename: URI of the file of a mesh.
         texture: URI of the file of its texture; empty for none.
+        materials: Names of the materials that the robot declares, by their color.
     """
     element = etree.SubElement(link, use)
     add_origin(element, shape.pose)
@@ -52,7 +71,11 @@ def add_shape(link: etree._Element, use: str, shape: Shape, filename: str = "", 
             etree.SubElement(geometry, "sphere", radius=numbers(size))
         case "mesh":
             etree.SubElement(geometry, "mesh", filename=representable(filename), scale=numbers(size))
-    if use == "visual" and (shape.color is not None or texture):
+    if use != "visual":
+        return
+    if shape.color is not None and shape.color in materials and not texture:
+        etree.SubElement(element, "material", name=representable(materials[shape.color]))
+    elif shape.color is not None or texture:
         color = "" if shape.color is None else f"color {numbers(shape.color)}"
         material = etree.SubElement(element, "material", name=representable(f"{color} {texture}".strip()))
         if shape.color is not None:
