@@ -8,7 +8,7 @@ at zero, and every loop is closed there because both its sides are the same poin
 from robots.builder.drawing import Drawing, End
 from robots.builder.joint import Joint, Motor, Spring, ball, cross, prismatic, revolute, unit, universal
 from robots.builder.shape import Box, Cylinder, Shape, Sphere, Vector3, midpoint
-from robots.builder.solid import Solid
+from robots.builder.solid import Solid, solid_of
 from robots.builder.write import write
 
 __all__ = [
@@ -28,6 +28,7 @@ __all__ = [
     "midpoint",
     "prismatic",
     "revolute",
+    "solid_of",
     "unit",
     "universal",
     "write",

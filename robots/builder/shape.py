@@ -24,13 +24,13 @@ class Box:
     Attributes:
         center: Its centre in the world, m.
         size: Lengths of its edges along its own x, y, z, m.
-        mass: kg.
+        mass: kg; 0 where the body states its own solid.
         rpy: Its orientation in the world: roll, pitch, yaw about the fixed axes, rad.
     """
 
     center: Vector3
     size: Vector3
-    mass: float
+    mass: float = 0.0
     rpy: Vector3 = (0.0, 0.0, 0.0)
 
     @property
@@ -49,13 +49,13 @@ class Cylinder:
         start: Centre of one end face in the world, m.
         end: Centre of the other, m.
         radius: m.
-        mass: kg.
+        mass: kg; 0 where the body states its own solid.
     """
 
     start: Vector3
     end: Vector3
     radius: float
-    mass: float
+    mass: float = 0.0
 
     @property
     def center(self) -> Vector3:
@@ -83,12 +83,12 @@ class Sphere:
     Attributes:
         center: Its centre in the world, m.
         radius: m.
-        mass: kg.
+        mass: kg; 0 where the body states its own solid.
     """
 
     center: Vector3
     radius: float
-    mass: float
+    mass: float = 0.0
 
     @property
     def inertia(self) -> Matrix3:

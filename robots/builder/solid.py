@@ -25,8 +25,8 @@ class Solid:
     inertia: Matrix3
 
 
-def solid_of(shapes: Sequence[Shape]) -> Solid:
-    """The sum of shapes, by the theorem of parallel axes; where they overlap, both count."""
+def solid_of(shapes: Sequence[Shape | Solid]) -> Solid:
+    """The sum of shapes or solids, by the theorem of parallel axes; where they overlap, both count."""
     mass = sum(shape.mass for shape in shapes)
     center = np.array([shape.mass for shape in shapes]) @ np.array([shape.center for shape in shapes]) / mass
     inertia = np.zeros((3, 3))

@@ -47,6 +47,7 @@ DIMENSIONS = {
     "stewart_platform": (None, None, None, None, None, 6, None),
     "talos_2legs": (52, {"3d": 2}, 6, 6, 46, 44, 2),
     "talos_leg": (13, {"6d": 1}, 6, 6, 7, 6, 1),
+    "tello": (20, {"distance": 6}, 10, 10, 10, 10, 0),
     "tesla_optimus_ankle": (None, None, None, None, None, 2, None),
     "unitree_g1_ankle": (None, None, None, None, None, 2, None),
     "wl16_leg": (42, {"6d": 5}, 30, 30, 12, 6, 6),
@@ -55,7 +56,7 @@ DIMENSIONS = {
 #: Of those whose dimensions are their own affair, the motions that the actuators decide.
 CONTROLLED = {"delta": 3, "stewart_platform": 6, "tesla_optimus_ankle": 2, "unitree_g1_ankle": 2}
 
-TWO_LEGGED = {"battobot", "digit_2legs", "disney_2legs", "kangaroo_2legs", "talos_2legs"}
+TWO_LEGGED = {"battobot", "digit_2legs", "disney_2legs", "kangaroo_2legs", "talos_2legs", "tello"}
 
 
 def named(folder):
@@ -99,14 +100,14 @@ def test_robot_has_requested_dimensions(folder):
 @pytest.mark.parametrize("folder", FOLDERS, ids=named)
 def test_drawn_pose_is_assembled_with_zero_coordinates(folder):
     description = yaml.safe_load((folder / "robot.yaml").read_text())
-    assert description["configurations"] == {"assembled": {}}
+    assert description["configurations"]["assembled"] == {}
     at = poses_at_zero(etree.parse(folder / "robot.urdf").getroot())
     for closure in description["closures"]:
         a, b = (at[frame] for frame in closure["frames"])
         assert closure["frames"][0] != closure["frames"][1]
         apart = np.abs(a - b)
-        assert apart[:3, 3].max() < 1e-12, closure["name"]
-        assert closure["type"] == "3d" or apart.max() < 1e-12, closure["name"]
+        assert abs(np.linalg.norm(apart[:3, 3]) - closure.get("length", 0.0)) < 1e-12, closure["name"]
+        assert closure["type"] in ("3d", "distance") or apart.max() < 1e-12, closure["name"]
 
 
 def test_builder_writes_into_given_folder(tmp_path):
