@@ -93,7 +93,10 @@ def draw_hip(robot: Drawing) -> None:
     robot.body(
         "left_hip",
         revolute("left_motor_hip_z", "torso", CLAMP, UP, degrees=(-40.0, 40.0), motor=MOTOR),
-        *(Cylinder((0.0, CLAMP[1], -0.087), (0.0, CLAMP[1], -0.05), radius=0.035), body, bridge, *fork),
+        Cylinder((0.0, CLAMP[1], -0.087), (0.0, CLAMP[1], -0.05), radius=0.035),
+        body,
+        bridge,
+        *fork,
         material="motor",
         solid=solid_of([clamp, *(rotor(beside(CLAMP, y), LEFT) for y in (0.04, -0.04))]),
     )
@@ -113,8 +116,9 @@ def draw_hip(robot: Drawing) -> None:
                 drawn=round(math.degrees(drawn), 1),
                 motor=MOTOR,
             ),
-            *(Cylinder(beside(axle, -0.008), beside(axle, 0.008), radius=0.016, mass=0.02),),
-            *(Cylinder(axle, tips[-1], radius=0.007, mass=0.03), Sphere(tips[-1], radius=0.011, mass=0.01)),
+            Cylinder(beside(axle, -0.008), beside(axle, 0.008), radius=0.016, mass=0.02),
+            Cylinder(axle, tips[-1], radius=0.007, mass=0.03),
+            Sphere(tips[-1], radius=0.011, mass=0.01),
             material="crank",
         )
     cross = Cylinder(moved(HIP, (-0.064, 0.0, 0.0)), moved(HIP, (0.064, 0.0, 0.0)), radius=0.014)
@@ -135,7 +139,12 @@ def draw_hip(robot: Drawing) -> None:
     robot.body(
         "left_thigh",
         revolute("left_free_hip_y", "left_gimbal", HIP, LEFT, degrees=(-60.0, 35.0)),
-        *(*motors, *arms, *(Sphere(corner, 0.012) for corner in corners), bone, collar, *fork),
+        *motors,
+        *arms,
+        *(Sphere(corner, 0.012) for corner in corners),
+        bone,
+        collar,
+        *fork,
         material="shell",
         contacts=(bone,),
         solid=solid_of([thigh, *(rotor(beside(HIP, y), LEFT) for y in (0.02655, -0.02655))]),
@@ -146,7 +155,7 @@ def draw_hip(robot: Drawing) -> None:
 
 
 def draw_shank(robot: Drawing) -> None:
-    """The shin and the foot, which two motors in the thigh move together: their sum the knee, their difference a crank."""
+    """The shin and the foot. Two motors in the thigh move both: their sum the knee, their difference a crank."""
     for number, y in ((1, 0.063), (2, -0.063)):
         robot.body(
             f"left_pulley_{number}",
@@ -158,9 +167,10 @@ def draw_shank(robot: Drawing) -> None:
     robot.body(
         "left_shin",
         revolute("left_free_knee", "left_thigh", KNEE, LEFT, degrees=(-5.0, 125.0)),
-        *(Cylinder(beside(KNEE, -0.037), beside(KNEE, 0.037), radius=0.02),),
-        *(Box((-0.006, KNEE[1], -0.4785), (0.03, 0.03, 0.06)), bone),
-        *(Cylinder(beside(ANKLE, -0.015), beside(ANKLE, 0.015), radius=0.014),),
+        Cylinder(beside(KNEE, -0.037), beside(KNEE, 0.037), radius=0.02),
+        Box((-0.006, KNEE[1], -0.4785), (0.03, 0.03, 0.06)),
+        bone,
+        Cylinder(beside(ANKLE, -0.015), beside(ANKLE, 0.015), radius=0.014),
         material="leg",
         contacts=(bone,),
         solid=published(0.3072, moved(KNEE, (0.0047, -0.0003, -0.1043)), (0.0054, 0.0054, 0.0001), xz=-0.0002),
@@ -184,12 +194,10 @@ def draw_shank(robot: Drawing) -> None:
         "left_foot",
         revolute("left_free_ankle", "left_shin", ANKLE, LEFT, degrees=(-50.0, 35.0)),
         sole,
-        *(
-            Cylinder(beside(ANKLE, y), beside(moved(ANKLE, (0.0, 0.0, -0.032)), y), radius=0.008)
-            for y in (0.021, -0.021)
-        ),
-        *(Cylinder(beside(ANKLE, -0.028), beside(ANKLE, 0.028), radius=0.008),),
-        *(Cylinder(moved(ANKLE, (0.0, 0.0, -0.03)), lever, radius=0.008), Sphere(lever, radius=0.01)),
+        *(Cylinder(beside(ANKLE, y), (0.0, ANKLE[1] + y, ANKLE[2] - 0.032), radius=0.008) for y in (0.021, -0.021)),
+        Cylinder(beside(ANKLE, -0.028), beside(ANKLE, 0.028), radius=0.008),
+        Cylinder(moved(ANKLE, (0.0, 0.0, -0.03)), lever, radius=0.008),
+        Sphere(lever, radius=0.01),
         material="motor",
         contacts=(sole,),
         solid=published(0.1025, moved(ANKLE, (0.0042, 0.0, -0.0251)), (9.4e-5, 1.773e-4, 9.01e-5), xz=-3.8e-6),
@@ -200,7 +208,7 @@ def draw_shank(robot: Drawing) -> None:
 
 
 def pose(hip_x: float = 0.0, hip_y: float = 0.0, knee: float = 0.0, ankle: float = 0.0) -> dict[str, float]:
-    """Coordinates (rad) of both legs at given angles of roll, pitch, knee and ankle, with the cranks and motors to them."""
+    """Coordinates (rad) of all joints of both legs at given angles of roll, pitch, knee and ankle."""
     drawn = hip_cranks(0.0, 0.0)[0]
     first, second = hip_cranks(hip_x, hip_y)
     crank = ankle_crank(ankle) - ankle_crank(0.0)
@@ -227,7 +235,7 @@ def published(mass: float, center: Vector3, moments: Vector3, *, xz: float = 0.0
 
 
 def rotor(at: Vector3, axis: Vector3) -> Solid:
-    """A rotor as part of the body that carries it: what it weighs, without its spin, which the gear ratio accounts for."""
+    """A rotor as part of the body that carries it. Its spin is left to the gear ratio and the rotor inertia."""
     along = np.outer(axis, axis)
     return Solid(ROTOR, at, ROTOR_ACROSS * (np.eye(3) - along) + MOTOR.rotor_inertia * along)
 

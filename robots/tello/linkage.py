@@ -18,8 +18,8 @@ HIP_ROD = 0.155
 SHIN, ANKLE_ROD = 0.26, 0.2146
 _CRANK, _LEVER, _OFFSET = 0.04, 0.035, 0.042
 
-#: Directions in the shin, from its own up (z) towards the front (x): of the crank and of the lever of the foot in the
-#: zero of their joints, and down from the knee to the pivot of the crank, which is in front of that where it is positive.
+#: Directions in the shin, from up (z) towards the front (x), rad: of the crank and of the lever of the foot in the zero
+#: of their joints, and from the pivot of the crank to the knee.
 _CRANK_AT, _LEVER_AT, _OFFSET_AT = math.radians(180.0 - 59.16), math.radians(180.0 - 66.0), math.radians(20.0)
 
 

@@ -72,7 +72,8 @@ def in_our_terms(there: InMuJoCo, constraint: Constraint) -> tuple[Any, Any, int
     if not len(residual):  # MuJoCo leaves out what no joint moves
         return np.zeros(0), J, 0
     if isinstance(constraint, Coupling):
-        first = constraint.coefficients[0][1]
+        # An equality is of two joints, with the first's coefficient 1; more are the length of a tendon, as it is.
+        first = constraint.coefficients[0][1] if len(constraint.coefficients) == 2 else 1.0
         return first * residual, first * J, 1
     if constraint.type == "distance":
         return residual, J, 1

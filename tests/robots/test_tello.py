@@ -9,8 +9,6 @@ from collections.abc import Callable
 import numpy as np
 
 import eurdf
-from eurdf.pinocchio.configuration import configuration_vector
-from eurdf.pinocchio.coordinates import slots
 
 #: Angles of Tello's own in the pose that is drawn, where they are not 0 (rad).
 HIP_CRANK, ANKLE_CRANK = 0.15685349478899657, -4.583900721089e-05
@@ -33,7 +31,7 @@ def hip(y: complex, roll: complex, pitch: complex, side: float) -> complex:
 
 
 def ankle(crank: complex, ankle: complex) -> complex:
-    """That of the ankle as ``derive_tello_knee_ankle_differential.m`` has it, m²; half the motors' difference: -crank."""
+    """That of the ankle as ``derive_tello_knee_ankle_differential.m`` has it, m²; half the difference is -crank."""
     s, c, pi = cmath.sin, cmath.cos, math.pi
     return (
         21 / 6250 * c(-crank + 1979 * pi / 4500)
@@ -54,12 +52,12 @@ def derivative(function: Callable[..., complex], *at: float) -> list[float]:
 
 def test_constraints_are_those_of_the_derivation_at_any_pose() -> None:
     robot = eurdf.load("tello", root="fixed", geometry=False)
-    at = slots(robot.mechanism, robot.model)
+    at = robot.slots
     rows = {constraint.name: row for row, constraint in enumerate(robot.constraints)}
     random = np.random.default_rng(11)
     for _ in range(5):
         values = {name: [random.uniform(-0.8, 0.8)] for name in at}
-        q = configuration_vector(robot.mechanism, robot.model, values)
+        q = robot.configuration(values)
         r, K = eurdf.residual_and_jacobian(robot, q)
         angle = {name: value for name, (value,) in values.items()}
         expected = {
@@ -89,7 +87,7 @@ def test_knee_is_the_mean_of_its_motors() -> None:
     robot = eurdf.load("tello", geometry=False)
     for name in ("bent", "wide"):
         q = robot.configurations[name]
-        angle = {joint: q[slot.idx_q] for joint, slot in slots(robot.mechanism, robot.model).items()}
+        angle = {joint: q[slot.idx_q] for joint, slot in robot.slots.items()}
         assert np.abs(eurdf.residual(robot, q)).max() < 1e-12
         for side in ("left", "right"):
             one, two = (angle[f"{side}_motor_knee_{number}"] for number in (1, 2))
