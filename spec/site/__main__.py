@@ -5,25 +5,29 @@ from __future__ import annotations
 import argparse
 import shutil
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from sphinx.cmd.build import main as sphinx_build
 
+from eurdf.collection import collection_names
 from spec.site.clause import SPEC
 from spec.site.links import site_errors
 from spec.site.pages import gather
+from spec.site.robots import write_robot_pages
 
 BUILD = SPEC / "_build"
 
 
-def build(output: Path, builder: str = "html", source: Path = SPEC) -> int:
+def build(output: Path, builder: str = "html", source: Path = SPEC, robots: Sequence[str] | None = None) -> int:
     """Build the site from scratch; a warning or a broken link is an error.
 
     Args:
         output: Folder that the site is written into.
         builder: ``html``, or ``linkcheck`` to look the addresses of other sites up.
         source: Folder of the specification, beside that of the other pages.
+        robots: Names of the robots that get a page; by default all of the collection.
 
     Returns:
         0, or another number where something is wrong; what is, is printed.
@@ -33,6 +37,7 @@ def build(output: Path, builder: str = "html", source: Path = SPEC) -> int:
     doctrees = str(output.parent / f"{output.name}.doctrees")
     with TemporaryDirectory() as pages:
         gather(Path(pages), source.resolve())
+        write_robot_pages(Path(pages), collection_names() if robots is None else robots)
         options = ["-q", "-E", "-a", "-n", "-W", "-d", doctrees, "-c", str(source)]
         failed = sphinx_build(["-b", builder, *options, pages, str(output)])
     if failed or builder != "html":

@@ -81,7 +81,7 @@ def source_url(path: str, line: int | None = None) -> str:
     return f"{address('Source')}/{kind}/main/{path}" + (f"#L{line}" if line else "")
 
 
-def _on_the_site(target: str) -> str | None:
+def on_the_site(target: str) -> str | None:
     """What a link to a file of the repository becomes on the site; None if there is no such file."""
     path = Path(target)
     if str(path.parent) in FOLDERS and path.suffix == ".md" and path.name != "README.md":
@@ -95,7 +95,7 @@ def _on_the_site(target: str) -> str | None:
 
 def _translate_links(app: Sphinx, page: str, content: list[str]) -> None:
     def translated(match: re.Match[str]) -> str:
-        url = _on_the_site(match["path"])
+        url = on_the_site(match["path"])
         if url is None:
             _LOGGER.warning("the repository has no file '%s'", match["path"], location=page)
         return url or match[0]

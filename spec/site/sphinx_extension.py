@@ -6,7 +6,7 @@ from typing import Any
 
 from sphinx.application import Sphinx
 
-from spec.site import api, figures, math, pages
+from spec.site import api, figures, math, pages, robots
 from spec.site.directives import DIRECTIVES
 from spec.site.domain import NameRole, SpecificationDomain
 
@@ -22,4 +22,5 @@ def setup(app: Sphinx) -> dict[str, Any]:
     figures.setup(app)
     pages.setup(app)
     api.setup(app)
+    robots.setup(app)
     return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -276,6 +276,7 @@ STATING = (
     "linking/",
     "kinematics/batch/",
     "transmissions/c_source.py",
+    "viewing/live_robot.py",
     "writing/",
 )
 

@@ -7,6 +7,7 @@ import json
 import shutil
 import subprocess
 import sys
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
@@ -20,6 +21,9 @@ from spec.site.pages import address
 
 ROOT = Path(__file__).parents[2]
 
+#: The robots that get a page here; each takes time.
+ROBOTS = ("digit_leg", "digit_leg_3d")
+
 pytestmark = [
     pytest.mark.skipif(
         any(importlib.util.find_spec(name) is None for name in ("sphinx", "myst_parser", "furo", "latex2mathml")),
@@ -28,12 +32,12 @@ pytestmark = [
 ]
 
 
-def _build(output: Path, source: Path = SPEC) -> subprocess.CompletedProcess[str]:
+def _build(output: Path, source: Path = SPEC, robots: Sequence[str] = ()) -> subprocess.CompletedProcess[str]:
     program = (
         "import sys; from pathlib import Path; from spec.site.__main__ import build;"
-        "sys.exit(build(Path(sys.argv[1]), source=Path(sys.argv[2])))"
+        "sys.exit(build(Path(sys.argv[1]), source=Path(sys.argv[2]), robots=sys.argv[3:]))"
     )
-    command = [sys.executable, "-c", program, str(output), str(source)]
+    command = [sys.executable, "-c", program, str(output), str(source), *robots]
     return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
 
 
@@ -41,7 +45,7 @@ def _build(output: Path, source: Path = SPEC) -> subprocess.CompletedProcess[str
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The site; its build fails if a link is broken or a page loads something from another site."""
     folder = tmp_path_factory.mktemp("site") / "html"
-    done = _build(folder)
+    done = _build(folder, robots=ROBOTS)
     assert done.returncode == 0, done.stderr
     assert done.stderr == ""
     return folder
@@ -64,6 +68,21 @@ def test_pages_of_docs_are_on_the_site(site: Path) -> None:
     assert 'href="simulators.html"' in (site / "export.html").read_text(encoding="utf-8")
     adapters = (site / "write_an_adapter.html").read_text(encoding="utf-8")
     assert f"{address('Source')}/blob/main/conformance/eurdf_conformance/certificate/" in adapters
+
+
+def test_robot_page_shows_motion_figures_graph_and_files(site: Path) -> None:
+    page = (site / "robots/digit_leg.html").read_text(encoding="utf-8")
+    data = page[page.index('<script type="application/json">') + 32 :]
+    assert len(json.loads(data[: data.index("</script>")])["sliders"]) == 6
+    text = _text(site / "robots/digit_leg.html")
+    for shown in ("Where the figures come from", "mobility 9 degrees of freedom", "achilles (6d)"):
+        assert shown in text
+    for name in ("robot.urdf", "robot.yaml", "build.py"):
+        assert f'/{name}"' in page
+    other = (site / "robots/digit_leg_3d.html").read_text(encoding="utf-8")
+    assert 'href="digit_leg.html"' in other  # a README's link to another robot
+    gallery = (site / "robots/index.html").read_text(encoding="utf-8")
+    assert all(f'href="{robot}.html"' in gallery for robot in ROBOTS)
 
 
 def test_every_diagnostic_has_anchor(site: Path) -> None:
