@@ -12,10 +12,18 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from eurdf.commands.main import main
-from spec.site.blocks import Block, Code, Directive, read_blocks
+from spec.site.blocks import Block, Code, Directive, Prose, read_blocks
 
 # What is zero but for rounding is another number on each machine.
 _NOISE = re.compile(r"\b\d(?:\.\d+)?e-1[0-9]\b|\b0\.0e\+00\b")
+
+
+_NAMED_FILE = re.compile(r"`(?P<name>[\w./-]+)`:$")
+
+
+def _named_file(block: Block) -> str | None:
+    found = _NAMED_FILE.search(block.text) if isinstance(block, Prose) else None
+    return found["name"] if found else None
 
 
 @dataclass
@@ -47,8 +55,12 @@ class PageReader:
 
     def _follow(self, blocks: Iterator[Block]) -> None:
         printed: str | None = None
+        named: str | None = None
         for block in blocks:
-            if printed is not None:
+            file, named = named, _named_file(block)
+            if file is not None and isinstance(block, Code):
+                self._file(block, self.folder / file)
+            elif printed is not None:
                 assert isinstance(block, Code), f"line {block.line}: what the code before it prints is not shown"
                 assert block.language == "text", f"line {block.line}: what the code before it prints is not shown"
                 self._compare(block, block.text, printed)
@@ -68,6 +80,13 @@ class PageReader:
         self.written.clear()
         path.write_text(block.body + "\n", encoding="utf-8")
 
+    def _file(self, block: Code, path: Path) -> None:
+        """What a paragraph that ends in "`NAME`:" introduces: a file that was written, or that is to be."""
+        if path.exists():
+            self._compare(block, block.text, path.read_text(encoding="utf-8"))
+        else:
+            path.write_text(block.text + "\n", encoding="utf-8")
+
     def _run(self, block: Code) -> None:
         command, _, shown = block.text.partition("\n")
         prompt, program, *arguments = shlex.split(command)
@@ -77,7 +96,7 @@ class PageReader:
         with contextlib.redirect_stdout(output), contextlib.redirect_stderr(output):
             main(arguments)
         self.written = [path for path in self.folder.iterdir() if before.get(path) != path.stat().st_mtime_ns]
-        self._compare(block, shown, output.getvalue())
+        self._compare(block, shown, output.getvalue().replace(f"{self.folder}/", ""))
 
     def _execute(self, block: Code) -> str:
         output = io.StringIO()
