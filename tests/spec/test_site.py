@@ -118,10 +118,17 @@ def test_index_contains_every_clause_and_diagnostic(site: Path) -> None:
         assert rule.title in text
 
 
-def test_search_finds_clauses_diagnostics_and_properties(site: Path) -> None:
-    index = (site / "searchindex.js").read_text(encoding="utf-8")
-    for name in ("EU-CLO-003", "unknown-frame", "quaternion"):
-        assert name in index
+def test_search_finds_what_users_look_for(site: Path) -> None:
+    index = json.loads(
+        (site / "searchindex.js").read_text(encoding="utf-8").removeprefix("Search.setIndex(").rstrip(")")
+    )
+    titles, entries, anchors = index["alltitles"], index["indexentries"], index["objects"]
+    for words, page in (("ball joint", "joints"), ("loop joint", "closures"), ("motor", "actuation")):
+        assert [(index["docnames"][place], first) for place, _, first in entries[words]] == [(page, True)]
+    assert "Spherical (ball joint)" in titles
+    assert "load" in {name for *_, name in anchors["eurdf"]}
+    assert {"EU-CLO-003", "unknown-frame"} <= {name for *_, name in anchors[""]}
+    assert "quaternion" in index["terms"]
     assert (site / "search.html").exists()
 
 
