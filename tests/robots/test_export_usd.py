@@ -28,7 +28,7 @@ from support.stl import TETRAHEDRON
 from pxr import UsdGeom, UsdPhysics, UsdShade  # isort: skip - after it was asked for
 
 #: What single precision leaves of lengths of a few metres, m; of angles, rad.
-CLOSE = 2e-6
+CLOSE = 1e-6
 
 
 def rotation_about(M: Any, axis: int) -> float:
