@@ -17,13 +17,14 @@ from eurdf.exporting.coordinates import Part
 from eurdf.loss import Effect
 from eurdf.mechanism.constraint import HingeClosure
 from eurdf.mechanism.frame import Anchor, Frame
-from eurdf.mechanism.joint import JointProperties
+from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.mechanism.pose import IDENTITY, Pose, direction
 from eurdf.mechanism.spanning_tree import rigid_roots
 from eurdf.pinocchio.robot import Robot, build_robot
-from support.exported import random_robot
+from support.described import mass_matrix
+from support.exported import random_robot, without_armature
 from support.same_mechanism import unlike
 
 
@@ -187,12 +188,13 @@ def in_files(values: list[float], part: Part, quaternion: str) -> list[float]:
 def test_random_mechanism_is_the_same_in_poses_and_closures(
     to: str, seed: int, root: Any, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    robot = some_robot(seed, root)
+    robot = with_limits(some_robot(seed, root), np.random.default_rng(seed))
     export, imported = round_trip(robot, to, tmp_path_factory.mktemp("files"))
     # URDF alone does not say whether the root floats: a listed loss.
     mechanism = replace(imported.mechanism, root=root)
     found = build_robot(mechanism, geometry=False)
     assert_same_robot(robot, found, export, seed)
+    assert_same_properties(robot, found, export)
 
 
 @pytest.mark.parametrize("to", ["loop-joint", "drake", "sdf"])
@@ -205,10 +207,61 @@ def test_robot_of_the_collection_is_the_same(to: str, tmp_path: Path) -> None:
         (each.name, each.type) for each in found.constraints
     ]
     assert_same_robot(robot, found, export, 1)
+    assert_same_properties(robot, found, export)
+
+
+def with_limits(robot: Robot, random: np.random.Generator) -> Robot:
+    """The robot with limits on every axis of every joint that can have some."""
+
+    def limited(joint: Joint) -> Joint:
+        if joint.type is JointType.FIXED:
+            return joint
+        n, nv = len(joint.coordinates.names), joint.coordinates.nv
+        values: dict[str, Any] = {name: tuple(random.uniform(1.0, 9.0, nv).tolist()) for name in ("velocity", "effort")}
+        if joint.type is not JointType.CONTINUOUS and joint.coordinates.quaternion is None:
+            values["lower"] = tuple(random.uniform(-9.0, -7.0, n).tolist())
+            values["upper"] = tuple(random.uniform(7.0, 9.0, n).tolist())
+        return replace(joint, properties=replace(joint.properties, **values))
+
+    joints = tuple(map(limited, robot.mechanism.joints))
+    return build_robot(replace(robot.mechanism, joints=joints), geometry=False)
+
+
+#: For each property, the words of the losses that name it.
+LOST_BY = {
+    "lower": ("limits", "position-limit"),
+    "upper": ("limits", "position-limit"),
+    "velocity": ("limits", "velocity"),
+    "effort": ("effort",),
+    "damping": ("damping",),
+    "friction": ("friction",),
+    "armature": ("armature",),
+}
+
+
+def assert_same_properties(robot: Robot, found: Robot, export: eurdf.Export) -> None:
+    """Limits, damping, friction and armature of each axis that is a joint with one axis, unless a loss names them."""
+    lost = {(loss.name, word) for loss in export.losses for word in loss.code.removeprefix("export-").split("-")}
+    lost |= {(loss.name, loss.code.removeprefix("export-")) for loss in export.losses}
+    theirs = {joint.name: joint.properties for joint in found.mechanism.joints}
+    mine = {joint.name: joint.properties for joint in robot.mechanism.joints}
+    compared = 0
+    for part in export.coordinates.parts:
+        if part.mimics or len(part.ratios) != len(part.names):
+            continue
+        for name, (index, multiplier, zero) in zip(part.names, part.ratios, strict=True):
+            assert multiplier == 1.0
+            for key, words in LOST_BY.items():
+                if not any((part.joint, word) in lost for word in words):
+                    (value,) = getattr(theirs[name], key)
+                    expected = getattr(mine[part.joint], key)[index] + (zero if key in ("lower", "upper") else 0.0)
+                    assert value == pytest.approx(expected, rel=1e-12), (name, key)
+                    compared += 1
+    assert compared
 
 
 def assert_same_robot(robot: Robot, found: Robot, export: eurdf.Export, seed: int) -> None:
-    """Poses of bodies, and openings of the closures that both have, at a configuration where loops are open."""
+    """Poses of bodies, openings of the closures that both have, and M, at a configuration where loops are open."""
     random = np.random.default_rng(seed)
     assembled = robot.configurations["assembled"]
     q = pin.integrate(robot.model, assembled, random.uniform(-0.2, 0.2, robot.model.nv))
@@ -218,6 +271,7 @@ def assert_same_robot(robot: Robot, found: Robot, export: eurdf.Export, seed: in
     for body in robot.mechanism.bodies:
         one, other = (each.data.oMf[each.model.getFrameId(body.name, pin.FrameType.BODY)] for each in (robot, found))
         np.testing.assert_allclose(other.homogeneous, one.homogeneous, atol=1e-9, err_msg=body.name)
+    assert_same_mass_matrix(robot, q, found, q2)
     lost = {loss.name for loss in export.losses if loss.effect is Effect.DROPPED}
     theirs = {each.name: each for each in eurdf.closure_openings(found, q2)}
     for opening, closure in zip(eurdf.closure_openings(robot, q), robot.constraints, strict=True):
@@ -225,3 +279,16 @@ def assert_same_robot(robot: Robot, found: Robot, export: eurdf.Export, seed: in
             continue
         other = theirs.pop(closure.name)
         np.testing.assert_allclose((other.position, other.angle), (opening.position, opening.angle), atol=1e-8)
+
+
+def assert_same_mass_matrix(robot: Robot, q: Any, found: Robot, q2: Any) -> None:
+    """M, without armatures, where the velocities of both are matched by those of the bodies."""
+    jacobians = []
+    for each, at in ((robot, q), (found, q2)):
+        pin.computeJointJacobians(each.model, each.data, at)
+        ids = [each.model.getFrameId(body.name, pin.FrameType.BODY) for body in robot.mechanism.bodies]
+        jacobians.append(np.vstack([pin.computeFrameJacobian(each.model, each.data, at, id_) for id_ in ids]))
+    C, *_ = np.linalg.lstsq(jacobians[1], jacobians[0], rcond=None)
+    np.testing.assert_allclose(jacobians[1] @ C, jacobians[0], atol=1e-9)
+    M, M2 = (mass_matrix(without_armature(each).model, at) for each, at in ((robot, q), (found, q2)))
+    np.testing.assert_allclose(C.T @ M2 @ C, M, atol=1e-8 * np.abs(M).max())
