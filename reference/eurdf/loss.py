@@ -141,8 +141,19 @@ COMMON = (
     ),
 )
 
+#: Of a mesh that is converted though it should have been referenced.
+NOT_REFERENCED = LossKind(
+    "export-mesh-not-referenced",
+    "mesh",
+    Effect.EXACT,
+    "is in meshes/ in spite of --mesh-files reference, since it is converted",
+    "keep meshes/ beside the file",
+    only="--mesh-files reference",
+)
+
 #: Losses of meshes that a program cannot read.
 CONVERSION = (
+    NOT_REFERENCED,
     LossKind(
         "export-mesh-converted",
         "mesh",

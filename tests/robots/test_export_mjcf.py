@@ -469,8 +469,11 @@ def ascii_stl() -> bytes:
 
 
 def test_mesh_that_mujoco_cannot_read_is_converted(tmp_path: Path) -> None:
-    export = eurdf.export(with_mesh(tmp_path, "a.stl", ascii_stl()), "mjcf")
+    given = with_mesh(tmp_path, "a.stl", ascii_stl())
+    export = eurdf.export(given, "mjcf")
     assert [loss.code for loss in export.losses if loss.concept == "mesh"] == ["export-mesh-converted"]
+    codes = {loss.code for loss in eurdf.export(given, "mjcf", mesh_files="reference").losses}
+    assert "export-mesh-not-referenced" in codes
     (path,) = set(export.files) - {"robot.xml"}
     lines = export.files[path].decode().split("\n")
     vertices = {tuple(map(float, line[2:].split())) for line in lines if line.startswith("v ")}

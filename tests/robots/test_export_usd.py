@@ -362,6 +362,8 @@ def test_mesh_becomes_a_payload(tmp_path: Path) -> None:
         ("export-convex-hull", "a $(b).STL"),
     }
     assert missing <= losses(export)
+    referenced = losses(eurdf.export(path, "usd", mesh_files="reference"))
+    assert referenced - losses(export) == {("export-mesh-not-referenced", "a $(b).STL")}
 
 
 def test_negative_mass_is_refused() -> None:

@@ -65,6 +65,8 @@ class MeshFiles:
                 return None
             name, content = f"{name}.obj", _wavefront(triangles)
             self._losses.add("export-mesh-converted", uri)
+            if self._given.mesh_files == "reference":
+                self._losses.add("export-mesh-not-referenced", uri)
         elif self._given.mesh_files == "reference":
             path = Path(os.path.abspath(self._given.meshes[uri])).as_posix()
             self._report_package(uri, path)

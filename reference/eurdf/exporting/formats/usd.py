@@ -25,7 +25,7 @@ from eurdf.exporting.inertia import about_centre, physical
 from eurdf.exporting.mesh_file import mesh_names
 from eurdf.exporting.servo import position_gain
 from eurdf.exporting.written import Exportable, Format, Written
-from eurdf.loss import COMMON, Effect, Losses, LossKind
+from eurdf.loss import COMMON, NOT_REFERENCED, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.constraint import (
     Closure,
@@ -318,6 +318,7 @@ LOSSES = (
         sayable=True,
         only="none is closed",
     ),
+    NOT_REFERENCED,
     *COMMON,
 )
 
@@ -743,6 +744,8 @@ class _Writer:
             path = self.meshes[uri] = f"meshes/{self.mesh_names[uri]}.usdc"
             self.files[path] = mesh_file(triangles.vertices, triangles.triangles)
             self.losses.add("export-mesh-converted", uri)
+            if self.given.mesh_files == "reference":
+                self.losses.add("export-mesh-not-referenced", uri)
             if uri.startswith("package://"):
                 self.losses.add("export-mesh-path", uri, f"becomes '{path}'")
         return path
