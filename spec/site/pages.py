@@ -81,9 +81,19 @@ def source_url(path: str, line: int | None = None) -> str:
     return f"{address('Source')}/{kind}/main/{path}" + (f"#L{line}" if line else "")
 
 
-def on_the_site(target: str) -> str | None:
-    """What a link to a file of the repository becomes on the site; None if there is no such file."""
+def on_the_site(target: str, pages: Path) -> str | None:
+    """What a link to a file of the repository becomes on the site; None if there is no such file.
+
+    Args:
+        target: Path of the file, relative to the root of the repository.
+        pages: The folder that Sphinx reads pages from.
+    """
     path = Path(target)
+    if path.parts[0] == "robots" and path.name in ("robots", "README.md"):
+        robot = path.parent.name
+        page = f"robots/{robot}.md" if robot not in ("", "robots") else "robots/index.md"
+        if (pages / page).is_file():
+            return page
     if str(path.parent) in FOLDERS and path.suffix == ".md" and path.name != "README.md":
         return path.name
     if path.parts[:2] == ("docs", "pictures"):
@@ -95,7 +105,7 @@ def on_the_site(target: str) -> str | None:
 
 def _translate_links(app: Sphinx, page: str, content: list[str]) -> None:
     def translated(match: re.Match[str]) -> str:
-        url = on_the_site(match["path"])
+        url = on_the_site(match["path"], Path(app.srcdir))
         if url is None:
             _LOGGER.warning("the repository has no file '%s'", match["path"], location=page)
         return url or match[0]

@@ -46,13 +46,15 @@ def write_robot_pages(folder: Path, robots: Sequence[str]) -> None:
         return
     pages = folder / FOLDER
     pages.mkdir()
-    cards = [_write_page(pages, name, robots) for name in robots]
+    for name in robots:
+        (pages / f"{name}.md").touch()  # links lead to it
+    cards = [_write_page(pages, name) for name in robots]
     toctree = "\n".join(("```{toctree}", ":hidden:", "", *robots, "```"))
     gallery = "\n".join(("::::{container} eu-gallery", *cards, "::::"))
     (pages / "index.md").write_text(f"{_INTRODUCTION}\n{gallery}\n\n{toctree}\n", encoding="utf-8")
 
 
-def _write_page(pages: Path, name: str, robots: Sequence[str]) -> str:
+def _write_page(pages: Path, name: str) -> str:
     """Write the source of a page and what it shows or offers; return that of the robot's card in the gallery."""
     source, own = ROOT / FOLDER / name, pages / name
     own.mkdir()
@@ -69,7 +71,7 @@ def _write_page(pages: Path, name: str, robots: Sequence[str]) -> str:
     (pages / f"{name}.md").write_text(
         f"{title}\n\n"
         f"```{{raw}} html\n:file: {name}/live.html\n```\n\n"
-        f"{_with_links_of_the_site(text, name, robots).strip()}\n\n"
+        f"{_with_links_of_the_site(text, name, pages).strip()}\n\n"
         f"## Links and loops\n\n```{{raw}} html\n:file: {name}/graph.html\n```\n\n"
         f"## What `eurdf info {name}` says\n\n```{{literalinclude}} {name}/info.txt\n:language: none\n```\n\n"
         f"## Files\n\n{links}{meshes}\n",
@@ -103,20 +105,18 @@ def _info(path: Path) -> str:
     return printed.getvalue()
 
 
-def _with_links_of_the_site(text: str, name: str, robots: Sequence[str]) -> str:
+def _with_links_of_the_site(text: str, name: str, pages: Path) -> str:
     """The text of a robot's README, whose links lead to pages of the site where it has one."""
 
     def translated(match: re.Match[str]) -> str:
         path = (ROOT / FOLDER / name / match["path"]).resolve()
         if not path.is_relative_to(ROOT):
             return match[0]
-        inside = path.relative_to(ROOT).parts
-        if inside[0] == FOLDER and inside[2:] == ("README.md",) and inside[1] in robots:
-            target = f"/{FOLDER}/{inside[1]}.md"
-        elif inside[:2] == (FOLDER, name) and len(inside) == 3:
-            target = f"{name}/{inside[2]}"
+        inside = path.relative_to(ROOT)
+        if inside.parent == Path(FOLDER) / name:
+            target = f"{name}/{inside.name}"
         else:
-            found = on_the_site("/".join(inside))
+            found = on_the_site(inside.as_posix(), pages.parent)
             if found is None:
                 return match[0]
             target = found if "://" in found else f"/{found}"

@@ -70,6 +70,15 @@ def test_pages_of_docs_are_on_the_site(site: Path) -> None:
     assert f"{address('Source')}/blob/main/conformance/eurdf_conformance/certificate/" in adapters
 
 
+def test_first_screen_moves_and_leads_on(site: Path) -> None:
+    page = (site / "index.html").read_text(encoding="utf-8")
+    first = page[page.index("eu-start") : page.index("robot.yaml")]
+    assert '<img alt="The foot of Digit' in first
+    assert 'src="_images/digit_leg.webp"' in first
+    targets = ("robots/digit_leg.html", "tutorial.html", "robots/index.html", "scope.html", "write_an_adapter.html")
+    assert [target for target in targets if f'href="{target}"' not in first] == []
+
+
 def test_robot_page_shows_motion_figures_graph_and_files(site: Path) -> None:
     page = (site / "robots/digit_leg.html").read_text(encoding="utf-8")
     data = page[page.index('<script type="application/json">') + 32 :]
