@@ -7,7 +7,7 @@ at zero, and every loop is closed there because both its sides are the same poin
 
 from robots.builder.drawing import Drawing, End
 from robots.builder.joint import Joint, Motor, Spring, ball, cross, prismatic, revolute, unit, universal
-from robots.builder.shape import Box, Cylinder, Shape, Sphere, Vector3, midpoint
+from robots.builder.shape import Box, Cylinder, Shape, Sphere, Vector3, midpoint, rotation_of_quaternion
 from robots.builder.solid import Solid, solid_of
 from robots.builder.write import write
 
@@ -28,6 +28,7 @@ __all__ = [
     "midpoint",
     "prismatic",
     "revolute",
+    "rotation_of_quaternion",
     "solid_of",
     "unit",
     "universal",

@@ -114,6 +114,14 @@ def rotation_of(rpy: Vector3) -> Matrix3:
     return rotation
 
 
+def rotation_of_quaternion(quaternion: tuple[float, float, float, float]) -> Matrix3:
+    """Rotation (3 x 3) of a quaternion w, x, y, z of any length, the order of MJCF."""
+    w, x, y, z = np.array(quaternion) / math.hypot(*quaternion)
+    skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    rotation: Matrix3 = np.eye(3) + 2.0 * w * skew + 2.0 * skew @ skew
+    return rotation
+
+
 def rpy_of(rotation: Matrix3) -> Vector3:
     """The roll, pitch and yaw (rad) that ``rotation_of`` turns into a rotation (3 x 3).
 

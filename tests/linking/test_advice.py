@@ -229,6 +229,20 @@ def test_wheel_needs_no_actuator_but_pendulum_does(advice, lever: str, expected:
     assert codes(advice("four_bar", urdf=urdf)) == expected
 
 
+@pytest.mark.parametrize(
+    ("bars", "springs", "reported"),
+    [(4, "", True), (4, "t", False), (4, "tu", False), (5, "t", True), (5, "tu", False)],
+)
+def test_motion_against_a_spring_needs_no_actuator(tmp_path: Path, bars: int, springs: str, reported: bool) -> None:
+    joints = [joint(*names, limits="-3 3") for names in ("sab", "tbc", "ucd", "vde", "wef")[:bars]]
+    ends = f"{{link: {'abcdef'[bars]}, xyz: [0.2, 0, 0]}}, {{link: a, xyz: [0.7, 0.1, 0]}}"
+    sprung = ", ".join(f"{name}: {{stiffness: 5.0}}" for name in springs)
+    pin = f"{{name: pin, type: 3d, frames: [{ends}]}}"
+    yaml = f"joints: {{{sprung}}}\nclosures: [{pin}]\nactuators: [s]\n"
+    found = checked(tmp_path, chain(*joints, names="abcdef"), yaml)
+    assert codes(found) == ["x-uncontrolled-motion"] * reported
+
+
 def rocker(lower: float, upper: float) -> Callable[[str], str]:
     """Gives the rocker of the four-bar linkage other limits; it swings from -0.798 to 0.031 rad."""
     return lambda text: text.replace('lower="-0.9372" upper="0.11"', f'lower="{lower}" upper="{upper}"')

@@ -126,7 +126,7 @@ def _locking(robot: Robot, q: Vector, loops: Sequence[LoopAnalysis]) -> list[tup
     group = [closure for closure in mechanism.closures if closure.name in members]
     freer = {closure.name: closure.with_orientation_free() for closure in group}
     spatial = {closure.name for closure in group if freer[closure.name] is not closure}
-    uncontrolled = [len(passive.without_spins(loop)) for loop in loops]
+    uncontrolled = [len(passive.needing_actuators(loop)) for loop in loops]
     trials = [_trials([name for name in loop.closures if name in spatial]) for loop in loops]
     found: list[tuple[str, ...]] = [()] * len(loops)
     for tried in zip_longest(*trials, fillvalue=()):
@@ -144,7 +144,7 @@ def _locking(robot: Robot, q: Vector, loops: Sequence[LoopAnalysis]) -> list[tup
                 continue
             still = {name for together in freed.dependent_actuators for name in together}
             if still.isdisjoint(name for together in loop.dependent_actuators for name in together) and (
-                len(passive.without_spins(freed)) <= uncontrolled[index]
+                len(passive.needing_actuators(freed)) <= uncontrolled[index]
             ):
                 found[index] = tried[index]
     return found
@@ -152,20 +152,20 @@ def _locking(robot: Robot, q: Vector, loops: Sequence[LoopAnalysis]) -> list[tup
 
 def _frees(robot: Robot, loop: LoopAnalysis) -> Callable[[Robot, LoopAnalysis], bool]:
     """Whether a group with another closure has independent actuators, and no more motions without one."""
-    most = len(PassiveMotions(robot).without_spins(loop))
+    most = len(PassiveMotions(robot).needing_actuators(loop))
 
     def frees(trial: Robot, found: LoopAnalysis) -> bool:
-        return not found.dependent_actuators and len(PassiveMotions(trial).without_spins(found)) <= most
+        return not found.dependent_actuators and len(PassiveMotions(trial).needing_actuators(found)) <= most
 
     return frees
 
 
 def _controls(robot: Robot, loop: LoopAnalysis) -> Callable[[Robot, LoopAnalysis], bool]:
     """Whether a group with another closure has the same controlled motions, and fewer without an actuator."""
-    least = len(PassiveMotions(robot).without_spins(loop))
+    least = len(PassiveMotions(robot).needing_actuators(loop))
 
     def controls(trial: Robot, found: LoopAnalysis) -> bool:
-        return found.controlled == loop.controlled and len(PassiveMotions(trial).without_spins(found)) < least
+        return found.controlled == loop.controlled and len(PassiveMotions(trial).needing_actuators(found)) < least
 
     return controls
 
@@ -182,15 +182,15 @@ def _report_uncontrolled(description: Described, robot: Robot, analysis: Analysi
         return
     passive = PassiveMotions(robot)
     in_loops = sum(len(loop.motions) for loop in analysis.loops)
-    motions = [motion for loop in analysis.loops for motion in passive.without_spins(loop)]
-    motions += [motion for motion in analysis.motions[in_loops:] if not passive.is_root_or_wheel(motion)]
+    motions = [motion for loop in analysis.loops for motion in passive.needing_actuators(loop)]
+    motions += [motion for motion in analysis.motions[in_loops:] if passive.needs_actuator(motion)]
     if motions:
         count = len(motions)
         moved = list(dict.fromkeys(quoted(motion.joints, _NAMES_LISTED) for motion in motions))
         hint = (
             "actuate a joint of each motion, add the missing closure, or use type 6d if it also fixes the orientation"
         )
-        loose = (loop for loop in analysis.loops if loop.actuated and passive.without_spins(loop))
+        loose = (loop for loop in analysis.loops if loop.actuated and passive.needing_actuators(loop))
         hinges = (likely_hinge(robot, analysis.q, loop, _controls(robot, loop)) for loop in loose)
         if (hinge := next(filter(None, hinges), None)) is not None:
             hint = f"if closure '{hinge.closure}' is a pin, {hinge} leaves fewer; else {hint}"

@@ -1,10 +1,11 @@
-"""Motions that need no actuator: those of a rod that spins about its own line, of a wheel, of the root."""
+"""Motions that need no actuator: of a rod that spins about its own line, of a wheel, of the root, against a spring."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 import pinocchio as pin
 
 from eurdf.kinematics.analysis import LoopAnalysis, Motion
@@ -39,16 +40,39 @@ class PassiveMotions:
         self._inner = frozenset(self._parents)
         self._length = characteristic_length(robot)
         self._jacobian: tuple[Vector, Matrix] | None = None
+        self._sprung = [
+            slot.idx_v + k
+            for slot in robot.slots.values()
+            for k, stiffness in enumerate(slot.joint.properties.stiffness)
+            if stiffness
+        ]
 
-    def without_spins(self, loop: LoopAnalysis) -> list[Motion]:
-        """The uncontrolled motions of a group of loops, except those of rods that spin about their own lines.
+    def needing_actuators(self, loop: LoopAnalysis) -> list[Motion]:
+        """The uncontrolled motions of a group of loops, except spins of rods, and those that springs resist.
 
         A spin is a motion by which all bodies that move turn about one fixed line: their twists, seen from a point of
         the line, are multiples of one that only turns.
         """
-        return [motion for motion in loop.motions if not _turns_about_one_line(self._twists(motion), self._length)]
+        return self._unsprung(
+            [motion for motion in loop.motions if not _turns_about_one_line(self._twists(motion), self._length)]
+        )
 
-    def is_root_or_wheel(self, motion: Motion) -> bool:
+    def needs_actuator(self, motion: Motion) -> bool:
+        """Whether a motion outside of the loops is neither against a spring nor one of the root or a wheel."""
+        return bool(self._unsprung([motion])) and not self._is_root_or_wheel(motion)
+
+    def _unsprung(self, motions: list[Motion]) -> list[Motion]:
+        """The motions without those that stretch springs; with them if a combination of those stretches none."""
+        stretched = np.zeros((len(motions), len(self._sprung)))
+        for row, motion in zip(stretched, motions, strict=True):
+            velocity = dict(zip(motion.velocities.tolist(), motion.values.tolist(), strict=True))
+            row[:] = [velocity.get(index, 0.0) for index in self._sprung]
+        resisted: npt.NDArray[np.bool_] = np.any(stretched, axis=1)
+        if np.linalg.matrix_rank(stretched, tol=_SAME_LINE) < resisted.sum():
+            return motions
+        return [motion for motion, held in zip(motions, resisted, strict=True) if not held]
+
+    def _is_root_or_wheel(self, motion: Motion) -> bool:
         """Whether a motion outside of the loops is one of a floating or planar root, or of a wheel.
 
         A wheel is what a hinge carries at the end of the tree with its centre of mass on the axis.
