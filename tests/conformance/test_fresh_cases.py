@@ -94,7 +94,7 @@ def test_parser_that_knows_all_stored_cases_is_not_certified(cases: dict[str, Fr
     conversation = Conversation(InProcess(KnowsTheCorpus()))  # type: ignore[arg-type]
     stored = [case for case in all_cases() if case.case.version in DRAWN_VERSIONS]
     assert {judge(case, Level.ACCEPT, conversation).verdict for case in stored} == {Verdict.PASSED}
-    invalid = [case for case in cases.values() if not case.case.valid]
+    invalid = [case for case in cases.values() if case.drawn.kind is FreshKind.INVALID]
     assert {judge(case, Level.ACCEPT, conversation).verdict for case in invalid} == {Verdict.FAILED}
 
 

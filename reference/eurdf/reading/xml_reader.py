@@ -13,9 +13,13 @@ from eurdf.reading.xml_syntax import DEPTH_LIMIT, NAMESPACE_ERRORS, refused, syn
 #: Tags and attributes that a file may have: what takes memory is their number.
 TAG_LIMIT = 1_000_000
 
-#: libxml2 has the same bound, but before 2.14 it takes one level more.
+#: Bytes of the value of an attribute, in UTF-8.
+ATTRIBUTE_LIMIT = 10_000_000
+
+#: Without its own limits, which are below those of the format, libxml2 takes files that are deeper.
 _TOO_DEEP = etree.XPath(f"boolean({'/*' * (DEPTH_LIMIT + 1)})")
 
+_DECLARED_VERSION = re.compile(r"""<\?xml\s+version\s*=\s*(["'])(.*?)\1""")
 _DECLARED_ENCODING = re.compile(r"""<\?xml\s[^>]*?\sencoding\s*=\s*(["'])(.*?)\1""")
 
 #: Some of what may precede a DOCTYPE: a match keeps memory for each repetition, so it has a limited number of them.
@@ -114,6 +118,7 @@ def read_xml(source: Source) -> XmlDocument:
         raise too_large(source.file, f"{FILE_LIMIT:,} bytes")
     if len(source.text) > TAG_LIMIT and source.text.count("<") + source.text.count("=") > TAG_LIMIT:
         raise too_large(source.file, f"{TAG_LIMIT:,} tags and attributes")
+    _refuse_other_version(source)
     _refuse_other_encoding(source)
     _refuse_doctype(source)
     try:
@@ -123,6 +128,8 @@ def read_xml(source: Source) -> XmlDocument:
         if wrong is not None:
             raise wrong from None
         root = _read_with_namespace_errors(source)
+    if len(source.data) > ATTRIBUTE_LIMIT:
+        _refuse_long_attribute(source, root)
     if _TOO_DEEP(root) and (wrong := syntax_error(source)) is not None:
         raise wrong
     if "xmlns" in source.text:
@@ -140,7 +147,7 @@ def _parser(recover: bool = False) -> etree.XMLParser:
         resolve_entities=False,
         no_network=True,
         load_dtd=False,
-        huge_tree=False,
+        huge_tree=True,  # the bounds of the format are checked here
         remove_blank_text=True,  # no text of a URDF has a meaning
         remove_comments=True,
         remove_pis=True,
@@ -159,12 +166,24 @@ def _read_with_namespace_errors(source: Source) -> etree._Element:
     return root
 
 
+def _refuse_long_attribute(source: Source, root: etree._Element) -> None:
+    for element in root.iter("*"):
+        if any(len(str(value).encode()) > ATTRIBUTE_LIMIT for value in element.attrib.values()):
+            raise too_large(source.file, f"{ATTRIBUTE_LIMIT:,} bytes in an attribute")
+
+
+def _refuse_other_version(source: Source) -> None:
+    """XML 1.0, fifth edition, productions 24 to 26."""
+    declared = _DECLARED_VERSION.match(source.text, 0, 1024)
+    if declared is None or re.fullmatch(r"1\.[0-9]+", declared[2]):
+        return
+    message = f"the file declares version '{short(declared[2])}' of XML; it must be 1.0"
+    raise FileError("xml-syntax", message, source.place(*declared.span(2)), 'write version="1.0"')
+
+
 def _refuse_other_encoding(source: Source) -> None:
     declared = _DECLARED_ENCODING.match(source.text, 0, 1024)
-    if declared is None:
-        return
-    encoding = declared[2].lower().replace("_", "-")
-    if encoding in ("utf-8", "utf8") or (encoding in ("us-ascii", "ascii") and source.text.isascii()):
+    if declared is None or declared[2].lower() == "utf-8":
         return
     message = f"the file declares the encoding '{short(declared[2])}'; it must be UTF-8"
     hint = "save it as UTF-8, and declare that or no encoding"

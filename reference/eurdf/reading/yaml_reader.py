@@ -6,6 +6,7 @@ libyaml's Python binding follow YAML 1.1.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from math import isfinite
 from typing import Any
@@ -37,6 +38,8 @@ NODE_LIMIT = 100_000
 DIRECTIVE_LIMIT = 64
 
 _CORE_TAGS = ("!!str", "!!int", "!!float", "!!bool", "!!null", "!!map", "!!seq")
+#: After the end of a document: white space, comments and further ends.
+_BETWEEN_DOCUMENTS = re.compile(r"(?:\s|#[^\r\n]*|\.\.\.(?=\s))*")
 _KINDS = {dict: "a mapping", list: "a list", str: "a string", bool: "a boolean", type(None): "empty"}
 
 
@@ -298,9 +301,9 @@ class _Reader:
         except MarkedYAMLError as error:
             # libyaml wants '---' before a second document; YAML 1.2 takes one that merely follows '...'.
             if end.explicit and error.problem == "did not find expected <document start>" and error.problem_mark:
-                raise FileError(
-                    "yaml-several-documents", message, self._source.place(error.problem_mark.index)
-                ) from None
+                between = _BETWEEN_DOCUMENTS.match(self._source.text, end.end_mark.index)
+                assert between is not None  # it matches the empty string too
+                raise FileError("yaml-several-documents", message, self._source.place(between.end())) from None
             raise
         if type(after) is not StreamEndEvent:
             raise self._error("yaml-several-documents", message, after)

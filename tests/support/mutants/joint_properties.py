@@ -114,6 +114,18 @@ def screws_keep_the_numbers_of_a_slide() -> Deviation:
 
 
 @means("EU-JNT-029")
+def left_hand_screws_negate_properties() -> Deviation:
+    """The velocity limit, damping and friction of a left-handed screw made of a slide have the sign of its pitch."""
+
+    def negated(found: Any, joint: Any) -> dict[str, Any]:
+        values = {name: getattr(found, name) for name in ("velocity", "effort", "friction")}
+        stated = joint.change.stated
+        return {name: [-one for one in value] for name, value in values.items() if name not in stated}
+
+    return _properties(lambda joint: joint.type == "helical" and joint.pitch < 0, negated)
+
+
+@means("EU-JNT-029")
 def screws_reverse_their_limits() -> Deviation:
     """The limits of a left-handed screw made of a slide are the lower one first, then the upper one, unsorted."""
 

@@ -8,6 +8,7 @@ import unicodedata
 from collections.abc import Callable
 from typing import Any
 
+from eurdf_conformance.level import Level
 from support.mutants.mutant import reads_urdf, reads_xml, refuses
 
 # -- XML --------------------------------------------------------------------------------------------------------------
@@ -30,6 +31,24 @@ def text_after_the_root_is_ignored(text: str) -> str:
 def values_without_quotes(text: str) -> str:
     """An attribute may have its value without quotes, as in HTML."""
     return re.sub(r"(<[^<>]*\s\w+=)([^\s\"'<>/]+)", r'\1"\2"', text)
+
+
+@reads_xml("EU-URD-001")
+def any_version_of_xml_is_read(text: str) -> str:
+    """The version in the XML declaration has no effect, as in expat."""
+    return re.sub(r"(<\?xml\s+version=)(['\"]).*?\2", r'\1"1.0"', text, count=1)
+
+
+@reads_xml("EU-URD-001")
+def references_of_surrogates_are_dropped(text: str) -> str:
+    """A character reference of a surrogate is dropped."""
+    return re.sub(r"&#x[Dd][89A-Fa-f][0-9A-Fa-f]{2};", "", text)
+
+
+@reads_xml("EU-FIL-003")
+def ascii_may_be_declared(text: str) -> str:
+    """A file of ASCII may declare US-ASCII, of which UTF-8 is a superset."""
+    return re.sub(r"(?i)^(<\?xml[^>]*encoding=['\"])us-ascii", r"\1UTF-8", text) if text.isascii() else text
 
 
 @reads_xml("EU-URD-002")
@@ -271,3 +290,37 @@ def slashes_in_names_are_refused(data: Any, robot: Any) -> bool:
 def thousand_links_at_most(data: Any, robot: Any) -> bool:
     """A robot of more than 1000 links is refused."""
     return len(robot.findall("link")) > 1000
+
+
+@reads_urdf("EU-URD-020")
+def dynamics_without_effect_are_not_read(robot: Any) -> None:
+    """`dynamics` of a planar or fixed joint is not read, since it has no effect."""
+    for joint in robot.iter("joint"):
+        if joint.get("type") in ("planar", "fixed"):
+            for dynamics in joint.findall("dynamics"):
+                joint.remove(dynamics)
+
+
+@reads_urdf("EU-URD-007")
+def axis_of_planar_joint_is_padded(robot: Any) -> None:
+    """The axis of a planar joint may have two numbers; the third one is then 0."""
+    for joint in robot.iter("joint"):
+        for axis in joint.findall("axis") if joint.get("type") == "planar" else ():
+            if len(axis.get("xyz", "").split()) == 2:
+                axis.set("xyz", axis.get("xyz") + " 0")
+
+
+@reads_urdf("EU-URD-024")
+def spheres_without_radius_are_points(robot: Any) -> None:
+    """A sphere of radius 0 is a point."""
+    for sphere in robot.iter("sphere"):
+        if sphere.get("radius") == "0":
+            sphere.set("radius", "1e-9")
+
+
+@reads_urdf("EU-URD-006", level=Level.ACCEPT)
+def only_shapes_in_geometry(robot: Any) -> None:
+    """A geometry that contains any other element has no shape."""
+    for geometry in robot.iter("geometry"):
+        if len(geometry) > 1:
+            geometry.clear()

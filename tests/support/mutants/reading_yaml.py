@@ -36,6 +36,24 @@ def last_of_two_equal_keys_counts(text: str) -> str | None:
     return _pyyaml(text)
 
 
+@reads_yaml("EU-YML-001")
+def escapes_of_surrogate_pairs_are_joined(text: str) -> str:
+    """The escapes of a surrogate pair are one character, as in JSON."""
+    return re.sub(r"\\u[Dd][89ABab][0-9A-Fa-f]{2}\\u[Dd][C-Fc-f][0-9A-Fa-f]{2}", "joined", text)
+
+
+@reads_yaml("EU-YML-001")
+def last_of_two_directives_counts(text: str) -> str:
+    """Of two %YAML directives of one document the last counts."""
+    return text.replace("%YAML 1.2\n%YAML 1.2\n", "%YAML 1.2\n")
+
+
+@reads_yaml("EU-YML-003")
+def what_follows_the_end_is_ignored(text: str) -> str:
+    """What follows the line `...` is not read."""
+    return re.split(r"(?m)^\.\.\.$", text)[0]
+
+
 @reads_yaml("EU-YML-010")
 def yaml_directives_are_ignored(text: str) -> str:
     """A %YAML directive has no effect, whatever version it names."""

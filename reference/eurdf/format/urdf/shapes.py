@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Literal, cast
+from typing import Literal, cast, get_args
 
 from eurdf.diagnostics import did_you_mean
 from eurdf.format.urdf.elements import UrdfReader
@@ -12,6 +12,8 @@ from eurdf.mechanism.pose import Pose
 from eurdf.reading.reporter import Element
 
 _Primitive = Literal["box", "cylinder", "sphere", "capsule"]
+
+_SHAPES = (*get_args(_Primitive), "mesh")
 
 # Attributes of one number each.
 _CYLINDER = {"radius": None, "length": None}
@@ -32,12 +34,17 @@ def read_shape(reader: UrdfReader, element: Element, materials: Materials) -> Sh
 
 
 def _only_shape(reader: UrdfReader, geometry: Element) -> Element | None:
-    """EU-URD-024: a geometry contains one shape."""
-    shapes = list(geometry)
+    """EU-URD-024: a geometry contains one shape; elements of other programs are ignored."""
+    shapes = [child for child in geometry if child.tag in _SHAPES]
     if len(shapes) == 1:
         return shapes[0]
-    message = f"<geometry> contains {len(shapes)} elements; it must contain exactly one shape"
-    reader.report("urdf-geometry", message, geometry)
+    other = None if shapes or len(geometry) != 1 else geometry[0]
+    if other is None:
+        message = f"<geometry> contains {len(shapes)} shapes; it must contain exactly one"
+        reader.report("urdf-geometry", message, geometry)
+    else:
+        message = f"<{other.tag}> is not a shape; it must be box, cylinder, sphere, capsule or mesh"
+        reader.report("urdf-geometry", message, other, hint=did_you_mean(str(other.tag), _SHAPES))
     return None
 
 
@@ -63,17 +70,8 @@ def _primitive(reader: UrdfReader, element: Element, pose: Pose, look: Look) -> 
     elif kind == "sphere":
         radius = reader.number(element, "radius")
         size = None if radius is None else (radius,)
-    elif kind in ("cylinder", "capsule"):
-        size = reader.single_numbers(element, _CYLINDER)
     else:
-        shown = kind if isinstance(kind, str) else "?"
-        reader.report(
-            "urdf-geometry",
-            f"<{shown}> is not a shape; it must be box, cylinder, sphere, capsule or mesh",
-            element,
-            hint=did_you_mean(shown, ("box", "cylinder", "sphere", "capsule", "mesh")),
-        )
-        return None
+        size = reader.single_numbers(element, _CYLINDER)
     if size is None:
         return None
     if min(size) <= 0.0:
