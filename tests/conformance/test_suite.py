@@ -420,7 +420,8 @@ def suite(
 ) -> tuple[int, str]:
     """Run the suite, in one process: exit code, and what it writes."""
     parser = [f"--parser=case_parser:{parser}"] if parser else []
-    argv = [*command, "-n0", "-p", "no:cacheprovider", "--seed=0", *parser, *arguments]
+    seed = [] if "-n2" in arguments else ["--seed=0"]  # several processes agree on a seed by themselves
+    argv = [*command, "-n0", "-p", "no:cacheprovider", *seed, *parser, *arguments]
     environment = os.environ | {"PYTHONPATH": str(ROOT / "tests" / "support" / "parsers"), "COLUMNS": "200"}
     done = run_module("pytest", argv, cwd=cwd, environment=environment)
     assert "INTERNALERROR" not in done.stdout + done.stderr

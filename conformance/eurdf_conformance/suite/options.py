@@ -129,7 +129,6 @@ def read_options(config: pytest.Config) -> Options:
     if explore < 0:
         raise pytest.UsageError("--explore must not be negative")
     if said("--seed") is None:
-        # Set in the configuration so that all workers use the same seed.
         config.option.seed = random.SystemRandom().randrange(10**9)
     if said("--smoke", False) and (known is not None or explore):
         raise pytest.UsageError("--smoke cannot be combined with --known-failures or --explore")

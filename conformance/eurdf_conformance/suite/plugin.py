@@ -32,8 +32,8 @@ from eurdf_conformance.suite.summary import summary_lines
 from eurdf_conformance.suite.untouched import snapshot, void_text
 from eurdf_conformance.visible import visible
 
-#: Key of the fresh cases in the input of a worker.
-_FRESH = "eurdf_conformance.fresh"
+#: Keys in the input of a worker: the seed of the run, which it may have drawn itself, and the fresh cases.
+_SEED, _FRESH = "eurdf_conformance.seed", "eurdf_conformance.fresh"
 
 #: The session whose parser has started before anything is asked of it.
 GREETED: pytest.StashKey[Session] = pytest.StashKey()
@@ -46,8 +46,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Read the options; in the main process, collect the results."""
-    config.stash[OPTIONS] = read_options(config)
     worker = getattr(config, "workerinput", None)
+    if worker is not None:
+        config.option.seed = worker[_SEED]
+    config.stash[OPTIONS] = read_options(config)
     if worker is not None and _FRESH in worker:
         keep_drawn(config.stash[OPTIONS].seed, worker[_FRESH])
     if worker is None:
@@ -56,8 +58,9 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_configure_node(node: Any) -> None:
-    """Let all workers of pytest-xdist use the same fresh cases, drawn once."""
+    """Let all workers of pytest-xdist use the same seed, and the same fresh cases, drawn once."""
     options = options_of(node.config)
+    node.workerinput[_SEED] = options.seed
     if not options.smoke:
         node.workerinput[_FRESH] = drawn_text(options.seed)
 
