@@ -9,9 +9,6 @@ import pytest
 
 from eurdf.commands.main import COMMANDS, main
 
-#: `import` is no name of a module.
-NAMES = [command.__name__.rpartition(".")[2].removesuffix("_robot") for command in COMMANDS]
-
 #: The commands that link a robot, and those that read a URDF alone.
 OF_ROBOTS = ("check", "info", "view", "picture", "assemble", "export", "transmission", "serial", "migrate")
 OF_URDFS = ("generate", "schema")
@@ -31,7 +28,7 @@ def option(text: str, name: str) -> str:
     return " ".join(found[1].split())
 
 
-@pytest.mark.parametrize("command", NAMES)
+@pytest.mark.parametrize("command", COMMANDS)
 def test_help_shows_examples_and_exit_codes(
     command: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -64,4 +61,4 @@ def test_shared_options_have_the_same_help(capsys: pytest.CaptureFixture[str], m
         assert len({option(text, name) for text in texts}) == 1
     paths = [option(text, "PATH") for text in of_robots]
     assert all(path.startswith(paths[1]) for path in paths)
-    assert set(NAMES) == {*OF_ROBOTS, *OF_URDFS, "import", "robots", "certify"}
+    assert set(COMMANDS) == {*OF_ROBOTS, *OF_URDFS, "import", "robots", "certify"}

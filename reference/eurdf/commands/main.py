@@ -1,57 +1,41 @@
 """The command line ``eurdf``.
 
 Every command is a module with ``register``, which adds it to the parser, and ``run``, which runs it and returns the
-exit code. Modules that are slow to import are imported in ``run``.
+exit code. Only the module of the command that runs is imported, and modules that are slow to import, in its ``run``.
 """
 
 from __future__ import annotations
 
 import argparse
+import importlib
 import io
 import os
 import sys
-import traceback
 from collections.abc import Sequence
 from typing import NoReturn, TextIO
 
 from eurdf import __version__
-from eurdf.commands import (
-    assemble,
-    certify,
-    check,
-    export,
-    generate,
-    import_robot,
-    info,
-    migrate,
-    picture,
-    robots,
-    schema,
-    serial,
-    transmission,
-    view,
-)
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.exit_code import BROKEN_PIPE, INTERRUPTED
 from eurdf.exceptions import CannotExpand, MissingExtra
 
-#: The commands, in the order in which the help shows them.
-COMMANDS = (
-    check,
-    info,
-    view,
-    picture,
-    assemble,
-    export,
-    import_robot,
-    transmission,
-    serial,
-    robots,
-    migrate,
-    generate,
-    schema,
-    certify,
-)
+#: The commands, in the order in which the help shows them, and the module of each in `eurdf.commands`.
+COMMANDS = {
+    "check": "check",
+    "info": "info",
+    "view": "view",
+    "picture": "picture",
+    "assemble": "assemble",
+    "export": "export",
+    "import": "import_robot",  # `import` cannot be the name of a module
+    "transmission": "transmission",
+    "serial": "serial",
+    "robots": "robots",
+    "migrate": "migrate",
+    "generate": "generate",
+    "schema": "schema",
+    "certify": "certify",
+}
 
 # Half of the time of a check is start-up. The matrices are too small for a thread pool, and pydantic plugins are not
 # needed.
@@ -75,7 +59,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     _write_any_character(sys.stdout)
     _write_any_character(sys.stderr)
     try:
-        args = _parser().parse_args(argv)
+        argv = sys.argv[1:] if argv is None else argv
+        args = _parser(argv[0] if argv else "").parse_args(argv)
         code: int = args.run(args)
         sys.stdout.flush()
     except KeyboardInterrupt:
@@ -91,6 +76,8 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 2
     except Exception:
         # Uncaught, it would exit with 1, which means that the robot has errors.
+        import traceback
+
         traceback.print_exc()
         sys.stderr.write("eurdf: this is a bug in eurdf, not an error of the robot; please report it\n")
         return 2
@@ -106,12 +93,13 @@ class _Parser(argparse.ArgumentParser):
         super().error(visible(message))
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser(command: str) -> argparse.ArgumentParser:
+    """The parser of one command, or of all if there is no command of this name."""
     parser = _Parser(prog="eurdf", description="Robots with closed kinematic chains, from a URDF and one YAML file.")
     parser.add_argument("--version", action="version", version=f"eurdf {__version__}", help="show the version and exit")
     subparsers = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
-    for command in COMMANDS:
-        command.register(subparsers)
+    for name in [command] if command in COMMANDS else COMMANDS:
+        importlib.import_module(f"eurdf.commands.{COMMANDS[name]}").register(subparsers)
     return parser
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import io
 import json
 import os
-import shutil
 import sys
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, TextIO
@@ -35,6 +34,8 @@ def has_boxes(stream: TextIO) -> bool:
 
 def columns() -> int:
     """Width of the terminal."""
+    import shutil  # only now: it imports what unpacks archives
+
     return max(40, shutil.get_terminal_size().columns)
 
 

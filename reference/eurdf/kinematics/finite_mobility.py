@@ -105,8 +105,8 @@ class MobilityTest:
         at = [_jacobian(evaluation, q) for evaluation in evaluations]
         ranks = [_rank(A) for A in at]
         constant = [True] * len(ranks)
-        random = np.random.default_rng(0)
         if any(0 < rank < min(A.shape) for rank, A in zip(ranks, at, strict=True)):
+            random = np.random.default_rng(0)
             for length in _AROUND:
                 steps = [random.uniform(-length, length, len(evaluation.unit)) for evaluation in evaluations]
                 near = self._assembler.moved(q, evaluations, steps)
