@@ -7,11 +7,13 @@ import re
 import sys
 from pathlib import Path
 
+import jsonschema
 import pytest
 
 import eurdf
 from eurdf.commands import import_robot as command
 from eurdf.commands.main import main
+from eurdf.commands.output_schema import output_schemas
 from eurdf.importing.formats import FORMATS
 from eurdf.importing.import_robot import COMMON
 from eurdf.importing.table import with_tables
@@ -90,11 +92,17 @@ def test_files_are_written_and_losses_shown(here: Path, capsys: pytest.CaptureFi
 def test_json_lists_every_loss_with_its_place(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["import", "four_bar.xml", "-o", "out", "--format", "json"]) == 0
     found = json.loads(capsys.readouterr().out)
+    jsonschema.Draft202012Validator(output_schemas()["import.schema.json"]).validate(found)
     losses = eurdf.import_robot("four_bar.xml").losses
     assert [(each["code"], each["name"]) for each in found["losses"]] == [(loss.code, loss.name) for loss in losses]
     assert found["format"] == "mjcf"
     assert found["closes"] is True
     assert found["opened"] == [{"name": "pin", "position": pytest.approx(0.01), "angle": 0.0}]
+    assert main(["import", "four_bar.xml", "-o", "other", "--format", "json", "--strict"]) == 1
+    refused = json.loads(capsys.readouterr().out)
+    jsonschema.Draft202012Validator(output_schemas()["import.schema.json"]).validate(refused)
+    assert "it has losses" in refused["refused"]
+    assert [each["code"] for each in refused["losses"]] == [each["code"] for each in found["losses"]]
 
 
 def test_existing_file_is_kept_without_force(here: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -5,12 +5,14 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import jsonschema
 import mujoco
 import numpy as np
 import pinocchio as pin
 import pytest
 
 import eurdf
+from eurdf.commands.output_schema import output_schemas
 
 ANKLE = ("free_pitch", "free_roll")
 ROTORS = {"motor_a": 0.0036, "motor_b": 0.0036}
@@ -97,6 +99,7 @@ def test_files_are_read_by_simulators(twin: eurdf.SerialTwin, tmp_path: Path) ->
     assert urdf.effortLimit == pytest.approx(twin.torque, rel=1e-12)
     assert urdf.velocityLimit == pytest.approx(twin.velocity, rel=1e-12)
     stated = json.loads((tmp_path / "transmission.json").read_text(encoding="utf-8"))
+    jsonschema.Draft202012Validator(output_schemas()["serial.schema.json"]).validate(stated)
     assert stated["armature"] == twin.armature.tolist()
     assert set(stated["neglected"]) == set(twin.neglected.__slots__)
 

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from eurdf.commands.loss_lines import loss_entry
+from eurdf.commands.loss_info import LossInfo, loss_info
 from eurdf.diagnostics.report import encodable
-from eurdf.loss import Effect
 
 if TYPE_CHECKING:
     from eurdf.diagnostics import Place
@@ -18,27 +17,6 @@ if TYPE_CHECKING:
 
 class _Entry(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
-
-
-class LossInfo(_Entry):
-    """Something that the exported file does not say as the description does."""
-
-    code: Annotated[str, Field(pattern="^export(-[a-z0-9]+)+$")]
-    """Permanent name of the kind of loss."""
-    effect: Effect
-    """What is left: exact, in other terms; approximate; dropped, nothing."""
-    concept: str
-    """Kind of the element, such as '3d closure'; the rows of the table of losses."""
-    name: str
-    """Name of the element."""
-    message: str
-    """What happened."""
-    hint: str
-    """What to do about it."""
-    file: str | None
-    """File that states the element; null if none does."""
-    line: Annotated[int, Field(ge=1)] | None
-    """Its line there, from 1."""
 
 
 class ExportInfo(_Entry):
@@ -79,7 +57,7 @@ def export_info(
         format=to,
         files=tuple(encodable(each) for each in files),
         refused=refusal or None,
-        losses=tuple(LossInfo.model_validate(loss_entry(loss, place_of(loss))) for loss in losses),
+        losses=tuple(loss_info(loss, place_of(loss)) for loss in losses),
     )
 
 

@@ -6,10 +6,10 @@ import argparse
 import os
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from eurdf.commands.cannot_run import CannotRun
-from eurdf.commands.loss_lines import loss_entry, loss_lines
+from eurdf.commands.loss_lines import loss_lines
 from eurdf.commands.migrate import print_notes
 from eurdf.commands.output import write_json, write_lines
 from eurdf.commands.robot_options import ending
@@ -76,7 +76,10 @@ def run(args: argparse.Namespace) -> int:
     except CannotImport as reason:
         places = _Places((Path(args.file),))
         if args.format == "json":
-            write_json(_result(args, str(reason), [], reason.losses, places))
+            from eurdf.commands.import_info import refused_import
+
+            info = refused_import(args.file, args.format_, str(reason), reason.losses, places.of)
+            write_json(info.model_dump(mode="json"))
         else:
             write_lines(loss_lines(reason.losses, places.of), sys.stdout)
             print_notes([f"nothing was written: {reason}"])
@@ -87,7 +90,9 @@ def run(args: argparse.Namespace) -> int:
     except FileExistsError as error:
         raise CannotRun(str(error).replace("; force replaces it", "; --force replaces it")) from None
     if args.format == "json":
-        write_json(_result(args, None, paths, found.losses, places, found))
+        from eurdf.commands.import_info import import_info
+
+        write_json(import_info(args.file, found, paths, places.of).model_dump(mode="json"))
     else:
         write_lines(loss_lines(found.losses, places.of), sys.stdout)
         print_notes([*_loops(found), *(f"wrote '{each}'" for each in paths)])
@@ -136,26 +141,3 @@ class _Places:
                 if name and isinstance(line, int):
                     found.setdefault(name, Place(os.fspath(path), line))
         return found
-
-
-def _result(
-    args: argparse.Namespace,
-    refused: str | None,
-    paths: list[str],
-    losses: tuple[Loss, ...],
-    places: _Places,
-    found: Import | None = None,
-) -> dict[str, Any]:
-    from eurdf.diagnostics.report import encodable
-
-    loops = [] if found is None else found.opened
-    return {
-        "path": encodable(args.file),
-        "format": args.format_ if found is None else found.format,
-        "files": [encodable(each) for each in paths],
-        "refused": None if refused is None else encodable(refused),
-        "start": None if found is None else encodable(found.start),
-        "opened": [{"name": encodable(each.name), "position": each.position, "angle": each.angle} for each in loops],
-        "closes": None if found is None else found.closes,
-        "losses": [loss_entry(loss, places.of(loss)) for loss in losses],
-    }

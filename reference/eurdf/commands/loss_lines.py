@@ -1,9 +1,9 @@
-"""The losses of an export or an import, for the terminal and as JSON."""
+"""The losses of an export or an import, for the terminal."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from eurdf.diagnostics import Place
@@ -40,19 +40,3 @@ def loss_lines(losses: Sequence[Loss], place_of: Callable[[Loss], Place | None])
         if len(group) > _MOST_SHOWN:
             yield [(f"    and {len(group) - _MOST_SHOWN} more; --format json lists all", "dim")]
         yield [("    = hint: ", "cyan"), (first.hint, "")]
-
-
-def loss_entry(loss: Loss, place: Place | None) -> dict[str, Any]:
-    """A loss as JSON."""
-    from eurdf.diagnostics.report import encodable
-
-    return {
-        "code": loss.code,
-        "effect": str(loss.effect),
-        "concept": loss.concept,
-        "name": encodable(loss.name),
-        "message": encodable(loss.message),
-        "hint": loss.hint,
-        "file": None if place is None else encodable(place.file),
-        "line": None if place is None else place.line or None,
-    }

@@ -13,7 +13,9 @@ def output_schemas() -> dict[str, dict[str, Any]]:
     from eurdf.commands.assembly_info import assembly_schema
     from eurdf.commands.collection_info import collection_schema
     from eurdf.commands.export_info import export_schema
+    from eurdf.commands.import_info import import_schema
     from eurdf.commands.robot_info import info_schema
+    from eurdf.commands.serial_info import serial_schema
     from eurdf.commands.transmission_info import transmission_schema
     from eurdf.diagnostics.report import report_schema
 
@@ -21,8 +23,10 @@ def output_schemas() -> dict[str, dict[str, Any]]:
         "assemble.schema.json": assembly_schema(),
         "diagnostics-report.schema.json": report_schema(),
         "export.schema.json": export_schema(),
+        "import.schema.json": import_schema(),
         "info.schema.json": info_schema(),
         "robots.schema.json": collection_schema(),
+        "serial.schema.json": serial_schema(),
         "transmission.schema.json": transmission_schema(),
     }
 
