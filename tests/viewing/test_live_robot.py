@@ -79,7 +79,7 @@ def test_every_joint_and_constraint_has_the_kinematics_of_the_reference() -> Non
 @needs_node
 def test_sliders_move_robots_as_the_viewer_does() -> None:
     cases, sessions = [], []
-    for name, seed in (("digit_leg", 3), ("delta", 0), ("four_bar", 0)):
+    for name, seed in (("digit_leg", 3), ("delta", 0), ("tello", 0)):
         robot = eurdf.load(name)
         session, random = Session(robot), np.random.default_rng(seed)
         moves: list[Move] = []
@@ -105,6 +105,20 @@ def test_sliders_move_robots_as_the_viewer_does() -> None:
             origins = poses(session.robot, session.q)[:, 9:]
             np.testing.assert_allclose(np.array(state["poses"])[:, 9:], origins, atol=1e-6)
     assert {"limit", "passive limit"} <= ended
+
+
+@needs_node
+@pytest.mark.slow
+def test_every_robot_of_the_collection_moves_closed() -> None:
+    robots = [eurdf.load(name, geometry=False) for name in eurdf.collection_names()]
+    cases: list[tuple[dict[str, Any], list[Move]]] = []
+    for robot in robots:
+        data = live_robot(robot)
+        slider = data["sliders"][-1]
+        cases.append((data, [(len(data["sliders"]) - 1, 0.6 * slider["upper"] + 0.4 * slider["lower"])]))
+    for robot, (data, _), (_, state) in zip(robots, cases, run(cases), strict=True):
+        assert state["largest"] < 1e-9, robot.mechanism.name
+        assert_same_kinematics(robot, data, state)
 
 
 @needs_node

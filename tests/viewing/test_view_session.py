@@ -81,6 +81,17 @@ def without_limits(robot: str, folder: Path) -> eurdf.Robot:
     return eurdf.load(folder)
 
 
+def test_passive_joint_is_at_its_limit_where_the_slider_stops() -> None:
+    """On the way, a step ends beyond the limit by a part of the tolerance again and again."""
+    session = Session(eurdf.load("tello", geometry=False))
+    index = next(index for index, each in enumerate(session.sliders) if each.joint == "left_motor_hip_1")
+    stop = session.move(index, session.sliders[index].upper)
+    assert stop is not None
+    assert (stop.reason, stop.joint) == ("passive limit", "left_free_hip_x")
+    at = session.robot.coordinates(session.q)["left_free_hip_x"][0]
+    assert at == pytest.approx(stop.value, abs=2e-9)
+
+
 def test_slider_stops_at_dead_point(tmp_path: Path) -> None:
     """A five-bar linkage stretches out: the distance of the two elbows is then the sum of the two outer links."""
     session = Session(without_limits("five_bar", tmp_path))

@@ -137,11 +137,12 @@ class Branch:
             values[passive] for values in (self._limits.coordinates, self._limits.lower, self._limits.upper)
         )
         before, after = here.q[coordinates], there.q[coordinates]
-        over = np.maximum(after - np.maximum(upper, before), np.minimum(lower, before) - after) - BEYOND
-        if not over.max(initial=0.0) > 0.0:
+        over = np.maximum(after - np.maximum(upper, before), np.minimum(lower, before) - after)
+        if not over.max(initial=0.0) > BEYOND:
             return None
         part = np.full(len(over), -np.inf)
-        np.divide(over, np.abs(after - before), out=part, where=over > 0.0)  # a joint that goes beyond has moved
+        # A joint that goes beyond has moved. Half the tolerance is left, so that a search for the limit ends within it.
+        np.divide(over - 0.5 * BEYOND, np.abs(after - before), out=part, where=over > BEYOND)
         first = int(np.argmax(part))
         return self._limits.joints[passive[first]], 1.0 - float(part[first])
 

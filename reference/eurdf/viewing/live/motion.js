@@ -88,10 +88,13 @@
       let q = this.moved(here.q, step);
       const correction = new Float64Array(step.length);
       for (let count = 0; ; count++) {
+        if (count === MOST_CORRECTIONS) return null;
         const r = this.residual(q);
         if (Math.max(0, ...r.map(Math.abs)) <= CLOSED) break;
-        if (count === MOST_CORRECTIONS) return null;
-        const more = this._following(here, r.map((row, index) => -this.scale[index] * row)); // prettier-ignore
+        const more = this._following(
+          here,
+          r.map((row, index) => -this.scale[index] * row),
+        );
         q = this.moved(q, more);
         more.forEach((each, index) => (correction[index] += each));
         if (Math.max(...more.map(Math.abs)) <= ROUNDING) break;
@@ -114,8 +117,9 @@
         if (index === this.driven || !coordinate) return;
         const { lower, upper } = this.mechanism.limits[velocity];
         const [before, after] = [here, there].map(({ q }) => q[coordinate.joint][coordinate.index]);
-        const over = Math.max(after - Math.max(upper, before), Math.min(lower, before) - after) - BEYOND;
-        const part = over > 0 ? over / Math.abs(after - before) : 0;
+        const over = Math.max(after - Math.max(upper, before), Math.min(lower, before) - after);
+        // Half the tolerance is left, so that a search for the limit ends within it.
+        const part = over > BEYOND ? (over - 0.5 * BEYOND) / Math.abs(after - before) : 0;
         if (part > 0 && (!first || part > 1 - first.part)) first = { velocity, part: 1 - part };
       });
       return first;
