@@ -24,6 +24,10 @@ class Solid:
     center: Vector3
     inertia: Matrix3
 
+    def without(self, parts: Sequence[Solid]) -> Solid:
+        """What remains of it without its parts."""
+        return solid_of((self, *(Solid(-part.mass, part.center, -part.inertia) for part in parts)))
+
 
 def solid_of(shapes: Sequence[Shape | Solid]) -> Solid:
     """The sum of shapes or solids, by the theorem of parallel axes; where they overlap, both count."""
