@@ -5,7 +5,6 @@ World: origin at the pelvis frame of the robot's published description, x forwar
 
 from __future__ import annotations
 
-
 import sys
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -579,7 +578,7 @@ def draw_waist(robot: Drawing, yaw: Place) -> None:
         "torso_link",
         motor,
         FORWARD,
-        degrees=(-50.0, 50.0),
+        degrees=(-55.0, 55.0),
         motor=MOTOR_5020,
     )
     plane = motor[0] + 0.0045
@@ -610,7 +609,7 @@ def take_out(robot: Drawing, link: str, *parts: str) -> None:
 
 
 def keep_axes(robot: Drawing) -> None:
-    """Turns round the axes of the right side that the mirror turned, so that coordinates are Unitree's on both sides."""
+    """Turns the axes of the right side round that the mirror turned, so that both sides have Unitree's coordinates."""
     for name, body in robot.bodies.items():
         image = robot.bodies.get(name.replace("right", "left"))
         if "right" in name and body.joint and image and image.joint and body.joint.type == "revolute":

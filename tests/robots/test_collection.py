@@ -50,6 +50,7 @@ DIMENSIONS = {
     "talos_leg": (13, {"6d": 1}, 6, 6, 7, 6, 1),
     "tello": (20, {"distance": 6}, 10, 10, 10, 10, 0),
     "tesla_optimus_ankle": (None, None, None, None, None, 2, None),
+    "unitree_g1": (47, {"3d": 6}, 18, 18, 29, 29, 0),
     "unitree_g1_ankle": (None, None, None, None, None, 2, None),
     "wl16_leg": (42, {"6d": 5}, 30, 30, 12, 6, 6),
 }
@@ -57,7 +58,7 @@ DIMENSIONS = {
 #: Of those whose dimensions are their own affair, the motions that the actuators decide.
 CONTROLLED = {"delta": 3, "stewart_platform": 6, "tesla_optimus_ankle": 2, "unitree_g1_ankle": 2}
 
-TWO_LEGGED = {"battobot", "digit_2legs", "disney_2legs", "kangaroo_2legs", "talos_2legs", "tello"}
+TWO_LEGGED = {"battobot", "digit_2legs", "disney_2legs", "kangaroo_2legs", "talos_2legs", "tello", "unitree_g1"}
 
 
 def named(folder):
