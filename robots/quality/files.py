@@ -103,11 +103,11 @@ def is_the_same_in_version_1(candidate: Candidate) -> list[str] | None:
     errors = [error for error in map(str, old.diagnostics) if error not in shared]
     if isinstance(old, Unlinked) or errors:
         return errors
-    one, other = _comparable(old.mechanism, new)
+    one, other = comparable(old.mechanism, new)
     return [f"robot.v1.yaml: {found}" for found in differences(one, other)]
 
 
-def _comparable(old: Mechanism, new: Mechanism) -> tuple[Mechanism, Mechanism]:
+def comparable(old: Mechanism, new: Mechanism) -> tuple[Mechanism, Mechanism]:
     """The mechanisms of version 1 and of version 2, both without what is in `NOT_IN_VERSION_1`."""
     sayable = [closure for closure in new.closures if isinstance(closure, PointClosure | FrameClosure)]
     left_out = {_cut(closure) for closure in new.closures if closure not in sayable}
