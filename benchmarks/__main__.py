@@ -1,6 +1,7 @@
 """Run measurements by name: ``python -m benchmarks load growth check``.
 
-``python -m benchmarks fuzz`` runs the mutation campaign, ``… simulators`` other simulators on exported robots.
+``python -m benchmarks fuzz`` runs the mutation campaign, ``… simulators`` other simulators on exported robots, and
+``… claims`` what the comparison with other formats says was seen by running.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ from benchmarks import (
     simulation,
     transmission,
 )
+from benchmarks.claims import claims
 from benchmarks.fuzz import campaign
 from benchmarks.simulators import table as simulators
 
@@ -70,13 +72,16 @@ def main() -> int:
         return campaign.main(sys.argv[2:])
     if sys.argv[1:2] == ["simulators"]:
         return simulators.main(sys.argv[2:])
+    if sys.argv[1:2] == ["claims"]:
+        return claims.main(sys.argv[2:])
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks",
         description="Measure, as ratios to a named peer in the same run.",
         formatter_class=argparse.RawDescriptionHelpFormatter,
         epilog="\n".join(f"{name:20}{_first_line(module)}" for name, module in MEASUREMENTS.items())
         + f"\n{'fuzz':20}{_first_line(campaign)} See `fuzz --help`."
-        + f"\n{'simulators':20}{_first_line(simulators)} See `simulators --help`.",
+        + f"\n{'simulators':20}{_first_line(simulators)} See `simulators --help`."
+        + f"\n{'claims':20}{_first_line(claims)}",
     )
     parser.add_argument("names", nargs="*", choices=[*MEASUREMENTS, []], help="which to run; all by default")
     parser.add_argument("--markdown", action="store_true", help="print tables in Markdown, where there are any")
