@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from eurdf.collection.near_paths import near_path
 from eurdf.diagnostics import FileError, Place
@@ -17,8 +17,7 @@ _YAML = (".yaml", ".yml")
 _URDF = (".urdf", ".xml", ".xacro")
 
 
-@dataclass(frozen=True, slots=True)
-class RobotFiles:
+class RobotFiles(NamedTuple):
     """The files of one robot: a description that names its URDF, or a URDF alone.
 
     Each is a path, or what was read where the caller gave a text or a stream.

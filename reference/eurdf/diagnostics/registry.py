@@ -6,7 +6,7 @@ is advice of this parser (EU-DIA-006): a warning that no clause requires.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from eurdf.text_enum import TextEnum
 
@@ -38,8 +38,7 @@ class Severity(TextEnum):
     WARNING = "warning"
 
 
-@dataclass(frozen=True, slots=True)
-class Rule:
+class Rule(NamedTuple):
     """One diagnostic code.
 
     Attributes:

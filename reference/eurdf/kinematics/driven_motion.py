@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -45,7 +44,7 @@ class DrivenMotion:
             moving = {velocity for joint in joints for velocity in tree.moving_velocities[joint]}
             by = np.array(sorted(moving.intersection(driven)), np.intp)
             if len(by) and len(group.velocities):
-                columns = replace(group, velocities=np.concatenate((group.velocities, by)))
+                columns = group._replace(velocities=np.concatenate((group.velocities, by)))
                 unit = spaces.scale[columns.velocities]
                 spread = float(unit.max() / unit.min())
                 self._groups.append((Evaluation(robot, columns, rows, raw), group.velocities, by, spread))

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -18,8 +17,7 @@ if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 
-@dataclass(frozen=True, slots=True)
-class Chain:
+class Chain(NamedTuple):
     """Joints on the way from one of them up to an ancestor.
 
     Attributes:
@@ -31,8 +29,7 @@ class Chain:
     above: int
 
 
-@dataclass(frozen=True, slots=True)
-class Loop:
+class Loop(NamedTuple):
     """The joints that one constraint depends on.
 
     Attributes:
@@ -85,8 +82,7 @@ def joints_of_loops(robot: Robot, loops: Iterable[Loop] | None = None) -> list[i
     return sorted(beyond)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class LoopGroup:
+class LoopGroup(NamedTuple):
     """Loops that share joints, so that only together they can be closed.
 
     Attributes:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 from eurdf.format.urdf.data import Urdf
 from eurdf.mechanism.joint import Joint, JointProperties
@@ -39,8 +40,7 @@ class NotMergeable(Exception):  # noqa: N818 - a finding, which one of the two c
         self.message = message
 
 
-@dataclass(frozen=True, slots=True)
-class Chain:
+class Chain(NamedTuple):
     """Three joints that can be merged, from the root outwards.
 
     Attributes:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
+from types import MappingProxyType
+from typing import NamedTuple
 
 from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_type import JointType
@@ -11,8 +13,7 @@ from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic, drivers
 
 
-@dataclass(frozen=True, slots=True)
-class Following:
+class Following(NamedTuple):
     """The mimic joints of a mechanism, in the form that Pinocchio supports.
 
     Attributes:
@@ -24,7 +25,7 @@ class Following:
             only a continuous joint can mimic a joint with such a pair.
     """
 
-    mimics: Mapping[str, Mimic] = field(default_factory=dict)
+    mimics: Mapping[str, Mimic] = MappingProxyType({})
     late: tuple[Joint, ...] = ()
     unwrapped: frozenset[str] = frozenset()
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from eurdf.diagnostics.lines import Lines
 
@@ -14,8 +14,7 @@ _ITEM = re.compile(r"-(?: +|$)")
 _KEY = re.compile(r"""("[^"\n]*"|'[^'\n]*'|[^\s"'#&*!|>%@`{}\[\],:-][^#:]*?|-[^\s#:][^#:]*?)\s*:(?: +|$)""")
 
 
-@dataclass(frozen=True, slots=True)
-class _Level:
+class _Level(NamedTuple):
     """A column at which the keys of a mapping, or the items of a list, begin.
 
     Attributes:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -79,7 +78,7 @@ class Drive:
         if groups:
             group = merged(groups)
             self.closures, self.own = group.closures, group.velocities
-            columns = replace(group, velocities=np.concatenate((group.velocities, given.of.velocities)))
+            columns = group._replace(velocities=np.concatenate((group.velocities, given.of.velocities)))
             self._evaluation = Evaluation(robot, columns, spaces.row_scale, spaces.scale)
         self._unit, self._given_unit = spaces.scale[self.own], spaces.scale[given.of.velocities]
         every = np.concatenate((self.own, given.of.velocities)).tolist()

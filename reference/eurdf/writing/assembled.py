@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,8 +29,7 @@ _SAME = 1e-12
 _DECIMALS = 15
 
 
-@dataclass(frozen=True, slots=True)
-class BeyondLimit:
+class BeyondLimit(NamedTuple):
     """A coordinate beyond the limits of its joint.
 
     Attributes:

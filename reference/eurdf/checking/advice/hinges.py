@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -25,8 +25,7 @@ _MOST_TRIED = 24
 _SAME = 1e-6
 
 
-@dataclass(frozen=True, slots=True)
-class LikelyHinge:
+class LikelyHinge(NamedTuple):
     """A closure that as a hinge leaves the motions that the actuators control, and fewer others.
 
     Attributes:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import Any, ClassVar, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -18,8 +17,7 @@ AnyConstraint = TypeVar("AnyConstraint", bound=Constraint)
 AnyClosure = TypeVar("AnyClosure", bound=Closure)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class State:
+class State(NamedTuple):
     """Where the constraints of a stack are evaluated.
 
     Attributes:
