@@ -25,6 +25,9 @@ from eurdf.reading.yaml_reader import YamlDocument
 _HERE: Vector3 = (0.0, 0.0, 0.0)
 _UNIT = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
+#: Keys of a joint, and of its limits, whose values are numbers for each of its coordinates or velocities.
+_NUMBERS = frozenset({"lower", "upper", "velocity", "effort", "damping", "friction", "armature", "stiffness", "rest"})
+
 #: A part of the file, as plain data.
 _Mapping = Mapping[str, Any]
 
@@ -169,8 +172,8 @@ def _joint(name: str, joint: Any) -> JointEntry:
     pointer = ("joints", name)
     if isinstance(joint, str):
         return JointEntry(pointer, name, type=joint)  # type: ignore[arg-type]
-    limits = joint.get("limits", {})
     axes = joint.get("axes", ())
+    stated = (*joint.items(), *joint.get("limits", {}).items())
     return JointEntry(
         pointer,
         name,
@@ -178,16 +181,8 @@ def _joint(name: str, joint: Any) -> JointEntry:
         axes=tuple(_UNIT[axis] if isinstance(axis, str) else _vector(axis) for axis in axes),
         pitch=float(joint.get("pitch", 0.0)),
         merges=tuple(joint.get("merges", ())),
-        lower=_numbers(limits.get("lower")),
-        upper=_numbers(limits.get("upper")),
-        velocity=_numbers(limits.get("velocity")),
-        effort=_numbers(limits.get("effort")),
-        damping=_numbers(joint.get("damping")),
-        friction=_numbers(joint.get("friction")),
-        armature=_numbers(joint.get("armature")),
-        stiffness=_numbers(joint.get("stiffness")),
-        rest=_numbers(joint.get("rest")),
         freed=joint.get("mimic") is False,
+        **{key: _numbers(value) for key, value in stated if key in _NUMBERS},  # type: ignore[arg-type]
     )
 
 

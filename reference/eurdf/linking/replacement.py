@@ -273,21 +273,35 @@ class _Replacement:
         if new == "fixed":
             return fixed(joint)
         if new == "spherical":
-            return self._spread(joint, JointType.SPHERICAL)
+            return self._spread(joint, JointType.SPHERICAL, ())
         if new == "universal":
             return self.universal(joint)
         if new == "cylindrical":
             return self.cylindrical(joint)
         return self.helical(joint)
 
-    def _spread(self, joint: Joint, kind: JointType) -> Joint:
-        """EU-JNT-020, -021: the joint with another type; its rates and dynamics are those of each of its velocities."""
+    def _spread(
+        self,
+        joint: Joint,
+        kind: JointType,
+        axes: tuple[Vector3, ...],
+        limits: tuple[tuple[float, ...], tuple[float, ...]] | None = None,
+    ) -> Joint:
+        """EU-JNT-020, -021: the joint with another type; its rates and dynamics are those of each of its velocities.
+
+        Args:
+            joint: The joint of the URDF.
+            kind: The new type.
+            axes: The new axes.
+            limits: Lower and upper position limits; None if there are none.
+        """
         own, properties = joint.properties, JointProperties.unlimited(kind)
         if own is not JointProperties.unlimited(joint.type):
             nv = COORDINATES[kind].nv
+            lower, upper = limits or (properties.lower, properties.upper)
             properties = JointProperties(
-                properties.lower,
-                properties.upper,
+                lower,
+                upper,
                 own.velocity * nv,
                 own.effort * nv,
                 own.damping * nv,
@@ -296,15 +310,7 @@ class _Replacement:
                 own.gear_ratio * nv,
                 own.rotor_inertia * nv,
             )
-        return Joint(
-            joint.name,
-            kind,
-            joint.parent,
-            joint.child,
-            joint.placement,
-            axes=() if kind is JointType.SPHERICAL else joint.axes,
-            properties=properties,
-        )
+        return Joint(joint.name, kind, joint.parent, joint.child, joint.placement, axes=axes, properties=properties)
 
     def universal(self, joint: Joint) -> Joint | None:
         """EU-JNT-006, EU-JNT-007: the two axes have directions, and different ones."""
@@ -325,8 +331,8 @@ class _Replacement:
         if math.hypot(*cross) < PARALLEL:
             self.report("joint-axes-parallel", f"the two axes of universal joint '{joint.name}' are parallel", "axes")
             return None
-        spread = self._spread(joint, JointType.UNIVERSAL)
-        return _limited(replace(spread, axes=axes), joint.properties.lower * 2, joint.properties.upper * 2)
+        lower, upper = joint.properties.lower, joint.properties.upper
+        return self._spread(joint, JointType.UNIVERSAL, axes, (lower * 2, upper * 2))
 
     def split(self, joint: Joint) -> Joint | None:
         """EU-ONE-006: version 1's universal joint is two revolutes, ``j_A`` and then ``j_B``, each with j's limits."""
@@ -360,10 +366,12 @@ class _Replacement:
 
     def cylindrical(self, joint: Joint) -> Joint:
         """EU-JNT-027: limits of the URDF's joint stay with the coordinate of its kind; the other has none."""
-        spread = self._spread(joint, JointType.CYLINDRICAL)
+        (lower,), (upper,) = joint.properties.lower, joint.properties.upper
         if joint.type is JointType.PRISMATIC:
-            return _limited(spread, (*joint.properties.lower, -math.inf), (*joint.properties.upper, math.inf))
-        return _limited(spread, (-math.inf, *joint.properties.lower), (math.inf, *joint.properties.upper))
+            limits = (lower, -math.inf), (upper, math.inf)
+        else:
+            limits = (-math.inf, lower), (math.inf, upper)
+        return self._spread(joint, JointType.CYLINDRICAL, joint.axes, limits)
 
     def helical(self, joint: Joint) -> Joint | None:
         """EU-JNT-008, EU-JNT-029: a helix has a pitch; what the URDF says of a slide holds of the screw's angle.
@@ -459,10 +467,6 @@ class _Replacement:
                 )
                 return None
         return replace(joint, properties=properties)
-
-
-def _limited(joint: Joint, lower: tuple[float, ...], upper: tuple[float, ...]) -> Joint:
-    return replace(joint, properties=replace(joint.properties, lower=lower, upper=upper))
 
 
 _PROPERTIES: dict[str, tuple[str, ...]] = {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from operator import attrgetter
 
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
@@ -15,7 +16,7 @@ def depth_first(root: str, joints: Iterable[Joint]) -> list[Joint]:
         children.setdefault(joint.parent, []).append(joint)
     for siblings in children.values():
         if len(siblings) > 1:
-            siblings.sort(key=lambda joint: joint.name, reverse=True)
+            siblings.sort(key=attrgetter("name"), reverse=True)
     ordered: list[Joint] = []
     stack = list(children.get(root, ()))
     while stack:
