@@ -126,7 +126,7 @@ def test_reference_reports_each_fault_alone_and_at_its_place(version: Version, t
 
 def test_reproduce_command_of_a_fresh_case_has_its_seed() -> None:
     line = command_line(Setting("cmd:./mine", seed=7), f"{FRESH}/valid-2-1", "accept")
-    assert line == "pytest conformance/ --parser=cmd:./mine --seed=7 -k fresh/valid-2-1/accept"
+    assert line == "pytest conformance/ --parser=cmd:./mine --seed=7 -n0 -k fresh/valid-2-1/accept"
     assert "--seed" not in command_line(Setting("cmd:./mine", seed=7), "urdf/gantry", "accept")
 
 

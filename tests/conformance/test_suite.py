@@ -278,7 +278,7 @@ def test_a_failure_text_shows_clause_place_and_command() -> None:
     lines = failure_text(item, judgement, line, INVALID).splitlines()
     assert lines == [
         "frames/closure-at-unknown-frame/diagnose: failed: the reported errors differ",
-        "  pytest conformance/ '--parser=cmd:./my parser' -k frames/closure-at-unknown-frame/diagnose",
+        "  pytest conformance/ '--parser=cmd:./my parser' -n0 -k frames/closure-at-unknown-frame/diagnose",
         f"  {INVALID.case.title}",
         f"  EU-FRM-001: {read_clauses()['EU-FRM-001'].text}",
         f"  EU-DIA-001: {read_clauses()['EU-DIA-001'].text}",
@@ -430,6 +430,13 @@ def suite(
 
 #: The two cases at which wrong parsers go wrong, and what asks of the protocol with them.
 FEW = "closures/parallelogram-3d-closure or frames/closure-at-unknown-frame"
+
+
+def test_a_clause_selects_what_tests_it() -> None:
+    code, out = suite("--collect-only", "-k", "EU-CPL-006", parser="Right")
+    tested = {item.id for item in planned_items(all_cases()) if "EU-CPL-006" in item.clauses}
+    found = set(re.findall(r"\[([^\]]+)/\w+\]", out))
+    assert (code, found) == (0, tested)
 
 
 @pytest.mark.slow
@@ -623,7 +630,9 @@ def test_the_suite_runs_as_an_installed_package() -> None:
     assert code == 0
     assert "7 passed" in out
     code, out = suite("-k", FEW, parser="Lenient", command=command)
-    assert f"pytest {' '.join(command)} --parser=case_parser:Lenient -k frames/closure-at-unknown-frame/accept" in out
+    assert (
+        f"pytest {' '.join(command)} --parser=case_parser:Lenient -n0 -k frames/closure-at-unknown-frame/accept" in out
+    )
     code, out = suite("-k", FEW, parser="Right", command=command)
     assert code == 0
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import product
 
+from eurdf_conformance.bounds import BoundCase, bound_cases
 from eurdf_conformance.corpus.case import InvalidCase
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.protocol_rule import RULES, ProtocolRule
@@ -85,12 +86,29 @@ def fresh_items() -> Iterator[FreshItem]:
             yield FreshItem(Item(fresh_name(version, kind, number), level, version, (general,), TITLES[kind]))
 
 
+@dataclass(frozen=True)
+class BoundItem:
+    """A robot at a bound, or beyond it."""
+
+    item: Item
+    case: BoundCase
+
+
+def bound_items() -> Iterator[BoundItem]:
+    """The items on bounds."""
+    for case in bound_cases():
+        said = case.case
+        clauses = clauses_at(Level.ACCEPT, said.version, said.clauses, _general(case, Level.ACCEPT))
+        yield BoundItem(Item(case.name, Level.ACCEPT, said.version, clauses, said.title), case)
+
+
 def planned_items(cases: Iterable[CorpusCase]) -> Iterator[Item]:
     """Every item of the suite."""
     yield from (found.item for found in protocol_items())
     yield from (found.item for found in case_items(cases))
     yield from (found.item for found in property_items())
     yield from (found.item for found in fresh_items())
+    yield from (found.item for found in bound_items())
 
 
 def protocol_items() -> Iterator[ProtocolItem]:

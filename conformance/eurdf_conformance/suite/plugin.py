@@ -20,7 +20,7 @@ from eurdf_conformance.certificate.write import NoRoom, make_room, write_certifi
 from eurdf_conformance.corpus.read import all_cases, keep_files_in
 from eurdf_conformance.fresh.case import drawn_hash, drawn_text, keep_drawn
 from eurdf_conformance.judging.level_result import unclaimed
-from eurdf_conformance.judging.result import RESULT, Result
+from eurdf_conformance.judging.result import RESULT, Item, Result
 from eurdf_conformance.judging.run import Run
 from eurdf_conformance.properties.chance import Chance
 from eurdf_conformance.protocol.message import Started
@@ -91,6 +91,14 @@ def group_of(nodeid: str) -> str:
     if file.endswith("test_protocol.py"):
         return file
     return nodeid.rpartition("/")[0] if name.startswith(("test_case[", "test_fresh[")) else nodeid
+
+
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """Let ``-k EU-CLO-003`` select the items that test a clause."""
+    callspec = getattr(item, "callspec", None)
+    for value in callspec.params.values() if callspec else ():
+        if isinstance(found := getattr(value, "item", None), Item):
+            item.extra_keyword_matches.update(found.clauses)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

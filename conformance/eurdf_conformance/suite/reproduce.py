@@ -54,7 +54,8 @@ def command_line(setting: Setting, item_id: str, level: str) -> str:
     of_property = item_id.startswith("properties/")
     settings += [f"--explore={setting.explore}"] if setting.explore and of_property else []
     settings += [f"--seed={setting.seed}"] if of_property or item_id.startswith(f"{FRESH}/") else []
-    return shlex.join(["pytest", *setting.suite, *settings, "-k", f"{item_id}/{level}"])
+    # One process: to start several takes longer than one item does.
+    return shlex.join(["pytest", *setting.suite, *settings, "-n0", "-k", f"{item_id}/{level}"])
 
 
 def is_command_line(text: str, setting: Setting, item_id: str, level: str) -> bool:
