@@ -1,7 +1,7 @@
 // Moves robots as a live page does: reads [{robot, moves: [[slider, value], …]}, …], and writes for each robot what is
 // there at first and after each move.
 const live = require("path").resolve(process.argv[2]);
-for (const name of ["linear_algebra", "mechanism", "motion"]) require(`${live}/${name}.js`);
+for (const name of ["linear_algebra", "mechanism", "springs", "motion"]) require(`${live}/${name}.js`);
 
 function state(motion, stop) {
   const { mechanism, q } = motion;

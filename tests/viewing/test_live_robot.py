@@ -79,7 +79,7 @@ def test_every_joint_and_constraint_has_the_kinematics_of_the_reference() -> Non
 @needs_node
 def test_sliders_move_robots_as_the_viewer_does() -> None:
     cases, sessions = [], []
-    for name, seed in (("digit_leg", 3), ("delta", 0), ("tello", 0)):
+    for name, seed in (("digit_leg", 3), ("delta", 0), ("tello", 0), ("robotiq_2f85", 0)):
         robot = eurdf.load(name)
         session, random = Session(robot), np.random.default_rng(seed)
         moves: list[Move] = []

@@ -92,6 +92,17 @@ def test_passive_joint_is_at_its_limit_where_the_slider_stops() -> None:
     assert at == pytest.approx(stop.value, abs=2e-9)
 
 
+def test_springs_press_passive_joints_against_their_limits() -> None:
+    """The fingers of the gripper move parallel: the springs hold both couplers at their upper limit, 0."""
+    robot = eurdf.load("robotiq_2f85", geometry=False)
+    session = Session(robot)
+    for goal in (0.4, 0.7, 0.4):
+        assert session.move(0, goal) is None
+        held = {"motor": goal, "left_coupler_joint": 0.0, "right_coupler_joint": 0.0}
+        np.testing.assert_allclose(session.q, eurdf.forward_kinematics(robot, held), atol=1e-9)
+        assert session.residual < 1e-12
+
+
 def test_slider_stops_at_dead_point(tmp_path: Path) -> None:
     """A five-bar linkage stretches out: the distance of the two elbows is then the sum of the two outer links."""
     session = Session(without_limits("five_bar", tmp_path))

@@ -29,7 +29,9 @@ if TYPE_CHECKING:
 
 _FOLDER = Path(__file__).parent / "live"
 #: What a page loads, in this order, to show robots.
-SCRIPTS = tuple(_FOLDER / f"{name}.js" for name in ("linear_algebra", "mechanism", "motion", "drawing", "live_page"))
+SCRIPTS = tuple(
+    _FOLDER / f"{name}.js" for name in ("linear_algebra", "mechanism", "springs", "motion", "drawing", "live_page")
+)
 STYLE = _FOLDER / "live_page.css"
 
 _GRAY = (0.9, 0.9, 0.9, 1.0)  # of a shape without a colour

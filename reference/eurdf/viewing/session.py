@@ -17,8 +17,6 @@ from eurdf.kinematics.array import Vector
 from eurdf.kinematics.assembly import Assembly, assemble, start
 from eurdf.kinematics.branch import Branch, Point
 from eurdf.kinematics.derived import derived
-from eurdf.kinematics.exceptions import NotClosable
-from eurdf.kinematics.forward_kinematics import forward_kinematics
 from eurdf.kinematics.inverse_kinematics import inverse_kinematics
 from eurdf.kinematics.opening import CLOSED
 from eurdf.kinematics.position_limit import driven_coordinates, position_limits
@@ -28,6 +26,7 @@ from eurdf.kinematics.sweep import sweep
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array
+from eurdf.viewing.spring_rest import SpringRest
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -41,6 +40,9 @@ _DEAD = 0.01
 _SHORTEST_STEP = 2.0**-22
 # Corrections of a last step to the limit of a passive joint.
 _TO_LIMIT = 8
+# Steps of a slider over its range, for a robot with springs; they are halved down to this fraction of one.
+_REST_STEPS = 40
+_SHORTEST_REST_STEP = 2.0**-12
 # Bound of each row of the residual of a configuration that is shown as closed, m or rad.
 _TOLERANCE = 1e-12
 
@@ -169,10 +171,8 @@ class Session:
             v[slider.velocity] = goal - at
             self.q = self.robot.tree.integrate(self.q, v)
             return stop
-        q, stopped = self._follow(index, goal - at)
-        if len(self.robot.tree.springs) and len(self.robot.actuation.idx_q):
-            q = self._at_rest(q)
-        self.q = q
+        sprung = len(self.robot.tree.springs) and len(self.robot.actuation.idx_q)
+        self.q, stopped = (self._follow_at_rest if sprung else self._follow)(index, goal - at)
         return stopped or stop
 
     def show(self, q: Vector) -> None:
@@ -293,20 +293,38 @@ class Session:
                 here, part = nearer, part * (1.0 - until)
             else:
                 part *= until
-        return here, self._at_limit(joint, here.q)
+        return here, self._at_limit(self._limits.joints.index(joint), here.q)
 
-    def _at_limit(self, joint: str, q: Vector) -> Stop:
-        index = self._limits.joints.index(joint)
+    def _at_limit(self, index: int, q: Vector) -> Stop:
+        """The stop at the limit of the joint with this velocity."""
         at = float(q[self._limits.coordinates[index]])
         lower, upper = float(self._limits.lower[index]), float(self._limits.upper[index])
-        return Stop("passive limit", joint, lower if abs(at - lower) < abs(at - upper) else upper)
+        return Stop("passive limit", self._limits.joints[index], lower if abs(at - lower) < abs(at - upper) else upper)
 
-    def _at_rest(self, q: Vector) -> Vector:
-        """The same actuated coordinates, with the springs at rest."""
-        try:
-            return forward_kinematics(self.robot, q[self.robot.actuation.idx_q], q)
-        except NotClosable:
-            return q
+    def _follow_at_rest(self, index: int, distance: float) -> tuple[Vector, Stop | None]:
+        """As `_follow`, for a robot whose springs decide what the actuators do not: it is at rest after each step."""
+        slider, tree = self.sliders[index], self.robot.tree
+        follow = {each for joint in slider.follow for each in tree.velocities_of(joint)}
+        held = (set(self.robot.actuation.idx_v.tolist()) | {slider.velocity}) - follow
+        rest = SpringRest(self.robot, np.array(sorted(held)))
+        longest, begin = (slider.upper - slider.lower) / _REST_STEPS, self.value(index)
+        q, left = self.q, distance
+        pressed: tuple[int, ...] = ()
+        part = math.copysign(min(abs(distance), longest), distance)
+        while left:
+            v = np.zeros(tree.nv)
+            v[slider.velocity] = part
+            there = rest.near(tree.integrate(q, v))
+            if there.q is not None:
+                q, left, pressed = there.q, left - part, there.pressed
+                part = math.copysign(min(abs(2.0 * part), abs(left), longest), distance)
+            elif abs(part) > _SHORTEST_REST_STEP * longest:
+                part *= 0.5
+            else:
+                met = [velocity for velocity in there.pressed if velocity not in pressed]
+                dead = Stop("dead point", slider.joint, begin + distance - left)
+                return q, self._at_limit(met[0], q) if met else dead
+        return q, None
 
     def _branch(self, index: int) -> Branch:
         if index not in self._branches:

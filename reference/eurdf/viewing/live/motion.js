@@ -17,8 +17,8 @@
   const DEAD = 0.01; // a smallest singular value of K_p below this part of the largest one met is that of a dead point
   const SHORTEST_STEP = 2 ** -22; // of the range of a slider
   const TO_LIMIT = 8; // corrections of a last step to the limit of a passive joint
-  const MOST_REST_STEPS = 50; // toward the rest of the springs
-  const AT_REST = 1e-12; // a step of the springs below this (rad, or characteristic lengths) is the last one
+  const REST_STEPS = 40; // of a slider over its range, of a robot with springs
+  const SHORTEST_REST_STEP = 2 ** -12; // of these steps
 
   /** The velocities and constraints of the loops that a velocity moves while others are held. */
   function groupOf(mechanism, velocity, held) {
@@ -183,8 +183,9 @@
         this.q = this.mechanism.integrate(this.q, v);
         return stop;
       }
-      const followed = this._follow(index, distance);
-      this.q = this.data.springs.length && this.data.held.length ? this._atRest(followed.q) : followed.q;
+      const sprung = this.data.springs.length && this.data.held.length;
+      const followed = sprung ? this._followAtRest(index, distance) : this._follow(index, distance);
+      this.q = followed.q;
       return followed.stop || stop;
     }
 
@@ -234,53 +235,58 @@
           part *= 1 - met.part;
         } else part *= met.part;
       }
-      const { joint, index } = this.mechanism.coordinateOf[velocity];
-      const { lower, upper } = this.mechanism.limits[velocity];
-      const at = here.q[joint][index];
-      const value = Math.abs(at - lower) < Math.abs(at - upper) ? lower : upper;
-      return [here, { reason: "passive limit", joint: this.mechanism.joints[joint].name, value }];
+      return [here, this._atLimit(velocity, here.q)];
     }
 
-    /** The closed configuration with the same actuated coordinates at which the springs store the least energy. */
-    _atRest(q) {
-      const held = new Set(this.data.held);
-      const free = this.data.units.map((_, velocity) => velocity).filter((each) => !held.has(each));
-      const loops = this._all || (this._all = allOf(this.mechanism, free));
-      for (let count = 0; count < MOST_REST_STEPS; count++) {
-        // With rows of zeros, so that the motions that keep the loops closed are among the vectors.
-        const padded = (rows) => [...rows, ...free.map(() => 0)];
-        const r = padded(loops.residual(q).map((row, index) => -loops.scale[index] * row));
-        const of = svd(loops.columns(q).map(padded));
-        const found = rank(of.values.slice(0, loops.scale.length));
-        const step = leastSolution(of, found, r, free.length);
-        const spaces = of.right.slice(found);
-        const pull = (x) => this.data.springs.map((s) => Math.sqrt(s.stiffness) * s.ratio * x(s.velocity));
-        const moves = (v) => (velocity) => {
-          const at = loops.velocities.indexOf(velocity);
-          return at < 0 ? 0 : loops.units[at] * v[at];
-        };
-        const bent = this.data.springs.map((s) => {
-          const { joint, index } = this.mechanism.coordinateOf[s.velocity];
-          return Math.sqrt(s.stiffness) * (s.ratio * q[joint][index] + s.shift);
-        });
-        const already = pull(moves(step));
-        const along = svd(spaces.map((each) => Float64Array.from(pull(moves(each)))));
-        const acting = rank(along.values);
-        const left = bent.map((each, index) => -each - already[index]);
-        const z = leastSolution(along, acting, left, spaces.length);
-        spaces.forEach((each, index) => each.forEach((value, i) => (step[i] += z[index] * value)));
-        q = loops.moved(q, step);
-        if (Math.max(0, ...step.map(Math.abs)) <= AT_REST) break;
+    /** As `_follow`, for a robot whose springs decide what the actuators do not: it is at rest after each step. */
+    _followAtRest(index, distance) {
+      const slider = this.sliders[index];
+      const held = this._held(slider);
+      const free = this.data.units.map((_, velocity) => velocity);
+      const loops = allOf(
+        this.mechanism,
+        free.filter((velocity) => velocity !== slider.velocity && !held.has(velocity)),
+      );
+      const longest = (slider.upper - slider.lower) / REST_STEPS;
+      const begin = this.value(index);
+      let [q, left, pressed] = [this.q, distance, []];
+      let part = Math.sign(distance) * Math.min(Math.abs(distance), longest);
+      while (left !== 0) {
+        const v = new Float64Array(this.data.units.length);
+        v[slider.velocity] = part;
+        const there = globalThis.eurdf.atRest(loops, this.data.springs, this.mechanism.integrate(q, v));
+        if (there.q) {
+          [q, left, pressed] = [there.q, left - part, there.pressed];
+          part = Math.sign(distance) * Math.min(2 * Math.abs(part), Math.abs(left), longest);
+        } else if (Math.abs(part) > SHORTEST_REST_STEP * longest) part *= 0.5;
+        else {
+          const velocity = there.pressed.find((each) => !pressed.includes(each));
+          const dead = { reason: "dead point", joint: slider.joint, value: begin + distance - left };
+          return { q, stop: velocity === undefined ? dead : this._atLimit(velocity, q) };
+        }
       }
-      return q;
+      return { q, stop: null };
+    }
+
+    _atLimit(velocity, q) {
+      const { joint, index } = this.mechanism.coordinateOf[velocity];
+      const { lower, upper } = this.mechanism.limits[velocity];
+      const at = q[joint][index];
+      const value = Math.abs(at - lower) < Math.abs(at - upper) ? lower : upper;
+      return { reason: "passive limit", joint: this.mechanism.joints[joint].name, value };
+    }
+
+    /** The velocities of the actuators that stay while a slider is moved. */
+    _held(slider) {
+      const held = new Set(this.data.held);
+      [slider.velocity, ...slider.follow].forEach((velocity) => held.delete(velocity));
+      return held;
     }
 
     _branch(index) {
       if (!this.branches.has(index)) {
         const slider = this.sliders[index];
-        const held = new Set(this.data.held);
-        [slider.velocity, ...slider.follow].forEach((velocity) => held.delete(velocity));
-        this.branches.set(index, new Branch(this.mechanism, slider.velocity, held));
+        this.branches.set(index, new Branch(this.mechanism, slider.velocity, this._held(slider)));
       }
       return this.branches.get(index);
     }
