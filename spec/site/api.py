@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 from docutils import nodes
 from docutils.nodes import Element, Node, system_message
 from docutils.parsers.rst import directives
-from sphinx.addnodes import pending_xref
+from sphinx.addnodes import desc_content, pending_xref
 from sphinx.application import Sphinx
 from sphinx.environment import BuildEnvironment
 from sphinx.util.docutils import SphinxDirective, SphinxRole
@@ -31,6 +31,12 @@ EXPLAINED = frozenset({"ArrayLike", "Executor", "Matrix", "Path", "Vector", "os.
 
 # A name in an annotation that may be an alias.
 _ALIAS = re.compile(r"(?<![\w.'\"])[A-Z]\w*\b(?![.'\"])")
+
+# What is below the line, after one letter: B_J, τ_m.
+_SUBSCRIPT = re.compile(r"(?:(?<=\b[^\W\d_])|(?<=[²Δ][^\W\d_]))_([A-Za-z]{1,2})(?![A-Za-z0-9_(])")
+
+# The module of a type, where Sphinx writes that it need not be shown.
+_QUALIFIED = re.compile(r"~(?:\w+\.)*")
 
 _CODE = re.compile(r"(`+[^`]*`+)")
 _CLAUSE = re.compile(r"(?<![`\w-])EU-[A-Z]{3}-[0-9]{3}(?!`)")
@@ -119,7 +125,7 @@ def _spelled_out(annotation: Any, names: Mapping[str, Any]) -> Any:
             or value.__class__.__module__ == "builtins"
         ):
             return match[0]
-        return stringify_annotation(value, "smart").replace("~", "")
+        return _QUALIFIED.sub("", stringify_annotation(value, "smart"))
 
     return _ALIAS.sub(meaning, annotation)
 
@@ -142,12 +148,16 @@ def _skipped(app: Sphinx, what: str, name: str, value: Any, skip: bool, options:
     return True if type(value).__name__ == "_tuplegetter" else None
 
 
-def _colons(app: Sphinx, document: nodes.document) -> None:
-    """Show a colon after the name of a parameter instead of two hyphens."""
-    for field in document.findall(nodes.field_body):
-        for text in list(field.findall(nodes.Text)):
-            if text == " -- ":
-                text.parent.replace(text, nodes.Text(": "))
+def _typeset(app: Sphinx, document: nodes.document) -> None:
+    """In docstrings, show a colon after the name of a parameter instead of two hyphens, and subscripts as such."""
+    for shown in document.findall(desc_content):
+        for text in list(shown.findall(nodes.Text)):
+            if text.parent is None or isinstance(text.parent, nodes.literal | nodes.literal_block | nodes.subscript):
+                continue
+            pieces = _SUBSCRIPT.split(": " if text == " -- " else text)
+            if len(pieces) > 1 or pieces[0] != text:
+                made = [nodes.subscript("", each) if n % 2 else nodes.Text(each) for n, each in enumerate(pieces)]
+                text.parent.replace(text, made)
 
 
 def _unresolved(app: Sphinx, env: BuildEnvironment, node: pending_xref, text: Element) -> Element | None:
@@ -167,5 +177,5 @@ def setup(app: Sphinx) -> None:
     app.connect("autodoc-process-signature", _signature)
     app.connect("autodoc-process-docstring", _docstring, priority=400)  # before napoleon
     app.connect("autodoc-skip-member", _skipped)
-    app.connect("doctree-read", _colons)
+    app.connect("doctree-read", _typeset)
     app.connect("missing-reference", _unresolved)

@@ -166,6 +166,8 @@ def test_docstring_has_links_shapes_and_errors(site: Path) -> None:
     assert "eurdf.assemble(robot: Robot, q0: Vector | None = None, hold: str | Iterable[str] = ()" in text
     assert "q0: Where to start (nq,)" in text
     assert "ValueError: q0 is not a configuration" in text
+    assert "B<sub>J</sub> = B A⁺" in (site / "api_transmissions.html").read_text(encoding="utf-8")
+    assert "progress: Callable[[int, int], None] | None = None" in _text(site / "api_batch.html")
 
 
 def test_clause_folds_its_cases_and_links_them(site: Path) -> None:

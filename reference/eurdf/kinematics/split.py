@@ -35,6 +35,11 @@ def split_configuration(robot: Robot, q: Vector) -> tuple[Vector, Vector]:
 def merge_configuration(robot: Robot, q_actuated: Vector, q_free: Vector) -> Vector:
     """The inverse of `split_configuration`: the configuration (nq,).
 
+    Args:
+        robot: The robot.
+        q_actuated: Coordinates of the actuated joints, joint by joint in the order of ``robot.actuation.joints``.
+        q_free: The other coordinates, in the order of the model.
+
     Raises:
         ValueError: One of the parts has a wrong shape or is not finite.
     """
@@ -59,6 +64,11 @@ def split_velocity(robot: Robot, v: Vector) -> tuple[Vector, Vector]:
 
 def merge_velocity(robot: Robot, v_actuated: Vector, v_free: Vector) -> Vector:
     """The inverse of `split_velocity`: the velocity (nv,).
+
+    Args:
+        robot: The robot.
+        v_actuated: Velocities (nu,) of the actuated joints, in the order of ``robot.actuation``, rad/s or m/s.
+        v_free: The other velocities (nv - nu,), in the order of the model.
 
     Raises:
         ValueError: One of the parts has a wrong shape or is not finite.
