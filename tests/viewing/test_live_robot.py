@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import subprocess
 from collections.abc import Sequence
@@ -13,6 +14,7 @@ import numpy as np
 import pytest
 
 import eurdf
+from eurdf.commands.main import main
 from eurdf.viewing.live_robot import SCRIPTS, live_robot, live_view
 from eurdf.viewing.scene import Scene
 from eurdf.viewing.session import Session
@@ -146,6 +148,20 @@ def test_no_name_ends_the_data_of_the_page() -> None:
     assert page.count("<") == 4
     start, end = page.index('json">') + 6, page.index("</script>")
     assert json.loads(page[start:end])["bodies"] == [attack]
+
+
+def test_command_writes_a_page_that_needs_nothing_else(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "page.html"
+    assert main(["view", "four_bar", "-o", str(file)]) == 0
+    assert capsys.readouterr().err == f"wrote '{file}'\n"
+    page = file.read_text(encoding="utf-8")
+    assert '"sliders":[{"joint":"motor_crank"' in page
+    assert page.count("<script>") == len(SCRIPTS)
+    assert not re.search(r"src=|href=|@import|url\(", page)
+    assert main(["view", "four_bar", "-o", str(file)]) == 2
+    assert "already exists; --force replaces it" in capsys.readouterr().err
+    assert main(["view", "four_bar", "-o", str(file), "--force", "--trajectory", "walk.csv"]) == 2
+    assert "leave out --trajectory or --output" in capsys.readouterr().err
 
 
 def test_data_of_a_mesh_are_its_triangles(tmp_path: Path) -> None:

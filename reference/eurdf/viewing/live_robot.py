@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
@@ -35,6 +36,23 @@ SCRIPTS = tuple(
 STYLE = _FOLDER / "live_page.css"
 
 _GRAY = (0.9, 0.9, 0.9, 1.0)  # of a shape without a colour
+
+
+def live_page(robot: Robot, q: Vector | None = None) -> str:
+    """A page that moves a robot without a server and without a network: one file with all that it needs.
+
+    Args:
+        robot: The robot, with its visual geometry.
+        q: Where to start (nq,); see `live_robot`.
+    """
+    name = html.escape(robot.mechanism.name)
+    scripts = "".join(f"<script>{script.read_text(encoding='utf-8')}</script>" for script in SCRIPTS)
+    return (
+        f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{name}</title>'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">'
+        f"<style>body {{ margin: 1rem; font-family: sans-serif; }}\n{STYLE.read_text(encoding='utf-8')}</style></head>"
+        f"<body>{live_view(robot, q)}{scripts}</body></html>\n"
+    )
 
 
 def live_view(robot: Robot, q: Vector | None = None) -> str:
