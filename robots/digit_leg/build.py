@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 from typing import Literal
 
-from robots.builder import Box, Cylinder, Drawing, End, Motor, Vector3, midpoint, revolute, write
+from robots.builder import Box, Cylinder, Drawing, End, Motor, Spring, Vector3, midpoint, revolute, write
 
 # Points of the published description, to 0.1 mm, in the pose with the knee at 0.3 rad, the springs at rest, the
 # yaw axis upright, the sole flat and the middle of the foot below the hip.
@@ -22,6 +22,7 @@ HIP_PITCH = (-0.0450, 0.0950, -0.1185)
 KNEE = (0.0127, 0.0905, -0.2237)
 SHIN_TOP = (0.0046, 0.0905, -0.3003)
 HOCK = (-0.2832, 0.0905, -0.6267)
+HEEL = (-0.3170, 0.0895, -0.6328)
 TOE_MOTOR_1 = (-0.2700, 0.1181, -0.6935)
 TOE_MOTOR_2 = (-0.2358, 0.0629, -0.7326)
 ANKLE = (-0.0450, 0.0905, -0.9603)
@@ -42,12 +43,19 @@ RIGHT = (0.0, -1.0, 0.0)
 #: The roll axis of the foot rises forward, 30 degrees from the sole.
 TOE_ROLL_AXIS = (math.cos(math.radians(30.0)), 0.0, 0.5)
 
+#: Axis of the spring at the heel, of which the achilles rod pulls.
+HEEL_AXIS = (-0.0550, -0.9969, -0.0555)
+
 # Efforts, velocities, damping and friction as published.
 ROLL_MOTOR = Motor(effort=113.0, velocity=4.58, damping=1.0, friction=1.0)
 YAW_MOTOR = Motor(effort=79.2, velocity=7.33, damping=1.0, friction=1.0)
 PITCH_MOTOR = Motor(effort=216.9, velocity=8.51, damping=1.0, friction=0.5)
 KNEE_MOTOR = Motor(effort=231.3, velocity=8.51, damping=1.0, friction=0.5)
 TOE_MOTOR = Motor(effort=42.0, velocity=11.52, damping=1.0, friction=1.0)
+
+#: The leaf springs.
+SHIN_SPRING = Spring(stiffness=6000.0)
+HEEL_SPRING = Spring(stiffness=4375.0)
 
 
 def draw() -> Drawing:
@@ -79,18 +87,19 @@ def draw_torso(name: str, description: str, root: Literal["fixed", "floating"] =
     return robot
 
 
-def draw_leg(robot: Drawing, prefix: str = "", ends: tuple[End, End] = ("ball", "ball")) -> None:
+def draw_leg(robot: Drawing, prefix: str = "", ends: tuple[End, End] = ("ball", "ball"), springs: bool = False) -> None:
     """The left leg, from the hip to the foot.
 
     Args:
         robot: What it is drawn into: it has a torso.
         prefix: Of all names.
         ends: What the three rods have at their ends: at the thigh or the crank, and at the tarsus or the foot.
+        springs: Whether the leaf springs at the shin and at the heel can bend.
     """
     draw_hip(robot, prefix)
-    draw_shank(robot, prefix)
+    draw_shank(robot, prefix, springs)
     draw_foot(robot, prefix)
-    draw_rods(robot, prefix, ends)
+    draw_rods(robot, prefix, ends, f"{prefix}heel" if springs else f"{prefix}tarsus")
 
 
 def draw_hip(robot: Drawing, prefix: str) -> None:
@@ -122,27 +131,31 @@ def draw_hip(robot: Drawing, prefix: str) -> None:
     )
 
 
-def draw_shank(robot: Drawing, prefix: str) -> None:
+def draw_shank(robot: Drawing, prefix: str, springs: bool) -> None:
     """The shin, with the spring at its top at rest, and the tarsus, with the two motors of the foot."""
-    thigh, shin = f"{prefix}thigh", f"{prefix}shin"
+    thigh, knee, shin, tarsus = f"{prefix}thigh", f"{prefix}knee", f"{prefix}shin", f"{prefix}tarsus"
+    turn = revolute(f"{prefix}motor_knee", thigh, KNEE, RIGHT, degrees=(-71.0, 49.0), drawn=17.2, motor=KNEE_MOTOR)
+    top = Cylinder(KNEE, (0.0100, 0.0905, -0.3480), radius=0.035, mass=1.227)
     tube = Cylinder(SHIN_TOP, HOCK, radius=0.03, mass=0.896)
+    lever = Cylinder(HEEL if springs else HOCK, ACHILLES_TARSUS, radius=0.012, mass=0.23)
+    if springs:
+        robot.body(knee, turn, top, material="leg")
+        bend = revolute(f"{prefix}spring_shin", knee, SHIN_TOP, RIGHT, degrees=(-6.0, 6.0), spring=SHIN_SPRING)
+        robot.body(shin, bend, tube, material="leg", contacts=(tube,))
+    else:
+        robot.body(shin, turn, top, tube, material="leg", contacts=(tube,))
     robot.body(
-        shin,
-        revolute(f"{prefix}motor_knee", thigh, KNEE, RIGHT, degrees=(-71.0, 49.0), drawn=17.2, motor=KNEE_MOTOR),
-        Cylinder(KNEE, (0.0100, 0.0905, -0.3480), radius=0.035, mass=1.227),
-        tube,
-        material="leg",
-        contacts=(tube,),
-    )
-    robot.body(
-        f"{prefix}tarsus",
+        tarsus,
         revolute(f"{prefix}free_knee", shin, HOCK, RIGHT, degrees=(-50.3, 71.6), drawn=-17.8),
         Cylinder(HOCK, ANKLE, radius=0.016, mass=0.603),
-        Cylinder(HOCK, ACHILLES_TARSUS, radius=0.012, mass=0.23),
+        *(() if springs else (lever,)),
         Cylinder(beside(TOE_MOTOR_1, 0.0905), TOE_MOTOR_1, radius=0.028, mass=0.36),
         Cylinder(beside(TOE_MOTOR_2, 0.0905), TOE_MOTOR_2, radius=0.028, mass=0.36),
         material="leg",
     )
+    if springs:
+        bend = revolute(f"{prefix}spring_heel", tarsus, HEEL, HEEL_AXIS, degrees=(-6.0, 6.0), spring=HEEL_SPRING)
+        robot.body(f"{prefix}heel", bend, lever, material="rod")
 
 
 def draw_foot(robot: Drawing, prefix: str) -> None:
@@ -164,12 +177,12 @@ def draw_foot(robot: Drawing, prefix: str) -> None:
     )
 
 
-def draw_rods(robot: Drawing, prefix: str, ends: tuple[End, End]) -> None:
-    """The achilles rod, and the two cranks that move the foot through a rod each."""
+def draw_rods(robot: Drawing, prefix: str, ends: tuple[End, End], heel: str) -> None:
+    """The achilles rod, from the thigh to the heel, and the two cranks that move the foot through a rod each."""
     robot.rod(
         f"{prefix}achilles",
         (f"{prefix}thigh", ACHILLES_THIGH),
-        (f"{prefix}tarsus", ACHILLES_TARSUS),
+        (heel, ACHILLES_TARSUS),
         radius=0.007,
         mass=0.178,
         material="rod",

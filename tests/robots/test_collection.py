@@ -29,7 +29,7 @@ DIMENSIONS = {
     "bennett": (None, None, None, None, 1, 1, 0),
     "cassie_leg": (19, {"6d": 2}, 12, 12, 7, 5, 2),
     "delta": (None, None, None, None, None, 3, None),
-    "digit_2legs": (48, {"6d": 6}, 36, 36, 12, 12, 0),
+    "digit_2legs": (52, {"6d": 6}, 36, 36, 16, 12, 4),
     "digit_leg": (27, {"6d": 3}, 18, 18, 9, 6, 3),
     "digit_leg_3d": (18, {"3d": 3}, 9, 9, 9, 6, 3),
     "disney_2legs": (54, {"6d": 6}, 36, 36, 18, 12, 6),
