@@ -342,7 +342,7 @@ def test_forward_kinematics_from_a_singular_start_equals_single_one() -> None:
 
 
 def test_values_in_any_order_give_the_same() -> None:
-    robot = robot_called("cassie_leg")
+    robot = robot_called("digit_leg")
     values = motors_near(robot, eurdf.assemble(robot).q, np.random.default_rng(4), 7, 0.3)
     order = [3, 1, 6, 0, 2, 5, 4]
     forward, shuffled = (eurdf.batch.forward_kinematics(robot, each) for each in (values, values[order]))

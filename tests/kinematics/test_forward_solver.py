@@ -60,7 +60,7 @@ def by_pinocchio(robot: Any, q: Any, v: Any, tau: Any) -> tuple[Any, Any]:
     return np.array(a), -np.array(data.lambda_c)
 
 
-@pytest.mark.parametrize("name", ["digit_leg", "kangaroo_leg", "stewart_platform", "cassie_leg"])
+@pytest.mark.parametrize("name", ["digit_leg", "kangaroo_leg", "stewart_platform", "talos_leg"])
 def test_regular_robot_is_solved_without_elimination(name: str, eliminations: Counted) -> None:
     robot = eurdf.load(name, geometry=False)
     for seed in range(3):

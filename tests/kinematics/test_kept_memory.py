@@ -30,7 +30,7 @@ def answers(robot: eurdf.Robot, seed: int) -> list[Any]:
     ]
 
 
-@pytest.mark.parametrize("name", ["five_bar", "delta", "cassie_leg"])
+@pytest.mark.parametrize("name", ["five_bar", "delta", "talos_leg"])
 def test_threads_get_what_a_fresh_robot_answers(name: str) -> None:
     shared, seeds = eurdf.load(name, geometry=False), range(12)
     with ThreadPoolExecutor(4) as threads:

@@ -27,7 +27,8 @@ FOLDERS = sorted(file.parent for file in ROOT.glob("robots/*/robot.yaml"))
 DIMENSIONS = {
     "battobot": (48, {"6d": 6}, 36, 36, 12, 12, 0),
     "bennett": (None, None, None, None, 1, 1, 0),
-    "cassie_leg": (19, {"6d": 2}, 12, 12, 7, 5, 2),
+    "cassie_2legs": (38, {"6d": 4}, 24, 24, 14, 10, 4),
+    "cassie_leg": (21, {"6d": 2}, 12, 12, 9, 5, 4),
     "delta": (None, None, None, None, None, 3, None),
     "digit_2legs": (52, {"6d": 6}, 36, 36, 16, 12, 4),
     "digit_leg": (27, {"6d": 3}, 18, 18, 9, 6, 3),
@@ -58,7 +59,16 @@ DIMENSIONS = {
 #: Of those whose dimensions are their own affair, the motions that the actuators decide.
 CONTROLLED = {"delta": 3, "stewart_platform": 6, "tesla_optimus_ankle": 2, "unitree_g1_ankle": 2}
 
-TWO_LEGGED = {"battobot", "digit_2legs", "disney_2legs", "kangaroo_2legs", "talos_2legs", "tello", "unitree_g1"}
+TWO_LEGGED = {
+    "battobot",
+    "cassie_2legs",
+    "digit_2legs",
+    "disney_2legs",
+    "kangaroo_2legs",
+    "talos_2legs",
+    "tello",
+    "unitree_g1",
+}
 
 
 def named(folder):

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 import pinocchio as pin
 
 from eurdf.kinematics.analysis import LoopAnalysis, Motion
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.loop import joints_of_loops
 from eurdf.kinematics.scale import characteristic_length
+from eurdf.kinematics.sparse_basis import sparse_basis
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -53,24 +54,30 @@ class PassiveMotions:
         A spin is a motion by which all bodies that move turn about one fixed line: their twists, seen from a point of
         the line, are multiples of one that only turns.
         """
-        return self._unsprung(
-            [motion for motion in loop.motions if not _turns_about_one_line(self._twists(motion), self._length)]
-        )
+        motions = self._unsprung(loop.motions)
+        return [motion for motion in motions if not _turns_about_one_line(self._twists(motion), self._length)]
 
     def needs_actuator(self, motion: Motion) -> bool:
         """Whether a motion outside of the loops is neither against a spring nor one of the root or a wheel."""
         return bool(self._unsprung([motion])) and not self._is_root_or_wheel(motion)
 
-    def _unsprung(self, motions: list[Motion]) -> list[Motion]:
-        """The motions without those that stretch springs; with them if a combination of those stretches none."""
-        stretched = np.zeros((len(motions), len(self._sprung)))
-        for row, motion in zip(stretched, motions, strict=True):
-            velocity = dict(zip(motion.velocities.tolist(), motion.values.tolist(), strict=True))
-            row[:] = [velocity.get(index, 0.0) for index in self._sprung]
-        resisted: npt.NDArray[np.bool_] = np.any(stretched, axis=1)
-        if np.linalg.matrix_rank(stretched, tol=_SAME_LINE) < resisted.sum():
+    def _unsprung(self, motions: Sequence[Motion]) -> Sequence[Motion]:
+        """Of motions at one configuration, and all that they combine to, those that stretch no spring."""
+        basis = np.zeros((len(motions), self._robot.model.nv))
+        for row, motion in zip(basis, motions, strict=True):
+            row[motion.velocities] = motion.values
+        stretched = basis[:, self._sprung]
+        if not stretched.any():
             return motions
-        return [motion for motion, held in zip(motions, resisted, strict=True) if not held]
+        combinations, stretches, _ = np.linalg.svd(stretched)
+        rank = int((stretches > _SAME_LINE).sum())
+        names = self._robot.tree.velocity_names
+        found = []
+        for row in sparse_basis(combinations[:, rank:].T @ basis):
+            moving = np.flatnonzero(row)
+            joints = tuple(dict.fromkeys(names[index] for index in moving.tolist()))
+            found.append(Motion(joints, moving, row[moving], motions[0].q))
+        return found
 
     def _is_root_or_wheel(self, motion: Motion) -> bool:
         """Whether a motion outside of the loops is one of a floating or planar root, or of a wheel.
