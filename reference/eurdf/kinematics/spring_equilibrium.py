@@ -57,8 +57,11 @@ def spring_equilibrium(robot: Robot, q: Vector, held: Indices, coordinates: Indi
             return q
         values, axes = np.linalg.eigh(stiffness + _curvature(robot, q, K, held, F, spaces.scale))
         acting = np.abs(values) > _SLACK * largest
-        # With the absolute values, the step leads downhill also where the energy is not convex.
-        z = -axes[:, acting] @ ((axes[:, acting].T @ gradient) / np.abs(values[acting]))
+        # With the absolute values, the step leads downhill also where the energy is not convex. Each axis has its own
+        # bound: along one that springs hardly act on, such as the spin of a rod, the step is long and saves little.
+        axes = axes[:, acting]
+        bound = _LONGEST_MOTION / np.abs((F @ axes) / spaces.scale[:, None]).max(axis=0)
+        z = -axes @ np.clip((axes.T @ gradient) / np.abs(values[acting]), -bound, bound)
         v = F @ z
         size = float(np.abs(v / spaces.scale).max(initial=0.0))
         last = size <= _LAST_STEP
