@@ -130,7 +130,7 @@ def inverse_kinematics(
     loops (1 m without loops). Every step is a damped Gauss-Newton step y along the closed configurations, v = Z y with
     K Z = 0, bounded by the limits (active set), after which `assemble` closes the loops. So loops are closed and limits
     respected at every step, even if the targets cannot be reached. If a descent ends off target, others start around
-    q0.
+    q0. Springs have no effect: they may be deflected in the result.
 
     Source: `closedLoopInverseKinematics` of the toolbox of Batto, De Matteïs and Mansard, 2025, which passes the loops
     to a general solver as equality constraints.

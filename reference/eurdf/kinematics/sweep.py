@@ -89,9 +89,9 @@ def sweep(
     """Move one actuator from a closed configuration to its position limits, with the other actuators held.
 
     Let K_a be the actuator's column of K, and K_p the columns of the passive joints. The motion satisfies
-    K_p v_p = -K_a v_a and r(q) = 0 with the least v_p. It ends where the actuator or a passive joint reaches its
-    position limit, or where K_p loses rank (a dead point). Steps are halved until none can jump over a dead point or to
-    another branch.
+    K_p v_p = -K_a v_a and r(q) = 0 with the least v_p; springs have no effect on it. It ends where the actuator or a
+    passive joint reaches its position limit, or where K_p loses rank (a dead point). Steps are halved until none can
+    jump over a dead point or to another branch.
 
     If an actuator has no limit in one direction (a continuous joint, or no range in the URDF), it moves at most half a
     turn from the start in that direction. If it translates, it moves at most by the characteristic length of the loops:
