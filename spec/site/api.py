@@ -35,6 +35,9 @@ _ALIAS = re.compile(r"(?<![\w.'\"])[A-Z]\w*\b(?![.'\"])")
 # What is below the line, after one letter: B_J, τ_m.
 _SUBSCRIPT = re.compile(r"(?:(?<=\b[^\W\d_])|(?<=[²Δ][^\W\d_]))_([A-Za-z]{1,2})(?![A-Za-z0-9_(])")
 
+# A name in the text of a page; a file such as eurdf.yaml is none.
+_PUBLIC_NAME = re.compile(rf"{PACKAGE}(\.[A-Za-z]\w*)+")
+
 # The module of a type, where Sphinx writes that it need not be shown.
 _QUALIFIED = re.compile(r"~(?:\w+\.)*")
 
@@ -52,7 +55,8 @@ class ApiDirective(SphinxDirective):
         """Their documentation."""
         module = self.options.get("of", PACKAGE)
         entries = [f"{_directive_of(module, name)}:: {module}.{name}" for name in "\n".join(self.content).split()]
-        lines = ["```{eval-rst}", f".. py:currentmodule:: {module}\n", *(f".. {entry}\n" for entry in entries), "```"]
+        scope = f".. py:{'currentmodule' if module == PACKAGE else 'module'}:: {module}\n"
+        lines = ["```{eval-rst}", scope, *(f".. {entry}\n" for entry in entries), "```"]
         return self.parse_text_to_nodes("\n".join(lines), offset=self.content_offset)
 
 
@@ -70,22 +74,19 @@ class DocstringName(SphinxRole):
         """The link; it is resolved after all pages are read."""
         if self.text in REGISTRY:
             return [reference_to("code", self.text, self.env.current_document.docname)], []
-        text = nodes.literal("", self.text, classes=["py", "py-obj"])
-        scope = {name: self.env.ref_context.get(name) for name in ("py:module", "py:class")}
-        reference = pending_xref(
-            "",
-            text,
-            refdomain="py",
-            reftype="obj",
-            reftarget=self.text,
-            refdoc=self.env.current_document.docname,
-            refexplicit=False,
-            refwarn=False,
-            **scope,
-            **{_QUOTED: True},
+        reference = _reference(
+            self.text, nodes.literal("", self.text, classes=["py", "py-obj"]), self.env.current_document.docname
         )
+        for scope in ("py:module", "py:class"):
+            reference[scope] = self.env.ref_context.get(scope)
         self.set_source_info(reference)
         return [reference], []
+
+
+def _reference(name: str, shown: nodes.literal, page: str) -> pending_xref:
+    """A link to the documentation of a name, which is resolved after all pages are read."""
+    options = {"refdoc": page, "refexplicit": False, "refwarn": False, _QUOTED: True}
+    return pending_xref("", shown, refdomain="py", reftype="obj", reftarget=name, **options)
 
 
 def _signature(
@@ -160,6 +161,14 @@ def _typeset(app: Sphinx, document: nodes.document) -> None:
                 text.parent.replace(text, made)
 
 
+def _link_names(app: Sphinx, document: nodes.document) -> None:
+    """Link each public name in the text of a page, as `eurdf.load`, to its documentation."""
+    for literal in list(document.findall(nodes.literal)):
+        text, parent = literal.astext(), literal.parent
+        if _PUBLIC_NAME.fullmatch(text) and not isinstance(parent, nodes.reference | pending_xref):
+            parent.replace(literal, _reference(text, literal.deepcopy(), app.env.current_document.docname))
+
+
 def _unresolved(app: Sphinx, env: BuildEnvironment, node: pending_xref, text: Element) -> Element | None:
     """A type that has no page is text, and so is what is in backticks unless it is a dotted name of the package."""
     if node["refdomain"] != "py":
@@ -178,4 +187,5 @@ def setup(app: Sphinx) -> None:
     app.connect("autodoc-process-docstring", _docstring, priority=400)  # before napoleon
     app.connect("autodoc-skip-member", _skipped)
     app.connect("doctree-read", _typeset)
+    app.connect("doctree-read", _link_names)
     app.connect("missing-reference", _unresolved)

@@ -170,6 +170,12 @@ def test_docstring_has_links_shapes_and_errors(site: Path) -> None:
     assert "progress: Callable[[int, int], None] | None = None" in _text(site / "api_batch.html")
 
 
+def test_public_names_in_pages_are_links(site: Path) -> None:
+    page = (site / "toolbox.html").read_text(encoding="utf-8")
+    assert 'href="api_closing.html#eurdf.assemble"' in page
+    assert 'href="api_batch.html#module-eurdf.batch"' in page
+
+
 def test_clause_folds_its_cases_and_links_them(site: Path) -> None:
     page = (site / "closures.html").read_text(encoding="utf-8")
     clause = page[page.index('id="EU-CLO-002"') : page.index('id="EU-CLO-003"')]
