@@ -7,6 +7,7 @@
   const AROUND = 36; // vertices on a circle
   const QUARTER = 9; // and on a quarter of one
   const FIELD = 0.5; // of view, from top to bottom, rad
+  const UPRIGHT = [1, 0, 0, 0, 1, 0, 0, 0, 1];
 
   /** A surface: positions and normals of the corners of its triangles, three numbers each. */
   function surface(triangles) {
@@ -150,7 +151,7 @@
      *
      * @param poses Of the bodies, in the world.
      * @param opacity Of the shapes.
-     * @param marks {lines: [{from, to, color, width}], dots: [{at, color}]}, in the world, m.
+     * @param marks {lines: [{from, to, color, radius}], dots: [{at, color, radius}]}, in the world, m.
      */
     draw(poses, opacity, marks) {
       const { gl, canvas, places } = this;
@@ -171,11 +172,9 @@
       gl.uniformMatrix4fv(places.projection, false, this._projection(width / height));
       gl.uniform1f(places.opacity, 1);
       gl.uniform1f(places.lit, 0);
-      gl.uniformMatrix4fv(places.model, false, matrixOf({ R: rotation([0, 0, 0, 1]), p: [0, 0, 0] }));
+      gl.uniformMatrix4fv(places.model, false, matrixOf({ R: UPRIGHT, p: [0, 0, 0] }));
       this._drawMesh(this.ground, gl.LINES);
       gl.uniform1f(places.lit, 1);
-      for (const dot of marks.dots) this._mark(this.ball, { R: rotation([0, 0, 0, 1]), p: dot.at }, Array(3).fill(dot.radius), dot.color); // prettier-ignore
-      for (const line of marks.lines) this._line(line);
       for (const clear of [false, true]) {
         gl.uniform1f(places.opacity, opacity);
         gl.depthMask(!clear && opacity === 1);
@@ -186,6 +185,12 @@
           }
       }
       gl.depthMask(true);
+      gl.disable(gl.DEPTH_TEST); // marks are seen through what is in front of them
+      gl.uniform1f(places.opacity, 1);
+      gl.uniform1f(places.lit, 0);
+      for (const line of marks.lines) this._line(line);
+      for (const { at, radius, color } of marks.dots)
+        this._mark(this.ball, { R: UPRIGHT, p: at }, [radius, radius, radius], color);
     }
 
     /** Turn the camera, rad. */
