@@ -68,6 +68,17 @@ URDF_LOSSES = (
 )
 
 
+def loop_left_out(concept: str) -> LossKind:
+    """The loss of a loop of a type that no closure is; the concept is what the dialect calls it."""
+    return LossKind(
+        "import-loop",
+        concept,
+        Effect.DROPPED,
+        "is left out: loops are closed by spherical, fixed and revolute joints",
+        "let another joint of the loop close it",
+    )
+
+
 @dataclass(frozen=True, slots=True)
 class UrdfTree:
     """What a dialect shares with URDF.

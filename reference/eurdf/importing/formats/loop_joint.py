@@ -13,20 +13,14 @@ from lxml import etree
 
 from eurdf.importing.elements import named
 from eurdf.importing.robot_read import ImportFormat, RobotRead
-from eurdf.importing.urdf_tree import URDF_LOSSES, UrdfTree, read_tree
-from eurdf.loss import Effect, Losses, LossKind
+from eurdf.importing.urdf_tree import URDF_LOSSES, UrdfTree, loop_left_out, read_tree
+from eurdf.loss import Losses
 from eurdf.mechanism.constraint import Closure, FrameClosure, HingeClosure, PointClosure
 from eurdf.mechanism.frame import Anchor, Frame
 from eurdf.writing.names import UniqueNames
 
 LOSSES = (
-    LossKind(
-        "import-loop",
-        "loop joint",
-        Effect.DROPPED,
-        "is left out: loops are closed by spherical, fixed and revolute joints",
-        "let another joint of the loop close it",
-    ),
+    loop_left_out("loop joint"),
     *URDF_LOSSES,
 )
 

@@ -20,7 +20,7 @@ from eurdf.importing.exceptions import CannotImport
 #: Processor time (s) and memory (bytes) that compiling a file may take.
 SECONDS, MEMORY = 60, 6 << 30
 
-_PROGRAM = Path(__file__).with_name("mjcf_process.py")
+_PROGRAM = Path(__file__).with_name("process.py")
 
 
 @dataclass(frozen=True, slots=True)
