@@ -144,6 +144,14 @@ def _docstring(app: Sphinx, what: str, name: str, value: Any, options: Any, line
         returns = line.strip() == "Returns:"
 
 
+def _without_contents(app: Sphinx, what: str, name: str, value: Any, options: Any, lines: list[str]) -> None:
+    """Leave attributes out of the contents of the page: they are many, and each page copies the contents of all."""
+    for index in reversed(range(len(lines))):
+        before, found, _ = lines[index].partition(".. attribute::")
+        if found and not before.strip():
+            lines.insert(index + 1, f"{before}   :no-contents-entry:")
+
+
 def _skipped(app: Sphinx, what: str, name: str, value: Any, skip: bool, options: Any) -> bool | None:
     """Leave out the fields of a named tuple as members: the docstring of the class explains them."""
     return True if type(value).__name__ == "_tuplegetter" else None
@@ -185,6 +193,7 @@ def setup(app: Sphinx) -> None:
     app.add_role("docstring-name", DocstringName())
     app.connect("autodoc-process-signature", _signature)
     app.connect("autodoc-process-docstring", _docstring, priority=400)  # before napoleon
+    app.connect("autodoc-process-docstring", _without_contents, priority=600)  # after napoleon
     app.connect("autodoc-skip-member", _skipped)
     app.connect("doctree-read", _typeset)
     app.connect("doctree-read", _link_names)
