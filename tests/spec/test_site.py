@@ -18,6 +18,7 @@ from eurdf.diagnostics import REGISTRY
 from spec.site.citation import case_citations
 from spec.site.clause import SPEC, read_chapters, read_clauses
 from spec.site.pages import address
+from support.browser import browser
 
 ROOT = Path(__file__).parents[2]
 
@@ -314,3 +315,29 @@ def test_code_schemas_and_pages_state_no_address_of_the_project() -> None:
     files = [path for folder in folders for kind in ("json", "md", "py") for path in (ROOT / folder).rglob(f"*.{kind}")]
     assert len(files) > 500
     assert [path for path in files if any(url in path.read_text(encoding="utf-8") for url in addresses)] == []
+
+
+@pytest.mark.slow
+def test_robot_moves_on_its_page_from_a_file_and_offline(tmp_path: Path) -> None:
+    with browser() as chromium:  # first: without one, nothing is built
+        source = _small_site(tmp_path, "# Site\n\n```{toctree}\nrobots/index\n```\n")
+        done = _build(tmp_path / "html", source, ("five_bar_3d",))
+        assert (done.returncode, done.stderr) == (0, "")
+        page = chromium.new_context(offline=True, viewport={"width": 360, "height": 700}).new_page()
+        errors: list[str] = []
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
+        page.goto((tmp_path / "html/robots/index.html").as_uri())
+        page.get_by_role("link", name="Five-bar linkage").last.click()
+        page.get_by_text("The loops are closed").wait_for()
+        motors = page.get_by_role("slider")
+        assert motors.count() == 2
+        for index, value in enumerate(("0.2", "-0.1")):
+            motors.nth(index).fill(value)
+        moved = page.evaluate(
+            "(({motion}) => [motion.value(0), motion.value(1)])(document.querySelector('.eu-live').page)"
+        )
+        assert moved == pytest.approx([0.2, -0.1], abs=1e-12)
+        assert float(page.locator(".eu-live-status").get_attribute("data-residual")) < 1e-9
+        assert page.evaluate("document.documentElement.scrollWidth") <= 360
+        assert errors == []
