@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -14,6 +14,9 @@ from robots.builder.shape import Cylinder, Matrix3, Shape, Sphere, Vector3, midp
 from robots.builder.solid import Solid
 
 Color = tuple[float, float, float, float]
+
+#: Of a joint: one number, or a list of several.
+Coordinates = float | Sequence[float]
 
 #: What a rod has at its end: a joint, or (at its second end) a point that a 3d closure holds.
 End = Literal["ball", "universal", "point"]
@@ -111,7 +114,8 @@ class Drawing:
         closures: In the order drawn.
         couplings: Likewise.
         frames: Likewise.
-        configurations: Beside the drawn one, by name: coordinates (rad, m) by joint; those left out are 0.
+        configurations: Beside the drawn one, by name: coordinates by joint (rad, m; a list where there are several);
+            those of joints left out are neutral.
     """
 
     def __init__(
@@ -129,7 +133,7 @@ class Drawing:
         self.closures: list[Closure] = []
         self.couplings: list[Coupling] = []
         self.frames: list[Frame] = []
-        self.configurations: dict[str, Mapping[str, float]] = {}
+        self.configurations: dict[str, Mapping[str, Coordinates]] = {}
 
     @property
     def joints(self) -> list[Joint]:
@@ -213,8 +217,8 @@ class Drawing:
             raise ValueError(f"frame '{name}' is on '{body}', which is not drawn")
         self.frames.append(Frame(name, body, at, rpy))
 
-    def configure(self, name: str, **joints: float) -> None:
-        """Names a configuration by the coordinates (rad, m) of joints, seen from the drawn pose.
+    def configure(self, name: str, **joints: Coordinates) -> None:
+        """Names a configuration by the coordinates of joints, seen from the drawn pose (rad, m; quaternion x y z w).
 
         Raises:
             ValueError: If a joint is not drawn.

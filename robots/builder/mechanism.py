@@ -67,7 +67,7 @@ def mechanism_of(drawing: drawn.Drawing) -> Mechanism:
         configurations={
             "assembled": {},
             **{
-                name: {joint: (value,) for joint, value in coordinates.items()}
+                name: {joint: _coordinates(value) for joint, value in coordinates.items()}
                 for name, coordinates in drawing.configurations.items()
             },
         },
@@ -79,6 +79,10 @@ def mechanism_of(drawing: drawn.Drawing) -> Mechanism:
             if motor.name or motor.control
         },
     )
+
+
+def _coordinates(value: drawn.Coordinates) -> tuple[float, ...]:
+    return _lengths((value,) if isinstance(value, float | int) else value)
 
 
 def _body(body: drawn.Body, drawing: drawn.Drawing) -> Body:
