@@ -147,8 +147,8 @@ def draw_shank(robot: Drawing, prefix: str, springs: bool) -> None:
     robot.body(
         tarsus,
         revolute(f"{prefix}free_knee", shin, HOCK, RIGHT, degrees=(-50.3, 71.6), drawn=-17.8),
-        Cylinder(HOCK, ANKLE, radius=0.016, mass=0.603),
-        *(() if springs else (lever,)),
+        Cylinder(HOCK, ANKLE, radius=0.016, mass=0.553 if springs else 0.603),
+        *((Cylinder(HOCK, HEEL, radius=0.012, mass=0.05),) if springs else (lever,)),
         Cylinder(beside(TOE_MOTOR_1, 0.0905), TOE_MOTOR_1, radius=0.028, mass=0.36),
         Cylinder(beside(TOE_MOTOR_2, 0.0905), TOE_MOTOR_2, radius=0.028, mass=0.36),
         material="leg",

@@ -52,6 +52,7 @@ DIMENSIONS = {
     "talos_leg": (13, {"6d": 1}, 6, 6, 7, 6, 1),
     "tello": (20, {"distance": 6}, 10, 10, 10, 10, 0),
     "tesla_optimus_ankle": (None, None, None, None, None, 2, None),
+    "toddlerbot_2legs": (30, {"hinge": 6}, 35, 14, 16, 16, 0),
     "unitree_g1": (47, {"3d": 6}, 18, 18, 29, 29, 0),
     "unitree_g1_ankle": (None, None, None, None, None, 2, None),
     "wl16_leg": (42, {"6d": 5}, 30, 30, 12, 6, 6),
@@ -68,6 +69,7 @@ TWO_LEGGED = {
     "kangaroo_2legs",
     "talos_2legs",
     "tello",
+    "toddlerbot_2legs",
     "unitree_g1",
 }
 
