@@ -1,4 +1,7 @@
-"""`eurdf.load(geometry=False)`, all checks included, against bare `pin.buildModelFromUrdf` on the same URDF.
+"""`eurdf.load(geometry=False)` against bare `pin.buildModelFromUrdf` on the same URDF.
+
+Inertias, and whether the loops close in the configuration `assembled`, are checked when `robot.diagnostics` is first
+used: the last column is the ratio with them.
 
 Then whole processes, imports included, against processes that only import what `eurdf` needs. All are times of the
 processor, the least of several that run in turns.
@@ -90,7 +93,7 @@ def tables(published: bool = True) -> Iterator[Table]:
     Args:
         published: Whether to measure published robots, too, where they are present beside the checkout.
     """
-    columns = ("robot", "joints", "`eurdf.load`", "pin", "ratio")
+    columns: tuple[str, ...] = ("robot", "joints", "`eurdf.load`", "pin", "ratio", "with diagnostics")
     folders = [folder for folder in robots() if published or folder.parent == ROOT / "robots"]
     yield Table(columns, [_row(folder) for folder in folders])
     with tempfile.TemporaryDirectory() as folder:
@@ -110,8 +113,10 @@ def _made(folder: Path) -> Path:
 def _row(folder: Path) -> tuple[str, ...]:
     load = partial(eurdf.load, folder, geometry=False)
     joints = load().model.njoints - 1
-    ours, peer = alternate(load, partial(pin.buildModelFromUrdf, str(folder / "robot.urdf")))
-    return folder.name, str(joints), duration(ours), duration(peer), ratio(ours, peer)
+    bare = partial(pin.buildModelFromUrdf, str(folder / "robot.urdf"))
+    ours, peer = alternate(load, bare)
+    diagnosed = alternate(lambda: load().diagnostics, bare)
+    return folder.name, str(joints), duration(ours), duration(peer), ratio(ours, peer), ratio(*diagnosed)
 
 
 def _process_row(
