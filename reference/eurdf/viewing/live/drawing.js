@@ -121,9 +121,10 @@
       const gl = (this.gl = canvas.getContext("webgl2", { antialias: true, premultipliedAlpha: true }));
       if (!gl) throw new Error("this browser has no WebGL 2");
       this.look = look;
-      this.camera = { azimuth: -0.65, elevation: 0.35, distance: (0.54 * look.size) / Math.tan(FIELD / 2), at: look.center };
+      const distance = (0.54 * look.size) / Math.tan(FIELD / 2);
+      this.camera = { azimuth: -0.65, elevation: 0.35, distance, at: look.center };
       const program = (this.program = gl.createProgram());
-      for (const [type, source] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) { // prettier-ignore
+      for (const [type, source] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]]) {
         const shader = gl.createShader(type);
         gl.shaderSource(shader, source);
         gl.compileShader(shader);
@@ -215,7 +216,7 @@
     _frame() {
       const { azimuth, elevation, distance, at } = this.camera;
       const [ca, sa, ce, se] = [Math.cos(azimuth), Math.sin(azimuth), Math.cos(elevation), Math.sin(elevation)];
-      const [toward, right] = [[ce * ca, ce * sa, se], [-sa, ca, 0]]; // prettier-ignore
+      const [toward, right] = [[ce * ca, ce * sa, se], [-sa, ca, 0]];
       return { right, toward, up: cross(toward, right), eye: add(at, scaled(distance, toward)) };
     }
 
@@ -225,7 +226,8 @@
       const [near, far] = [Math.max(distance - 2 * size, 0.02 * size), distance + 6 * size];
       // A narrow picture shows as much from left to right as a square one.
       const f = Math.min(1, aspect) / Math.tan(FIELD / 2);
-      return [f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, (2 * far * near) / (near - far), 0];
+      const [a, b] = [(far + near) / (near - far), (2 * far * near) / (near - far)];
+      return [f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, a, -1, 0, 0, b, 0];
     }
 
     _line({ from, to, color, radius }) {
@@ -261,7 +263,7 @@
       gl.bindVertexArray(array);
       gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
       gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(vertices), gl.STATIC_DRAW);
-      for (const [name, count, first] of [["position", 3, 0], ["normal", 3, 3], ["color", 4, 6]]) { // prettier-ignore
+      for (const [name, count, first] of [["position", 3, 0], ["normal", 3, 3], ["color", 4, 6]]) {
         const place = gl.getAttribLocation(program, name);
         gl.enableVertexAttribArray(place);
         gl.vertexAttribPointer(place, count, gl.FLOAT, false, 40, 4 * first);

@@ -44,7 +44,7 @@
       1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w),
       2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
       2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y),
-    ]; // prettier-ignore
+    ];
   }
 
   /** The unit quaternion of a rotation, from its largest component. */
@@ -55,7 +55,7 @@
     const [x, y, z] = [R[7] - R[5], R[2] - R[6], R[3] - R[1]];
     const [xy, xz, yz] = [R[1] + R[3], R[2] + R[6], R[5] + R[7]];
     const s = squares[largest];
-    return unit([[s, xy, xz, x], [xy, s, yz, y], [xz, yz, s, z], [x, y, z, s]][largest]); // prettier-ignore
+    return unit([[s, xy, xz, x], [xy, s, yz, y], [xz, yz, s, z], [x, y, z, s]][largest]);
   }
 
   const unit = (v) => {
@@ -203,5 +203,5 @@
   eurdf.algebra = {
     add, subtract, scaled, dot, cross, norm, unit, rotate, rotateBack, column, compose, relative, rotation, exponential,
     multiplied, log6, displacement, inner, svd, rank, leastSolution,
-  }; // prettier-ignore
+  };
 })();

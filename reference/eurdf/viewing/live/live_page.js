@@ -33,10 +33,11 @@
       const data = JSON.parse(root.querySelector("script[type='application/json']").textContent);
       this.data = data;
       this.motion = new globalThis.eurdf.Motion(data);
-      this.loops = data.constraints.filter((each) => each.type !== "coupling");
+      this.closures = this.motion.mechanism.constraints.filter((each) => each.type !== "coupling");
       const view = element(root, "div", { class: "eu-live-view" });
       const canvas = element(view, "canvas", { tabindex: "0", role: "img" });
-      canvas.setAttribute("aria-label", `The robot ${data.name}, in three dimensions. Arrow keys turn it, + and - zoom.`);
+      const label = `The robot ${data.name}, in three dimensions. Arrow keys turn it, + and - zoom.`;
+      canvas.setAttribute("aria-label", label);
       const panel = element(root, "form", { class: "eu-live-panel", "aria-label": "Actuators" });
       panel.addEventListener("submit", (event) => event.preventDefault());
       this.buttons = element(panel, "div", { class: "eu-live-buttons" });
@@ -103,7 +104,7 @@
       button("Reset", () => this._goTo(this.data.start));
       for (const [name, q] of Object.entries(this.data.configurations))
         if (name !== "assembled") button(name, () => this._goTo(q));
-      if (this.loops.length) {
+      if (this.closures.length) {
         const label = element(this.buttons, "label");
         const box = element(label, "input", { type: "checkbox" });
         element(label, "span", {}, "Loops");
@@ -166,7 +167,7 @@
       const { size } = this.data;
       const marks = { lines: [], dots: [] };
       const line = (from, to, color) => marks.lines.push({ from, to, color, radius: LINE * size });
-      for (const constraint of this.marked ? mechanism.constraints.filter((each) => each.type !== "coupling") : []) {
+      for (const constraint of this.marked ? this.closures : []) {
         const [ofA, a, b, ofB] = mechanism.ends(constraint, placed);
         line(ofA, a, CLOSURE);
         line(a, b, constraint.type === "distance" ? CLOSURE : OPEN);
@@ -219,7 +220,7 @@
         ArrowLeft: () => drawing.turn(0.1, 0), ArrowRight: () => drawing.turn(-0.1, 0),
         ArrowUp: () => drawing.turn(0, 0.1), ArrowDown: () => drawing.turn(0, -0.1),
         "+": () => drawing.zoom(0.9), "-": () => drawing.zoom(1 / 0.9),
-      }; // prettier-ignore
+      };
       canvas.addEventListener("keydown", (event) => {
         if (!keys[event.key]) return;
         event.preventDefault();

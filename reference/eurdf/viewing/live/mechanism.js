@@ -8,15 +8,15 @@
   const {
     add, subtract, scaled, dot, cross, norm, unit, rotate, rotateBack, column, compose, relative, rotation, exponential,
     multiplied, log6, displacement,
-  } = globalThis.eurdf.algebra; // prettier-ignore
+  } = globalThis.eurdf.algebra;
 
   const HERE = [0, 0, 0];
   const IDENTITY = { R: [1, 0, 0, 0, 1, 0, 0, 0, 1], p: HERE };
   const poseOf = ([x, y, z, ...q]) => ({ R: rotation(q), p: [x, y, z] });
   const about = (axis, angle) => rotation(exponential(scaled(angle, axis)));
 
-  /** The velocity of a rotation about an axis through a point, of a translation: its part that is the same everywhere
-   * (the velocity of the point at the origin of the world), and its angular part. */
+  /** The velocity of a rotation about an axis through a point, and of a translation along an axis: that of the point at
+   * the origin of the world, and the angular one. */
   const turning = (axis, point) => ({ linear: cross(point, axis), angular: axis });
   const sliding = (axis) => ({ linear: axis, angular: HERE });
   const both = (a, b) => ({ linear: add(a.linear, b.linear), angular: add(a.angular, b.angular) });
@@ -126,9 +126,9 @@
 
   /** What the shortest rotation that takes z to the unit vector a makes of x and y; of -z, the half turn about x. */
   function planeAcross(a) {
-    if (a[2] < -1 + 1e-9 && Math.hypot(a[0], a[1]) < 1e-9) return [[1, 0, 0], [0, -1, 0]]; // prettier-ignore
+    if (a[2] < -1 + 1e-9 && Math.hypot(a[0], a[1]) < 1e-9) return [[1, 0, 0], [0, -1, 0]];
     const turn = [-a[1], a[0], 0];
-    return [[1, 0, 0], [0, 1, 0]].map((each) => { // prettier-ignore
+    return [[1, 0, 0], [0, 1, 0]].map((each) => {
       const once = cross(turn, each);
       return add(add(each, once), scaled(1 / (1 + a[2]), cross(turn, once)));
     });

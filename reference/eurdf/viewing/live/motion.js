@@ -38,30 +38,21 @@
     return { velocities: [...velocities].sort(ascending), constraints: [...constraints] };
   }
 
-  class Branch {
-    constructor(mechanism, velocity, held) {
-      this.mechanism = mechanism;
-      const group = groupOf(mechanism, velocity, held);
-      [this.velocities, this.constraints] = [group.velocities, group.constraints];
-      this.driven = this.velocities.indexOf(velocity);
-      this.units = this.velocities.map((each) => mechanism.data.units[each]);
-      this.scale = this.constraints.flatMap((each) => each.scale);
+  /** Some constraints, and the velocities that may meet them; all are dimensionless but for the residual. */
+  class Loops {
+    constructor(mechanism, velocities, constraints) {
+      Object.assign(this, { mechanism, velocities, constraints });
+      this.units = velocities.map((each) => mechanism.data.units[each]);
+      this.scale = constraints.flatMap((each) => each.scale);
     }
 
-    /** The residual of the loops, m and rad. */
+    /** The residual, m and rad. */
     residual(q) {
       const placed = this.mechanism.place(q);
       return this.constraints.flatMap((each) => this.mechanism.residual(each, q, placed));
     }
 
-    /** A closed configuration, and K there, dimensionless. */
-    at(q, correction = 0) {
-      const K = this.columns(q);
-      const passive = svd(K.filter((_, index) => index !== this.driven));
-      const found = rank(passive.values);
-      return { q, correction, K, passive, rank: found, smallest: found ? passive.values[found - 1] : Infinity };
-    }
-
+    /** The columns of K. */
     columns(q) {
       const placed = this.mechanism.place(q);
       const K = this.velocities.map(() => new Float64Array(this.scale.length));
@@ -77,6 +68,30 @@
         first += constraint.scale.length;
       }
       return K;
+    }
+
+    /** The configuration after a step. */
+    moved(q, step) {
+      const v = new Float64Array(this.mechanism.data.units.length);
+      step.forEach((each, index) => (v[this.velocities[index]] = this.units[index] * each));
+      return this.mechanism.integrate(q, v);
+    }
+  }
+
+  /** Steps of one velocity along the branch of closed configurations, while others are held. */
+  class Branch extends Loops {
+    constructor(mechanism, velocity, held) {
+      const { velocities, constraints } = groupOf(mechanism, velocity, held);
+      super(mechanism, velocities, constraints);
+      this.driven = velocities.indexOf(velocity);
+    }
+
+    /** A closed configuration, and K there, dimensionless. */
+    at(q, correction = 0) {
+      const K = this.columns(q);
+      const passive = svd(K.filter((_, index) => index !== this.driven));
+      const found = rank(passive.values);
+      return { q, correction, K, passive, rank: found, smallest: found ? passive.values[found - 1] : Infinity };
     }
 
     /** The configuration after the coordinate has moved by h, rad or m; null if the step is too long. */
@@ -123,12 +138,6 @@
         if (part > 0 && (!first || part > 1 - first.part)) first = { velocity, part: 1 - part };
       });
       return first;
-    }
-
-    moved(q, step) {
-      const v = new Float64Array(this.mechanism.data.units.length);
-      step.forEach((each, index) => (v[this.velocities[index]] = this.units[index] * each));
-      return this.mechanism.integrate(q, v);
     }
 
     _following(here, rows) {
@@ -242,11 +251,9 @@
     _followAtRest(index, distance) {
       const slider = this.sliders[index];
       const held = this._held(slider);
-      const free = this.data.units.map((_, velocity) => velocity);
-      const loops = allOf(
-        this.mechanism,
-        free.filter((velocity) => velocity !== slider.velocity && !held.has(velocity)),
-      );
+      const free = this.data.units.map((_, velocity) => velocity).filter((each) => !held.has(each));
+      const passive = free.filter((velocity) => velocity !== slider.velocity);
+      const loops = new Loops(this.mechanism, passive, this.mechanism.constraints);
       const longest = (slider.upper - slider.lower) / REST_STEPS;
       const begin = this.value(index);
       let [q, left, pressed] = [this.q, distance, []];
@@ -290,18 +297,6 @@
       }
       return this.branches.get(index);
     }
-  }
-
-  /** All loops, with these velocities. */
-  function allOf(mechanism, velocities) {
-    const loops = Object.create(Branch.prototype);
-    const constraints = mechanism.constraints;
-    return Object.assign(loops, {
-      mechanism, velocities, constraints,
-      units: velocities.map((each) => mechanism.data.units[each]),
-      scale: constraints.flatMap((each) => each.scale),
-      driven: -1,
-    }); // prettier-ignore
   }
 
   globalThis.eurdf.Motion = Motion;

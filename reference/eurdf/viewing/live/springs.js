@@ -13,13 +13,13 @@
   /**
    * The closed configuration near q at which the springs store the least energy.
    *
-   * Each step minimizes ½ Σ k (c + ċ)² under K v = -r, with the coordinates that would leave their limits at them. It
-   * does what eurdf.viewing.spring_rest does.
+   * It does what eurdf.viewing.spring_rest does: each step minimizes ½ Σ k (c + ċ)² under K v = -r, with the
+   * coordinates that would leave their limits at them.
    *
-   * @param loops All loops, with the velocities that are not held: a `Branch` without an actuator.
+   * @param loops All constraints, with the velocities that are not held.
    * @param springs {velocity, stiffness, ratio, shift} of each.
    * @param q Where to start.
-   * @returns {q, pressed}: the configuration, null if none was found; and the velocities whose coordinates are at limits.
+   * @returns {q, pressed}: the configuration, null if none was found; the velocities whose coordinates are at limits.
    */
   function atRest(loops, springs, q) {
     const acting = springs.filter(({ velocity }) => loops.velocities.includes(velocity));
@@ -56,7 +56,10 @@
     const index = new Map(velocities.map((velocity, i) => [velocity, i]));
     const [K, r] = [loops.columns(q), loops.residual(q)];
     const [pressed, released] = [new Map(), new Set()];
-    const ahead = (velocity, step) => coordinate(mechanism, q, velocity) + units[index.get(velocity)] * step[index.get(velocity)]; // prettier-ignore
+    const ahead = (velocity, step) => {
+      const i = index.get(velocity);
+      return coordinate(mechanism, q, velocity) + units[i] * step[i];
+    };
     for (;;) {
       const goals = [...pressed];
       // With rows of zeros, so that the free motions are among the vectors of the decomposition.
