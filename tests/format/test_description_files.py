@@ -12,6 +12,7 @@ import pinocchio as pin
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from lxml import etree
 
 import eurdf
 from eurdf.linking.description import Linked, describe
@@ -156,6 +157,18 @@ def test_comments_are_at_the_head_of_both_files() -> None:
     assert files.yaml.startswith("# yaml-language-server: $schema=s.json\n# Made of a--b.\n")
     assert b"<!-- Made of a- -b. -->" in files.urdf
     read(files)
+
+
+def test_materials_are_declared_once_and_used_by_name() -> None:
+    steel, paint = (0.5, 0.5, 0.5, 1.0), (1.0, 0.0, 0.0, 1.0)
+    shapes = tuple(Shape("sphere", (0.1,), color=color) for color in (steel, paint, steel, None))
+    mechanism = Mechanism("r", "2.0", "fixed", (Body("base", visuals=shapes),), ())
+    files = describe_mechanism(mechanism, materials={"steel": steel, "brass": (0.8, 0.6, 0.2, 1.0)})
+    assert unlike(mechanism, read(files)) == []
+    robot = etree.fromstring(files.urdf)
+    assert [material.get("name") for material in robot.iterchildren("material")] == ["steel", "brass"]
+    assert [material.get("name") for material in robot.iterfind("link/visual/material")].count("steel") == 2
+    assert len(robot.findall("link/visual/material/color")) == 1
 
 
 @pytest.mark.parametrize(

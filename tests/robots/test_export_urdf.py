@@ -104,3 +104,8 @@ def test_angles_give_the_same_orientation(rpy: Any) -> None:
     found = Pose.from_xyz_rpy((0.0, 0.0, 0.0), rpy_of(pose)).quaternion
     assert abs(float(np.dot(found, pose.quaternion))) == pytest.approx(1.0, abs=1e-15)
     assert found == pytest.approx(pose.quaternion, abs=1e-15) or found == pytest.approx([-x for x in pose.quaternion])
+
+
+@pytest.mark.parametrize("rpy", [(0.3, 1.5707963267949, 0.0), (0.0, 2.5, 0.0), (1.5707963267949, 0.0, 0.0)])
+def test_orientation_without_yaw_is_written_without(rpy: Any) -> None:
+    assert rpy_of(Pose.from_xyz_rpy((0.0, 0.0, 0.0), rpy)) == rpy

@@ -10,8 +10,7 @@ from eurdf.mechanism.pose import Pose, Vector3
 def rpy_of(pose: Pose) -> Vector3:
     """Roll, pitch and yaw of an orientation, rad: the shortest numbers that give exactly its quaternion, if any do.
 
-    Pitch is from -π/2 to π/2, or slightly beyond by rounding. Where it is ±π/2, only the sum or the difference of roll
-    and yaw is determined, so that no yaw is tried first.
+    Yaw is 0 where it can be, so also where the pitch is ±π/2, which leaves it open; else the pitch is between these two.
     """
     x, y, z = (pose.rotate(axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)))
     exact = angles_with_yaw(math.atan2(x[1], x[0]), x, y, z)
