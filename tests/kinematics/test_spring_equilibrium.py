@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import eurdf
+from eurdf.kinematics.assembly import Assembler
 from eurdf.kinematics.split import split_configuration
 from support.described import load
 from support.linkage import described, n_bar
@@ -113,3 +114,17 @@ def test_batch_is_in_the_same_equilibrium() -> None:
     for value, q in zip(values, found.q, strict=True):
         np.testing.assert_allclose(eurdf.forward_kinematics(robot, value), q, atol=1e-9)
         np.testing.assert_array_equal(split_configuration(robot, q)[0], value)
+
+
+def test_rod_that_spins_does_not_delay_the_springs(monkeypatch: pytest.MonkeyPatch) -> None:
+    robot, steps = eurdf.load("cassie_leg", geometry=False), []
+    closed = Assembler.closed
+
+    def counted(assembler: Assembler, q: Any) -> Any:
+        steps.append(q)
+        return closed(assembler, q)
+
+    monkeypatch.setattr(Assembler, "closed", counted)
+    q = eurdf.forward_kinematics(robot, [0.05] * 5)
+    assert eurdf.spring_energy(robot, q) == pytest.approx(0.0, abs=1e-12)
+    assert len(steps) < 20
