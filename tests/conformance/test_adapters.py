@@ -509,7 +509,7 @@ def test_the_page_shows_the_examples_as_they_are() -> None:
 
 
 def test_the_conversation_on_the_page_keeps_the_protocol() -> None:
-    (conversation,) = blocks("json")
+    (conversation,) = blocks("text")
     lines = conversation.splitlines()
     assert len(lines) >= 8
     for asked, answered in zip(lines[::2], lines[1::2], strict=True):

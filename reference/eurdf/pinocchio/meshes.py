@@ -6,7 +6,6 @@ import json
 import os
 import signal
 import stat
-import sys
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
+
+from eurdf.program import command_of
 
 #: Bytes that the mesh files of a robot may have together.
 BYTES_LIMIT = 1 << 30
@@ -163,9 +164,8 @@ def _run(files: list[_File]) -> tuple[Iterator[Mesh | str], int]:
         "patience": PATIENCE,
         "files": [{"path": file.path, "seconds": file.seconds, "memory": file.memory} for file in files],
     }
-    # -P: a module of the working directory named coal or numpy is not the one that is meant.
     done = subprocess.run(
-        [sys.executable, "-P", str(_PROGRAM)],
+        command_of(_PROGRAM),
         input=json.dumps(request).encode(),
         capture_output=True,
         check=False,

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 import os
-import sys
 from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
@@ -17,6 +16,7 @@ from typing import Any
 
 from eurdf.diagnostics import did_you_mean
 from eurdf.exceptions import CannotExpand, MissingExtra
+from eurdf.program import command_of
 from eurdf.reading.resource import package_homes
 from eurdf.reading.source import FILE_LIMIT, Source, too_large
 
@@ -85,8 +85,7 @@ def expand(
 def _answer(file: str, request: Mapping[str, object]) -> dict[str, Any]:
     import subprocess  # only now: few robots are a xacro
 
-    # -P: a module of the working directory named xacro is not the one that is meant.
-    command = [sys.executable, "-P", str(_PROGRAM)]
+    command = command_of(_PROGRAM)
     try:
         done = subprocess.run(
             command, input=json.dumps(request).encode(), capture_output=True, timeout=TIME_LIMIT, check=False

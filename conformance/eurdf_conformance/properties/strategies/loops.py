@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
+from hypothesis import assume
 from hypothesis import strategies as st
 from hypothesis.strategies import DrawFn
 
@@ -26,6 +27,7 @@ def with_closures(draw: DrawFn, tree: Mechanism, version: Version, least: int = 
     pairs = [(a, b) for a in bodies for b in bodies if a != b]
     if not pairs:
         return tree
+    assume(2 * least <= len(pairs))
     mechanism = tree
     chosen = st.lists(st.sampled_from(pairs), unique_by=lambda pair: frozenset(pair), min_size=least, max_size=3)
     for a, b in draw(chosen):

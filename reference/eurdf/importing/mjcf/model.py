@@ -6,7 +6,6 @@ import json
 import os
 import signal
 import subprocess
-import sys
 import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -16,6 +15,7 @@ from typing import Any
 
 from eurdf.exceptions import MissingExtra
 from eurdf.importing.exceptions import CannotImport
+from eurdf.program import command_of
 
 #: Processor time (s) and memory (bytes) that compiling a file may take.
 SECONDS, MEMORY = 60, 6 << 30
@@ -91,7 +91,7 @@ def compile_mjcf(path: Path) -> MjcfModel:
     with tempfile.TemporaryDirectory() as scratch:
         # -P: a module of the working directory named mujoco is not the one that is meant.
         done = subprocess.run(
-            [sys.executable, "-P", str(_PROGRAM)],
+            command_of(_PROGRAM),
             input=json.dumps(request).encode(),
             capture_output=True,
             check=False,
