@@ -53,10 +53,11 @@ def test_shown_message_is_current(robot: Path, capsys: pytest.CaptureFixture[str
     assert capsys.readouterr().out.strip() == shown.strip()
 
 
-def test_shown_python_runs() -> None:
+@pytest.mark.parametrize("page", ["README.md", "docs/python.md"])
+def test_shown_python_runs(page: str) -> None:
     names: dict[str, object] = {}
-    blocks = re.findall(r"^```python\n(.*?)^```", README, re.M | re.S)
-    assert len(blocks) > 1
+    blocks = re.findall(r"^```python\n(.*?)^```", (ROOT / page).read_text(encoding="utf-8"), re.M | re.S)
+    assert blocks
     for block in blocks:
         exec(block, names)
 
