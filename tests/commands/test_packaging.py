@@ -5,6 +5,9 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
+
+import yaml
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -30,3 +33,33 @@ def test_suite_requires_same_version_of_reference() -> None:
 def test_editable_install_has_test_dependencies() -> None:
     packages = {package for package in SUITE["dependencies"] if not package.startswith("eurdf==")}
     assert packages <= set(READER["optional-dependencies"]["test"])
+
+
+def test_addresses_and_versions_agree() -> None:
+    """The addresses are stated in the reference's metadata; what cannot read them there repeats them."""
+    urls = READER["urls"]
+    assert SUITE["urls"]["Source"] == urls["Source"]
+    assert SUITE["urls"]["Documentation"].startswith(urls["Documentation"])
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    assert (citation["version"], citation["url"]) == (READER["version"], urls["Documentation"])
+    assert citation["repository-code"] == urls["Source"]
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert f"repo: {urls['Source']}\n    rev: v{READER['version']}\n" in readme
+    assert f"uses: {urls['Source'].removeprefix('https://github.com/')}@v{READER['version']}\n" in readme
+    package = ElementTree.parse(ROOT / "ros" / "package.xml").getroot()
+    assert (package.findtext("name"), package.findtext("version")) == (READER["name"], READER["version"])
+    recipe = yaml.safe_load((ROOT / "recipe" / "recipe.yaml").read_text(encoding="utf-8"))
+    assert recipe["context"]["version"] == READER["version"]
+    assert recipe["about"]["repository"] == urls["Source"]
+
+
+def test_recipe_for_conda_has_the_dependencies() -> None:
+    """Pinocchio's package is called pin in one registry and pinocchio in the other."""
+    recipe = yaml.safe_load((ROOT / "recipe" / "recipe.yaml").read_text(encoding="utf-8"))
+    _, *run = recipe["requirements"]["run"]
+    names = {"pin": "pinocchio"}
+    wanted = {
+        re.sub(r"^[A-Za-z_-]+", lambda m: names.get(m[0].lower(), m[0].lower()), each)
+        for each in READER["dependencies"]
+    }
+    assert {each.replace(" ", "") for each in run} == wanted

@@ -1,0 +1,19 @@
+"""Puts files of the repository into the distributions of the suite."""
+
+from pathlib import Path
+from typing import Any
+
+from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+
+#: Files, relative to the repository, and where they are in a distribution.
+SHARED = {"LICENSE": "eurdf_conformance/LICENSE", "spec/clauses.json": "eurdf_conformance/spec/clauses.json"}
+
+
+class SharedFiles(BuildHookInterface):  # type: ignore[misc]
+    """Adds them; in a source distribution they are in their places, from which a wheel takes them."""
+
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+        """Add them before the distribution is written."""
+        for source, target in SHARED.items():
+            if not Path(self.root, target).exists():
+                build_data["force_include"][str(Path(self.root).parent / source)] = target
