@@ -64,7 +64,11 @@ class Point:
 
 
 class Branch:
-    """Takes steps of one actuator of one robot."""
+    """Takes steps of one actuator of one robot.
+
+    Attributes:
+        velocities: Indices in v of the joints of the loops that the actuator moves, its own included.
+    """
 
     def __init__(
         self, robot: Robot, actuator: int, limits: PositionLimits | None, follow: Collection[int] = ()
@@ -84,11 +88,11 @@ class Branch:
         rows, unit = row_scale(robot, length), velocity_scale(robot, length)
         self._loops = evaluations(robot, groups, rows, unit)[0] if groups else None
         self._rows = self._loops.row_scale if self._loops else np.empty(0)
-        self._velocities = groups[0].velocities if groups else np.array([actuator])
-        self._unit = unit[self._velocities]
-        self._passive = self._velocities != actuator
+        self.velocities = groups[0].velocities if groups else np.array([actuator])
+        self._unit = unit[self.velocities]
+        self._passive = self.velocities != actuator
         self._limits = limits
-        self._turns = tree.whole_turns[self._velocities]
+        self._turns = tree.whole_turns[self.velocities]
 
     def at(self, q: Vector, correction: float = 0.0) -> Point:
         """The point at the closed configuration q (nq,)."""
@@ -132,7 +136,7 @@ class Branch:
         """
         if self._limits is None:
             return None
-        passive = self._velocities[self._passive]
+        passive = self.velocities[self._passive]
         coordinates, lower, upper = (
             values[passive] for values in (self._limits.coordinates, self._limits.lower, self._limits.upper)
         )
@@ -151,7 +155,7 @@ class Branch:
 
         Angles that differ by whole turns are equal.
         """
-        apart = self._tree.difference(one.q, other.q)[self._velocities]
+        apart = self._tree.difference(one.q, other.q)[self.velocities]
         apart = np.where(self._turns, np.remainder(apart + math.pi, 2.0 * math.pi) - math.pi, apart) / self._unit
         # K_p⁺ K removes the motions that K_p leaves free.
         return bool(np.abs(one.inverse @ (one.K @ apart)).max() <= _SAME)
@@ -162,6 +166,6 @@ class Branch:
 
     def _moved(self, q: Vector, step: Vector) -> Vector:
         v = np.zeros(self._tree.nv)
-        v[self._velocities] = self._unit * step
+        v[self.velocities] = self._unit * step
         # Pinocchio normalizes quaternions to first order only.
         return self._tree.normalized(self._tree.integrate(q, v))

@@ -304,9 +304,8 @@ class Session:
     def _follow_at_rest(self, index: int, distance: float) -> tuple[Vector, Stop | None]:
         """As `_follow`, for a robot whose springs decide what the actuators do not: it is at rest after each step."""
         slider, tree = self.sliders[index], self.robot.tree
-        follow = {each for joint in slider.follow for each in tree.velocities_of(joint)}
-        held = (set(self.robot.actuation.idx_v.tolist()) | {slider.velocity}) - follow
-        rest = SpringRest(self.robot, np.array(sorted(held)))
+        passive = np.setdiff1d(self._branch(index).velocities, slider.velocity)
+        rest = SpringRest(self.robot, passive)
         longest, begin = (slider.upper - slider.lower) / _REST_STEPS, self.value(index)
         q, left = self.q, distance
         pressed: tuple[int, ...] = ()

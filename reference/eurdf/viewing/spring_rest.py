@@ -40,17 +40,17 @@ class Rest:
 class SpringRest:
     """Finds the closed configuration at which the springs of a robot store the least energy.
 
-    It is the minimum of ½ Σ k c² on the closed configurations with the held velocities still and the other coordinates
+    It is the minimum of ½ Σ k c² on the closed configurations with the other velocities still and the coordinates
     within their limits. Each step minimizes ½ Σ k (c + ċ)² under K v = -r, with the coordinates that it would take
     beyond their limits at them.
     """
 
-    def __init__(self, robot: Robot, held: Indices) -> None:
-        """Prepare a robot whose velocities with the indices ``held`` do not move."""
+    def __init__(self, robot: Robot, passive: Indices) -> None:
+        """Prepare a robot of which only the velocities with the indices ``passive``, ascending, move."""
         length = characteristic_length(robot)
         self._robot = robot
         self._rows = row_scale(robot, length)
-        self._free = np.setdiff1d(np.arange(robot.tree.nv), held)
+        self._free = passive
         self._unit = velocity_scale(robot, length)[self._free]
         driven, coordinates = derived(robot, driven_coordinates)
         self._bounded = np.flatnonzero(np.isin(self._free, driven))  # columns that drive one coordinate each

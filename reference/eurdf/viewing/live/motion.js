@@ -250,10 +250,9 @@
     /** As `_follow`, for a robot whose springs decide what the actuators do not: it is at rest after each step. */
     _followAtRest(index, distance) {
       const slider = this.sliders[index];
-      const held = this._held(slider);
-      const free = this.data.units.map((_, velocity) => velocity).filter((each) => !held.has(each));
-      const passive = free.filter((velocity) => velocity !== slider.velocity);
-      const loops = new Loops(this.mechanism, passive, this.mechanism.constraints);
+      const { velocities, constraints } = this._branch(index);
+      const passive = velocities.filter((velocity) => velocity !== slider.velocity);
+      const loops = new Loops(this.mechanism, passive, constraints);
       const longest = (slider.upper - slider.lower) / REST_STEPS;
       const begin = this.value(index);
       let [q, left, pressed] = [this.q, distance, []];
@@ -283,17 +282,12 @@
       return { reason: "passive limit", joint: this.mechanism.joints[joint].name, value };
     }
 
-    /** The velocities of the actuators that stay while a slider is moved. */
-    _held(slider) {
-      const held = new Set(this.data.held);
-      [slider.velocity, ...slider.follow].forEach((velocity) => held.delete(velocity));
-      return held;
-    }
-
     _branch(index) {
       if (!this.branches.has(index)) {
         const slider = this.sliders[index];
-        this.branches.set(index, new Branch(this.mechanism, slider.velocity, this._held(slider)));
+        const held = new Set(this.data.held);
+        [slider.velocity, ...slider.follow].forEach((velocity) => held.delete(velocity));
+        this.branches.set(index, new Branch(this.mechanism, slider.velocity, held));
       }
       return this.branches.get(index);
     }
