@@ -34,7 +34,11 @@ from support.plain_urdf import robot as urdf
 EQUAL = 1e-9
 
 seeds = st.integers(0, 2**32 - 1)
-of_every_robot = pytest.mark.parametrize("name", collection_names())
+#: Robots whose tests take long.
+LARGE = ("kangaroo_2legs", "toddlerbot_2legs", "unitree_g1")
+of_every_robot = pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name in LARGE)) for name in collection_names()]
+)
 
 
 def near(robot: Robot, random: np.random.Generator, count: int, spread: float = 0.3, q: Any = None) -> Any:
@@ -131,10 +135,7 @@ def test_forward_kinematics_of_random_mechanisms_equals_single_one(seed: int, ki
     assert_same_forward_kinematics(robot, motors_near(robot, q0, random, 3, 0.2), q0)
 
 
-@pytest.mark.parametrize(
-    "name",
-    [pytest.param(name, marks=[pytest.mark.slow] if name == "kangaroo_2legs" else []) for name in collection_names()],
-)
+@of_every_robot
 def test_projection_equals_single_one(name: str) -> None:
     robot = robot_called(name)
     q = moved(robot, eurdf.assemble(robot).q, np.random.default_rng(7), 2, 0.1)
