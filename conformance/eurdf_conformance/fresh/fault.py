@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
-from enum import StrEnum
 
 import numpy as np
 
@@ -15,6 +14,7 @@ from eurdf_conformance.properties.chance import Chance
 from eurdf_conformance.properties.files import DESCRIPTION, URDF
 from eurdf_conformance.properties.mechanism import Pose, Vector
 from eurdf_conformance.properties.placement import matrix_of
+from eurdf_conformance.text_enum import TextEnum
 
 #: In `Fault.text`: the place of the diagnostic.
 _PLACE = "¦"
@@ -31,7 +31,7 @@ _BOTH: tuple[Version, ...] = ("1", "2")
 _LEAST, _MOST = 1e-5, 1e-1
 
 
-class Subject(StrEnum):
+class Subject(TextEnum):
     """What an error is about. Every run has at least one error about each subject, in each version."""
 
     DANGLING = "dangling name"

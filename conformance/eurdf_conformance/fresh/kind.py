@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from enum import StrEnum
 
 from eurdf_conformance.level import Level
+from eurdf_conformance.text_enum import TextEnum
 
 
-class FreshKind(StrEnum):
+class FreshKind(TextEnum):
     """A kind of fresh cases."""
 
     VALID = "valid"
