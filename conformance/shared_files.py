@@ -1,12 +1,19 @@
 """Puts files of the repository into the distributions of the suite."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-#: Files, relative to the repository, and where they are in a distribution.
-SHARED = {"LICENSE": "eurdf_conformance/LICENSE", "spec/clauses.json": "eurdf_conformance/spec/clauses.json"}
+
+def shared(repository: Path) -> Iterator[tuple[Path, str]]:
+    """Files, and where they are in a distribution: among them the robots of the collection, which cases use."""
+    yield repository / "LICENSE", "eurdf_conformance/LICENSE"
+    yield repository / "spec/clauses.json", "eurdf_conformance/spec/clauses.json"
+    for file in sorted((repository / "robots").glob("*/robot*")):
+        if file.suffix in (".urdf", ".yaml"):
+            yield file, f"eurdf_conformance/robots/{file.parent.name}/{file.name}"
 
 
 class SharedFiles(BuildHookInterface):  # type: ignore[misc]
@@ -14,6 +21,6 @@ class SharedFiles(BuildHookInterface):  # type: ignore[misc]
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Add them before the distribution is written."""
-        for source, target in SHARED.items():
+        for source, target in shared(Path(self.root).parent):
             if not Path(self.root, target).exists():
-                build_data["force_include"][str(Path(self.root).parent / source)] = target
+                build_data["force_include"][str(source)] = target

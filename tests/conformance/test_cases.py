@@ -5,7 +5,6 @@ import base64
 import json
 import posixpath
 import re
-import sys
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -211,14 +210,11 @@ def test_a_robot_of_the_collection_is_not_copied(written: WriteCase) -> None:
         _ = read_case(written(json.dumps(of_robot | {"robot": "no_such_robot"}))).files
 
 
-def test_the_collection_is_found_without_importing_the_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "eurdf" / "collection" / "robots").mkdir(parents=True)
-    (tmp_path / "eurdf" / "__init__.py").write_text("raise SystemError('imported')")
-    elsewhere = tmp_path / "site" / "eurdf_conformance" / "corpus"
-    monkeypatch.setattr(read, "__file__", str(elsewhere / "read.py"))
-    monkeypatch.syspath_prepend(str(tmp_path))
-    monkeypatch.delitem(sys.modules, "eurdf", raising=False)
-    assert collection_folder() == tmp_path / "eurdf" / "collection" / "robots"
+def test_an_installed_suite_has_the_collection_in_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(read, "__file__", str(tmp_path / "eurdf_conformance" / "corpus" / "read.py"))
+    assert collection_folder() is None
+    (tmp_path / "eurdf_conformance" / "robots").mkdir(parents=True)
+    assert collection_folder() == tmp_path / "eurdf_conformance" / "robots"
 
 
 def test_a_case_runs_at_its_possible_levels(written: WriteCase) -> None:

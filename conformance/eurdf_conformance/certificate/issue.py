@@ -6,9 +6,10 @@ import os
 import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable
+from contextlib import suppress
 from datetime import datetime, timezone
 from functools import cache
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 
 from eurdf_conformance.certificate.certificate import (
     Certificate,
@@ -24,8 +25,8 @@ from eurdf_conformance.judging.run import Run
 from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.protocol.message import PROTOCOL
 
-#: The distribution that the suite is installed with.
-_DISTRIBUTION = "eurdf"
+#: The distributions that the suite is installed with: its own, and in a checkout that of the reference, of one version.
+_DISTRIBUTIONS = ("eurdf-conformance", "eurdf")
 
 # Which number a request has depends on what the process was asked before it, and that on how a run is spread over
 # processes. So does when a parser is given up that no longer starts.
@@ -37,12 +38,19 @@ _UNSTABLE = (Verdict.MISPLACED, Verdict.NOT_STARTED)
 def installed_suite() -> Suite:
     """The suite that is installed here, as this process read it."""
     return Suite(
-        version=version(_DISTRIBUTION),
+        version=_version(),
         protocol=PROTOCOL,
         clauses=clauses_hash(),
         corpus=corpus_hash(),
         properties=properties_hash(),
     )
+
+
+def _version() -> str:
+    for name in _DISTRIBUTIONS[:-1]:
+        with suppress(PackageNotFoundError):
+            return version(name)
+    return version(_DISTRIBUTIONS[-1])
 
 
 def issue(run: Run) -> Certificate:

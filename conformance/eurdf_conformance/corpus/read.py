@@ -8,7 +8,6 @@ import weakref
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache, cached_property
-from importlib.util import find_spec
 from pathlib import Path
 
 import yaml
@@ -235,12 +234,9 @@ def case_names(root: Path = CASES) -> Iterator[str]:
 
 
 def collection_folder() -> Path | None:
-    """The robots of the collection: at the root of a checkout, or in the installed package `eurdf`, not imported."""
+    """The robots of the collection: at the root of a checkout, or in the installed package of the suite."""
     beside = Path(__file__).parents[2]
     if beside.name == "conformance" and (beside.parent / "robots").is_dir():
         return beside.parent / "robots"
-    spec = find_spec("eurdf")
-    for place in (spec.submodule_search_locations or ()) if spec else ():
-        if (installed := Path(place) / "collection" / "robots").is_dir():
-            return installed
-    return None
+    installed = Path(__file__).parents[1] / "robots"
+    return installed if installed.is_dir() else None
