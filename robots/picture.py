@@ -1,6 +1,7 @@
 """Draws the pictures of the collection: ``python -m robots.picture NAME…|--all``.
 
-Each is written to ``picture.png`` in the folder of the robot. `eurdf picture` draws any robot.
+For each robot: ``picture.png``, three views; ``loops.png``, its closures with the frames where loops are cut; and
+``graph.svg``, the graph of links and loops. They are written to its folder. `eurdf picture` draws any robot.
 """
 
 from __future__ import annotations
@@ -11,7 +12,8 @@ from collections.abc import Sequence
 
 import eurdf
 from eurdf.collection import collection_folder, collection_names
-from eurdf.viewing.picture import picture, save_picture
+from eurdf.viewing.graph import save_graph
+from eurdf.viewing.picture import VIEWS, picture, save_picture
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -29,7 +31,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         try:
             if robot not in collection_names():
                 raise eurdf.RobotNotFound(robot, "it is not in the collection; `eurdf picture` draws other robots")
-            save_picture(picture(eurdf.load(robot)), folder / robot / "picture.png")
+            loaded = eurdf.load(robot)
+            save_graph(loaded.mechanism, folder / robot / "graph.svg")
+            save_picture(picture(loaded), folder / robot / "picture.png")
+            save_picture(picture(loaded, VIEWS[1:2], loops=True), folder / robot / "loops.png")
         except eurdf.MissingExtra as missing:
             print(missing, file=sys.stderr)
             return 2

@@ -74,7 +74,7 @@ def draw() -> Drawing:
 def draw_torso(robot: Drawing) -> None:
     """The torso, with the motors of hip yaw and the ballast."""
     trunk = Box((0.0, 0.0, 0.152), (0.14, 0.18, 0.2), mass=4.763)
-    motors = (Cylinder((0.0, y, -0.05), (0.0, y, 0.01), radius=0.05, mass=1.4) for y in (0.125, -0.125))
+    motors = (Cylinder((0.0, y, -0.0512), (0.0, y, 0.01), radius=0.05, mass=1.4) for y in (0.125, -0.125))
     robot.body(
         "torso",
         None,

@@ -70,7 +70,7 @@ def draw_torso(name: str, description: str, root: Literal["fixed", "floating"] =
     robot = Drawing(
         name,
         materials={
-            "shell": (0.85, 0.86, 0.88, 1.0),
+            "shell": (0.58, 0.62, 0.68, 1.0),
             "leg": (0.2, 0.45, 0.55, 1.0),
             "motor": (0.25, 0.26, 0.3, 1.0),
             "rod": (0.85, 0.5, 0.15, 1.0),

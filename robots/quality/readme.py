@@ -28,7 +28,7 @@ def is_documented(candidate: Candidate) -> list[str] | None:
     if "](picture.png)" not in text:
         errors.append("README.md does not show picture.png")
     measured = dimension_table(candidate)
-    stated = _dimension_table(text.splitlines())
+    stated = stated_dimensions(text.splitlines())
     if not stated:
         errors.append(f"README.md has no table of dimensions with the columns {_row(measured[0])}")
     elif stated[0] != measured[0]:
@@ -68,7 +68,7 @@ def _closures(mechanism: Mechanism) -> str:
     return f"{len(mechanism.closures)} ({' + '.join(kinds)})" if kinds else "0"
 
 
-def _dimension_table(lines: Sequence[str]) -> list[list[str]]:
+def stated_dimensions(lines: Sequence[str]) -> list[list[str]]:
     """Head and rows of the first table that has a column ``nv``, as text."""
     for number, line in enumerate(lines):
         if "nv" in _cells(line):

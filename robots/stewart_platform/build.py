@@ -35,7 +35,7 @@ def draw() -> Drawing:
             "base": (0.3, 0.3, 0.33, 1.0),
             "cylinder": (0.45, 0.55, 0.7, 1.0),
             "piston": (0.85, 0.5, 0.15, 1.0),
-            "platform": (0.85, 0.86, 0.88, 1.0),
+            "platform": (0.58, 0.62, 0.68, 1.0),
         },
         metadata={
             "description": "Stewart platform of the size of the SIMONA flight simulator of TU Delft",

@@ -43,10 +43,10 @@ ANKLE_PITCH_MOTOR = Motor(effort=160.0, velocity=5.8)
 ANKLE_ROLL_MOTOR = Motor(effort=100.0, velocity=4.8)
 
 MATERIALS = {
-    "shell": (0.88, 0.89, 0.9, 1.0),
+    "shell": (0.58, 0.62, 0.68, 1.0),
     "leg": (0.2, 0.21, 0.23, 1.0),
     "motor": (0.36, 0.38, 0.41, 1.0),
-    "foot": (0.7, 0.71, 0.73, 1.0),
+    "foot": (0.45, 0.47, 0.5, 1.0),
     "rod": (0.85, 0.5, 0.15, 1.0),
 }
 

@@ -32,7 +32,7 @@ def draw() -> Drawing:
     robot = Drawing(
         "tesla_optimus_ankle",
         materials={
-            "shell": (0.85, 0.86, 0.88, 1.0),
+            "shell": (0.58, 0.62, 0.68, 1.0),
             "motor": (0.2, 0.21, 0.24, 1.0),
             "foot": (0.35, 0.37, 0.42, 1.0),
             "rod": (0.85, 0.5, 0.15, 1.0),

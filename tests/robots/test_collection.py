@@ -45,6 +45,7 @@ DIMENSIONS = {
     "planar_3rrr": (None, None, None, None, 3, 3, 0),
     "robotiq_2f85": (9, {"3d": 2}, 8, 6, 3, 1, 2),
     "sarrus": (None, None, None, None, 1, 1, 0),
+    "screw_press": (11, {"hinge": 2, "6d": 1}, 16, 9, 2, 2, 0),
     "slider_crank": (None, None, None, None, 1, 1, 0),
     "spherical_four_bar": (None, None, None, None, 1, 1, 0),
     "stewart_platform": (None, None, None, None, None, 6, None),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -12,7 +13,9 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 
 import eurdf
 from eurdf.commands.main import main
-from eurdf.viewing.picture import picture
+from eurdf.linking.description import describe
+from eurdf.viewing.graph import save_graph
+from eurdf.viewing.picture import VIEWS, picture
 from robots import picture as pictures
 from robots import sheet
 
@@ -87,9 +90,31 @@ def test_views_fill_picture_within_margin():
     assert (rows[0], height - 1 - rows[-1]) == pytest.approx((12, 12), abs=2)
 
 
-def test_picture_is_drawn_beside_robot_and_is_small():
-    for file in ROOT.glob("robots/*/picture.png"):
-        assert file.stat().st_size <= 150_000, file
+def test_each_robot_has_small_pictures_and_its_graph(tmp_path):
+    for name in eurdf.collection_names():
+        folder = ROOT / "robots" / name
+        for file in (folder / "picture.png", folder / "loops.png"):
+            assert file.stat().st_size <= 60_000, file
+        save_graph(describe(folder / "robot.yaml", geometry=False).mechanism, tmp_path / "graph.svg")
+        drawn = (folder / "graph.svg").read_text()
+        assert drawn == (tmp_path / "graph.svg").read_text(), f"python -m robots.picture {name}"
+
+
+def test_graph_names_joints_closures_and_couplings(capsys, tmp_path):
+    file = tmp_path / "graph.svg"
+    assert main(["picture", "tello", "--graph", "-o", str(file)]) == 0
+    mechanism = eurdf.load("tello", geometry=False).mechanism
+    shown = {element.text for element in ElementTree.parse(file).iter("{http://www.w3.org/2000/svg}text")}
+    assert {f"{each.name} ({each.type})" for each in (*mechanism.joints, *mechanism.constraints)} <= shown
+    assert {body.name for body in mechanism.bodies} <= shown
+    assert main(["picture", "tello", "--graph", "--loops", "-o", str(tmp_path / "other.svg")]) == 2
+    assert "leave out --loops and --configuration" in capsys.readouterr().err
+
+
+def test_distance_is_no_open_closure():
+    pytest.importorskip("pyvista", reason="pyvista is not installed: pip install -e '.[pictures]'")
+    pixels = picture(eurdf.load("tello"), VIEWS[1:2], loops=True).astype(int)
+    assert ((pixels[..., 0] - pixels[..., 1:].max(axis=2)) > 120).sum() < 20
 
 
 def test_sheet_shows_each_robot_with_name():

@@ -1,21 +1,34 @@
-"""The graph of links and loops as SVG: the tree as indented lines, and an arc for each closure."""
+"""The graph of links and loops as SVG: the tree as indented lines, and an arc for each closure or coupling."""
 
 from __future__ import annotations
 
+import os
+from itertools import pairwise
+from pathlib import Path
+
+from eurdf.diagnostics.visible import visible
+from eurdf.mechanism.constraint import Constraint
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.viewing.text import escaped
 
 # Pixels: height of a line, indentation of a child, width of a letter, distance between arcs.
 _LINE, _INDENT, _LETTER, _ARC = 18, 12, 7, 12
 
-_TREE, _CLOSURE, _ACTUATED = "#868e96", "#8c3cc8", "#14a03c"
+_TREE, _ACTUATED = "#868e96", "#14a03c"
+# Of arcs: the first where names are shown under the pointer, in turn where they are written.
+_CLOSURES = ("#8c3cc8", "#c2410c", "#1864ab", "#a61e4d", "#0b7285", "#7a5c00")
 
 
-def graph_svg(mechanism: Mechanism) -> str:
+def graph_svg(mechanism: Mechanism, *, named: bool = False) -> str:
     """The graph of a mechanism as SVG; names in it are escaped.
 
     Each line is a link, below the one that it hangs from; those moved by an actuated joint are bold. Each arc is a
-    closure, from the link of its frame A to that of its frame B. Joints and closures are named under the pointer.
+    closure, from the link of its frame A to that of its frame B, or a coupling, at the links that its joints move.
+
+    Args:
+        mechanism: The mechanism.
+        named: Whether to write the names of joints beside their links and those of closures and couplings beside their
+            arcs, as a picture needs; otherwise they are shown under the pointer.
     """
     index = {body.name: number for number, body in enumerate(mechanism.bodies)}
     parents = [-1, *(index[joint.parent] for joint in mechanism.joints)]
@@ -25,8 +38,11 @@ def graph_svg(mechanism: Mechanism) -> str:
     labels = [mechanism.bodies[0].name]
     labels += [joint.child for joint in mechanism.joints]
     titles = ["root", *(f"{joint.type} joint {joint.name}" for joint in mechanism.joints)]
+    beside = ["", *(f"{joint.name} ({joint.type})" for joint in mechanism.joints)] if named else [""] * len(labels)
     left = [_INDENT * (depth + 1) for depth in depths]
-    ends = [x + _LETTER * len(label) + 6 for x, label in zip(left, labels, strict=True)]
+    ends = [x + _LETTER * _length(label) + 6 for x, label in zip(left, labels, strict=True)]
+    names_at = [*ends]
+    ends = [end + (_LETTER * _length(text) + 8 if text else 0) for end, text in zip(ends, beside, strict=True)]
     middle = [_LINE * number + _LINE // 2 for number in range(len(labels))]
     shapes = []
     for number, parent in enumerate(parents):
@@ -37,22 +53,52 @@ def graph_svg(mechanism: Mechanism) -> str:
     for number, label in enumerate(labels):
         drives = number > 0 and mechanism.joints[number - 1].name in actuated
         style = f'font-weight="bold" fill="{_ACTUATED}"' if drives else 'fill="currentColor"'
-        shapes.append(
-            f'<text x="{left[number]}" y="{middle[number] + 4}" {style}>{escaped(label)}{_title(titles[number])}</text>'
-        )
+        shapes.append(_text(left[number], middle[number], style, label, titles[number]))
+        if beside[number]:
+            shapes.append(_text(names_at[number] + 4, middle[number], f'fill="{_TREE}"', beside[number]))
     out = max(ends)
-    for number, closure in enumerate(mechanism.closures):
-        a, b = index[closure.a.body], index[closure.b.body]
+    carried = {joint.name: number + 1 for number, joint in enumerate(mechanism.joints)}
+    arcs: list[tuple[Constraint, list[int]]]
+    arcs = [(closure, [index[anchor.body] for anchor in closure.anchors]) for closure in mechanism.closures]
+    arcs += [(coupling, [carried[joint] for joint in coupling.joints]) for coupling in mechanism.couplings]
+    label_at = out + _ARC * (len(arcs) + 1)
+    wide, row = label_at, 0
+    for number, (constraint, links) in enumerate(arcs):
+        color = _CLOSURES[number % len(_CLOSURES)] if named else _CLOSURES[0]
         x = out + _ARC * (number + 1)
-        line = f"M {ends[a]} {middle[a]} H {x - 5} Q {x} {middle[a]} {x} {(middle[a] + middle[b]) / 2:g}"
-        line += f" Q {x} {middle[b]} {x - 5} {middle[b]} H {ends[b]}"
-        shapes.append(_path(line, _CLOSURE, f"{closure.name} ({closure.type})"))
-    width, height = out + _ARC * (len(mechanism.closures) + 1), _LINE * len(labels)
+        title = f"{constraint.name} ({constraint.type})"
+        for a, b in pairwise(sorted(links)):
+            line = f"M {ends[a]} {middle[a]} H {x - 5} Q {x} {middle[a]} {x} {(middle[a] + middle[b]) / 2:g}"
+            line += f" Q {x} {middle[b]} {x - 5} {middle[b]} H {ends[b]}"
+            shapes.append(_path(line, color, title))
+        if named:
+            shapes.append(_text(label_at, _LINE * row + _LINE // 2, f'fill="{color}"', title))
+            wide, row = max(wide, label_at + _LETTER * _length(title) + 6), row + 1
     return (
-        '<div style="overflow-x: auto; padding: 2px 8px">'
-        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" font-size="12" '
-        f'font-family="monospace">{"".join(shapes)}</svg></div>'
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{wide}" height="{_LINE * max(len(labels), row)}" '
+        f'font-size="12" font-family="monospace">{"".join(shapes)}</svg>'
     )
+
+
+def save_graph(mechanism: Mechanism, file: str | os.PathLike[str]) -> None:
+    """Write the graph with all names, black on white, to an SVG file; an existing one is replaced.
+
+    Raises:
+        OSError: It cannot be written.
+    """
+    drawn = graph_svg(mechanism, named=True)
+    head, _, rest = drawn.partition(">")
+    page = f'{head} color="black"><rect width="100%" height="100%" fill="white"/>{rest}\n'
+    Path(file).write_bytes(page.encode())
+
+
+def _length(text: str) -> int:
+    """Letters of a text as it is shown."""
+    return len(visible(text))
+
+
+def _text(x: int, middle: int, style: str, text: str, title: str = "") -> str:
+    return f'<text x="{x}" y="{middle + 4}" {style}>{escaped(text)}{_title(title)}</text>'
 
 
 def _path(line: str, color: str, title: str = "") -> str:

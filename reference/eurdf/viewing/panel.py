@@ -66,7 +66,7 @@ class Panel:
         self._in_tab("Show", self._checkboxes)
         self._dimensions.content = text.dimensions(session.analysis)
         self._diagnostics.content = text.diagnostics(robot.diagnostics)
-        self._graph.content = graph_svg(robot.mechanism)
+        self._graph.content = f'<div style="overflow-x: auto; padding: 2px 8px">{graph_svg(robot.mechanism)}</div>'
         self._farthest = 0.0
 
     def _in_tab(self, name: str, make: Callable[[], Any]) -> Any:

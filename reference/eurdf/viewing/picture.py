@@ -14,6 +14,7 @@ import pinocchio as pin
 from eurdf.diagnostics.extras import install_command
 from eurdf.exceptions import MissingExtra
 from eurdf.kinematics.array import Vector
+from eurdf.kinematics.residual import openings_once
 from eurdf.pinocchio.robot import Robot
 from eurdf.viewing.scene import Scene
 from eurdf.viewing.session import ASSEMBLED
@@ -27,7 +28,7 @@ Color = tuple[float, ...]
 _MOST_WIDTH, _MOST_HEIGHT = 780, 860  # of the picture, pixels
 _MARGIN = 12  # around each view, pixels
 _OVERSAMPLING = 2  # pixels drawn for one of the picture, along each side: VTK smooths edges, and this does the rest
-_COLORS = 255  # of the picture: enough for primitives, and it keeps the file small
+_COLORS = 96  # of the picture: enough for primitives, and it keeps the file small
 
 _LINE = 2.5  # width of a line, pixels
 _DOT = 12  # diameter of a dot, pixels
@@ -157,7 +158,9 @@ def drawn(robot: Robot, q: Vector | None, loops: bool) -> Drawn:
         closures = scene.closure_lines(placed)
         dots = closures[:, 1].reshape(-1, 3)
         lines.append((closures[:, [0, 2]].reshape(-1, 2, 3), _CLOSURE))
-        lines.append((closures[:, 1], _OPEN))
+        is_open = np.array([opening.is_open for opening in openings_once(robot, q)[: len(closures)]], dtype=bool)
+        lines.append((closures[~is_open, 1], _CLOSURE))  # of a distance; those of other closures have no length
+        lines.append((closures[is_open, 1], _OPEN))
     points = [*(surface.vertices for surface, _ in solids), *(each.reshape(-1, 3) for each, _ in lines)]
     together = np.concatenate(points)
     if not (len(together) and np.ptp(together, axis=0).any()):

@@ -1,0 +1,45 @@
+"""The gallery of the collection, and the features of the format that its robots show."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[2]))
+
+import eurdf
+from eurdf.mechanism.joint_type import JointType
+from robots.features import FEATURES, features_of
+from robots.gallery import FILE, gallery
+
+ROOT = Path(__file__).parents[2]
+
+
+def test_gallery_is_current():
+    assert FILE.read_text(encoding="utf-8") == gallery(), "run python -m robots.gallery"
+
+
+def test_each_feature_is_shown_by_a_robot():
+    shown = {feature for name in eurdf.collection_names() for feature in features_of(ROOT / "robots" / name)}
+    assert shown == set(FEATURES)
+
+
+def test_features_are_read_from_the_files(tmp_path):
+    (tmp_path / "robot.urdf").write_text("<robot/>")
+    description = (
+        "closures: [{name: a, type: hinge, frames: [b, c]}]\njoints: {d: {mimic: true, armature: 1}, e: fixed}\n"
+    )
+    (tmp_path / "robot.yaml").write_text(
+        description + "actuators: [d, {joint: e, name: f}]\nconfigurations: {assembled: {}}"
+    )
+    assert features_of(tmp_path) == ["hinge", "fixed", "armature", "name of actuator"]
+
+
+def test_features_of_joint_types_are_those_of_the_mechanism():
+    press = eurdf.load("screw_press", geometry=False).mechanism
+    types = {joint.type for joint in press.joints}
+    assert {JointType.HELICAL, JointType.CYLINDRICAL, JointType.SPHERICAL, JointType.PLANAR} <= types
+    joints = {joint.name: joint for joint in press.joints}
+    assert joints["free_crank"].mimic is None
+    assert joints["guard_hinge"].type is JointType.FIXED
+    assert joints["motor_screw"].properties.velocity == (12.0,)
