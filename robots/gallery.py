@@ -21,8 +21,9 @@ FILE = HERE / "README.md"
 _HEAD = """\
 # Robots of the collection
 
-Load one by its name: `eurdf.load("digit_leg")`, `eurdf view digit_leg`. Each folder has the robot's files, a README with the
-source of each number, three pictures (views; closures and the frames where loops are cut; graph of links and loops) and, for most, the program that draws it. Dimensions are those with the base fixed: velocities of the spanning
+Load one by its name: `eurdf.load("digit_leg")`, `eurdf view digit_leg`. Each folder has the robot's files, a README
+with the source of each number, three pictures (views; closures and the frames where loops are cut; graph of links and
+loops) and, for most, the program that draws it. Dimensions are those with the base fixed: velocities of the spanning
 tree (nv), constraint rows (nc), mobility, and actuated velocities.
 
 | robot | what it is | features of the format | nv | nc | mobility | actuated | source |
