@@ -173,12 +173,11 @@ def test_command_output_is_completed_at_once(
     assert ("coupler" in links) == (choice == "robot")
 
 
-def test_readme_schema_is_found_by_its_first_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_schema_of_a_page_is_found_by_its_first_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     shutil.copy(ROOT / "robots" / "four_bar" / "robot.urdf", tmp_path)
     monkeypatch.chdir(tmp_path)
-    shown = re.findall(
-        r"^eurdf (schema .*?) +# line 1: (# yaml-language-server: .*)$", (ROOT / "README.md").read_text(), re.M
-    )
+    page = (ROOT / "docs" / "editor.md").read_text()
+    shown = re.findall(r"^eurdf (schema .*?) +# line 1: (# yaml-language-server: .*)$", page, re.M)
     assert len(shown) == 2
     for command, first_line in shown:
         assert main(command.split()) == 0
