@@ -26,10 +26,11 @@ from eurdf.pinocchio.robot import build_robot
 from support.exported import random_robot
 
 #: Kinds of loss that need what no robot here has: their tests are with their format.
+_MESHES = {"export-mesh-path", "export-mesh-format", "export-mesh-converted", "export-mesh-not-referenced"}
 ELSEWHERE = {
-    "mjcf": {"export-mesh-path", "export-mesh-format", "export-mesh-converted"},
-    "usd": {"export-mesh-path", "export-mesh-format", "export-mesh-converted", "export-convex-hull"},
-    "drake": {"export-mesh-path", "export-mesh-format", "export-mesh-converted"},
+    "mjcf": _MESHES,
+    "usd": {*_MESHES, "export-convex-hull"},
+    "drake": _MESHES,
     "loop-joint": {"export-mesh-path"},
     "sdf": {"export-mesh-path"},
     "urdf": {"export-mesh-path"},
