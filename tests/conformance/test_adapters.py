@@ -33,6 +33,7 @@ from eurdf_conformance.runner.answer import read_answer
 from eurdf_conformance.runner.outcome import Answered, Malformed, Misplaced, Outcome
 from eurdf_conformance.runner.session import Session
 from support.every_joint import ARMATURES, CONFIGURATION, MASSES, VELOCITIES, moved, write_every_joint
+from support.node_packages import MODULES, why_not_installed
 from support.plain_urdf import inertial, joint_element, link_element
 from support.plain_urdf import robot as urdf_of
 
@@ -41,17 +42,7 @@ ROBOTS = ROOT / "robots"
 REFERENCE = "eurdf_conformance.adapters.reference:PARSER"
 EXAMPLE = "eurdf_conformance.adapters.example:Example"
 JAVASCRIPT = Path(example.__file__).with_name("example.mjs")
-MODULES = Path(__file__).parents[1] / "support" / "javascript" / "node_modules"
-NODE = shutil.which("node")
-
-#: Why the JavaScript example cannot be run, or nothing.
-NO_JAVASCRIPT = (
-    "Node.js is not on the PATH: install it, then npm install --prefix tests/support/javascript"
-    if NODE is None
-    else ""
-    if (MODULES / "yaml").is_dir() and (MODULES / "@xmldom").is_dir()
-    else "its libraries are not installed: npm install --prefix tests/support/javascript"
-)
+NO_JAVASCRIPT = why_not_installed("yaml", "@xmldom/xmldom")
 
 LIMITED = '<axis xyz="0 0 1"/><limit lower="-1" upper="2" effort="3" velocity="4"/>'
 
