@@ -1,4 +1,5 @@
-// Quantities that finite numbers may give beyond the range of a double, EU-INR-007.
+// Quantities that finite numbers may give beyond the range of a double, EU-INR-007. Those of an actuator and of a helical
+// joint are checked where they are computed.
 
 import { fail } from "./invalid.mjs";
 import { Kinematics } from "./kinematics.mjs";
@@ -10,7 +11,6 @@ export function checkDerived(robot) {
   for (const link of robot.links.keys()) checkPose(zero.poses.get(link), `link '${link}'`);
   for (const frame of frames) checkPose(zero.pose(frame), `a frame on '${frame.link}'`);
   checkInertias(robot, zero);
-  robot.joints.forEach(checkJoint);
   checkLeaders(robot.joints);
   for (const { name, joints, offset } of robot.couplings) {
     const sizes = [...joints.values()].map(Math.abs);
@@ -59,13 +59,6 @@ function checkInertias(robot, zero) {
     });
     finite(set.mass, `the mass of the body of '${name}'`);
     set.inertia.forEach((number) => finite(number, `the inertia of the body of '${name}'`));
-  }
-}
-
-function checkJoint({ name, type, ...joint }) {
-  if (type !== "helical") return;
-  for (const key of ["lower", "upper", "velocity", "effort", "damping", "friction"]) {
-    for (const number of joint[key]) if (number !== null) finite(number, `the ${key} of joint '${name}'`);
   }
 }
 

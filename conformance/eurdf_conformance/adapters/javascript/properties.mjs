@@ -25,19 +25,22 @@ export function inherited(type, sources, pitch) {
 }
 
 /** Those of a prismatic joint that becomes helical, with d = k θ. */
-function perRadian(properties, { lower, upper }, k) {
+function perRadian(properties, { name, lower, upper }, k) {
   const size = Math.abs(k);
   const ends = [lower / k, upper / k];
-  const scaled = (key, factor) => properties[key].map((number) => (number === null ? null : number * factor));
-  return {
-    ...properties,
+  const scaled = (key, factor) => properties[key].map((number) => number * factor);
+  const helical = {
     lower: [Math.min(...ends)],
     upper: [Math.max(...ends)],
-    velocity: properties.velocity.map((number) => (number === null ? null : number / size)),
+    velocity: properties.velocity.map((number) => number / size),
     effort: scaled("effort", size),
     damping: scaled("damping", k * k),
     friction: scaled("friction", size),
   };
+  for (const [key, [number]] of Object.entries(helical)) {
+    if (!Number.isFinite(number)) fail(`the ${key} of helical joint '${name}' is ${number}: not finite`); // EU-INR-007
+  }
+  return { ...properties, ...helical };
 }
 
 /** Replaces properties by those that the description states. */
