@@ -99,8 +99,9 @@ class Figure:
         self._add_lines(f"{root}/skeleton", "skeleton", len(scene.parents) - 1, _SKELETON, 3.0, scene.skeleton)
         colors = [_ACTUATED if axis.actuated else _PASSIVE for axis in scene.axes]
         self._add_lines(f"{root}/axes", "joint axes", len(scene.axes), colors, 3.0, scene.axis_lines)
-        colors = [color for _ in scene.links for color in (_CLOSURE, _OPEN, _CLOSURE)]
-        self._add_lines(f"{root}/closures", "closures", len(colors), colors, 2.0, self._closure_lines)
+        self._are_open = np.zeros(len(scene.links), dtype=bool)
+        count = 3 * len(scene.links)
+        self._add_lines(f"{root}/closures", "closures", count, [_CLOSURE] * count, 2.0, self._closure_lines)
         self._dots: Any = None
         if scene.links:
             self._dots = self._api.add_point_cloud(
@@ -193,9 +194,20 @@ class Figure:
                 node.points = at(placed)
         if self._dots is not None and self.shown["closures"]:
             self._dots.points = self.scene.closure_lines(placed)[:, 1].reshape(-1, 3)
+            self._color_closures(placed)
         if self.shown["link frames"]:
             self._axes.batched_positions = np.array([pose.translation for pose in placed.poses])
             self._axes.batched_wxyzs = np.array([_wxyz(pose) for pose in placed.poses])
+
+    def _color_closures(self, placed: Placed) -> None:
+        """Show the line from A to B of an open closure in its own colour; a closed distance closure has a line too."""
+        of = {opening.name: opening.is_open for opening in placed.openings}
+        are_open = np.array([of[link.name] for link in self.scene.links], dtype=bool)
+        if (are_open == self._are_open).all():
+            return
+        self._are_open = are_open
+        colors = [color for is_open in are_open for color in (_CLOSURE, _OPEN if is_open else _CLOSURE, _CLOSURE)]
+        self._lines["closures"][0].colors = _line_colors(colors)
 
     def _place_labels(self) -> None:
         """Label each open closure with how far it is open."""
