@@ -51,7 +51,7 @@ class Point:
         K: Its columns (m, n) for the loops that the actuator moves.
         rank: Of K_p.
         smallest: The smallest singular value of K_p that is not zero; inf if there is none.
-        inverse: K_p⁺ (n, m), with a row of zeros for the actuator.
+        inverse: K_p⁺ (n, m), with rows of zeros for the actuator and what is held.
     """
 
     q: Vector
@@ -68,6 +68,7 @@ class Branch:
 
     Attributes:
         velocities: Indices in v of the joints of the loops that the actuator moves, its own included.
+        passive: Those of them that are neither the actuator nor held.
     """
 
     def __init__(
@@ -90,7 +91,10 @@ class Branch:
         self._rows = self._loops.row_scale if self._loops else np.empty(0)
         self.velocities = groups[0].velocities if groups else np.array([actuator])
         self._unit = unit[self.velocities]
-        self._passive = self.velocities != actuator
+        self._driven = self.velocities == actuator
+        # The group has all velocities of a joint with several, those held too.
+        self._passive = ~self._driven & ~np.isin(self.velocities, list(held))
+        self.passive = self.velocities[self._passive]
         self._limits = limits
         self._turns = tree.whole_turns[self.velocities]
 
@@ -107,7 +111,7 @@ class Branch:
 
     def step(self, here: Point, h: float) -> Point | None:
         """The point after a step h of the actuator, rad or m; None if the step is too long."""
-        step = np.where(self._passive, 0.0, h / self._unit)
+        step = np.where(self._driven, h / self._unit, 0.0)
         step -= here.inverse @ (here.K @ step)
         q = self._moved(here.q, step)
         correction = np.zeros(len(step))
@@ -136,9 +140,8 @@ class Branch:
         """
         if self._limits is None:
             return None
-        passive = self.velocities[self._passive]
         coordinates, lower, upper = (
-            values[passive] for values in (self._limits.coordinates, self._limits.lower, self._limits.upper)
+            values[self.passive] for values in (self._limits.coordinates, self._limits.lower, self._limits.upper)
         )
         before, after = here.q[coordinates], there.q[coordinates]
         over = np.maximum(after - np.maximum(upper, before), np.minimum(lower, before) - after)
@@ -148,7 +151,7 @@ class Branch:
         # A joint that goes beyond has moved. Half the tolerance is left, so that a search for the limit ends within it.
         np.divide(over - 0.5 * BEYOND, np.abs(after - before), out=part, where=over > BEYOND)
         first = int(np.argmax(part))
-        return self._limits.joints[passive[first]], 1.0 - float(part[first])
+        return self._limits.joints[self.passive[first]], 1.0 - float(part[first])
 
     def same(self, one: Point, other: Point) -> bool:
         """Whether two points at the same actuator position are equal, except for motions that no actuator controls.

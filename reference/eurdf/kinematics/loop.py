@@ -88,7 +88,7 @@ class LoopGroup(NamedTuple):
     Attributes:
         closures: Indices of their constraints, ascending.
         rows: Their rows in the stacked residual.
-        velocities: Indices in v of their joints, without those held.
+        velocities: Indices in v of their joints, without the joints of which all velocities are held.
         coordinates: Indices in q of the same joints.
     """
 
