@@ -190,7 +190,7 @@ def _task(
     ratios = _checked_ratio("torque_ratio", torque_ratio, n), _checked_ratio("velocity_ratio", velocity_ratio, n)
     for index in range(len(at)) if isinstance(at, Transmissions) else (None,):
         _complete(at, index)
-    return _Task(at.joints, at.motors, *_ranges(robot, at.motors), *ratios)
+    return _Task(at.joints, at.motors, *_finite_ranges(robot, at.motors), *ratios)
 
 
 def _common(task: _Task, at: Transmissions, margins: tuple[float | None, float | None] = (None, None)) -> CommonLimits:
@@ -294,8 +294,12 @@ def _complete(at: Transmission | Transmissions, index: int | None) -> Matrix:
     return one.G
 
 
-def _ranges(robot: Robot, motors: tuple[str, ...]) -> tuple[Vector, Vector, Vector]:
-    """Smallest and largest torque, and largest velocity, of each motor."""
+def motor_ranges(robot: Robot, motors: tuple[str, ...]) -> tuple[Vector, Vector, Vector]:
+    """Smallest and largest torque, and largest velocity, of each motor velocity; infinite if there is no limit.
+
+    Raises:
+        ValueError: A torque range does not include zero, or a velocity limit is not positive.
+    """
     control = dict(zip(robot.actuation.idx_v.tolist(), robot.actuation.control.tolist(), strict=True))
     of: dict[str, tuple[float, float, float]] = {}
     for name, slot in robot.slots.items():
@@ -308,14 +312,21 @@ def _ranges(robot: Robot, motors: tuple[str, ...]) -> tuple[Vector, Vector, Vect
             of[label] = max(lower, -effort), min(upper, effort), velocity
     for motor in motors:
         lower, upper, velocity = of[motor]
-        for value, word in ((max(upper, -lower), "effort"), (velocity, "velocity")):
-            if not np.isfinite(value):
-                raise ValueError(f"motor '{motor}' has no {word} limit; state one in the description")
         if not lower < 0.0 < upper:
             raise ValueError(f"motor '{motor}' has the torque range {lower:g} to {upper:g}; it must include zero")
         if not velocity > 0.0:
             raise ValueError(f"motor '{motor}' has the velocity limit {velocity:g}; expected a positive one")
     lowers, uppers, fastest = np.array([of[motor] for motor in motors]).T
+    return lowers, uppers, fastest
+
+
+def _finite_ranges(robot: Robot, motors: tuple[str, ...]) -> tuple[Vector, Vector, Vector]:
+    """The ranges of motors that all have limits."""
+    lowers, uppers, fastest = motor_ranges(robot, motors)
+    for values, word in ((np.maximum(uppers, -lowers), "effort"), (fastest, "velocity")):
+        if not np.isfinite(values).all():
+            motor = motors[int(np.argmin(np.isfinite(values)))]
+            raise ValueError(f"motor '{motor}' has no {word} limit; state one in the description")
     return lowers, uppers, fastest
 
 

@@ -1,0 +1,96 @@
+"""The torques and velocities of passive joints that the limits of the actuators allow, one joint at a time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from eurdf.kinematics.array import Vector
+from eurdf.kinematics.scale import characteristic_length, velocity_scale
+from eurdf.transmissions.exceptions import NoTransmission
+from eurdf.transmissions.limits import motor_ranges
+from eurdf.transmissions.maps import MOVES
+from eurdf.transmissions.selection import selectable, selection
+from eurdf.transmissions.transmission import at_one
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
+
+
+@dataclass(frozen=True, slots=True)
+class PassiveLimit:
+    """What the actuators do at a passive joint, at one configuration.
+
+    Attributes:
+        name: The joint; of one with several velocities ``joint[0]``, ….
+        unit: Of its coordinate.
+        velocity: Its largest velocity, each actuator at a velocity limit, rad/s or m/s; inf if an actuator has none.
+        torque: The smallest and the largest torque, N·m or N, that the actuators produce there while the other passive
+            joints have none; infinite if no actuator that moves the joint has a limit.
+    """
+
+    name: str
+    unit: Literal["rad", "m"]
+    velocity: float
+    torque: tuple[float, float]
+
+
+def passive_limits(robot: Robot, q: Vector) -> tuple[PassiveLimit, ...]:
+    """The limits of the passive joints that the actuators move, and that they determine, in file order.
+
+    The velocities of a joint are v = b v_m, so that the largest one is Σ |bᵢ| limitᵢ. A torque τ at the joint alone
+    needs τ_m = bᵀ τ of the actuators: static, without friction, gravity and springs. The limits of the joint itself
+    play no part.
+
+    Args:
+        robot: The robot.
+        q: A closed configuration (nq,).
+
+    Returns:
+        One for each joint velocity; those of planar, spherical and floating joints are left out.
+
+    Raises:
+        NoTransmission: The actuators depend on each other, or are at a dead point.
+        NotClosable: The loops are open at q.
+        ValueError: An actuator is planar, spherical or floating, has a torque range without zero, or a velocity limit
+            that is not positive; or springs block actuators.
+    """
+    actuated = set(robot.actuation.joints)
+    joints = [name for name, _ in selectable(robot) if name not in actuated]
+    if not actuated or not joints:
+        return ()
+    motors = selection(robot, robot.actuation.joints, "actuators")
+    at = at_one(robot, selection(robot, joints), q, motors)
+    if at.rank_motors < len(at.motors):
+        reason = f"only {at.rank_motors} of {len(at.motors)} actuator velocities are independent here"
+        raise NoTransmission(
+            "a limit of each passive joint", f"{reason}; name joints and motors in eurdf.serial_limits"
+        )
+    determined = [name for name in joints if not any(_is_of(label, name) for label in at.undetermined)]
+    if len(determined) < len(joints):
+        if not determined:
+            return ()
+        at = at_one(robot, selection(robot, determined), q, motors)
+    if at.B_J is None:
+        raise NoTransmission("B_J", at.inverse_reason or "")
+    lower, upper, fastest = motor_ranges(robot, at.motors)
+    unit = velocity_scale(robot, characteristic_length(robot))
+    units: list[Literal["rad", "m"]] = [
+        "m" if word == "length" else "rad" for name in determined for word in robot.slots[name].joint.coordinates.names
+    ]
+    moves = np.abs(at.B_J) * unit[at.motor_index] / unit[at.joint_index][:, None] > MOVES
+    found = []
+    for name, own_unit, b, moved in zip(at.joints, units, at.B_J, moves, strict=True):
+        if moved.any():
+            b, low, high = b[moved], lower[moved], upper[moved]
+            ends = np.sort(np.array((low / b, high / b)), axis=0)
+            velocity = float(np.abs(b) @ fastest[moved])
+            found.append(PassiveLimit(name, own_unit, velocity, (float(ends[0].max()), float(ends[1].min()))))
+    return tuple(found)
+
+
+def _is_of(label: str, joint: str) -> bool:
+    """Whether a label of a velocity is of a joint."""
+    return label == joint or (label.startswith(f"{joint}[") and label.endswith("]"))
