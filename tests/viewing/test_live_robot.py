@@ -21,6 +21,7 @@ from eurdf.viewing.session import Session
 from support.closed_tree import closed_tree
 from support.described import load
 from support.linkage import described, n_bar
+from support.strut import strut
 
 NODE = shutil.which("node")
 PROGRAM = Path(__file__).parents[1] / "support/live_robot.js"
@@ -138,6 +139,16 @@ def test_springs_decide_the_motion_that_no_actuator_controls() -> None:
         q = configuration(robot, live_robot(robot), state["q"])
         np.testing.assert_allclose(q, eurdf.forward_kinematics(robot, [0.3]), atol=1e-6)
         assert state["largest"] < 1e-9
+
+
+@needs_node
+def test_actuator_with_a_pose_has_no_slider() -> None:
+    robot = strut("spherical")
+    data = live_robot(robot)
+    assert data["sliders"] == []
+    ((state,),) = run([(data, ())])
+    assert state["largest"] < 1e-9
+    assert_same_kinematics(robot, data, state)
 
 
 def test_no_name_ends_the_data_of_the_page() -> None:

@@ -20,6 +20,7 @@ import pytest
 
 import eurdf
 from eurdf.commands.main import main
+from eurdf.transmissions.passive_limits import PassiveLimit, passive_limits
 from eurdf.viewing import text
 from eurdf.viewing.files import RobotOnDisk
 from eurdf.viewing.graph import graph_svg
@@ -140,6 +141,40 @@ def test_several_robots_share_a_scene(viewer: eurdf.Viewer) -> None:
         viewer.add(other, xyz=(0.0, 1.0))
 
 
+def test_only_open_closures_are_red(viewer: eurdf.Viewer) -> None:
+    """A distance closure has a line between its ends where it is closed, too."""
+    shown = viewer.add(eurdf.load("double_wishbone", geometry=False))
+    (lines, _), links = shown.figure._lines["closures"], shown.figure.scene.links
+
+    def red() -> set[str]:
+        between = np.asarray(lines.colors)[1::3, 0]
+        return {link.name for link, color in zip(links, between.tolist(), strict=True) if color == [230, 30, 30]}
+
+    assert red() == set()
+    closed = shown.q
+    shown.show(shown.robot.tree.integrate(closed, np.full(shown.robot.tree.nv, 0.1)))
+    found = {opening.name for opening in eurdf.closure_openings(shown.robot, shown.q) if opening.is_open}
+    assert red() == found & {link.name for link in links} != set()
+    shown.show(closed)
+    assert red() == set()
+
+
+def test_limits_are_those_at_the_configuration_shown(viewer: eurdf.Viewer) -> None:
+    panel, robot = viewer._panel, viewer.robot
+    contents = []
+    for angle in (0.3, 0.9):
+        viewer.show(eurdf.forward_kinematics(robot, {"motor_crank": angle}))
+        viewer._worker.call(panel._analyze)
+        contents.append(panel._limits.content)
+        limit = next(each for each in passive_limits(robot, viewer.q) if each.name == "free_rocker")
+        assert f"± {limit.velocity:.4g} rad/s" in contents[-1]
+        assert f"± {limit.torque[1]:.4g} N·m" in contents[-1]
+    assert contents[0] != contents[1]
+    viewer.show(robot.tree.integrate(viewer.q, np.full(robot.tree.nv, 0.1)))
+    viewer._worker.call(panel._analyze)
+    assert "the loops are open" in panel._limits.content
+
+
 def test_saved_page_needs_no_server(viewer: eurdf.Viewer, tmp_path: Path) -> None:
     page = viewer.save(tmp_path / "scene.html").read_text()
     assert "__VISER_EMBED_DATA__" in page
@@ -213,9 +248,12 @@ def test_text_and_plain_urdf_cannot_be_saved_to() -> None:
 def test_names_are_text_of_the_page() -> None:
     hostile = "<img src=x onerror=alert(1)>"
     opening = eurdf.Opening(hostile, 0.1, 0.0)
-    shown = text.status(1.0, [opening], [hostile])
-    assert "<img" not in shown
-    assert "&lt;img src=x onerror=alert(1)&gt;" in shown
+    limit = PassiveLimit(hostile, "m", np.inf, (-3.0, 2.0))
+    for shown in (text.status(1.0, [opening], [hostile]), text.limits([limit])):
+        assert "<img" not in shown
+        assert "&lt;img src=x onerror=alert(1)&gt;" in shown
+    assert "no limit" in text.limits([limit])
+    assert "-3 to 2 N<" in text.limits([limit])
 
 
 def test_graph_has_a_line_for_each_link_and_an_arc_for_each_closure() -> None:

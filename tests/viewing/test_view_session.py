@@ -7,10 +7,14 @@ import re
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
 from eurdf.viewing.session import Session, Stop
+from support.described import load
+from support.plain_urdf import joint_element, link_element, robot
+from support.strut import LENGTH, strut
 
 COLLECTION = Path(__file__).parents[2] / "robots"
 
@@ -209,6 +213,58 @@ def test_configuration_is_carried_to_changed_robot(tmp_path: Path) -> None:
     q = session.carried_to(other)
     assert other.coordinates(q)["motor_knee"] == pytest.approx((0.3,))
     assert np.abs(eurdf.residual(other, q)).max() < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("kind", "units", "goals"),
+    [
+        ("planar", ["m", "m", "rad"], (0.2, -0.3, 0.7)),
+        ("spherical", ["rad"] * 3, (0.3, -0.4, 0.9)),
+        ("floating", ["m"] * 3 + ["rad"] * 3, (0.2, -0.3, 0.1, 0.3, -0.4, 0.9)),
+    ],
+)
+def test_sliders_of_a_pose_move_the_passive_joints(kind: str, units: list[str], goals: tuple[float, ...]) -> None:
+    """The length of a strut to the body is that of the pose the sliders show."""
+    moved = strut(kind)
+    session = Session(moved)
+    assert [slider.unit for slider in session.sliders] == units
+    for index, goal in enumerate(goals):
+        assert session.move(index, goal) is None
+        assert session.residual < 1e-12
+    assert [session.value(index) for index in range(len(goals))] == pytest.approx(goals, abs=1e-8)
+    if kind == "planar":
+        tip = np.array((goals[0] + math.cos(goals[2]), goals[1] + math.sin(goals[2]), 0.0))
+    else:
+        tip = pin.exp3(np.array(goals[-3:])) @ (1.0, 0.0, 0.0) + np.array((*goals[:-3], 0.0, 0.0, 0.0)[:3])
+    length = np.linalg.norm(tip - (1.0, 0.0, -1.0))
+    assert moved.coordinates(session.q)["slide"] == pytest.approx((length - LENGTH,), abs=1e-8)
+
+
+def test_slider_of_a_pose_stops_at_limit_of_passive_joint() -> None:
+    """The strut is 1.3 m long where sin a + cos a = 1.5 - 1.3² / 2, turned about y by a."""
+    session = Session(strut("spherical", reach=0.3))
+    session.move(0, 0.2)
+    session.move(0, 0.0)
+    stop = session.move(1, -2.0)
+    assert stop is not None
+    assert (stop.reason, stop.joint, stop.value) == ("passive limit", "slide", 0.3)
+    angle = session.value(1)
+    assert math.sin(angle) + math.cos(angle) == pytest.approx(1.5 - 1.3**2 / 2.0, abs=1e-5)
+    assert [session.value(0), session.value(2)] == pytest.approx([0.0, 0.0], abs=1e-8)
+    assert session.residual < 1e-12
+    assert session.move(1, 0.0) is None
+
+
+def test_rotation_vector_is_at_most_half_a_turn() -> None:
+    ball = joint_element("ball", "continuous", "a", "b", '<axis xyz="0 0 1"/>')
+    urdf = robot(link_element("a"), link_element("b"), ball)
+    session = Session(load(urdf, "joints:\n  ball: spherical\nactuators: [ball]\n"))
+    assert session.move(0, 2.0) is None
+    stop = session.move(2, -3.0)
+    assert stop is not None
+    assert stop.reason == "half turn"
+    assert [session.value(index) for index in range(3)] == pytest.approx([2.0, 0.0, stop.value], abs=1e-5)
+    assert math.hypot(2.0, stop.value) == pytest.approx(math.pi, abs=1e-5)
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf])

@@ -82,7 +82,8 @@ def live_robot(robot: Robot, q: Vector | None = None) -> dict[str, Any]:
 
     Returns:
         ``name``; ``bodies``; ``joints``; ``constraints``, with the factors that make their rows dimensionless;
-        ``units`` and limits of the velocities; ``held``, the velocities of the actuators; ``sliders``; ``springs``;
+        ``units`` and limits of the velocities; ``held``, the velocities of the actuators; ``sliders``, except those of
+        planar, spherical and floating joints; ``springs``;
         ``start`` and ``configurations``; ``shapes``; ``center``, ``size`` and ``lowest`` of the robot.
     """
     session = Session(robot, q)
@@ -110,11 +111,12 @@ def live_robot(robot: Robot, q: Vector | None = None) -> dict[str, Any]:
                 "unit": slider.unit,
                 "lower": slider.lower,
                 "upper": slider.upper,
-                "velocity": int(slider.velocity),
+                "velocity": slider.velocity,
                 "follow": [each for name in slider.follow for each in velocities[name]],
                 "dependent": any(slider.joint in each for each in session.analysis.dependent_actuators),
             }
             for slider in session.sliders
+            if slider.velocity is not None
         ],
         "springs": [
             {"velocity": int(velocity), "stiffness": float(k), "ratio": float(ratio), "shift": float(shift)}

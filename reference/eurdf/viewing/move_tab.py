@@ -6,7 +6,6 @@ from functools import partial
 from typing import Any
 
 from eurdf.kinematics.assembly import Assembly
-from eurdf.viewing import text
 from eurdf.viewing.gizmo import Gizmo
 from eurdf.viewing.page import Page
 from eurdf.viewing.scene import Placed
@@ -25,12 +24,7 @@ class MoveTab:
         """Add the controls to the container that is open."""
         self._page = page
         gui, robot = page.server.gui, page.shown.robot
-        sliders = page.shown.session.sliders
-        self._sliders = [self._slider(index) for index in range(len(sliders))]
-        moved = {slider.joint for slider in sliders}
-        others = [name for name in robot.actuation.joints if name not in moved]
-        if others:
-            gui.add_html(text.box(text.escaped(f"no slider for {', '.join(others)}: drag a frame instead")))
+        self._sliders = [self._slider(index) for index in range(len(page.shown.session.sliders))]
         reset = gui.add_button("reset", hint="the configuration at the start")
         reset.on_click(lambda _: page.ask("go", lambda: page.shown.session.reset()))
         assemble = gui.add_button("assemble", hint="close the loops near this configuration")

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from eurdf.exceptions import EurdfError, InvalidRobot
+from eurdf.transmissions.passive_limits import passive_limits
 from eurdf.viewing import text
 from eurdf.viewing.figure import LAYERS
 from eurdf.viewing.graph import graph_svg
@@ -18,7 +19,7 @@ from eurdf.viewing.trajectory import Trajectory
 
 # Time between looks at the files, s.
 _LOOK = 0.5
-# Time without a motion after which the singularity is computed, s.
+# Time without a motion after which the singularity and the limits are computed, s.
 _PAUSE = 0.25
 
 
@@ -34,13 +35,17 @@ class Panel:
         self._closed = threading.Event()
         self._status = gui.add_html("")
         tabs = gui.add_tab_group()
-        self._tabs: dict[str, Any] = {name: tabs.add_tab(name) for name in ("Move", "Play", "Show", "Robot", "Graph")}
+        self._tabs: dict[str, Any] = {
+            name: tabs.add_tab(name) for name in ("Move", "Play", "Show", "Robot", "Limits", "Graph")
+        }
         self._folders: dict[str, Any] = {}
         with self._tabs["Robot"]:
             self._gauge = gui.add_html("")
             self._bar = gui.add_progress_bar(0.0)
             self._dimensions = gui.add_html("")
             self._diagnostics = gui.add_html("")
+        with self._tabs["Limits"]:
+            self._limits = gui.add_html("")
         with self._tabs["Graph"]:
             self._graph = gui.add_html("")
         self._fill()
@@ -107,7 +112,7 @@ class Panel:
         self._later.start()
 
     def _analyze(self) -> None:
-        """Show how far the configuration is from singular."""
+        """Show how far the configuration is from singular, and the limits of the passive joints there."""
         analysis = self._page.shown.session.analyze()
         self._gauge.content = text.gauge(analysis)
         value = analysis.singularity
@@ -115,6 +120,18 @@ class Panel:
         if value is not None:
             self._farthest = max(self._farthest, value)
             self._bar.value = 100.0 * min(1.0, value / self._farthest) if self._farthest else 0.0
+
+        self._limits.content = self._limits_here()
+
+    def _limits_here(self) -> str:
+        """The limits of the passive joints at the configuration, or why there are none."""
+        session = self._page.shown.session
+        if not session.is_closed:
+            return text.box("the loops are open")
+        try:
+            return text.limits(passive_limits(session.robot, session.q))
+        except ValueError as reason:  # also NoTransmission
+            return text.box(text.escaped(str(reason)))
 
     def _watch(self) -> None:
         """Load the robot again when its files change."""

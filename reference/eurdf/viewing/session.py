@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -26,6 +26,7 @@ from eurdf.kinematics.sweep import sweep
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array
+from eurdf.viewing.joint_pose import LONGEST, NAMES, motions, values_at
 from eurdf.viewing.spring_rest import SpringRest
 
 if TYPE_CHECKING:
@@ -43,6 +44,8 @@ _TO_LIMIT = 8
 # Steps of a slider over its range, for a robot with springs; they are halved down to this fraction of one.
 _REST_STEPS = 40
 _SHORTEST_REST_STEP = 2.0**-12
+# Longest step of a coordinate of a pose, as a part of the range of its slider.
+_POSE_STEP = 1.0 / 40.0
 # Bound of each row of the residual of a configuration that is shown as closed, m or rad.
 _TOLERANCE = 1e-12
 
@@ -57,7 +60,8 @@ class Slider:
         unit: ``rad`` or ``m``.
         lower: Least value: the position limit; without one, half a turn or a characteristic length from the start.
         upper: Greatest value.
-        velocity: Index in v of the velocity that drives it.
+        number: Which of the joint's coordinates it is; of a planar, spherical or floating one, of its pose.
+        velocity: Index in v of the velocity that drives it; None if it is of a pose, which several velocities drive.
         actuated: Whether the joint is actuated.
         follow: Names of the dependent actuators that follow, as the loops do not let this one move alone.
     """
@@ -67,7 +71,8 @@ class Slider:
     unit: Literal["rad", "m"]
     lower: float
     upper: float
-    velocity: int
+    number: int
+    velocity: int | None
     actuated: bool
     follow: tuple[str, ...] = ()
 
@@ -77,19 +82,21 @@ class Stop:
     """Why a motion did not reach where it was to go.
 
     Attributes:
-        reason: The limit of the joint that was moved; the limit of a passive joint; a dead point (singular
-            configuration); no motion that keeps the loops closed.
+        reason: The limit of the joint that was moved; half a turn, which a rotation vector does not exceed; the limit
+            of a passive joint; a dead point (singular configuration); no motion that keeps the loops closed.
         joint: The joint at its limit; else the one that was moved.
         value: Its coordinate, rad or m.
     """
 
-    reason: Literal["limit", "passive limit", "dead point", "blocked"]
+    reason: Literal["limit", "half turn", "passive limit", "dead point", "blocked"]
     joint: str
     value: float
 
     def __str__(self) -> str:
         if self.reason == "limit":
             return f"'{self.joint}' is at its position limit {self.value:.6g}"
+        if self.reason == "half turn":
+            return f"'{self.joint}' is half a turn from its neutral configuration, at {self.value:.6g}"
         if self.reason == "passive limit":
             return f"passive joint '{self.joint}' is at its position limit {self.value:.6g}"
         if self.reason == "dead point":
@@ -136,7 +143,10 @@ class Session:
 
     def value(self, index: int) -> float:
         """The coordinate of a slider, rad or m; the angle of a joint without limits is from -pi to pi."""
-        velocity, tree = self.sliders[index].velocity, self.robot.tree
+        slider, tree = self.sliders[index], self.robot.tree
+        velocity = slider.velocity
+        if velocity is None:
+            return float(self._pose(slider, self.q)[slider.number])
         driven, coordinates = derived(self.robot, driven_coordinates)
         if velocity in driven:
             return float(self.q[coordinates[velocity]])
@@ -166,13 +176,16 @@ class Session:
         goal = min(max(value, slider.lower), slider.upper)
         if goal != value:
             stop = Stop("limit", slider.joint, goal)
-        if not self.is_closed:
-            v = np.zeros(self.robot.tree.nv)
-            v[slider.velocity] = goal - at
-            self.q = self.robot.tree.integrate(self.q, v)
-            return stop
-        sprung = len(self.robot.tree.springs) and len(self.robot.actuation.idx_q)
-        self.q, stopped = (self._follow_at_rest if sprung else self._follow)(index, goal - at)
+        if slider.velocity is not None:
+            self.q, stopped = self._moved(self.q, slider, slider.velocity, at, goal - at)
+            return stopped or stop
+        longest = self._longest(slider)
+        if abs(goal) > longest:
+            goal = math.copysign(longest, goal)
+            stop = Stop("half turn", slider.joint, goal)
+        stopped = self._move_pose(slider, at, goal)
+        if stopped and stopped.joint == slider.joint:
+            stopped = replace(stopped, value=self.value(index))
         return stopped or stop
 
     def show(self, q: Vector) -> None:
@@ -250,13 +263,69 @@ class Session:
         )
         return [*lower, *reversed(lower), *upper, *reversed(upper)], ends
 
-    def _follow(self, index: int, distance: float) -> tuple[Vector, Stop | None]:
-        """Move a coordinate by a distance, rad or m, from the closed configuration; where it ends, and why."""
-        slider = self.sliders[index]
-        branch = self._branch(index)
-        here = branch.at(self.q)
-        begin = self.value(index)
-        largest = max(self._largest.get(index, 0.0), here.smallest)
+    def _pose(self, slider: Slider, q: Vector) -> Vector:
+        """The coordinates of the pose of a slider's joint."""
+        slot = self.robot.slots[slider.joint]
+        return values_at(slot.joint.type, q[slot.idx_q : slot.idx_q + slot.nq])
+
+    def _longest(self, slider: Slider) -> float:
+        """How far from zero a coordinate of a pose can be."""
+        rotation = NAMES[JointType.SPHERICAL]
+        names = NAMES[self.robot.slots[slider.joint].joint.type]
+        if names[slider.number] not in rotation:
+            return math.inf
+        pose = self._pose(slider, self.q)
+        others = [pose[number] for number, name in enumerate(names) if name in rotation and number != slider.number]
+        return math.sqrt(max(0.0, LONGEST**2 - sum(value**2 for value in others)))
+
+    def _move_pose(self, slider: Slider, at: float, goal: float) -> Stop | None:
+        """Move a coordinate of a pose, the others held, in steps of several velocities one after the other."""
+        slot = self.robot.slots[slider.joint]
+        longest, pose = _POSE_STEP * (slider.upper - slider.lower), self._pose(slider, self.q)
+        shortest, stop = _SHORTEST_STEP * (slider.upper - slider.lower), None
+        while at != goal:
+            part = math.copysign(min(abs(goal - at), longest), goal - at)
+            there = goal if part == goal - at else at + part
+            q, pose[slider.number] = self.q, there
+            for number, amount in motions(slot.joint.type, self._pose(slider, q), pose):
+                q, stopped = self._moved(q, slider, slot.idx_v + number, at, amount)
+                if stopped:
+                    break
+            else:
+                self.q, at = q, there
+                continue
+            stop = stopped
+            longest = 0.5 * abs(part)  # toward the end, and no longer again
+            if longest < shortest:
+                break
+        return stop
+
+    def _moved(
+        self, q: Vector, slider: Slider, velocity: int, begin: float, distance: float
+    ) -> tuple[Vector, Stop | None]:
+        """Move one velocity by a distance, rad or m; where it ends, and why.
+
+        Args:
+            q: Where it begins (nq,).
+            slider: The slider that moves it.
+            velocity: Index in v.
+            begin: Where the slider begins.
+            distance: How far.
+        """
+        if not self.is_closed:
+            v = np.zeros(self.robot.tree.nv)
+            v[velocity] = distance
+            return self.robot.tree.integrate(q, v), None
+        sprung = len(self.robot.tree.springs) and len(self.robot.actuation.idx_q)
+        return (self._follow_at_rest if sprung else self._follow)(q, slider, velocity, begin, distance)
+
+    def _follow(
+        self, q: Vector, slider: Slider, velocity: int, begin: float, distance: float
+    ) -> tuple[Vector, Stop | None]:
+        """As `_moved`, from a closed configuration."""
+        branch = self._branch(slider, velocity)
+        here = branch.at(q)
+        largest = max(self._largest.get(velocity, 0.0), here.smallest)
         shortest = _SHORTEST_STEP * (slider.upper - slider.lower)
         left, part, stop = distance, distance, None
         while left:
@@ -276,7 +345,7 @@ class Session:
             here, left = there, left - part
             largest = max(largest, here.smallest)
             part = math.copysign(min(abs(2.0 * part), abs(left)), left)
-        self._largest[index] = largest if math.isfinite(largest) else 0.0
+        self._largest[velocity] = largest if math.isfinite(largest) else 0.0
         return here.q, stop
 
     def _to_limit(self, branch: Branch, here: Point, part: float) -> tuple[Point, Stop]:
@@ -301,18 +370,18 @@ class Session:
         lower, upper = float(self._limits.lower[index]), float(self._limits.upper[index])
         return Stop("passive limit", self._limits.joints[index], lower if abs(at - lower) < abs(at - upper) else upper)
 
-    def _follow_at_rest(self, index: int, distance: float) -> tuple[Vector, Stop | None]:
+    def _follow_at_rest(
+        self, q: Vector, slider: Slider, velocity: int, begin: float, distance: float
+    ) -> tuple[Vector, Stop | None]:
         """As `_follow`, for a robot whose springs decide what the actuators do not: it is at rest after each step."""
-        slider, tree = self.sliders[index], self.robot.tree
-        passive = np.setdiff1d(self._branch(index).velocities, slider.velocity)
-        rest = SpringRest(self.robot, passive)
-        longest, begin = (slider.upper - slider.lower) / _REST_STEPS, self.value(index)
-        q, left = self.q, distance
+        tree = self.robot.tree
+        rest = SpringRest(self.robot, self._branch(slider, velocity).passive)
+        longest, left = (slider.upper - slider.lower) / _REST_STEPS, distance
         pressed: tuple[int, ...] = ()
         part = math.copysign(min(abs(distance), longest), distance)
         while left:
             v = np.zeros(tree.nv)
-            v[slider.velocity] = part
+            v[velocity] = part
             there = rest.near(tree.integrate(q, v))
             if there.q is not None:
                 q, left, pressed = there.q, left - part, there.pressed
@@ -320,17 +389,16 @@ class Session:
             elif abs(part) > _SHORTEST_REST_STEP * longest:
                 part *= 0.5
             else:
-                met = [velocity for velocity in there.pressed if velocity not in pressed]
+                met = [each for each in there.pressed if each not in pressed]
                 dead = Stop("dead point", slider.joint, begin + distance - left)
                 return q, self._at_limit(met[0], q) if met else dead
         return q, None
 
-    def _branch(self, index: int) -> Branch:
-        if index not in self._branches:
-            slider = self.sliders[index]
+    def _branch(self, slider: Slider, velocity: int) -> Branch:
+        if velocity not in self._branches:
             follow = {each for joint in slider.follow for each in self.robot.tree.velocities_of(joint)}
-            self._branches[index] = Branch(self.robot, slider.velocity, self._limits, follow)
-        return self._branches[index]
+            self._branches[velocity] = Branch(self.robot, velocity, self._limits, follow)
+        return self._branches[velocity]
 
 
 def _sliders(robot: Robot, q: Vector, analysis: Analysis) -> Iterator[Slider]:
@@ -344,10 +412,20 @@ def _sliders(robot: Robot, q: Vector, analysis: Analysis) -> Iterator[Slider]:
         joint = joints[name]
         velocities = tree.velocities_of(name)
         turns = joint.type is JointType.CONTINUOUS
-        if joint.coordinates.quaternion is not None or joint.type is JointType.PLANAR or not len(velocities):
-            continue  # moved by dragging a frame
+        actuated = name in robot.actuation.joints
+        if not len(velocities) or (joint.type in NAMES and robot.constraints and not actuated):
+            continue  # the velocities of a joint that is not actuated are not held, so its pose is not either
         dependent = [each for each in analysis.dependent_actuators if name in each]
         follow = tuple(other for each in dependent for other in each if other != name)
+        for number, word in enumerate(NAMES.get(joint.type, ())):
+            slot = robot.slots[name]
+            is_position = word.startswith("position")
+            at = float(values_at(joint.type, q[slot.idx_q : slot.idx_q + slot.nq])[number]) if is_position else 0.0
+            around = length if is_position else math.pi
+            unit: Literal["rad", "m"] = "m" if is_position else "rad"
+            yield Slider(name, f"{name} {word}", unit, at - around, at + around, number, None, actuated, follow)
+        if joint.type in NAMES:
+            continue
         for number, velocity in enumerate(velocities):
             word = joint.coordinates.names[number]
             at = float(q[coordinates[velocity]]) if velocity in direct else 0.0
@@ -360,7 +438,8 @@ def _sliders(robot: Robot, q: Vector, analysis: Analysis) -> Iterator[Slider]:
                 "m" if word == "length" else "rad",
                 -math.pi if turns else min(lower, at) if math.isfinite(lower) else at - around,
                 math.pi if turns else max(upper, at) if math.isfinite(upper) else at + around,
-                velocity,
-                name in robot.actuation.joints,
+                number,
+                int(velocity),
+                actuated,
                 follow,
             )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import math
 from collections.abc import Iterable, Sequence
 
 from eurdf.diagnostics import Diagnostic
@@ -10,6 +11,7 @@ from eurdf.diagnostics.registry import Severity
 from eurdf.diagnostics.visible import visible
 from eurdf.kinematics.analysis import Analysis
 from eurdf.kinematics.opening import Opening
+from eurdf.transmissions.passive_limits import PassiveLimit
 
 _BOX = "font-size: 13px; line-height: 1.4; padding: 2px 8px; overflow-wrap: anywhere"
 _RED, _ORANGE, _GREEN = "#c92a2a", "#b35c00", "#2b7a3d"
@@ -77,6 +79,30 @@ def gauge(analysis: Analysis) -> str:
     actuation = analysis.actuation_singularity
     held = "" if actuation is None else f"; with every actuator held {actuation:.2g}"
     return box(f"distance to singularity {analysis.singularity:.2g}{held}; 0 is singular")
+
+
+def limits(found: Sequence[PassiveLimit]) -> str:
+    """The velocities and torques of passive joints that the actuators allow."""
+    if not found:
+        return box("the actuators determine no passive joint")
+    heads = "".join(f"<th style='text-align: right; padding-left: 8px'>{head}</th>" for head in ("velocity", "torque"))
+    rows = "".join(
+        f"<tr><td>{escaped(each.name)}</td>"
+        + "".join(f"<td style='text-align: right; padding-left: 8px'>{escaped(cell)}</td>" for cell in _cells(each))
+        + "</tr>"
+        for each in found
+    )
+    table = f"<table><tr><th style='text-align: left'>passive joint</th>{heads}</tr>{rows}</table>"
+    return box("what the limits of the actuators allow at this configuration, at one joint at a time", table)
+
+
+def _cells(limit: PassiveLimit) -> tuple[str, str]:
+    velocity = f"± {limit.velocity:.4g} {limit.unit}/s" if math.isfinite(limit.velocity) else "no limit"
+    unit, (lower, upper) = "N" if limit.unit == "m" else "N·m", limit.torque
+    if not (math.isfinite(lower) or math.isfinite(upper)):
+        return velocity, "no limit"
+    symmetric = math.isclose(-lower, upper, rel_tol=1e-9)
+    return velocity, f"± {upper:.4g} {unit}" if symmetric else f"{lower:.4g} to {upper:.4g} {unit}"
 
 
 def diagnostics(found: Sequence[Diagnostic]) -> str:
