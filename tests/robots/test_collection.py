@@ -35,6 +35,7 @@ DIMENSIONS = {
     "digit_leg_3d": (18, {"3d": 3}, 9, 9, 9, 6, 3),
     "disney_2legs": (54, {"6d": 6}, 36, 36, 18, 12, 6),
     "disney_leg": (27, {"6d": 3}, 18, 18, 9, 6, 3),
+    "doggo_leg": (4, {"hinge": 1}, 5, 2, 2, 2, 0),
     "double_wishbone": (12, {"hinge": 1, "distance": 1, "3d": 1}, 9, 9, 3, 1, 2),
     "five_bar": (5, {"6d": 1}, 6, 3, 2, 2, 0),
     "five_bar_3d": (5, {"3d": 1}, 3, 3, 2, 2, 0),
