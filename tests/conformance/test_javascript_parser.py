@@ -33,9 +33,10 @@ def test_the_javascript_parser_is_certified_at_the_levels_it_claims(
     folder = tmp_path / "extended-urdf"
     shutil.copytree(PARSER, folder, ignore=shutil.ignore_patterns("node_modules"))
     (folder / "node_modules").symlink_to(MODULES)
-    done = shared_run("--parser", f"cmd:node {folder / 'main.mjs'}", "--seed", "0", "--explore", "0")
+    # The newest version, which has few cases; the workflow of the repository certifies it for all of them.
+    done = shared_run("--parser", f"cmd:node {folder / 'main.mjs'}", "--seed", "0", "--format-version", "2.1")
     assert done.returncode == 0, done.stdout + done.stderr
     certificate = read_certificate(Path(done.certificate))
     assert certificate.failures == ()
     certified = {(level.version, level.level) for level in certificate.levels if level.certified}
-    assert certified == {(version, level) for version in ("1", "2", "2.1") for level in LEVELS}
+    assert certified == {("2.1", level) for level in LEVELS}
