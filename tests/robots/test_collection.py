@@ -30,6 +30,7 @@ DIMENSIONS = {
     "cassie_2legs": (38, {"6d": 4}, 24, 24, 14, 10, 4),
     "cassie_leg": (21, {"6d": 2}, 12, 12, 9, 5, 4),
     "delta": (None, None, None, None, None, 3, None),
+    "dextar": (5, {"3d": 1}, 3, 2, 3, 3, 0),
     "digit_2legs": (52, {"6d": 6}, 36, 36, 16, 12, 4),
     "digit_leg": (27, {"6d": 3}, 18, 18, 9, 6, 3),
     "digit_leg_3d": (18, {"3d": 3}, 9, 9, 9, 6, 3),
