@@ -101,7 +101,7 @@ def draw() -> Drawing:
         Cylinder(at_height(TIP, 0.05), at_height(TIP, 0.18), radius=0.004, mass=0.04),
         material="tool",
     )
-    robot.close("elbow_2", "3d", "distal_2", "proximal_2", ELBOWS[2])
+    robot.close("elbow_2", "3d", "distal_2", "proximal_2", at_height(ELBOWS[2], DISTAL_HEIGHTS[2]))
     robot.frame("tool_tip", "tool", at_height(TIP, 0.05))
     for name, sides in WORKING_MODES.items():
         robot.configure(name, **pose(sides))

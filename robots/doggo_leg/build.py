@@ -74,7 +74,7 @@ def draw() -> Drawing:
     draw_panel(robot)
     for side in SIGNS:
         draw_links(robot, side)
-    robot.hinge("ankle", "lower_rear", "lower_front", FOOT, FORWARD)
+    robot.hinge("ankle", "lower_rear", "lower_front", at_plane(FOOT, LOWER_PLANES["rear"]), FORWARD)
     robot.frame("foot", "lower_front", FOOT)
     robot.configure("retracted", **pose(0.08))
     robot.configure("extended", **pose(0.25))
