@@ -128,7 +128,7 @@ def test_robot_schema_completes_robot_names(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_collection_opens_without_underlines() -> None:
-    # Of every version; all are checked against their schemas elsewhere, as the editor does it.
+    # Of every version; `eurdf check` holds all of them to the same schemas.
     robots = [*sorted(ROOT.glob("robots/*/robot*.yaml"))[::4], *sorted(ROOT.glob("robots/t*/robot.yaml"))]
 
     async def session(editor: Editor) -> dict[Path, list[tuple[int, int, str]]]:

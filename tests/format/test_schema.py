@@ -261,7 +261,7 @@ def edited_pieces(version: str) -> Iterator[Any]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("version", VERSIONS)
+@pytest.mark.parametrize("version", [version for version in VERSIONS if version != "2"])  # it is part of 2.1
 def test_model_and_schema_agree_after_one_edit(version: str) -> None:
     verdicts = [accepted(version, document) for document in edited_pieces(version)]
     assert verdicts.count(True) > 100
