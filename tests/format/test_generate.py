@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import pytest
 import yaml
@@ -166,13 +166,40 @@ HINGE = tuple(
 )
 
 
-def test_onshape_revolute_mate_is_two_3d_closures() -> None:
-    generation = generated(*LEG[:3], *HINGE)
+def mate(*origins: str) -> Urdf:
+    """A leg with a revolute mate; the origins are those of the frames on its axis, in the order of their sides."""
+    robot = etree.fromstring(urdf_text(*LEG[:3], *HINGE))
+    for side, origin in enumerate(origins, 1):
+        (joint,) = robot.xpath(f"joint[@name='closing_pin_{side}_z_frame']")
+        etree.SubElement(joint, "origin", xyz=origin, rpy="0.3 0.2 0.1")
+    return read(etree.tostring(robot, encoding="unicode"))
+
+
+def test_onshape_revolute_mate_is_a_hinge() -> None:
+    generation = generate(mate("0 0 0.1", "0 0 0.1"), conventions())
+    assert generation.text.startswith('extended_urdf: "2.1"\n')
+    (closure,) = read_back(generation.text)["closures"]
+    frames = ["closing_pin_1", "closing_pin_2"]
+    assert closure == {"name": "closing_pin", "type": "hinge", "frames": frames, "axis": [0, 0, 1]}
+    (note,) = generation.notes
+    assert note.endswith("it is a hinge, which needs version 2.1")
+    assert generation.mechanism is not None
+    assert [closure.type for closure in generation.mechanism.closures] == ["hinge"]
+    askew = read_back(generate(mate("0 0.1 0", "0.3 0 0.4"), conventions()).text)["closures"][0]
+    assert askew["axes"] == [[0, 1, 0], pytest.approx([0.6, 0, 0.8])]
+
+
+@pytest.mark.parametrize("version", ["1", "2", None])
+def test_revolute_mate_is_two_3d_closures_where_no_hinge_can_be(version: Literal["1", "2"] | None) -> None:
+    # By default only if the second point is at the first one, where it states no axis.
+    urdf = mate() if version is None else mate("0 0 0.1", "0 0 0.1")
+    generation = generate(urdf, conventions(), version)
     assert [(closure.name, closure.type, closure.frames) for closure in generation.found.closures] == [
         ("closing_pin", "3d", ("closing_pin_1", "closing_pin_2")),
         ("closing_pin_z", "3d", ("closing_pin_1_z", "closing_pin_2_z")),
     ]
     assert generation.found.warnings == ()
+    assert 'extended_urdf: "2.1"' not in generation.text
     (note,) = generation.notes
     assert note.startswith("'closing_pin' is a revolute mate")
 

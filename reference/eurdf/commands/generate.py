@@ -23,7 +23,7 @@ Write a description from the names in a URDF.
 
   closures    closedloop1_A with closedloop1_B, or closing_knee_1 with closing_knee_2: names of links or joints.
               3d or 6d in the name is the type: closedloop3D_1A, closedloop1_A_3D. closing_knee_1_z and
-              closing_knee_2_z, which onshape-to-robot adds on the axis of a revolute mate, make it two 3d closures.
+              closing_knee_2_z, which onshape-to-robot adds on the axis of a revolute mate, make it a hinge.
   motors      joints whose name begins or ends with the word mot or motor: motor_knee, mot1, left_motor_hip, hip_motor.
   sphericals  joints with spherical in their name.
 
@@ -31,6 +31,9 @@ A closure whose name does not state its type is 6d. It is 3d if with 6d the loop
 depend on one another, and with 3d they do not. A note gives the reason; --type sets the type of all closures.
 
 Three consecutive revolute joints whose axes intersect, with massless links between them, become one spherical joint.
+
+The description is of version 2.0, or of version 2.1 if it has a hinge. In versions 1 and 2.0, two 3d closures hold
+the hinge: one at its point, and one at the other point on its axis.
 
 PATTERNs are regular expressions that replace these conventions. A closure pattern matches a whole name. Its group side
 distinguishes the two frames, the group loop (optional) is their common part, and the group type (optional) is 3d or 6d.
@@ -67,7 +70,11 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--type", choices=("3d", "6d"), help="type of all closures, instead of the type from name or motion"
     )
     parser.add_argument("--root", choices=("fixed", "floating"), default="fixed", help="default: fixed")
-    parser.add_argument("--version", choices=("1", "2"), default="2", help="version of the format; default: 2")
+    parser.add_argument(
+        "--version",
+        choices=("1", "2", "2.1"),
+        help="version of the format; 2 is 2.0; default: 2, or 2.1 if there is a hinge",
+    )
     parser.add_argument("--json", action="store_true", help="write one JSON object: the text, and what was found")
     parser.set_defaults(run=run)
 
@@ -78,6 +85,7 @@ def run(args: argparse.Namespace) -> int:
     from eurdf.linking.description import read_urdf_alone
     from eurdf.writing.generation import generate
     from eurdf.writing.naming_conventions import BadPattern, conventions, hints
+    from eurdf.writing.revolute_mates import lowest_version
 
     if args.version == "1" and args.root != "fixed":
         raise CannotRun("version 1 cannot state a floating root; use version 2")
@@ -93,12 +101,13 @@ def run(args: argparse.Namespace) -> int:
         show_refusal(shown(args.urdf), tuple(diagnostics), args.json)
         return 1
     source, schema = urdf.document.source, None
+    version = args.version or ("2" if args.type else lowest_version(urdf, convention))
     urdf_path = urdf_named(args.output or args.urdf, source)
     if args.output is not None:
         refuse_to_replace(args.output, args.force)
-        schema = schema_beside(args.output, args.version, args.schema, urdf, args.force)
+        schema = schema_beside(args.output, version, args.schema, urdf, args.force)
     reference = None if schema is None else schema.reference
-    generation = generate(urdf, convention, args.version, args.root, urdf_path, reference, args.type)
+    generation = generate(urdf, convention, version, args.root, urdf_path, reference, args.type)
     advice = hints(urdf, generation.found, convention)
     if generation.mechanism is None:
         show_refusal(shown(args.urdf), tuple(generation.diagnostics), args.json)
@@ -170,7 +179,8 @@ def _result(
         "output": None if output is None else encodable(output),
         "schema": None if schema is None else encodable(os.fspath(schema.path)),
         "closures": [
-            {"name": closure.name, "type": closure.type, "frames": list(closure.frames)} for closure in found.closures
+            {"name": closure.name, "type": closure.type, "frames": list(closure.frames), **closure.axis_keys}
+            for closure in found.closures
         ],
         "motors": list(found.motors),
         "sphericals": list(found.sphericals),

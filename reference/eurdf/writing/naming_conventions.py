@@ -15,9 +15,13 @@ from eurdf.format.yaml_text import Entry, Value, item_of_mapping, lines_of, mode
 from eurdf.linking.merging import MASSLESS
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Root
+from eurdf.mechanism.pose import Vector3
 
 #: The types of closure that are chosen between.
 ClosureType = Literal["3d", "6d"]
+
+#: The versions of a description that is generated.
+GeneratedVersion = Literal["1", "2", "2.1"]
 
 _ROTARY = frozenset({JointType.REVOLUTE, JointType.CONTINUOUS})
 
@@ -116,12 +120,22 @@ class NamedClosure:
         type: None where the names do not state it.
         frames: Names of frame A and frame B.
         hinge: Whether it is one of the two that hold a hinge: a point on its axis, and a second one.
+        axes: Of type hinge, the unit vectors of its axis in A and in B.
     """
 
     name: str
-    type: ClosureType | None
+    type: ClosureType | Literal["hinge"] | None
     frames: tuple[str, str]
     hinge: bool = False
+    axes: tuple[Vector3, Vector3] | None = None
+
+    @property
+    def axis_keys(self) -> dict[str, Value]:
+        """The keys of a hinge that state its axis."""
+        if self.axes is None:
+            return {}
+        a, b = ([int(number) if number.is_integer() else number for number in axis] for axis in self.axes)
+        return {"axis": a} if a == b else {"axes": [a, b]}
 
 
 @dataclass(frozen=True, slots=True)
@@ -358,8 +372,9 @@ def version2_text(
     root: Root = "fixed",
     urdf_path: str = "robot.urdf",
     schema: str | None = None,
+    version: Literal["2.0", "2.1"] = VERSION2_0,
 ) -> str:
-    """The description in version 2.
+    """The description in version 2.0 or 2.1.
 
     Args:
         found: What the names say.
@@ -367,16 +382,26 @@ def version2_text(
         root: Whether the root is fixed or floating.
         urdf_path: Path of the URDF from the folder of the description.
         schema: Path of the schema from the folder of the description, for editors; no line names it where it is None.
+        version: The version of the description; version 2.0 has no hinges.
     """
     entries = [
-        Entry(lines_of("extended_urdf", VERSION2_0), _schema_line(schema)),
+        Entry(lines_of("extended_urdf", version), _schema_line(schema)),
         Entry(lines_of("urdf", urdf_path)),
     ]
     if root != "fixed":
         entries.append(Entry(lines_of("root", root)))
     if found.closures:
         items = [
-            Entry(item_of_mapping({"name": closure.name, "type": closure.type or "6d", "frames": closure.frames}))
+            Entry(
+                item_of_mapping(
+                    {
+                        "name": closure.name,
+                        "type": closure.type or "6d",
+                        "frames": closure.frames,
+                        **closure.axis_keys,
+                    }
+                )
+            )
             for closure in found.closures
         ]
         entries.append(section("closures", items))
