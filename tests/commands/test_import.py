@@ -97,12 +97,15 @@ def test_json_lists_every_loss_with_its_place(capsys: pytest.CaptureFixture[str]
     assert [(each["code"], each["name"]) for each in found["losses"]] == [(loss.code, loss.name) for loss in losses]
     assert found["format"] == "mjcf"
     assert found["closes"] is True
+    places = [each["file"] for each in found["losses"]]
+    assert set(places) == {"four_bar.xml", None}  # as given
     assert found["opened"] == [{"name": "pin", "position": pytest.approx(0.01), "angle": 0.0}]
     assert main(["import", "four_bar.xml", "-o", "other", "--format", "json", "--strict"]) == 1
     refused = json.loads(capsys.readouterr().out)
     jsonschema.Draft202012Validator(output_schemas()["import.schema.json"]).validate(refused)
     assert "it has losses" in refused["refused"]
     assert [each["code"] for each in refused["losses"]] == [each["code"] for each in found["losses"]]
+    assert [each["file"] for each in refused["losses"]] == places
 
 
 def test_existing_file_is_kept_without_force(here: Path, capsys: pytest.CaptureFixture[str]) -> None:

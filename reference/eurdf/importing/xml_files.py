@@ -32,7 +32,7 @@ def read_root(path: Path) -> etree._Element:
 
 
 def included_files(path: Path, within: Path) -> tuple[Path, ...]:
-    """An MJCF file and all that it includes, each read once, the main one first.
+    """An MJCF file and all that it includes, each read once, the main one first: paths as given, not absolute.
 
     Args:
         path: The file.
@@ -41,9 +41,10 @@ def included_files(path: Path, within: Path) -> tuple[Path, ...]:
     Raises:
         CannotImport: A file is outside the folder, includes itself, or cannot be read.
     """
-    found: dict[Path, None] = {}
+    found: dict[Path, Path] = {}
 
-    def visit(file: Path, chain: tuple[Path, ...]) -> None:
+    def visit(given: Path, chain: tuple[Path, ...]) -> None:
+        file = _resolved(path, given)
         inside(path, file, within)
         if file in chain:
             shown = " -> ".join(f"'{each.name}'" for each in (*chain[chain.index(file) :], file))
@@ -51,12 +52,12 @@ def included_files(path: Path, within: Path) -> tuple[Path, ...]:
         if len(chain) > DEPTH_LIMIT:
             raise CannotImport(path, f"files include each other more than {DEPTH_LIMIT} deep")
         root = read_root(file)
-        found[file] = None
+        found.setdefault(file, given)
         for name in _included(root):
-            visit(_resolved(path, name), (*chain, file))
+            visit(path.parent / name, (*chain, file))
 
-    visit(_resolved(path, path.name), ())
-    return tuple(found)
+    visit(path, ())
+    return tuple(found.values())
 
 
 def inside(path: Path, file: Path, within: Path) -> None:
@@ -73,12 +74,12 @@ def inside(path: Path, file: Path, within: Path) -> None:
         )
 
 
-def _resolved(main: Path, name: str) -> Path:
-    """The path of an included file: relative to the folder of the main file."""
+def _resolved(main: Path, file: Path) -> Path:
+    """The real path of a file, with symbolic links followed."""
     try:
-        return Path(os.path.realpath(main.parent / name))
+        return Path(os.path.realpath(file))
     except (OSError, ValueError):  # a name that cannot be one, such as one with a zero
-        raise CannotImport(main, f"it includes {name!r}, which cannot be the name of a file") from None
+        raise CannotImport(main, f"it includes {file.name!r}, which cannot be the name of a file") from None
 
 
 def _included(root: etree._Element) -> Iterator[str]:
