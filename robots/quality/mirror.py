@@ -15,7 +15,7 @@ import pinocchio as pin
 
 import eurdf
 from eurdf.kinematics.array import Vector
-from eurdf.mechanism.constraint import Closure
+from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, HingeClosure
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.pinocchio.coordinates import Slot, slots
@@ -30,13 +30,14 @@ _RIGHT = re.compile(r"(?<![a-z])right(?![a-z])")
 
 _SAME_PLACE = 1e-12  # m
 _SAME_TWIST = 1e-9  # rad/s; m/s at the world's origin
+_SAME_DIRECTION = 1e-9  # of unit vectors, and of coefficients of a coupling
 _SAME_INERTIA = 1e-9  # relative to the mass, or to the largest moment: the accuracy of the digits in files
 _POSES = 3  # in addition to the pose with all coordinates zero
 _REACH = 0.5  # range of the coordinates in them, rad or m
 
 
 def is_mirrored(candidate: Candidate) -> list[str] | None:
-    """Links, centres of mass, inertias, closures and limits of left and right are mirrored; None if there are none."""
+    """Links, masses, inertias, constraints and limits of left and right are mirrored; None if there are none."""
     mechanism = candidate.robot.mechanism
     pairs, alone = _pairs(mechanism)
     if not pairs:
@@ -52,6 +53,7 @@ def is_mirrored(candidate: Candidate) -> list[str] | None:
         if not sign.all():
             return [f"joint '{left.joint.name}' does not move as the mirror image of '{right.joint.name}'"]
     errors = [error for joint, sign in zip(joints, signs, strict=True) for error in _limits(*joint, sign)]
+    errors += _couplings(robot, pairs)
     random = np.random.default_rng(0)
     for pose in range(1 + _POSES):
         v = np.zeros(robot.model.nv)
@@ -67,10 +69,10 @@ def is_mirrored(candidate: Candidate) -> list[str] | None:
 
 
 def _pairs(mechanism: Mechanism) -> tuple[dict[str, str], list[str]]:
-    """For each body, joint or closure on the left the one on the right; and the names without counterpart."""
-    bodies, joints, closures = mechanism.bodies, mechanism.joints, mechanism.closures
+    """For each body, joint or constraint on the left the one on the right; and the names without counterpart."""
+    bodies, joints, constraints = mechanism.bodies, mechanism.joints, mechanism.constraints
     names = dict.fromkeys(
-        [*(body.name for body in bodies), *(joint.name for joint in joints), *(closure.name for closure in closures)]
+        [*(body.name for body in bodies), *(joint.name for joint in joints), *(each.name for each in constraints)]
     )
     pairs = {name: _LEFT.sub("right", name) for name in names if _LEFT.search(name)}
     images = set(pairs.values())
@@ -115,6 +117,30 @@ def _drive(joint: Joint) -> tuple[tuple[float, ...], ...]:
     return (has.velocity, has.effort, has.damping, has.friction, has.armature)
 
 
+def _couplings(robot: eurdf.Robot, pairs: Mapping[str, str]) -> Iterator[str]:
+    """Couplings that are not mirrored: those on the right relate the mirrored coordinates in the same way."""
+    couplings = {each.name: each for each in robot.constraints if isinstance(each, Coupling)}
+    at = slots(robot.mechanism)
+    for name, right in pairs.items():
+        if name not in couplings:
+            continue
+        joints = [(at[joint], at[pairs.get(joint, joint)]) for joint in couplings[name].joints]
+        image = {
+            other.joint.name: c * float(sign[0])
+            for (_, other), (_, c), sign in zip(
+                joints, couplings[name].coefficients, _signs(robot, joints), strict=True
+            )
+        }
+        other = couplings.get(right)
+        if other is None or image.keys() != set(other.joints):
+            yield f"couplings '{name}' and '{right}' do not relate mirrored joints"
+            continue
+        stated = dict(other.coefficients)
+        terms = np.array([(image[joint], stated[joint]) for joint in image] + [(couplings[name].offset, other.offset)])
+        if min(np.abs(terms @ (1.0, sign)).max() for sign in (1.0, -1.0)) > _SAME_DIRECTION * np.abs(terms).max():
+            yield f"couplings '{name}' and '{right}' are not mirror images"
+
+
 def _unlike(robot: eurdf.Robot, pairs: Mapping[str, str], q: Vector) -> list[str]:
     """What is not mirrored at q (nq,): positions of links, centres of mass and closures, or inertias."""
     model = robot.model
@@ -144,8 +170,10 @@ def _unlike(robot: eurdf.Robot, pairs: Mapping[str, str], q: Vector) -> list[str
     for name in pairs:
         if name in closures:
             ends = _ends(robot, data, closures[name]), _ends(robot, data, closures[pairs[name]])
-            if closures[name].type != closures[pairs[name]].type or any(
-                _apart(one, other) > _SAME_PLACE for one, other in zip(*ends, strict=True)
+            if (
+                any(_apart(one, other) > _SAME_PLACE for one, other in zip(*ends, strict=True))
+                or not _have_same_form(closures[name], closures[pairs[name]])
+                or not _axes_mirror(robot, data, closures[name], closures[pairs[name]])
             ):
                 errors.append(f"closures '{name}' and '{pairs[name]}' are not mirror images")
     return errors
@@ -161,6 +189,33 @@ def _inertia(model: Any, data: Any, joint: int) -> tuple[float, Vector, Any]:
 def _ends(robot: Robot, data: Any, closure: Closure) -> list[Vector]:
     """Positions (3,) of its two frames in the world, m."""
     return [data.oMi[joint].act(placement.translation) for joint, placement in map(robot.tree.site, closure.anchors)]
+
+
+def _have_same_form(left: Closure, right: Closure) -> bool:
+    """Whether type, compliance and length are equal."""
+    if isinstance(left, DistanceClosure) and isinstance(right, DistanceClosure):
+        return left.compliance == right.compliance and abs(left.length - right.length) <= _SAME_PLACE
+    return left.type == right.type and left.compliance == right.compliance
+
+
+def _axes_mirror(robot: Robot, data: Any, left: Closure, right: Closure) -> bool:
+    """Whether the axes of two hinges are mirror images; turning both axes of a hinge round does not change it."""
+    if not (isinstance(left, HingeClosure) and isinstance(right, HingeClosure)):
+        return True
+    images = [_MIRROR * axis for axis in _axes(robot, data, left)]
+    axes = _axes(robot, data, right)
+    return any(
+        all(np.abs(image - sign * axis).max() <= _SAME_DIRECTION for image, axis in zip(images, axes, strict=True))
+        for sign in (1.0, -1.0)
+    )
+
+
+def _axes(robot: Robot, data: Any, hinge: HingeClosure) -> list[Vector]:
+    """The axes (3,) of a hinge in its two frames, as unit vectors in the world."""
+    found = []
+    for (joint, placement), axis in zip(map(robot.tree.site, hinge.anchors), hinge.axes, strict=True):
+        found.append(data.oMi[joint].rotation @ placement.rotation @ np.array(axis) / np.linalg.norm(axis))
+    return found
 
 
 def _apart(left: Vector, right: Vector) -> float:

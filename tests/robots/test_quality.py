@@ -17,6 +17,7 @@ from robots.builder import Cylinder, Drawing, Motor, ball, prismatic, revolute, 
 from robots.quality.__main__ import main
 from robots.quality.candidate import Candidate
 from robots.quality.files import is_the_same_in_version_1
+from robots.quality.mirror import is_mirrored
 from robots.quality.readme import dimension_table
 from robots.quality.verdict import RULES, judge
 
@@ -351,6 +352,40 @@ def test_springs_are_mirrored(walker, right, are_mirrored):
     restate(walker)
     expected = [] if are_mirrored else ["'left_hip' and 'right_hip' have different springs"]
     assert errors(walker).get("mirrored", []) == expected
+
+
+def test_constraints_of_version_2_1_are_mirrored(tmp_path):
+    robot = Drawing("walker", materials={"steel": (0.5, 0.5, 0.5, 1.0)}, metadata={"description": "A walker"})
+    robot.body("torso", None, Cylinder((0, 0, 0), (0, 0, 1), 0.1, mass=1.0), material="steel")
+    at, end = (0.0, 0.3, 0.5), (0.0, 0.4, 0.1)
+    for name, joint in (
+        ("left_crank", revolute("left_turn", "torso", at, (1, 0, 0))),
+        ("left_bar", revolute("left_bend", "left_crank", at, (1, 0, 0.5))),
+    ):
+        robot.body(name, joint, Cylinder(at, end, 0.02, mass=0.1), material="steel")
+    robot.hinge("left_pin", "left_bar", "torso", end, (0, 1, 0.5))
+    robot.distance("left_tie", ("left_bar", end), ("torso", (0.0, 0.2, 0.0)))
+    robot.couple("left_gear", left_turn=1.0, left_bend=-2.0)
+    robot.mirror("left", "right")
+    write(robot, tmp_path)
+    assert is_mirrored(Candidate.find(tmp_path)) == []
+    path = tmp_path / "robot.yaml"
+    text = path.read_text()
+    pin, tie, gear = (
+        f"closures '{one}' and '{other}' are not mirror images, with every joint at zero"
+        for one, other in (("left_pin", "right_pin"), ("left_tie", "right_tie"), ("left_gear", "right_gear"))
+    )
+    gear = gear.replace("closures", "couplings").removesuffix(", with every joint at zero")
+    for old, new, expected in (
+        ("axis: [0, -1, 0.5]", "axis: [0, 2, -1]", []),  # the same hinge
+        ("axis: [0, -1, 0.5]", "axis: [0, 1, 0.5]", [pin]),
+        ("right_bend: -2", "right_bend: 2", [gear]),
+        ("length: 0.2236", "length: 0.2237", [tie]),
+    ):
+        before, found, after = text.rpartition(old)
+        assert found
+        path.write_text(before + new + after)
+        assert is_mirrored(Candidate.find(tmp_path)) == expected
 
 
 # --- the command -----------------------------------------------------------------------------------------------------
