@@ -12,7 +12,7 @@ from functools import cache
 from typing import Any
 
 from eurdf.collection import schema_folder
-from eurdf.format.own_key import OWN_KEY, is_own_key
+from eurdf.format.own_key import OWN_KEY, TWO_NAMES, is_own_key
 from eurdf.format.version import Version
 
 #: Whether a value conforms to a part of a schema.
@@ -36,6 +36,8 @@ _CONSTRAINTS = {
             "additionalProperties",
             "anyOf",
             "dependentRequired",
+            "else",
+            "if",
             "minProperties",
             "patternProperties",
             "properties",
@@ -165,6 +167,7 @@ class _Compiler:
         one_of = frozenset(key for part in schema.get("anyOf", ()) for key in part["required"])
         needed = [(key, frozenset(others)) for key, others in schema.get("dependentRequired", {}).items()]
         least = schema.get("minProperties", 0)
+        _refuse({key for key in ("minProperties", "if", "else") if key in schema and schema[key] != TWO_NAMES[key]})
 
         def check(value: Any) -> bool:
             if type(value) is not dict or not required <= value.keys():

@@ -10,7 +10,7 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 from typing_extensions import TypeAliasType
 
-from eurdf.format.own_key import OWN_KEY, is_own_key
+from eurdf.format.own_key import OWN_KEY, TWO_NAMES, is_own_key
 
 #: Strict: no string is a number, a bool is no number, an int is one. Built at first use, since one run mostly
 #: reads one version.
@@ -63,6 +63,16 @@ class _OwnKeysApart:
         return mapping
 
 
+class _TwoNames:
+    """For a mapping with two names at least."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
+        return handler(source)
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        return {**handler(schema), **TWO_NAMES}
+
+
 def _without_own_keys(value: Any) -> Any:
     """EU-EXT-004: user-defined keys are not names."""
     if isinstance(value, dict):
@@ -96,7 +106,9 @@ MayLack = Annotated[_T | None, _NotNull()]
 ByName = Annotated[dict[Annotated[str, Field(min_length=1)], _T], _OwnKeysApart()]
 
 #: The same with two names at least.
-AtLeastTwoByName = Annotated[dict[Annotated[str, Field(min_length=1)], _T], Field(min_length=2), _OwnKeysApart()]
+AtLeastTwoByName = Annotated[
+    dict[Annotated[str, Field(min_length=1)], _T], Field(min_length=2), _OwnKeysApart(), _TwoNames()
+]
 
 
 # Each named type has a definition of its own in the schema; the names of one robot are inserted there.
