@@ -28,7 +28,7 @@ from support.mutants.protocol import PROTOCOL_MUTANTS
 UNBROKEN = {
     "EU-CAN-005": "It binds who compares two canonical descriptions, not a parser.",
     "EU-CNF-006": "It binds editions of the specification, not a program.",
-    "EU-JNT-035": "The protocol has no quantity for forces and energies.",
+    "EU-JNT-035": "A parser need not compute forces or energies, so the protocol asks for none.",
     "EU-PRO-006": "It binds runners, which are tested with misbehaving parsers.",
     "EU-PRO-010": "It binds runners, which are tested with misbehaving parsers.",
     "EU-SEC-003": "What a parser does on a network is not in its answers.",
