@@ -12,8 +12,9 @@ from hypothesis import HealthCheck, given, settings
 from eurdf_conformance.level import Version
 from eurdf_conformance.oracle import OracleRobot, read
 from eurdf_conformance.oracle.joint_kind import KINDS
-from eurdf_conformance.properties.example import DRAWN_VERSIONS, frozen_examples
+from eurdf_conformance.properties.example import frozen_examples
 from eurdf_conformance.properties.mechanism import Configuration, Mechanism
+from eurdf_conformance.properties.property import SHARED
 from eurdf_conformance.properties.query import all_frames
 from eurdf_conformance.properties.strategies.mechanisms import mechanisms
 from eurdf_conformance.properties.truth import truth
@@ -32,7 +33,7 @@ URDFS = sorted(
 )
 
 
-@pytest.mark.parametrize("version", DRAWN_VERSIONS)
+@pytest.mark.parametrize("version", SHARED)
 def test_mujoco_and_oracle_agree_on_the_frozen_examples(version: Version) -> None:
     # Those for version 1 can be said in both versions: here it is by version 2.
     found = [example.mechanism for example in frozen_examples(version) if can_be_witnessed(example.mechanism)]

@@ -13,12 +13,12 @@ from eurdf_conformance.comparison.coordinates import COORDINATES
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.judging.judge import Judgement
 from eurdf_conformance.judging.verdict import Verdict
-from eurdf_conformance.level import Level, Version
+from eurdf_conformance.level import VERSIONS, Level, Version
 from eurdf_conformance.properties.catalogue import PROPERTIES, property_of
 from eurdf_conformance.properties.conditioning import has_clear_ranks, is_well_conditioned
 from eurdf_conformance.properties.counts import Counts, counts_of
 from eurdf_conformance.properties.document import configuration
-from eurdf_conformance.properties.example import DRAWN_VERSIONS, FROZEN, frozen_examples, frozen_text
+from eurdf_conformance.properties.example import FROZEN, frozen_examples, frozen_text
 from eurdf_conformance.properties.explore import Trial, try_property
 from eurdf_conformance.properties.features import features
 from eurdf_conformance.properties.harness import Harness
@@ -276,10 +276,10 @@ def test_the_counts_equal_the_dimensions_of_the_oracle() -> None:
 
 def test_writing_the_frozen_examples_reproduces_their_file() -> None:
     text = FROZEN.read_text(encoding="utf-8")
-    assert text == frozen_text({version: frozen_examples(version) for version in DRAWN_VERSIONS})
+    assert text == frozen_text({version: frozen_examples(version) for version in VERSIONS})
 
 
-@pytest.mark.parametrize("version", DRAWN_VERSIONS)
+@pytest.mark.parametrize("version", VERSIONS)
 def test_the_frozen_examples_are_well_conditioned_and_closed(version: Version) -> None:
     for example in frozen_examples(version):
         mechanism = example.mechanism
@@ -290,10 +290,8 @@ def test_the_frozen_examples_are_well_conditioned_and_closed(version: Version) -
 
 
 def test_the_frozen_examples_use_what_the_format_has() -> None:
-    used = {
-        version: [features(example.mechanism) for example in frozen_examples(version)] for version in DRAWN_VERSIONS
-    }
-    of_either = [found for version in DRAWN_VERSIONS for found in used[version]]
+    used = {version: [features(example.mechanism) for example in frozen_examples(version)] for version in VERSIONS}
+    of_either = [found for version in VERSIONS for found in used[version]]
     count = Counter(feature for found in of_either for feature in found)
     words = {feature.split(" from ")[0] for feature in count}
     assert set(COORDINATES) | {"fixed", "merged", "mimic", "mimic of a mimic", "rotor"} <= words
@@ -302,9 +300,14 @@ def test_the_frozen_examples_use_what_the_format_has() -> None:
     for name in ("lower", "upper", "velocity", "effort", "damping", "friction", "armature"):
         assert {f"{name} each", f"{name} for all"} <= count.keys()
     assert {"axes as letters", "axes as vectors", "root floating", "3 closures"} <= count.keys()
+    added = Counter(feature for found in used["2.1"] for feature in found)
+    for feature in ("hinge closure", "distance closure", "compliance of a closure", "stiffness each", "rest for all"):
+        assert added[feature] >= 5
+    assert {"axis of a closure", "axes of a closure", "coupling of 2", "coupling of 3", "freed mimic"} <= added.keys()
+    assert {"mimic with a property", "named motor", "control", "coupled helical", "coupled continuous"} <= added.keys()
 
 
-@pytest.mark.parametrize("version", DRAWN_VERSIONS)
+@pytest.mark.parametrize("version", VERSIONS)
 def test_every_property_has_examples(version: Version) -> None:
     few = {
         prop.name: len(prop.frozen(version)) for prop in PROPERTIES if version in prop.versions and prop.family is None

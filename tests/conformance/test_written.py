@@ -11,11 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from lxml import etree
 
+from eurdf_conformance.level import VERSIONS
 from eurdf_conformance.oracle.spatial import from_rpy
 from eurdf_conformance.oracle.yaml_text import value_of
 from eurdf_conformance.properties.chance import Chance
 from eurdf_conformance.properties.document import document
-from eurdf_conformance.properties.example import DRAWN_VERSIONS, frozen_examples
+from eurdf_conformance.properties.example import frozen_examples
 from eurdf_conformance.properties.files import files_of
 from eurdf_conformance.properties.mechanism import Mechanism, Pose
 from eurdf_conformance.properties.names import CURIOUS, new_names, renamed
@@ -69,7 +70,7 @@ def test_styles_differ() -> None:
 
 
 def test_other_libraries_read_the_written_files() -> None:
-    for version in DRAWN_VERSIONS:
+    for version in VERSIONS:
         for example in frozen_examples(version):
             files = files_of(example.mechanism, version)
             # 1e-05 is a string in YAML 1.1; else the two agree on what is written here.

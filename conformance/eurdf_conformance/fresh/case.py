@@ -22,7 +22,7 @@ from eurdf_conformance.corpus.expected import Expected
 from eurdf_conformance.corpus.read import CorpusCase, suite_cases
 from eurdf_conformance.fresh.kind import TITLES, FreshKind, accept_clause, fresh_levels
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.properties.example import DRAWN_VERSIONS, Example
+from eurdf_conformance.properties.example import Example
 from eurdf_conformance.properties.files import DESCRIPTION, URDF
 
 #: Topic of fresh cases: the first part of their names.
@@ -134,10 +134,9 @@ def fresh_cases(seed: int) -> dict[str, FreshCase]:
 
 
 def fresh_examples(seed: int, version: Version) -> tuple[Example, ...]:
-    """The mechanisms of the valid fresh cases of a seed, for properties; those of version 2 are also of version 2.1."""
-    drawn_as = version if version in DRAWN_VERSIONS else "2"
+    """The mechanisms of the valid fresh cases of a seed, for properties."""
     cases = (case.drawn for case in fresh_cases(seed).values())
-    return tuple(each.example for each in cases if each.kind is FreshKind.VALID and each.version == drawn_as)
+    return tuple(each.example for each in cases if each.kind is FreshKind.VALID and each.version == version)
 
 
 def drawn_hash(seed: int) -> str:

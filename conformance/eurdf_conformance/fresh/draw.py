@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import sys
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -17,12 +18,13 @@ from hypothesis import strategies as st
 from eurdf_conformance.corpus.case import CasePlace
 from eurdf_conformance.corpus.expect import expected_of
 from eurdf_conformance.fresh.case import Drawn
-from eurdf_conformance.fresh.fault import FAULTS, Fault, with_fault
+from eurdf_conformance.fresh.fault import Fault, Subject, with_fault
+from eurdf_conformance.fresh.faults import FAULTS
 from eurdf_conformance.fresh.kind import COUNTS, FreshKind
-from eurdf_conformance.level import Version
+from eurdf_conformance.level import VERSIONS, Version
 from eurdf_conformance.oracle import read
 from eurdf_conformance.properties.chance import Chance
-from eurdf_conformance.properties.example import DRAWN_VERSIONS, Example
+from eurdf_conformance.properties.example import Example
 from eurdf_conformance.properties.files import DESCRIPTION, URDF
 from eurdf_conformance.properties.freeze import chosen
 from eurdf_conformance.properties.mechanism import Mechanism
@@ -35,7 +37,7 @@ _KEPT = 3
 
 def draw(seed: int) -> Iterator[Drawn]:
     """The fresh cases of a seed, in the order of their versions and kinds."""
-    for version in DRAWN_VERSIONS:
+    for version in VERSIONS:
         faults = [fault for fault in FAULTS if version in fault.versions]
         left = iter(drawn_examples(version, seed))
         for kind, count in COUNTS.items():
@@ -96,17 +98,18 @@ def _valid(
 def _faulty(
     kind: FreshKind, version: Version, examples: Iterable[Example], faults: Iterable[Fault], chance: Chance
 ) -> Iterator[Drawn]:
-    """Each of the mechanisms with one error: first one about each subject, then as many different ones as possible."""
-    left = _one_about_each_subject_first(chance.shuffled(faults))
+    """Each of the mechanisms with one error: equally many about each subject, and as different ones as possible."""
+    left, subjects = chance.shuffled(faults), Counter[Subject]()
     for example in examples:
         files = _texts(query_of(example.mechanism, version))
-        for fault in left:
+        for fault in sorted(left, key=lambda each: subjects[each.subject]):
             faulty = with_fault(fault, files[fault.file], chance)
             if faulty is not None:
                 break
         else:
             raise AssertionError("any robot can have a second root, and has an inertia")
         left = [*(other for other in left if other is not fault), fault]  # it is the last to be used again
+        subjects[fault.subject] += 1
         texts = {**files, fault.file: faulty.text}
         error: dict[str, Any] = {
             "error": fault.name,
@@ -118,11 +121,6 @@ def _faulty(
             yield _valid(kind, version, example, texts, **error)
         else:
             yield Drawn(version=version, kind=kind, files=texts, example=example, **error)
-
-
-def _one_about_each_subject_first(faults: Sequence[Fault]) -> list[Fault]:
-    first = {fault.subject: fault for fault in reversed(faults)}.values()
-    return [*first, *(fault for fault in faults if fault not in first)]
 
 
 def _texts(query: Query) -> dict[str, str]:

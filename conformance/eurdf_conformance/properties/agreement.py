@@ -8,7 +8,7 @@ from eurdf_conformance.comparison.array import TOLERANCE, array_differences
 from eurdf_conformance.comparison.canonical import canonical_differences
 from eurdf_conformance.comparison.difference import ABSENT, Difference
 from eurdf_conformance.comparison.values import values_differences
-from eurdf_conformance.level import Level, Version
+from eurdf_conformance.level import VERSIONS, Level, Version
 from eurdf_conformance.level_spec import LEVELS, Compared
 from eurdf_conformance.properties.example import Example
 from eurdf_conformance.properties.harness import Harness
@@ -77,6 +77,7 @@ PROPERTIES = (
         ("EU-CNF-002", "EU-PRO-004"),
         (Level.ACCEPT,),
         accepted,
+        versions=VERSIONS,
     ),
     Property(
         "structure-agreement",
@@ -84,29 +85,34 @@ PROPERTIES = (
         (
             *("EU-CAN-001", "EU-CAN-002", "EU-ACT-006"),
             *("EU-JNT-020", "EU-JNT-021", "EU-JNT-024", "EU-JNT-027", "EU-JNT-029"),
+            *("EU-CLO-021", "EU-JNT-031", "EU-JNT-034", "EU-ACT-010"),
             *("EU-ACT-007", "EU-CFG-005", "EU-EXT-002", "EU-VER-004"),
             *("EU-ONE-004", "EU-ONE-005", "EU-ONE-006", "EU-ONE-007"),
         ),
         (Level.STRUCTURE,),
         agreement,
+        versions=VERSIONS,
     ),
     Property(
         "agreement",
         "Poses, residuals and K agree with a second implementation of the specification.",
         (
             *("EU-PRO-008", "EU-JNT-025", "EU-JNT-026", "EU-FRM-004", "EU-FRM-005", "EU-FRM-006"),
+            *("EU-CLO-014", "EU-CLO-015", "EU-CPL-005"),
             *("EU-CLO-008", "EU-CLO-009", "EU-CLO-010", "EU-URD-032", "EU-URD-035", "EU-JNT-015"),
             *("EU-JNT-016", "EU-JNT-017", "EU-JNT-018", "EU-JNT-019", "EU-JNT-022", "EU-JNT-023"),
         ),
         (Level.KINEMATICS,),
         agreement,
+        versions=VERSIONS,
     ),
     Property(
         "inertia-agreement",
         "M, mass and centre of mass agree with a second implementation of the specification.",
-        ("EU-INR-006", "EU-INR-005", "EU-PRO-009", "EU-JNT-026"),
+        ("EU-INR-006", "EU-INR-005", "EU-PRO-009", "EU-JNT-026", "EU-JNT-032"),
         (Level.DYNAMICS,),
         agreement,
+        versions=VERSIONS,
     ),
     Property(
         "columns",
@@ -114,6 +120,7 @@ PROPERTIES = (
         ("EU-PRO-007",),
         (Level.KINEMATICS, Level.DYNAMICS),
         columns,
+        versions=VERSIONS,
     ),
     Property(
         "inertia",
@@ -121,5 +128,6 @@ PROPERTIES = (
         ("EU-INR-005", "EU-INR-006"),
         (Level.DYNAMICS,),
         inertia,
+        versions=VERSIONS,
     ),
 )

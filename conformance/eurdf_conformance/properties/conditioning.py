@@ -17,8 +17,11 @@ ZERO, SMALL = 1e-9, 3e-4
 #: The smallest eigenvalue of M, by its largest entry.
 _DEFINITE = 1e-6
 
-#: rad, the most that a 6d closure is turned by: at a half turn its residual has two values.
+#: rad, the most that a 6d closure or a hinge is turned by: at a half turn its residual has two values.
 _TURN = 2.8
+
+#: m, the least between the ends of a distance: where they meet, its residual has no derivative.
+_APART = 0.3
 
 
 def is_well_conditioned(mechanism: Mechanism, version: Version) -> bool:
@@ -26,7 +29,11 @@ def is_well_conditioned(mechanism: Mechanism, version: Version) -> bool:
     robot = truth(mechanism, version)
     for name, stated in mechanism.configurations.items():
         q = configuration(mechanism, stated, version)
-        if any(len(r) == 6 and np.linalg.norm(r[3:]) > _TURN for r in robot.residuals(q).values()):
+        residuals = robot.residuals(q)
+        if any(np.linalg.norm(r[3:]) > _TURN for r in residuals.values()):
+            return False
+        lengths = {closure.name: closure.length for closure in robot.description.closures if closure.length is not None}
+        if any(residuals[each][0] + length < _APART for each, length in lengths.items()):
             return False
         M = robot.mass_matrix(q)
         if len(M) and np.linalg.eigvalsh(M)[0] < _DEFINITE * np.abs(M).max():

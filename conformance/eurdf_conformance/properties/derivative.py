@@ -9,7 +9,7 @@ import numpy as np
 from eurdf_conformance.comparison.array import TOLERANCE, array_differences
 from eurdf_conformance.comparison.difference import Difference
 from eurdf_conformance.json_pointer import step
-from eurdf_conformance.level import Level, Version
+from eurdf_conformance.level import VERSIONS, Level, Version
 from eurdf_conformance.properties.example import Example
 from eurdf_conformance.properties.harness import Harness
 from eurdf_conformance.properties.property import Property, closed
@@ -53,6 +53,7 @@ PROPERTIES = (
         ("EU-CLO-010", "EU-JNT-026"),
         (Level.KINEMATICS,),
         derivative,
+        versions=VERSIONS,
         applies=closed,
         closures=1,
     ),

@@ -5,9 +5,18 @@ from __future__ import annotations
 from typing import Any
 
 from eurdf_conformance.level import Version
-from eurdf_conformance.properties.mechanism import Actuator, Change, Configuration, Mechanism, Pose, Spot
+from eurdf_conformance.properties.mechanism import (
+    Actuator,
+    Change,
+    Closure,
+    Configuration,
+    Coupling,
+    Mechanism,
+    Pose,
+    Spot,
+)
 
-_PROPERTIES = ("damping", "friction", "armature")
+_PROPERTIES = ("damping", "friction", "armature", "stiffness", "rest")
 _LIMITS = ("lower", "upper", "velocity", "effort")
 _WORDS = {"spherical": "SPHERICAL", "fixed": "FIXED"}
 
@@ -32,12 +41,11 @@ def version2(mechanism: Mechanism) -> Document:
                 "name": closure.name,
                 "type": closure.type,
                 "frames": [_reference(closure.a), _reference(closure.b)],
-                **({} if closure.axis is None else {"axis": list(closure.axis)}),
-                **({} if closure.length is None else {"length": closure.length}),
+                **_added(closure),
             }
             for closure in mechanism.closures
         ],
-        "couplings": [coupling.model_dump() for coupling in mechanism.couplings],
+        "couplings": [_coupling(coupling) for coupling in mechanism.couplings],
         "joints": {name: _change(change) for name, change in mechanism.changes.items() if change.says_something},
         "actuators": [_actuator(actuator) for actuator in mechanism.actuators],
         "frames": [{"name": frame.name, **_spot(frame.spot)} for frame in mechanism.frames],
@@ -47,6 +55,23 @@ def version2(mechanism: Mechanism) -> Document:
         },
     }
     return found | {key: value for key, value in parts.items() if value} | mechanism.own
+
+
+def _added(closure: Closure) -> Document:
+    """What version 2.1 adds to a closure."""
+    found: Document = {} if closure.axis is None else {"axis": list(closure.axis)}
+    if closure.axes is not None:
+        found["axes"] = [list(axis) for axis in closure.axes]
+    if closure.length is not None:
+        found["length"] = closure.length
+    if closure.compliance is not None:
+        found["compliance"] = closure.compliance.model_dump(exclude_none=True)
+    return found
+
+
+def _coupling(coupling: Coupling) -> Document:
+    offset = {"offset": coupling.offset} if coupling.offset else {}
+    return {"name": coupling.name, "joints": dict(coupling.joints), **offset}
 
 
 def version1(mechanism: Mechanism) -> Document:
@@ -98,7 +123,8 @@ def _change(change: Change) -> Any:
     found |= {} if change.pitch is None else {"pitch": change.pitch}
     found |= {"merges": list(change.merges)} if change.merges else {}
     limits = _stated(change, _LIMITS)
-    found |= ({"limits": limits} if limits else {}) | _stated(change, _PROPERTIES) | change.own
+    found |= ({"limits": limits} if limits else {}) | _stated(change, _PROPERTIES)
+    found |= ({"mimic": False} if change.freed else {}) | change.own
     return change.type if found.keys() == {"type"} else found
 
 
@@ -110,8 +136,9 @@ def _stated(change: Change, names: tuple[str, ...]) -> Document:
 
 
 def _actuator(actuator: Actuator) -> Any:
-    gear = {"gear_ratio": actuator.gear_ratio, "rotor_inertia": actuator.rotor_inertia}
-    stated = {key: value for key, value in gear.items() if value is not None}
+    stated = actuator.model_dump(exclude={"joint"}, exclude_none=True)
+    if actuator.control is not None:
+        stated["control"] = list(actuator.control)
     return {"joint": actuator.joint, **stated} if stated else actuator.joint
 
 

@@ -7,12 +7,9 @@ from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
 
-from eurdf_conformance.level import Version
+from eurdf_conformance.level import VERSIONS, Version
 from eurdf_conformance.properties.chance import Chance
 from eurdf_conformance.properties.mechanism import Mechanism, Part
-
-#: Versions of the format in which mechanisms are drawn; those of version 2 are also of version 2.1.
-DRAWN_VERSIONS: tuple[Version, ...] = ("1", "2")
 
 #: The examples of every certification: the same on every machine and with every version of Hypothesis.
 FROZEN = Path(__file__).with_name("frozen.json")
@@ -39,16 +36,15 @@ class Example(Part):
 
 @cache
 def frozen_examples(version: Version) -> tuple[Example, ...]:
-    """The examples of every certification, of one version of the format; those of version 2 are also of version 2.1."""
+    """The examples of every certification, of one version of the format."""
     found = json.loads(FROZEN.read_text(encoding="utf-8"))
-    drawn = version if version in DRAWN_VERSIONS else "2"
-    return tuple(Example.model_validate_json(json.dumps(each)) for each in found[drawn])
+    return tuple(Example.model_validate_json(json.dumps(each)) for each in found[version])
 
 
 def frozen_text(examples: Mapping[Version, Iterable[Example]]) -> str:
     """The file of the examples: one a line."""
     parts = []
-    for version in DRAWN_VERSIONS:
+    for version in VERSIONS:
         lines = [json.dumps(_compact(example), ensure_ascii=False) for example in examples[version]]
         parts.append(f'"{version}": [\n' + ",\n".join(lines) + "\n]")
     return "{" + ",\n".join(parts) + "}\n"

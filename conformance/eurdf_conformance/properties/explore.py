@@ -194,7 +194,5 @@ def drawn(prop: Property, version: Version) -> SearchStrategy[Example]:
     """An example for a property."""
     if prop.family is not None:
         return st.integers(prop.smallest, LARGEST).map(prop.family)
-    examples = st.builds(
-        Example, mechanism=mechanisms("2" if version == "2.1" else version, prop.closures), seed=st.integers(0, 10**6)
-    )
+    examples = st.builds(Example, mechanism=mechanisms(version, prop.closures), seed=st.integers(0, 10**6))
     return examples.filter(lambda example: prop.applies(example.mechanism))

@@ -13,14 +13,14 @@ from collections.abc import Sequence
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
-from eurdf_conformance.level import Version
-from eurdf_conformance.properties.example import DRAWN_VERSIONS, FROZEN, Example, frozen_text
+from eurdf_conformance.level import VERSIONS, Version
+from eurdf_conformance.properties.example import FROZEN, Example, frozen_text
 from eurdf_conformance.properties.features import features
 from eurdf_conformance.properties.mechanism import Mechanism
 from eurdf_conformance.properties.strategies.mechanisms import mechanisms
 
 #: Numbers of examples drawn and kept, for each version.
-DRAWN, KEPT = 1200, {"1": 30, "2": 40}
+DRAWN, KEPT = 1200, {"1": 30, "2": 40, "2.1": 40}
 
 #: How many examples show each feature, if possible.
 _WANTED = 3
@@ -28,7 +28,7 @@ _WANTED = 3
 
 def main() -> None:
     """Write the file."""
-    examples = {version: chosen(drawn(version), KEPT[version]) for version in DRAWN_VERSIONS}
+    examples = {version: chosen(drawn(version), KEPT[version]) for version in VERSIONS}
     FROZEN.write_text(frozen_text(examples), encoding="utf-8")
     for version, kept in examples.items():
         count = Counter(feature for example in kept for feature in features(example.mechanism))

@@ -96,6 +96,11 @@ class Change(Part):
     damping: PerNumber | None = None
     friction: PerNumber | None = None
     armature: PerNumber | None = None
+    #: Of version 2.1: a spring on each coordinate.
+    stiffness: PerNumber | None = None
+    rest: PerNumber | None = None
+    #: Of version 2.1: whether the joint mimics no other, whatever the URDF says.
+    freed: bool = False
     #: User data, under keys that begin with `x-`.
     own: dict[str, Any] = {}
 
@@ -120,6 +125,13 @@ class Frame(Part):
     spot: Spot
 
 
+class Compliance(Part):
+    """What a closure gives way by, m/N and rad/(N·m)."""
+
+    linear: float | None = None
+    angular: float | None = None
+
+
 class Closure(Part):
     """A closure between frames A and B; each is a name, or a pose written in place."""
 
@@ -127,10 +139,13 @@ class Closure(Part):
     type: Literal["3d", "6d", "hinge", "distance"]
     a: str | Spot
     b: str | Spot
-    #: Of a hinge, the axis in A and in B.
+    #: Of a hinge, the axis in A and in B, or one each.
     axis: Vector | None = None
+    axes: tuple[Vector, Vector] | None = None
     #: Of a distance, m.
     length: float | None = None
+    #: Of version 2.1.
+    compliance: Compliance | None = None
 
 
 class Coupling(Part):
@@ -147,6 +162,9 @@ class Actuator(Part):
     joint: str
     gear_ratio: float | None = None
     rotor_inertia: float | None = None
+    #: Of version 2.1.
+    name: str | None = None
+    control: tuple[float, float] | None = None
 
 
 class Mechanism(Part):
@@ -178,6 +196,11 @@ class Mechanism(Part):
         if joint.name in self.merged:
             return "merged"
         return (self.changes[joint.name].type if joint.name in self.changes else None) or joint.type
+
+    def mimics(self, joint: Joint) -> bool:
+        """Whether a joint of the URDF mimics another one."""
+        entry = self.changes.get(self.merged.get(joint.name, joint.name))
+        return joint.mimic is not None and not (entry and entry.freed)
 
     def types(self) -> dict[str, str]:
         """The type of each moving joint, including joints made by merging and mimic joints."""

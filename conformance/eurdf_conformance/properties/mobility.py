@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from eurdf_conformance.comparison.difference import Difference
-from eurdf_conformance.level import Level, Version
+from eurdf_conformance.level import VERSIONS, Level, Version
 from eurdf_conformance.properties.agreement import accepted
 from eurdf_conformance.properties.counts import Counts, count_differences, counts_of
 from eurdf_conformance.properties.document import configuration
@@ -75,6 +75,7 @@ PROPERTIES = (
         _CLAUSES,
         (Level.KINEMATICS,),
         mobility,
+        versions=VERSIONS,
     ),
     family("planar-polygon", "A planar ring of n hinges has mobility n − 3.", planar.polygon, range(4, 9)),
     family(

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from eurdf_conformance.comparison.difference import Difference
 from eurdf_conformance.level import Level, Version
-from eurdf_conformance.properties.example import DRAWN_VERSIONS, Example, frozen_examples
+from eurdf_conformance.properties.example import Example, frozen_examples
 from eurdf_conformance.properties.harness import Harness
 from eurdf_conformance.properties.mechanism import Mechanism
 
@@ -16,6 +16,9 @@ Check = Callable[[Harness, Example, Version, Level], list[Difference]]
 
 #: Size of the largest member of a family that is explored.
 LARGEST = 11
+
+#: Versions in which relations are asked; what version 2.1 adds has relations of its own.
+SHARED: tuple[Version, ...] = ("1", "2")
 
 #: Number of frozen examples tried, among those that the property applies to.
 MOST = 24
@@ -27,8 +30,8 @@ def anything(mechanism: Mechanism) -> bool:
 
 
 def closed(mechanism: Mechanism) -> bool:
-    """The property applies to mechanisms with closures."""
-    return bool(mechanism.closures)
+    """The property applies to mechanisms with closures or couplings."""
+    return bool(mechanism.closures or mechanism.couplings)
 
 
 @dataclass(frozen=True)
@@ -54,7 +57,7 @@ class Property:
     clauses: tuple[str, ...]
     levels: tuple[Level, ...]
     check: Check
-    versions: tuple[Version, ...] = DRAWN_VERSIONS
+    versions: tuple[Version, ...] = SHARED
     applies: Callable[[Mechanism], bool] = anything
     examples: Callable[[Version], Sequence[Example]] = frozen_examples
     closures: int = 0

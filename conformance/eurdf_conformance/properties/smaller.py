@@ -11,12 +11,14 @@ _Part = TypeVar("_Part", bound=Part)
 
 
 def smaller(mechanism: Mechanism) -> Iterator[Mechanism]:
-    """Mechanisms with one closure, motor, frame or joint less, and without what refers to that part alone.
+    """Mechanisms with one closure, coupling, motor, frame or joint less, and without what refers to that part alone.
 
     Three joints that are merged go together. Of a mechanism whose loops are closed, those that are left are closed.
     """
     for i in range(len(mechanism.closures)):
         yield mechanism.replace(closures=_without(mechanism.closures, i))
+    for i in range(len(mechanism.couplings)):
+        yield mechanism.replace(couplings=_without(mechanism.couplings, i))
     for i in range(len(mechanism.actuators)):
         yield mechanism.replace(actuators=_without(mechanism.actuators, i))
     held = {end for closure in mechanism.closures for end in (closure.a, closure.b)}
@@ -46,6 +48,7 @@ def _without_joints(mechanism: Mechanism, name: str, chain: list[Joint]) -> Iter
     ends = [end for closure in mechanism.closures for end in (closure.a, closure.b)]
     spots = [frame.spot for frame in mechanism.frames] + [end for end in ends if isinstance(end, Spot)]
     named = {spot.of for spot in spots} | {end for end in ends if isinstance(end, str)}
+    named |= {coupled for coupling in mechanism.couplings for coupled in coupling.joints}
     named |= {joint.mimic.joint for joint in rest if joint.mimic}
     carries = any(joint.parent in links for joint in rest)
     if named & {name, *joints, *links} or (carries and mechanism.closures):

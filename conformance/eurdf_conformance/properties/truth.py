@@ -9,6 +9,7 @@ from tempfile import NamedTemporaryFile
 from eurdf_conformance.level import Version
 from eurdf_conformance.oracle import OracleRobot
 from eurdf_conformance.oracle.merging import with_merges_found
+from eurdf_conformance.oracle.read import freed
 from eurdf_conformance.oracle.tree import build
 from eurdf_conformance.oracle.urdf import read_urdf
 from eurdf_conformance.oracle.version1 import version1
@@ -37,4 +38,5 @@ def _truth(text: str, version: Version) -> OracleRobot:
     description = (version1 if version == "1" else version2)(document(mechanism, version))
     if version == "1":
         description = with_merges_found(description, urdf)
+    urdf = freed(urdf, description)
     return OracleRobot(urdf, description, build(urdf, description))

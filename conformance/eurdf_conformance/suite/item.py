@@ -17,7 +17,6 @@ from eurdf_conformance.judging.result import Item
 from eurdf_conformance.level import VERSIONS, Level, Version
 from eurdf_conformance.level_spec import LEVELS
 from eurdf_conformance.properties import PROPERTIES
-from eurdf_conformance.properties.example import DRAWN_VERSIONS
 from eurdf_conformance.properties.property import Property
 
 
@@ -80,7 +79,7 @@ class FreshItem:
 
 def fresh_items() -> Iterator[FreshItem]:
     """The items on fresh cases: whatever is drawn, their ids, levels and clauses are the same."""
-    for version, (kind, count) in product(DRAWN_VERSIONS, COUNTS.items()):
+    for version, (kind, count) in product(VERSIONS, COUNTS.items()):
         for number, level in product(range(1, count + 1), fresh_levels(kind)):
             general = accept_clause(kind) if level is Level.ACCEPT else LEVELS[level].clause
             yield FreshItem(Item(fresh_name(version, kind, number), level, version, (general,), TITLES[kind]))

@@ -63,7 +63,8 @@ def distances(example: Example, version: Version) -> Pair:
         spot = spots.get(str(each.b)) or Spot(on="link" if each.b in links else "joint", of=str(each.b))
         x, y, z = (matrix_of(spot.pose)[:3, :3] @ d + spot.pose.xyz).tolist()
         moved = Spot(on=spot.on, of=spot.of, pose=Pose(xyz=(x, y, z)))
-        closures.append(each.model_copy(update={"type": "distance", "b": moved, "length": float(np.linalg.norm(d))}))
+        update = {"type": "distance", "b": moved, "length": float(np.linalg.norm(d)), "compliance": None}
+        closures.append(each.model_copy(update=update))
     other = mechanism.replace(closures=tuple(closures))
 
     def rows(name: str, aMb: Matrix, K: Matrix) -> Rows:
@@ -77,8 +78,8 @@ def distances(example: Example, version: Version) -> Pair:
 
 
 def couplings(example: Example, version: Version) -> Pair:
-    """A mechanism, and the same one with a coupling of all joints that can be coupled, closed at `assembled`."""
-    mechanism, chance = with_named_frames(example.mechanism), example.chance
+    """A mechanism without couplings, and the same one with one of all joints that fit, closed at `assembled`."""
+    mechanism, chance = with_named_frames(example.mechanism).replace(couplings=()), example.chance
     coefficients = {name: chance.between(0.5, 3.0) for name in _coupled(mechanism)}
 
     def total(stated: dict[str, tuple[float, ...]]) -> float:
@@ -136,7 +137,7 @@ def _coupled(mechanism: Mechanism) -> list[str]:
     return [
         joint.name
         for joint in mechanism.joints
-        if mechanism.type_of(joint) in COUPLED and joint.mimic is None and not joint.name.startswith("x-")
+        if mechanism.type_of(joint) in COUPLED and not mechanism.mimics(joint) and not joint.name.startswith("x-")
     ]
 
 

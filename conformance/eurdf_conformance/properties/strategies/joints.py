@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.strategies import DrawFn, SearchStrategy
 
 from eurdf_conformance.comparison.coordinates import COORDINATES, VELOCITIES
+from eurdf_conformance.level import Version
 from eurdf_conformance.properties.mechanism import Change, Joint, Limit, Mimic, PerNumber, Pose, Vector
 from eurdf_conformance.properties.strategies.numbers import axes, axis_pairs, decimals, poses
 
@@ -79,15 +80,16 @@ def mimics(leader: str) -> SearchStrategy[Mimic]:
 
 
 @st.composite
-def changes(draw: DrawFn, kind: Any, was: Plain, *, plain: bool = False) -> Change:
+def changes(draw: DrawFn, kind: Any, was: Plain, version: Version) -> Change:
     """What the description states about a joint.
 
     Args:
         draw: Of Hypothesis.
         kind: What it becomes, or None.
         was: Its type in the URDF.
-        plain: Whether only what version 1 can say.
+        version: Of the description.
     """
+    plain = version == "1"
     said: dict[str, Any] = {"type": kind}
     if kind == "universal":
         letters = st.sampled_from(LETTERS)
@@ -96,7 +98,8 @@ def changes(draw: DrawFn, kind: Any, was: Plain, *, plain: bool = False) -> Chan
         said["pitch"] = draw(decimals(-0.5, 0.5).filter(bool))
     if plain or kind == "fixed":
         return Change(**said)
-    return Change(**said, **draw(stated(kind or was)))
+    said |= draw(stated(kind or was))
+    return Change(**said, **(draw(springs(kind or was)) if version == "2.1" else {}))
 
 
 @st.composite
@@ -114,6 +117,24 @@ def stated(draw: DrawFn, kind: str) -> dict[str, Any]:
     if said and with_own:
         said["own"] = {"x-bearing": {"series": draw(st.integers(600, 700)), "play": [2e-05, None, True, "no"]}}
     return said
+
+
+@cache
+def of_mimics() -> SearchStrategy[Change]:
+    """What the description of version 2.1 may state about a mimic joint that it does not free, EU-JNT-030."""
+    names = st.lists(st.sampled_from(["armature", "damping", "friction"]), unique=True)
+    numbers = names.flatmap(lambda some: st.fixed_dictionaries({name: _per_number(0, 2, 1) for name in some}))
+    return st.builds(lambda said, spring: Change(**said, **spring), numbers, springs("revolute"))
+
+
+@cache
+def springs(kind: str) -> SearchStrategy[dict[str, Any]]:
+    """A spring on each coordinate, or none, of a type of joint: EU-JNT-031."""
+    if kind not in (*_BOUNDED, "continuous"):
+        return st.just({})
+    count = COORDINATES[kind]
+    spring = {"stiffness": _per_number(0, 900, count)}
+    return st.just({}) | st.fixed_dictionaries(spring, optional={"rest": _per_number(-2, 2, count)})
 
 
 @cache

@@ -29,6 +29,7 @@ from eurdf_conformance.properties.strategies.joints import (
     Plain,
     changes,
     mimics,
+    of_mimics,
     urdf_joints,
 )
 from eurdf_conformance.properties.strategies.merges import chains
@@ -66,12 +67,13 @@ def trees(draw: DrawFn, version: Version, most: int = 6) -> Mechanism:
         if not draw(grown(growth)):
             break
     mechanism = Mechanism(
-        root=draw(st.sampled_from(["fixed", "floating"])) if version == "2" else "fixed",
+        root=draw(st.sampled_from(["fixed", "floating"])) if version != "1" else "fixed",
         links=tuple(growth.links),
         joints=tuple(growth.joints),
         changes=growth.changes,
     )
-    movers = {name: kind for name, kind in mechanism.types().items() if name not in _mimics(mechanism)}
+    following = {joint.name for joint in mechanism.joints if mechanism.mimics(joint)}
+    movers = {name: kind for name, kind in mechanism.types().items() if name not in following}
     names = st.lists(st.sampled_from(sorted(movers)), unique=True, max_size=3) if movers else st.just([])
     driven = [name for name in draw(names) if name != "root_joint"]
     return mechanism.replace(
@@ -80,7 +82,7 @@ def trees(draw: DrawFn, version: Version, most: int = 6) -> Mechanism:
             "assembled": draw(configurations(movers, every=True)),
             "open": draw(configurations(movers, every=False)),
         },
-        own={"x-note": draw(st.sampled_from(["no", 12, {"012": [1.5, "1e-3"]}]))} if version == "2" else {},
+        own={"x-note": draw(st.sampled_from(["no", 12, {"012": [1.5, "1e-3"]}]))} if version != "1" else {},
     )
 
 
@@ -91,8 +93,8 @@ def grown(draw: DrawFn, growth: Growth) -> bool:
     All that is drawn for a joint is drawn here, so that Hypothesis can leave out any one of them.
     """
     version = growth.version
-    kinds = ["merged", *(kind for kind in BECOMES if version == "2" or kind not in _VERSION_2)]
-    kinds = [*PLAIN, *(["mimic"] if version == "2" else []), *kinds]  # in version 1 no joint mimics
+    kinds = ["merged", *(kind for kind in BECOMES if version != "1" or kind not in _VERSION_2)]
+    kinds = [*PLAIN, *(["mimic"] if version != "1" else []), *kinds]  # in version 1 no joint mimics
     kind = draw(st.sampled_from(kinds))
     if kind == "merged":
         grow_ball(draw, growth)
@@ -108,14 +110,17 @@ def grow_joint(draw: DrawFn, growth: Growth, kind: Any) -> None:
     was: Plain = kind
     if kind in BECOMES and (kind != "fixed" or draw(st.booleans())):
         was = draw(st.sampled_from(BECOMES[kind]))
-        growth.changes[name] = draw(changes(kind, was, plain=growth.version == "1"))
+        growth.changes[name] = draw(changes(kind, was, growth.version))
     elif kind == "mimic" and not growth.leaders:
         was = kind = "revolute"
     elif kind == "mimic":
         was = draw(st.sampled_from(FOLLOWING))
-    elif growth.version == "2" and kind != "fixed" and (change := draw(changes(None, was))).says_something:
-        growth.changes[name] = change
+    elif growth.version != "1" and kind != "fixed" and (change := draw(changes(None, was, growth.version))):
+        growth.changes |= {name: change} if change.says_something else {}
     mimic = draw(mimics(draw(st.sampled_from(growth.leaders)))) if kind == "mimic" else None
+    if mimic and growth.version == "2.1":
+        kind, change = draw(changed_mimics(was))
+        growth.changes |= {name: change} if change.says_something else {}
     ends = {"name": name, "parent": parent, "child": child, "mimic": mimic}
     if kind in (*FOLLOWING, "mimic"):
         growth.leaders.append(name)
@@ -123,6 +128,15 @@ def grow_joint(draw: DrawFn, growth: Growth, kind: Any) -> None:
     # What does not move may weigh nothing.
     growth.links.append(Link(name=child, inertia=draw(st.none() | inertias() if kind == "fixed" else inertias())))
     growth.free.append(child)
+
+
+@st.composite
+def changed_mimics(draw: DrawFn, was: Plain) -> tuple[str, Change]:
+    """What becomes of a joint that the URDF makes a mimic, and what the description of version 2.1 states about it."""
+    if not draw(st.booleans()):
+        return "mimic", draw(of_mimics())
+    kind = draw(st.none() | st.sampled_from([kind for kind, types in BECOMES.items() if was in types]))
+    return kind or was, draw(changes(kind, was, "2.1")).model_copy(update={"freed": True})
 
 
 def grow_ball(draw: DrawFn, growth: Growth) -> None:
@@ -144,8 +158,14 @@ def actuators(joint: str, version: Version) -> SearchStrategy[Actuator]:
     if version == "1":
         return plain
     gear = st.none() | decimals(-20, 20, 1).filter(bool)
+    rotor = st.none() | decimals(0, 0.01, 4)
+    geared = st.builds(Actuator, joint=st.just(joint), gear_ratio=gear, rotor_inertia=rotor)
+    if version == "2":
+        return plain | geared
+    control = st.none() | st.tuples(decimals(-9, 0, 1), decimals(0, 9, 1))
+    name = st.none() | st.just(f"motor of {joint}")
     return plain | st.builds(
-        Actuator, joint=st.just(joint), gear_ratio=gear, rotor_inertia=st.none() | decimals(0, 0.01, 4)
+        Actuator, joint=st.just(joint), gear_ratio=gear, rotor_inertia=rotor, name=name, control=control
     )
 
 
@@ -168,7 +188,3 @@ def coordinates(kind: str) -> SearchStrategy[Coordinates]:
         "floating": st.builds(lambda p, q: (*p, *q), st.tuples(length, length, length), quaternions()),
     }
     return ways.get(kind, st.tuples(angle))
-
-
-def _mimics(mechanism: Mechanism) -> set[str]:
-    return {joint.name for joint in mechanism.joints if joint.mimic}
