@@ -10,7 +10,7 @@ import numpy as np
 
 from eurdf_conformance.oracle import tree, urdf
 from eurdf_conformance.oracle.transform import transform
-from support.mutants.mutant import Deviation, instead, means
+from support.mutants.mutant import Deviation, Members, instead, means, refuses
 
 
 @means("EU-FRM-006")
@@ -92,3 +92,12 @@ def locked_joints_lose_their_origin() -> Deviation:
             found.links[joint.child] = found.joint_frames[joint.name] = found.links[joint.parent]
 
     return instead(tree, "add_fixed", fixed)
+
+
+@refuses("EU-FRM-004", versions=("2",))
+def joints_with_another_name_are_no_frames(data: Members, robot: Any) -> bool:
+    """`{joint: …}` must not name the last of three merged joints if their joint has another name."""
+    entries = ((name, entry) for name, entry in data.get("joints", {}).items() if isinstance(entry, dict))
+    gone = {entry["merges"][2] for name, entry in entries if "merges" in entry} - set(data.get("joints", {}))
+    used = [*data.get("frames", ()), *(frame for closure in data.get("closures", ()) for frame in closure["frames"])]
+    return any(isinstance(frame, dict) and frame.get("joint") in gone for frame in used)

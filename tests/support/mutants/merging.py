@@ -9,9 +9,9 @@ from dataclasses import replace
 from typing import Any
 from unittest.mock import patch
 
-from eurdf_conformance.oracle import merging, tree
+from eurdf_conformance.oracle import joint_property, merging, tree
 from eurdf_conformance.oracle.spatial import inverse, pose
-from support.mutants.mutant import Deviation, instead, means
+from support.mutants.mutant import Deviation, Members, instead, means, refuses
 
 
 def _ball(placement: Callable[[Any, Any], Any]) -> Deviation:
@@ -72,3 +72,36 @@ def axes_that_do_not_meet_are_merged() -> Deviation:
 def axes_within_a_millimetre_are_merged() -> Deviation:
     """Three joints are merged if their axes pass a point within a millimetre."""
     return patch.object(merging, "NEAR", 1e-3)
+
+
+@means("EU-JNT-022")
+def centres_within_a_millimetre_are_the_last_origin() -> Deviation:
+    """The centre of merged joints is the origin of the last one if it is within a millimetre of it."""
+
+    def placement(ball: Any, joints: Any) -> Any:
+        last = ball.placement @ ball.link
+        return last if math.dist(last[:3, 3], ball.placement[:3, 3]) <= 1e-3 else ball.placement
+
+    return _ball(placement)
+
+
+@means("EU-JNT-024")
+def nearest_axis_of_x_first() -> Deviation:
+    """The joint nearest to x gives x; of the other two, the one nearest to y gives y."""
+
+    def greedy(right: Any, axes: Any) -> list[int]:
+        left, found = [0, 1, 2], list[int]()
+        for cosines in abs(axes).T:
+            found.append(max(left, key=lambda joint: cosines[joint]))
+            left.remove(found[-1])
+        return found
+
+    return instead(joint_property, "nearest", greedy)
+
+
+@refuses("EU-JNT-033")
+def all_merged_joints_must_mimic(data: Members, robot: Any) -> bool:
+    """An entry that frees joints to merge must free all three."""
+    mimics = set(robot.xpath("joint[mimic]/@name"))
+    entries = (entry for entry in data.get("joints", {}).values() if isinstance(entry, dict))
+    return any(entry.get("mimic") is False and not mimics.issuperset(entry.get("merges", ())) for entry in entries)

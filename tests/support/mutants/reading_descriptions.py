@@ -354,3 +354,21 @@ def left_out_joints_are_in_the_middle() -> Deviation:
         return right(of, middle | dict(q))
 
     return instead(canonical, "stated", stated)
+
+
+@reads_description("EU-ONE-001")
+def empty_names_need_no_types(data: Members) -> None:
+    """An empty list of joint names needs no list of types."""
+    if _is_version_1(data) and data.get("joint_name") == [] and "joint_type" not in data:
+        del data["joint_name"]
+
+
+@reads_description("EU-ACT-008")
+def names_of_joints_are_free_afterwards(data: Members) -> None:
+    """An actuator may have the name of the joint of an actuator before it."""
+    taken: set[str] = set()
+    for actuator in data.get("actuators") or ():
+        if isinstance(actuator, dict) and actuator.get("name") in taken:
+            actuator["name"] = "another"
+        elif isinstance(actuator, str) or (isinstance(actuator, dict) and "name" not in actuator):
+            taken.add(actuator if isinstance(actuator, str) else actuator.get("joint", ""))

@@ -324,3 +324,86 @@ def only_shapes_in_geometry(robot: Any) -> None:
     for geometry in robot.iter("geometry"):
         if len(geometry) > 1:
             geometry.clear()
+
+
+# -- One form of several ----------------------------------------------------------------------------------------------
+
+
+@reads_xml("EU-FIL-003")
+def encodings_in_mixed_case_are_refused(text: str) -> str:
+    """The declared encoding is `UTF-8` or `utf-8`, not `Utf-8`."""
+    return re.sub(r"(<\?xml[^>]*encoding=.)(?!UTF-8|utf-8)[Uu][Tt][Ff]-8", r"\1UTF-7", text)
+
+
+@reads_xml("EU-FIL-003")
+def encodings_without_hyphen(text: str) -> str:
+    """The declared encoding may be `UTF8`."""
+    return re.sub(r"(<\?xml[^>]*encoding=.)UTF8", r"\1UTF-8", text)
+
+
+@reads_xml("EU-URD-001")
+def only_xml_1_0_is_read(text: str) -> str:
+    """A file that declares XML 1.1 is refused."""
+    return re.sub(r"(<\?xml\s+version=.)1\.[1-9]", r"\g<1>2.0", text)
+
+
+@reads_urdf("EU-URD-004")
+def default_namespaces_count(robot: Any) -> None:
+    """An element in a default namespace of its own belongs to another program."""
+    if None not in robot.nsmap:
+        for element in robot.iter("{*}*"):
+            if element.prefix is None and None in element.nsmap:
+                element.tag = "foreign"
+
+
+@refuses("EU-URD-006")
+def no_element_may_repeat(data: Any, robot: Any) -> bool:
+    """An element of another program must not occur twice in a joint or an inertial either."""
+    parents = (parent for tag in ("joint", "inertial") for parent in robot.iter(tag))
+    return any(len(parent) > len({child.tag for child in parent.iterchildren("*")}) for parent in parents)
+
+
+@refuses("EU-URD-029")
+def names_of_materials_are_unique(data: Any, robot: Any) -> bool:
+    """Two materials of the robot must not have one name."""
+    names = [material.get("name") for material in robot.findall("material")]
+    return len(names) > len(set(names))
+
+
+@refuses("EU-URD-007")
+def points_need_digits_after_them(data: Any, robot: Any) -> bool:
+    """A number does not end with its point."""
+    return any(re.search(r"[0-9]\.( |$)", text) for axis in robot.iter("axis", "origin") for text in axis.values())
+
+
+@reads_urdf("EU-URD-020")
+def continuous_joints_have_any_velocity(robot: Any) -> None:
+    """The velocity limit of a continuous joint may be negative."""
+    for limit in robot.iterfind("joint[@type='continuous']/limit[@velocity]"):
+        limit.set("velocity", limit.get("velocity").lstrip("-"))
+
+
+@refuses("EU-URD-013")
+def zero_axes_of_planar_joints_are_refused(data: Any, robot: Any) -> bool:
+    """A zero axis of a planar joint is refused, as if the joint turned about it."""
+    axes = robot.iterfind("joint[@type='planar']/axis[@xyz]")
+    return any(not any(map(float, axis.get("xyz").split())) for axis in axes)
+
+
+@reads_urdf("EU-URD-035")
+def axes_are_snapped(robot: Any) -> None:
+    """An axis within 1e-5 of x, y or z is that axis."""
+    for axis in robot.iterfind("joint/axis[@xyz]"):
+        try:
+            numbers = [float(text) for text in axis.get("xyz").split()]
+        except ValueError:
+            continue
+        least = 1e-5 * max(map(abs, numbers), default=0.0)
+        if any(0.0 < abs(number) < least for number in numbers):
+            axis.set("xyz", " ".join(str(number if abs(number) >= least else 0.0) for number in numbers))
+
+
+@refuses("EU-URD-011")
+def universe_in_any_case_is_reserved(data: Any, robot: Any) -> bool:
+    """`Universe` is reserved too."""
+    return any(name.lower() == "universe" for name in robot.xpath("(link|joint)/@name"))

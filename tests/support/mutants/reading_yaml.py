@@ -242,3 +242,40 @@ def numbers_of_single_precision(right: Answer, description: Path, urdf: Path) ->
         return isinstance(value, int | float) and abs(value) > 3.4e38
 
     return _rejects_text(lambda text: large(yaml_text.value_of(text.removeprefix("\ufeff"))), right, description)
+
+
+@reads_yaml("EU-YML-009")
+def infinities_with_a_plus_are_text(text: str) -> str:
+    """`+.inf` is text, as if only the sign - were allowed."""
+    return re.sub(r"\+\.(inf|Inf|INF)\b", '"inf"', text)
+
+
+@reads_yaml("EU-YML-009")
+def nan_in_capitals_is_text(text: str) -> str:
+    """`.NAN` is text; only `.nan` and `.NaN` are no number."""
+    return re.sub(r"(?<=[ ,])\.NAN\b", '"nan"', text)
+
+
+@reads_yaml("EU-YML-008")
+def tags_of_keys_have_no_effect(text: str) -> str:
+    """The tag of a key is not read: `!!str 12` is a number."""
+    return re.sub(r"!(!str)? (?=[\w.]+:)", "", text)
+
+
+@reads_yaml("EU-YML-008")
+def hexadecimal_keys_are_text(text: str) -> str:
+    """A hexadecimal number as a key is its text."""
+    return re.sub(r"(?<=[{ ,])(0x[0-9A-F]+)(?=:)", r'"\1"', text)
+
+
+@reads_yaml("EU-YML-008")
+def keys_with_a_point_are_text(text: str) -> str:
+    """A number with a point as a key is its text, as a JSON object has it."""
+    return re.sub(r"(?<=[{ ,])([0-9]+\.[0-9]+)(?=:)", r'"\1"', text)
+
+
+@answers("EU-YML-007")
+def aliases_in_aliases_are_no_deeper(right: Answer, description: Path, urdf: Path) -> Answer:
+    """An alias inside the value of another alias adds nothing to the depth."""
+    is_nested = re.search(rb"(?m)&\w+ [^\n]*\*\w", description.read_bytes())
+    return accepted() if is_nested and {issue.code for issue in right.issues} == {"yaml-too-deep"} else right

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from lxml import etree
 
+from eurdf_conformance.level import Level
 from eurdf_conformance.protocol.message import Issue
 from support.mutants.mutant import Members, reports
 
@@ -188,3 +189,84 @@ def carriage_return_and_line_feed_are_two_lines(found: list[Issue], *files: Path
 def lines_of_unicode(found: list[Issue], *files: Path) -> list[Issue]:
     """A line also ends at the separators of Unicode, as in str.splitlines."""
     return _by_lines(found, files, "\r\n|[\n\r\v\f\x1c-\x1e\x85\u2028\u2029]")
+
+
+@reports("EU-URD-007", level=Level.DIAGNOSE)
+def values_in_single_quotes_begin_one_later(found: list[Issue], *files: Path) -> list[Issue]:
+    """The value of an attribute in single quotes begins after its first character."""
+    return _moved(found, files, lambda line, before, after: (line, len(before) + before.endswith("'")))
+
+
+@reports("EU-URD-007", level=Level.DIAGNOSE)
+def names_of_attributes_are_found_in_others(found: list[Issue], *files: Path) -> list[Issue]:
+    """The value of an attribute is looked for after the first text that ends like its name."""
+
+    def at(line: int, before: str, after: str) -> tuple[int, int]:
+        name = re.search(r"(\w+)\s*=\s*[\"']$", before)
+        first = name and re.search(rf"{name[1]}\s*=\s*[\"']", before)
+        return line, first.end() if first else len(before)
+
+    return _moved(found, files, at)
+
+
+@reports("EU-URD-018", level=Level.DIAGNOSE)
+def last_root_is_the_second(found: list[Issue], description: Path, urdf: Path) -> list[Issue]:
+    """Of several links without a parent the last one is reported."""
+    if not any(issue.code == "urdf-two-roots" for issue in found):
+        return found
+    robot = etree.parse(urdf).getroot()
+    moved = set(robot.xpath("joint/child/@link"))
+    last = [link for link in robot.findall("link") if link.get("name") not in moved][-1]
+    return _each(found, lambda issue: {"line": last.sourceline} if issue.code == "urdf-two-roots" else {})
+
+
+@reports("EU-URD-025")
+def slides_need_no_range(found: list[Issue], description: Path, urdf: Path) -> list[Issue]:
+    """A prismatic joint with the limits 0 and 0 is not reported."""
+    if not any(issue.code == "urdf-no-range" for issue in found):
+        return found
+    slides = etree.parse(urdf).getroot().iterfind("joint[@type='prismatic']/limit")
+    lines = {limit.sourceline for limit in slides}
+    return [issue for issue in found if issue.code != "urdf-no-range" or issue.line not in lines]
+
+
+@reports("EU-URD-027")
+def constraints_have_a_prefix(found: list[Issue], description: Path, urdf: Path) -> list[Issue]:
+    """A closure of another dialect whose name has no prefix is not reported, if it is none of the four names."""
+    text = urdf.read_text(encoding="utf-8").splitlines() if urdf.is_file() else []
+    return [
+        issue
+        for issue in found
+        if issue.code != "urdf-closure-ignored" or not re.match(r"\s*<\w+_constraint\b", text[(issue.line or 1) - 1])
+    ]
+
+
+@reports("EU-ONE-002")
+def metadata_of_version_1_is_reported(found: list[Issue], description: Path, urdf: Path) -> list[Issue]:
+    """The key `metadata` in version 1 is reported like other keys of version 2."""
+    text = description.read_bytes().decode(errors="replace")
+    if "extended_urdf" in text or not re.search(r"(?m)^metadata:", text):
+        return found
+    here = Issue(code="near-miss-key", severity="warning", file=description.name, line=1, column=1, message="a key")
+    return [*found, here]
+
+
+@reports("EU-EXT-003", versions=("2.1",))
+def own_keys_in_couplings_are_not_reported(found: list[Issue], description: Path, urdf: Path) -> list[Issue]:
+    """A user-defined key in a coupling may have the name of a joint."""
+    text = description.read_bytes()
+    return [issue for issue in found if issue.code != "own-key-is-joint" or b"couplings:" not in text]
+
+
+@reports("EU-INR-004")
+def rods_on_balls_have_no_inertia(found: list[Issue], description: Path, urdf: Path) -> list[Issue]:
+    """A spherical leaf is checked about its centre of mass: a thin rod lacks inertia wherever it is."""
+    try:
+        robot = etree.parse(urdf).getroot()
+    except (OSError, etree.XMLSyntaxError):
+        return found
+    rods = robot.xpath("link[inertial/mass/@value > 0 and inertial/inertia/@izz = 0]/@name")
+    is_rod = any(joint.find("child").get("link") in rods for joint in robot.iterfind("joint[@name='pivot']"))
+    if not is_rod or found:
+        return found
+    return [Issue(code="leaf-without-inertia", severity="error", file=urdf.name, line=1, column=1, message="a rod")]
