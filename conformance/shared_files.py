@@ -8,12 +8,9 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 
 def shared(repository: Path) -> Iterator[tuple[Path, str]]:
-    """Files, and where they are in a distribution: among them the robots of the collection, which cases use."""
+    """Files, and where they are in a distribution."""
     yield repository / "LICENSE", "eurdf_conformance/LICENSE"
     yield repository / "spec/clauses.json", "eurdf_conformance/spec/clauses.json"
-    for file in sorted((repository / "robots").glob("*/robot*")):
-        if file.suffix in (".urdf", ".yaml"):
-            yield file, f"eurdf_conformance/robots/{file.parent.name}/{file.name}"
 
 
 class SharedFiles(BuildHookInterface):  # type: ignore[misc]

@@ -23,7 +23,7 @@ from eurdf_conformance.corpus.expect import stale
 from eurdf_conformance.corpus.expected import Expected, expected_text
 from eurdf_conformance.corpus.lint import lint
 from eurdf_conformance.corpus.protocol_rule import OF_RUNNERS, RULES
-from eurdf_conformance.corpus.read import CorpusCase, NotACase, all_cases, collection_folder, read_case
+from eurdf_conformance.corpus.read import CorpusCase, NotACase, all_cases, read_case
 from eurdf_conformance.level import Level
 from eurdf_conformance.strict_yaml import load_strictly
 
@@ -199,22 +199,6 @@ def test_a_number_with_an_exponent_is_read_as_one(written: WriteCase) -> None:
     case = read_case(written(text)).case
     assert isinstance(case, ValidCase)
     assert case.configurations == [{"j": [1e-3, -2e5, 3, 0.5, 4.0]}]
-
-
-def test_a_robot_of_the_collection_is_not_copied(written: WriteCase) -> None:
-    home = collection_folder()
-    assert home is not None
-    of_robot = VALID_CASE | {"robot": "four_bar", "description": "robot.v1.yaml", "files": {}}
-    assert read_case(written(json.dumps(of_robot))).description == home / "four_bar" / "robot.v1.yaml"
-    with pytest.raises(NotACase, match="no_such_robot"):
-        _ = read_case(written(json.dumps(of_robot | {"robot": "no_such_robot"}))).files
-
-
-def test_an_installed_suite_has_the_collection_in_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(read, "__file__", str(tmp_path / "eurdf_conformance" / "corpus" / "read.py"))
-    assert collection_folder() is None
-    (tmp_path / "eurdf_conformance" / "robots").mkdir(parents=True)
-    assert collection_folder() == tmp_path / "eurdf_conformance" / "robots"
 
 
 def test_a_case_runs_at_its_possible_levels(written: WriteCase) -> None:

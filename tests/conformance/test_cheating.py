@@ -135,7 +135,7 @@ def test_protocol_is_first_and_levels_of_a_case_are_together() -> None:
 def copied(tmp_path: Path) -> Path:
     """A copy of the suite with what it needs, to be damaged."""
     shutil.copytree(ROOT / "conformance", tmp_path / "conformance", ignore=shutil.ignore_patterns("__pycache__"))
-    for name in ("robots", "spec", "LICENSE"):
+    for name in ("spec", "LICENSE"):
         (tmp_path / name).symlink_to(ROOT / name)
     (tmp_path / "pytest.ini").write_text("[pytest]\n", encoding="utf-8")
     return tmp_path

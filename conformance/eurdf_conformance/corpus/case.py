@@ -98,7 +98,6 @@ class ValidCase(BaseCase):
     """A case of two valid files."""
 
     valid: Literal[True]
-    robot: str | None = Field(None, description="A robot of the collection, whose files are those of the case.")
     base: CaseName | None = Field(None, description="A valid case without a base, whose files are those of this one.")
     edits: list[Edit] = Field([], description="Edits of the files of the base.")
     files: dict[FilePath, Content] = Field({}, description="Files beside those of the base, or in their place.")
@@ -111,9 +110,7 @@ class ValidCase(BaseCase):
     frames: list[str] = Field([], description="Frames of which poses are asked for.")
 
     @model_validator(mode="after")
-    def _one_source(self) -> Self:
-        if self.robot is not None and (self.base is not None or self.files):
-            raise ValueError("`robot` has its own files: leave out `base` and `files`")
+    def _edits_of_base(self) -> Self:
         if self.edits and self.base is None:
             raise ValueError("`edits` are those of the files of a `base`")
         return self

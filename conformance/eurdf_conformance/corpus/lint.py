@@ -149,8 +149,6 @@ def _named_files(urdf: Path) -> list[str]:
 def _files(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
     if isinstance(case.case, ValidCase):
         yield from (f"there is no file {path.name}" for path in (case.description, case.urdf) if not path.is_file())
-        if case.case.robot is not None:
-            return
     # A file that is missing is an error of its own, which a parser reports too.
     reported = {case.case.code} if isinstance(case.case, InvalidCase) else {each.code for each in case.case.warnings}
     if not reported & {"urdf-mesh-missing", "urdf-texture-missing"}:

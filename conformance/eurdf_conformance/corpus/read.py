@@ -113,8 +113,6 @@ class CorpusCase:
         Raises:
             NotACase: The file of the case does not say what they are.
         """
-        if (home := self._collection) is not None:
-            return {name: (home / name).read_bytes() for name in (self.case.description, self.case.urdf)}
         files = {} if (origin := self.origin) is None else dict(origin.files)
         try:
             for edit in [self.case.edit] if isinstance(self.case, InvalidCase) else self.case.edits:
@@ -128,8 +126,6 @@ class CorpusCase:
     @cached_property
     def folder(self) -> Path:
         """A folder with its files, which are written at the first request."""
-        if (home := self._collection) is not None:
-            return home
         folder = self._others.folder(self.name)
         self.write(folder)
         return folder
@@ -168,16 +164,6 @@ class CorpusCase:
             return levels_comparing(Compared.OUTCOME, Compared.ISSUES)
         evaluated = (Compared.VALUES,) if self.case.configurations else ()
         return levels_comparing(Compared.OUTCOME, Compared.ROBOT, *evaluated, Compared.ISSUES)
-
-    @cached_property
-    def _collection(self) -> Path | None:
-        """The folder of its robot of the collection."""
-        if not isinstance(self.case, ValidCase) or self.case.robot is None:
-            return None
-        home = collection_folder()
-        if home is None or not (home / self.case.robot).is_dir():
-            raise NotACase(self.path, f"robot: the collection has no '{self.case.robot}'")
-        return home / self.case.robot
 
 
 def _read(path: Path, name: str, others: Cases) -> CorpusCase:
@@ -231,12 +217,3 @@ def case_names(root: Path = CASES) -> Iterator[str]:
     """The topics and names of cases, in the order of topics and then of names."""
     for topic in TOPICS:
         yield from (f"{topic}/{path.stem}" for path in sorted((root / topic).glob("*.yaml")))
-
-
-def collection_folder() -> Path | None:
-    """The robots of the collection: at the root of a checkout, or in the installed package of the suite."""
-    beside = Path(__file__).parents[2]
-    if beside.name == "conformance" and (beside.parent / "robots").is_dir():
-        return beside.parent / "robots"
-    installed = Path(__file__).parents[1] / "robots"
-    return installed if installed.is_dir() else None

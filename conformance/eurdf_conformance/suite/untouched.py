@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from eurdf_conformance.carried import carried
-from eurdf_conformance.corpus.read import CASES, collection_folder
+from eurdf_conformance.corpus.read import CASES
 from eurdf_conformance.properties.example import FROZEN
 
 #: Of each file of the corpus, by its path, the hash of its content and the time of its last change (ctime), ns.
@@ -18,7 +18,7 @@ _NAMED = 3
 
 
 def snapshot() -> Snapshot:
-    """The corpus as it is now: the cases, the robots that some of them are about, the frozen examples, the clauses."""
+    """The corpus as it is now: the cases, the frozen examples, the clauses."""
     return {path: _state(path) for path in sorted(_files())}
 
 
@@ -35,8 +35,6 @@ def void_text(before: Snapshot) -> str | None:
 
 def _files() -> Iterator[Path]:
     yield from (path for path in CASES.rglob("*") if path.is_file())
-    if (robots := collection_folder()) is not None:
-        yield from robots.glob("*/robot*.*")
     yield from (FROZEN, carried("spec/clauses.json"))
 
 
