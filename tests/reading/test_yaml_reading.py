@@ -487,6 +487,26 @@ def test_control_character_is_refused_at_its_place(character: str) -> None:
     assert f"U+{ord(character):04X}" in diagnostic.message
 
 
+@pytest.mark.parametrize(
+    ("text", "line", "column"),
+    [
+        ("a: 1 # \ufeff", 1, 8),
+        ("a: '\ufeff\ufeff'\nb: x\ufeff", 2, 5),
+        ("a: |\n  \ufeff\n", 2, 3),
+        ("é: ['\u2028\ufeff', 1] # \ufeff", 1, 16),
+        ("\ufeffa: 1", 1, 1),  # a second one
+    ],
+)
+def test_byte_order_mark_is_refused_outside_quotes(text: str, line: int, column: int) -> None:
+    diagnostic = error_of(text)
+    assert (diagnostic.code, diagnostic.line, diagnostic.column) == ("yaml-syntax", line, column)
+    assert "U+FEFF" in diagnostic.message
+
+
+def test_byte_order_marks_in_quotes_are_characters() -> None:
+    assert read('"a\ufeff": [\'\ufeff\', "\ufeff\u2028"] # end').data == {"a\ufeff": ["\ufeff", "\ufeff\u2028"]}
+
+
 def test_damaged_file_gives_document_or_error() -> None:
     chance = random.Random(1)
     junk = [

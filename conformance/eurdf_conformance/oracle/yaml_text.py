@@ -32,6 +32,7 @@ DEEPEST = 64
 
 #: Line ends of YAML 1.1, at which the library still breaks lines.
 _OLD_BREAKS = "\x85\u2028\u2029"
+_MARK = "\ufeff"
 _SURROGATE = re.compile("[\ud800-\udfff]")
 
 
@@ -45,6 +46,7 @@ def value_of(source: str) -> Any:
         events = list(YAML(typ="safe", pure=True).parse(source.translate(stand_ins)))
     except (YAMLError, AssertionError) as error:  # the second where a directive names a version unknown to it
         raise NotRead(str(error)) from error
+    require_marks_in_quotes(source, events)
     starts = [event for event in events if isinstance(event, DocumentStartEvent)]
     if len(starts) != 1:
         raise NotRead(f"{len(starts)} documents")
@@ -55,6 +57,16 @@ def value_of(source: str) -> Any:
         if isinstance(event, ScalarEvent):
             event.value = event.value.translate(originals)
     return _Document(iter(events[events.index(starts[0]) + 1 :])).node()[0]
+
+
+def require_marks_in_quotes(source: str, events: list[Event]) -> None:
+    """A byte order mark after the start of a file is inside quotes."""
+    outside, end = "", 0
+    for event in events:
+        if isinstance(event, ScalarEvent) and event.style in ("'", '"'):
+            outside, end = outside + source[end : event.start_mark.index], event.end_mark.index
+    if _MARK in outside + source[end:]:
+        raise NotRead("a byte order mark outside quotes")
 
 
 class _Document:

@@ -26,7 +26,7 @@ from eurdf.diagnostics import FileError, Place
 from eurdf.reading.core_schema import TAG_PREFIX, resolve, resolve_tagged
 from eurdf.reading.source import FILE_LIMIT, Source, short, too_large
 from eurdf.reading.yaml_node import Alias, Collection, Node, Span, json_pointer
-from eurdf.reading.yaml_syntax import syntax_error, unusual_name
+from eurdf.reading.yaml_syntax import stray_mark, syntax_error, unusual_name
 
 #: Maximum depth of nested mappings and lists, aliases expanded.
 DEPTH_LIMIT = 64
@@ -102,9 +102,12 @@ def read_yaml(source: Source) -> YamlDocument:
     if data.count(b"\n%TAG") + data.count(b"\r%TAG") + data.startswith(b"%TAG") > DIRECTIVE_LIMIT:
         raise too_large(source.file, f"{DIRECTIVE_LIMIT} %TAG directives")
     try:
-        return YamlDocument(source, _Reader(source, CSafeLoader(data).get_event, original).read())
+        document = YamlDocument(source, _Reader(source, CSafeLoader(data).get_event, original).read())
     except (YAMLError, UnicodeDecodeError) as error:
         raise syntax_error(source, error) from None
+    if "\ufeff" in source.text and (mark := stray_mark(source, data)) is not None:
+        raise mark
+    return document
 
 
 def without_other_breaks(source: Source) -> tuple[str, dict[int, str]]:

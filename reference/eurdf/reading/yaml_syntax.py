@@ -5,14 +5,19 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
+import yaml
+from yaml import CSafeLoader
 from yaml.error import MarkedYAMLError, YAMLError
 
 from eurdf.diagnostics import FileError, Place
 from eurdf.reading.indentation import first_line_hint, indentation_hint
 from eurdf.reading.source import Source
 
-#: Characters that are not allowed in a YAML file, even in quotes (YAML 1.2.2, section 5.1).
+#: Characters that libyaml refuses: those that are not printable (YAML 1.2.2, section 5.1). YAML allows them in quotes,
+#: if they are not among U+0000 to U+001F, but a parser need not (EU-YML-012).
 _NOT_PRINTABLE = re.compile("[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+_MARK = "\ufeff"
 
 
 class _Meaning(NamedTuple):
@@ -75,6 +80,29 @@ _NOT_CONTINUED = ("did not find expected key", "did not find expected '-' indica
 def unusual_name(place: Place) -> FileError:
     """The error of an anchor or an alias whose name libyaml would end too early."""
     return FileError(_UNUSUAL_NAME.code, _UNUSUAL_NAME.message, place, _UNUSUAL_NAME.hint)
+
+
+def stray_mark(source: Source, data: bytes) -> FileError | None:
+    """The error of the first byte order mark outside quotes, which libyaml takes for an ordinary character.
+
+    Args:
+        source: A text that is YAML otherwise, without its own byte order mark.
+        data: What libyaml reads: the same number of characters, perhaps others.
+    """
+    index = source.text.find(_MARK)
+    if index > 0:  # libyaml skips one at the start
+        for event in yaml.parse(data, CSafeLoader):
+            if not (isinstance(event, yaml.ScalarEvent) and event.style in ("'", '"')):
+                continue
+            if event.start_mark.index > index >= 0:
+                break
+            if index < event.end_mark.index:
+                index = source.text.find(_MARK, event.end_mark.index)
+    if index < 0:
+        return None
+    message = "a byte order mark, U+FEFF, is allowed only at the start of the file and in quotes"
+    hint = 'remove it, or write "\\ufeff" in double quotes'
+    return FileError("yaml-syntax", message, source.place(index, index + 1), hint)
 
 
 def syntax_error(source: Source, error: YAMLError | UnicodeDecodeError) -> FileError:
