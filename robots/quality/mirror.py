@@ -6,6 +6,7 @@ determine the signs: with M = diag(1, -1, 1), the image of a twist (v, ω) is (M
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -136,6 +137,9 @@ def _couplings(robot: eurdf.Robot, pairs: Mapping[str, str]) -> Iterator[str]:
             yield f"couplings '{name}' and '{right}' do not relate mirrored joints"
             continue
         stated = dict(other.coefficients)
+        # A joint in the middle, such as a motor behind gears, need not turn the other way in the mirror image.
+        middle = image.keys() & set(couplings[name].joints)
+        image |= {joint: math.copysign(image[joint], stated[joint]) for joint in middle}
         terms = np.array([(image[joint], stated[joint]) for joint in image] + [(couplings[name].offset, other.offset)])
         if min(np.abs(terms @ (1.0, sign)).max() for sign in (1.0, -1.0)) > _SAME_DIRECTION * np.abs(terms).max():
             yield f"couplings '{name}' and '{right}' are not mirror images"
