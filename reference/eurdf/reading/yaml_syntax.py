@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from typing import NamedTuple
+from collections.abc import Iterable
+from typing import Any, NamedTuple
 
 import yaml
 from yaml import CSafeLoader
@@ -91,7 +92,8 @@ def stray_mark(source: Source, data: bytes) -> FileError | None:
     """
     index = source.text.find(_MARK)
     if index > 0:  # libyaml skips one at the start
-        for event in yaml.parse(data, CSafeLoader):
+        events: Iterable[Any] = yaml.parse(data, CSafeLoader)
+        for event in events:
             if not (isinstance(event, yaml.ScalarEvent) and event.style in ("'", '"')):
                 continue
             if event.start_mark.index > index >= 0:
