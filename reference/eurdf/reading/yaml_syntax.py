@@ -94,7 +94,7 @@ def stray_mark(source: Source, data: bytes) -> FileError | None:
     if index > 0:  # libyaml skips one at the start
         events: Iterable[Any] = yaml.parse(data, CSafeLoader)
         for event in events:
-            if not (isinstance(event, yaml.ScalarEvent) and event.style in ("'", '"')):
+            if getattr(event, "style", None) not in ("'", '"'):  # only quoted scalars have one of these
                 continue
             if event.start_mark.index > index >= 0:
                 break
