@@ -192,6 +192,15 @@ def test_leaf_rule_agrees_with_mass_matrix(title: str) -> None:
     assert (smallest > 1e-10) == resists
 
 
+def test_floating_root_alone_is_a_leaf() -> None:
+    def floating(inside: str, more: str = "") -> list[str]:
+        fixed = joint_element("f", "fixed", "base", "tip", "", '<origin xyz="1 0 0"/>')
+        return codes(robot(link_element("base", inside), link_element("tip", more), fixed), "root: floating\n")
+
+    assert floating(NONE) == floating(_inertial(1, POINT)) == ["leaf-without-inertia"]
+    assert floating(_inertial(1, (1, 1, 1))) == floating(NONE, _inertial(1, (1, 1, 1))) == []
+
+
 def test_inertia_of_links_fixed_to_leaf_counts() -> None:
     def fixed_at(xyz: str) -> str:
         return link_element("bob", _inertial(1, POINT)) + joint_element(

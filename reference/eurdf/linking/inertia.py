@@ -13,7 +13,7 @@ from eurdf.format.urdf.data import Urdf, UrdfLink
 from eurdf.mechanism.body import Inertia
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
-from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, squarable
 from eurdf.mechanism.spanning_tree import rigid_roots
 
@@ -124,6 +124,12 @@ def check_leaves(
             members.setdefault(rigid[joint.child], []).append((pose, inertia))
             if joint.child in faulty:
                 passed_over.add(rigid[joint.child])
+    if mechanism.root == "floating" and root not in inner:
+        moving.append(Joint(ROOT_JOINT, JointType.FLOATING, "", root))
+        if (inertia := inertia_of[root]) is not None:
+            members.setdefault(root, []).append((IDENTITY, inertia))
+            if root in faulty:
+                passed_over.add(root)
     for joint in moving:
         if joint.child in passed_over or joint.mimic is not None or min(joint.properties.armature, default=0.0) > 0.0:
             continue
