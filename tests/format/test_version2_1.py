@@ -280,3 +280,18 @@ def test_keys_listed_for_version_2_0_are_its_own() -> None:
     assert found.hint is not None
     assert "'closures'" in found.hint
     assert "'couplings'" not in found.hint
+
+
+@pytest.mark.parametrize(
+    "text", [HINGE + "    limits: {upper: 1}\n", DISTANCE + "    damping: 1\n", HINGE + "    motor: 1\n"]
+)
+def test_joint_with_limit_or_motor_belongs_in_the_tree(text: str) -> None:
+    _, (found,) = read(text)
+    assert found.code == "unknown-key"
+    assert "put this joint into the tree" in (found.hint or "")
+
+
+def test_coupling_has_no_motor() -> None:
+    _, (found,) = read(COUPLING + "    gear_ratio: 3\n")
+    assert found.code == "unknown-key"
+    assert "the joints that it relates have them" in (found.hint or "")

@@ -14,6 +14,19 @@ if TYPE_CHECKING:
 
 _JOINT_KEYS = frozenset(KEYS["kept type"])
 
+#: Keys that describe a joint or its motor: those of the format, and the words of a URDF and of other formats.
+_OF_JOINTS = {
+    *_JOINT_KEYS,
+    *KEYS["limits"],
+    *KEYS["geared actuator"],
+    "limit",
+    "dynamics",
+    "actuated",
+    "actuator",
+    "motor",
+}
+_OF_JOINTS -= {"name", "type", "joint", "axes"}
+
 #: Keys of the file whose values are mappings of names that the user chooses.
 _NAMED = ("joints", "configurations")
 
@@ -61,6 +74,18 @@ def key_of_the_file_hint(pointer: Pointer) -> str | None:
     if len(pointer) < 2 or pointer[-1] not in KEYS[""] or pointer[::2] == ("couplings", "joints"):
         return None
     return f"'{pointer[-1]}' is a key of the whole file: do not indent it"
+
+
+def key_of_a_joint_hint(pointer: Pointer) -> str | None:
+    """For a key in a closure or coupling that describes the joint of a tree."""
+    if len(pointer) != 3 or pointer[-1] not in _OF_JOINTS or pointer[0] not in ("closures", "couplings"):
+        return None
+    if pointer[0] == "couplings":
+        return "a coupling has no limit, friction or motor; the joints that it relates have them"
+    return (
+        "a closure has no coordinate, so no limit, friction, spring or motor: put this joint into the tree, and cut "
+        "the loop at another one"
+    )
 
 
 def another_entry_hint(pointer: Pointer, document: YamlDocument) -> str | None:

@@ -17,7 +17,13 @@ from pydantic import BaseModel, ValidationError
 
 from eurdf.diagnostics import Diagnostic, did_you_mean
 from eurdf.format.described import described, quoted
-from eurdf.format.misplaced import Indentation, another_entry_hint, key_of_the_file_hint, key_outside_hint
+from eurdf.format.misplaced import (
+    Indentation,
+    another_entry_hint,
+    key_of_a_joint_hint,
+    key_of_the_file_hint,
+    key_outside_hint,
+)
 from eurdf.format.near import near
 from eurdf.format.version import VERSION2_1, Version
 from eurdf.format.version1 import Version1
@@ -304,6 +310,8 @@ def _unknown_key(violation: _Violation, meant: str | None, document: YamlDocumen
         hint = f"it is a key of version 1; in version 2.0, use '{FROM_VERSION1[key]}'"
     elif key in later:
         hint = _version_hint(f"'{key}'", document)
+    elif meant is None and (of_joint := key_of_a_joint_hint(violation.pointer)):
+        hint = of_joint
     elif likely is not None:
         hint = f"did you mean '{likely}'?"
         if meant is None and (beside := another_entry_hint(violation.pointer, document)):
