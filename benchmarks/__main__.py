@@ -26,6 +26,7 @@ from benchmarks import (
     load,
     loops,
     page,
+    reading,
     simulation,
     transmission,
 )
@@ -35,6 +36,7 @@ from benchmarks.simulators import table as simulators
 
 MEASUREMENTS: dict[str, ModuleType] = {
     "load": load,
+    "reading": reading,
     "growth": growth,
     "check": check,
     "hostile": hostile,
@@ -62,7 +64,7 @@ def _run(module: ModuleType, markdown: bool) -> None:
     if markdown:
         print(inspect.cleandoc(module.__doc__ or ""), end="\n\n")
     # A page names robots of the collection alone.
-    for table in load.tables(published=False) if markdown and module is load else module.tables():
+    for table in module.tables(published=False) if markdown and module in (load, reading) else module.tables():
         print(table.markdown() if markdown else table.text(), end="\n\n", flush=True)
 
 

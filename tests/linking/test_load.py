@@ -308,6 +308,20 @@ def test_robot_is_immutable(tmp_path: Path) -> None:
             setattr(loaded, name, None)
 
 
+def test_values_of_a_mechanism_are_made_like_any_frozen_dataclass(tmp_path: Path) -> None:
+    joint = eurdf.load(_write(tmp_path, URDF, APART)).mechanism.joints[0]
+    values = {field.name: getattr(joint, field.name) for field in dataclasses.fields(joint)}
+    assert type(joint)(**values) == type(joint)(*values.values()) == dataclasses.replace(joint) == joint
+    least = type(joint)(joint.name, joint.type, joint.parent, child=joint.child)
+    assert (least.pitch, least.mimic) == (0.0, None)
+    with pytest.raises(TypeError, match="child"):
+        type(joint)(joint.name, joint.type, joint.parent)
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        joint.pitch = 1.0
+    given = {**values, "properties": dataclasses.replace(joint.properties, rest=(1.0,))}
+    assert joint.with_properties(given["properties"]) == type(joint)(**given)
+
+
 def test_open_assembled_configuration_is_found_immediately(tmp_path: Path) -> None:
     yaml = APART.replace("[0, 0, 9]", "[0, 0, 2.0e-6]") + "configurations: {assembled: {}}\n"
     loaded = eurdf.load(_write(tmp_path, URDF, yaml))

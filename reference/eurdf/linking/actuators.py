@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
 from eurdf.diagnostics import Hint, did_you_mean
 from eurdf.format.extension import ActuatorEntry
 from eurdf.format.urdf.data import Urdf
-from eurdf.mechanism.joint import Joint
+from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_type import JointType
 from eurdf.reading.reporter import YamlReporter
 from eurdf.reading.yaml_node import Pointer
@@ -115,9 +114,21 @@ def with_motor(joint: Joint, entry: ActuatorEntry, *, armature_given: bool) -> J
     nv = joint.coordinates.nv
     ratio = 1.0 if entry.gear_ratio is None else entry.gear_ratio
     rotor = 0.0 if entry.rotor_inertia is None else entry.rotor_inertia
-    armature = joint.properties.armature if armature_given else (ratio * ratio * rotor,) * nv
-    motor = replace(joint.properties, gear_ratio=(ratio,) * nv, rotor_inertia=(rotor,) * nv, armature=armature)
-    return replace(joint, properties=motor)
+    own = joint.properties
+    motor = JointProperties(
+        own.lower,
+        own.upper,
+        own.velocity,
+        own.effort,
+        own.damping,
+        own.friction,
+        own.armature if armature_given else (ratio * ratio * rotor,) * nv,
+        (ratio,) * nv,
+        (rotor,) * nv,
+        own.stiffness,
+        own.rest,
+    )
+    return joint.with_properties(motor)
 
 
 def _pointer_of_name(entry: ActuatorEntry, document: YamlDocument) -> Pointer:

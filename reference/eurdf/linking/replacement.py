@@ -466,7 +466,7 @@ class _Replacement:
                     else "swap the two limits",
                 )
                 return None
-        return replace(joint, properties=properties)
+        return joint.with_properties(properties)
 
 
 _PROPERTIES: dict[str, tuple[str, ...]] = {

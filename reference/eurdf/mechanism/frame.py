@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from eurdf.mechanism.pose import IDENTITY, Pose
+from eurdf.mechanism.slot_setters import with_slot_setters
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +26,7 @@ class Frame:
     kind: Literal["frame", "joint"] = "frame"
 
 
+@with_slot_setters
 @dataclass(frozen=True, slots=True)
 class Anchor:
     """One side of a closure.

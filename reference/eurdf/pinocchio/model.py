@@ -8,7 +8,6 @@ For a mechanism linked with ``mimic=False`` it equals ``pin.buildModelFromUrdf(p
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 import pinocchio as pin
 
@@ -126,7 +125,7 @@ def build_model_and_sites(mechanism: Mechanism) -> tuple[pin.Model, dict[str, Si
     folded = with_followers(mechanism, led)
     set_limits(
         model,
-        [(replace(joint, properties=folded[joint.name]) if joint.name in folded else joint, nq) for joint, nq in free],
+        [(joint.with_properties(folded[joint.name]) if joint.name in folded else joint, nq) for joint, nq in free],
         root_nq,
         root_nv,
     )

@@ -139,7 +139,7 @@ class _Reader:
         self._anchors: dict[str, tuple[Any, Span | Collection]] = {}
         self._count = 0  # of nodes, of which an alias is one
         self._copies = 0  # of nodes that aliases refer to
-        self._aliases = 0
+        self._expansion = 0  # by how many nodes that is more than the aliases themselves
         self._file = Collection([], _span(next_event()), 0)  # whose one item is the top level
         self._open = [self._file]  # from the outermost to the innermost
 
@@ -153,8 +153,9 @@ class _Reader:
             version = ".".join(map(str, document.version))
             message = f"the %YAML directive states version {version}; it must be 1.2"
             raise self._error("yaml-version", message, document, "remove the directive")
-        while not self._file.data:
-            event = self._next_event()
+        top_level, next_event = self._file.data, self._next_event
+        while not top_level:
+            event = next_event()
             kind = type(event)
             if kind is ScalarEvent:
                 self._scalar(event)
@@ -170,7 +171,7 @@ class _Reader:
         top = self._file.nodes[0]
         if isinstance(top, Collection) and top.is_mapping:
             return top
-        value = self._file.data[0]
+        value = top_level[0]
         message = "the document is empty" if value is None else f"the top level is {_kind(value)}"
         span = top if isinstance(top, tuple) else top.span
         # Of a value that is left out, there is no place to point at.
@@ -183,11 +184,7 @@ class _Reader:
         if self._count > NODE_LIMIT:
             raise too_large(self._source.file, f"{NODE_LIMIT:,} keys and values")
 
-    def _size(self) -> int:
-        """Number of nodes so far, aliases expanded."""
-        return self._count - self._aliases + self._copies
-
-    def _scalar(self, event: ScalarEvent) -> None:
+    def _scalar(self, event: Any) -> None:
         self._next_node()
         text = event.value.translate(self._original) if self._original else event.value
         value: Any = text
@@ -200,7 +197,7 @@ class _Reader:
                 value = resolve_tagged(tag, text)
             except ValueError:
                 raise self._tag_error(event, _quote(text)) from None
-        span = _span(event)
+        span = event.start_mark.index, event.end_mark.index
         if event.anchor is not None:
             self._check_name(event, "&")
             self._anchors[event.anchor] = value, span
@@ -222,7 +219,7 @@ class _Reader:
             raise self._error("yaml-too-deep", message, event)
         if event.tag not in (None, "!", TAG_PREFIX + tag):
             raise self._tag_error(event, _kind(data))
-        collection = Collection(data, (start, end if event.flow_style else None), self._size())
+        collection = Collection(data, (start, end if event.flow_style else None), self._count + self._expansion)
         self._next_node()
         if event.anchor is not None:
             self._check_name(event, "&")
@@ -235,7 +232,7 @@ class _Reader:
         start, end = collection.span
         if end is not None:
             collection.span = start, _span(event)[1]
-        collection.size = self._size() - collection.size
+        collection.size = self._count + self._expansion - collection.size
         around = self._open[-1]
         if around.height <= collection.height:
             around.height = collection.height + 1
@@ -252,8 +249,9 @@ class _Reader:
         if collection is not None and collection.is_open:
             raise self._error("yaml-alias", f"the alias '*{shown}' refers to a node that contains it", event)
         self._next_node()
-        self._aliases += 1
-        self._copies += 1 if collection is None else collection.size
+        size = 1 if collection is None else collection.size
+        self._copies += size
+        self._expansion += size - 1
         if self._copies > NODE_LIMIT:
             message = f"the aliases of the file expand to more than {NODE_LIMIT:,} keys and values"
             raise self._error("yaml-alias", message, event)
