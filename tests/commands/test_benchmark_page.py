@@ -4,9 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+import pinocchio as pin
+
+import eurdf
 from benchmarks import page
 from benchmarks.__main__ import MEASUREMENTS
 from benchmarks.interleaved import least_times
+from benchmarks.load import ROOT
+from benchmarks.reading import least
 from benchmarks.robots import chain
 from benchmarks.table import Table, duration, ratio
 
@@ -49,6 +55,22 @@ def test_page_states_versions_and_sections(tmp_path: Path) -> None:
 def test_page_shows_every_measurement_with_tables() -> None:
     with_tables = {name for name, module in MEASUREMENTS.items() if hasattr(module, "tables")}
     assert set(page.SECTIONS.values()) == with_tables
+
+
+def test_least_reading_makes_the_model_of_the_urdf() -> None:
+    for name in ("unitree_g1", "digit_leg"):
+        model, description = least(ROOT / "robots" / name)
+        expected = pin.buildModelFromUrdf(str(ROOT / "robots" / name / "robot.urdf"))
+        assert list(model.names) == list(expected.names)
+        assert [frame.name for frame in model.frames] == [frame.name for frame in expected.frames]
+        for frame, other in zip(model.frames, expected.frames, strict=True):
+            assert frame.placement.isApprox(other.placement, 1e-12)
+        for inertia, other in zip(model.inertias, expected.inertias, strict=True):
+            assert inertia.isApprox(other, 1e-9)
+        for limits in ("lowerPositionLimit", "upperPositionLimit", "upperVelocityLimit", "lowerEffortLimit", "damping"):
+            assert np.array_equal(getattr(model, limits), getattr(expected, limits))
+        mechanism = eurdf.load(ROOT / "robots" / name, geometry=False).mechanism
+        assert [closure["name"] for closure in description["closures"]] == [each.name for each in mechanism.closures]
 
 
 def test_functions_take_turns() -> None:
