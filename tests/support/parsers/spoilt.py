@@ -55,10 +55,14 @@ def ways(value: Any) -> Mapping[str, Callable[[Any], Any]]:
     return {**own, "null": lambda value: None}
 
 
-def spoils(messages: Sequence[BaseModel]) -> list[Spoil]:
-    """All ways to spoil messages of one kind, one a place; those that leave each as it was, or no message, are none."""
+def spoils(messages: Sequence[BaseModel], part: int, parts: int) -> list[Spoil]:
+    """One of some parts of all ways to spoil messages of one kind, one a place.
+
+    What leaves each message as it was, or no message, is no way.
+    """
     found = dict.fromkeys(spoil for message in messages for spoil in _spoils(message.model_dump(mode="json"), ()))
-    return [spoil for spoil in found if any(spoiled(message, spoil) not in (None, message) for message in messages)]
+    chosen = list(found)[part % parts :: parts]
+    return [spoil for spoil in chosen if any(spoiled(message, spoil) not in (None, message) for message in messages)]
 
 
 def spoiled(message: Message, spoil: Spoil) -> Message | None:
