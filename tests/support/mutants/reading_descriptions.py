@@ -372,3 +372,40 @@ def names_of_joints_are_free_afterwards(data: Members) -> None:
             actuator["name"] = "another"
         elif isinstance(actuator, str) or (isinstance(actuator, dict) and "name" not in actuator):
             taken.add(actuator if isinstance(actuator, str) else actuator.get("joint", ""))
+
+
+@reads_description("EU-SCH-003", versions=("2",))
+def fourth_joint_to_merge_is_ignored(data: Members) -> None:
+    """Of four joints to merge the first three count."""
+    for entry in data.get("joints", {}).values() if isinstance(data.get("joints"), dict) else ():
+        if isinstance(entry, dict) and isinstance(entry.get("merges"), list):
+            del entry["merges"][3:]
+
+
+@reads_description("EU-SCH-003", versions=("2.1",))
+def control_ranges_have_a_middle(data: Members) -> None:
+    """Of three numbers of a control range the first and the last count."""
+    for actuator in data.get("actuators") or ():
+        if isinstance(actuator, dict) and len(actuator.get("control", ())) == 3:
+            del actuator["control"][1]
+
+
+@reads_description("EU-SCH-005", versions=("2.1",))
+def compliances_may_be_negative(data: Members) -> None:
+    """The sign of a compliance has no effect."""
+    for closure in data.get("closures") or ():
+        if isinstance(closure, dict) and isinstance(stated := closure.get("compliance"), dict):
+            stated |= {key: abs(value) for key, value in stated.items() if isinstance(value, float)}
+
+
+@describes("EU-JNT-031")
+def one_rest_is_of_the_first_spring(robot: CanonicalRobot) -> Members:
+    """A rest position that is given once is that of the first spring."""
+    return {
+        "joints": [
+            joint.model_copy(update={"rest": [joint.rest[0], 0.0]})
+            if joint.rest and len(joint.rest) == 2 and joint.rest[0] == joint.rest[1]
+            else joint
+            for joint in robot.joints
+        ]
+    }

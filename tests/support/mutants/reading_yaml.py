@@ -279,3 +279,16 @@ def aliases_in_aliases_are_no_deeper(right: Answer, description: Path, urdf: Pat
     """An alias inside the value of another alias adds nothing to the depth."""
     is_nested = re.search(rb"(?m)&\w+ [^\n]*\*\w", description.read_bytes())
     return accepted() if is_nested and {issue.code for issue in right.issues} == {"yaml-too-deep"} else right
+
+
+@answers("EU-YML-009")
+def zeros_in_front_are_digits(right: Answer, description: Path, urdf: Path) -> Answer:
+    """A number with more than 309 digits is beyond a double, also if they are zeros."""
+    return _rejects_text(lambda text: re.search("0{310}", text), right, description)
+
+
+@answers("EU-YML-004")
+def keys_by_alias_may_repeat(right: Answer, description: Path, urdf: Path) -> Answer:
+    """A key that an alias gives is not compared with the others."""
+    is_by_alias = re.search(rb"\*\w+ :", description.read_bytes())
+    return accepted() if is_by_alias and {issue.code for issue in right.issues} == {"yaml-duplicate-key"} else right

@@ -270,3 +270,43 @@ def rods_on_balls_have_no_inertia(found: list[Issue], description: Path, urdf: P
     if not is_rod or found:
         return found
     return [Issue(code="leaf-without-inertia", severity="error", file=urdf.name, line=1, column=1, message="a rod")]
+
+
+@reports("EU-URD-026")
+def attributes_of_meshes_are_not_compared(found: list[Issue], description: Path, urdf: Path) -> list[Issue]:
+    """An unknown attribute of a mesh is not reported."""
+    text = urdf.read_text(encoding="utf-8").splitlines() if urdf.is_file() else []
+    return [
+        issue for issue in found if issue.code != "urdf-unknown-element" or "<mesh" not in text[(issue.line or 1) - 1]
+    ]
+
+
+@reports("EU-URD-010", level=Level.DIAGNOSE)
+def copies_of_joints_are_second_parents(found: list[Issue], *files: Path) -> list[Issue]:
+    """A joint that is in the file twice is also reported as a second parent of its child."""
+    copies = [issue for issue in found if issue.code == "urdf-duplicate-joint"]
+    return [*found, *(issue.model_copy(update={"code": "urdf-two-parents"}) for issue in copies)]
+
+
+@reports("EU-JNT-011", level=Level.DIAGNOSE)
+def joints_not_merged_are_unknown_actuators(found: list[Issue], description: Path, urdf: Path) -> list[Issue]:
+    """If joints cannot be merged, an actuator of the joint that they should become is reported too."""
+    failed = [issue for issue in found if issue.code == "merge-not-chain" and b"actuators:" in description.read_bytes()]
+    return [*found, *(issue.model_copy(update={"code": "unknown-actuator"}) for issue in failed)]
+
+
+@reports("EU-INR-004")
+def locked_joints_make_no_leaf(found: list[Issue], description: Path, urdf: Path) -> list[Issue]:
+    """A link that carries another link by a locked joint is no leaf, as if that joint moved."""
+    if not any(issue.code == "leaf-without-inertia" for issue in found):
+        return found
+    joints = etree.parse(urdf).getroot().findall("joint")
+    moving = [joint for joint in joints if joint.get("type") != "fixed"]
+    carrying = [joint.find("parent").get("link") for joint in moving]
+    text = urdf.read_text(encoding="utf-8").splitlines()
+    return [
+        issue
+        for issue in found
+        if issue.code != "leaf-without-inertia"
+        or not any(f'"{link}"' in text[(issue.line or 1) - 1] for link in carrying)
+    ]
