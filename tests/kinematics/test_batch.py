@@ -35,9 +35,16 @@ EQUAL = 1e-9
 
 seeds = st.integers(0, 2**32 - 1)
 #: Robots whose tests take long.
-LARGE = ("kangaroo_2legs", "toddlerbot_2legs", "unitree_g1")
+LARGE = ("toddlerbot_2legs", "unitree_g1")
+#: Those of which a leg is a robot of its own, which is tested; and one of them.
+TWICE = {f"{name.removesuffix('_leg')}_2legs" for name in collection_names()} - {"digit_2legs"}
 of_every_robot = pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name in LARGE)) for name in collection_names()]
+    "name",
+    [
+        pytest.param(name, marks=[pytest.mark.slow] * (name in LARGE))
+        for name in collection_names()
+        if name not in TWICE
+    ],
 )
 
 
