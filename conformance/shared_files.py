@@ -11,6 +11,8 @@ def shared(repository: Path) -> Iterator[tuple[Path, str]]:
     """Files, and where they are in a distribution."""
     yield repository / "LICENSE", "eurdf_conformance/LICENSE"
     yield repository / "spec/clauses.json", "eurdf_conformance/spec/clauses.json"
+    for schema in sorted((repository / "schema").glob("extended-urdf-*.schema.json")):
+        yield schema, f"eurdf_conformance/schema/{schema.name}"
 
 
 class SharedFiles(BuildHookInterface):  # type: ignore[misc]

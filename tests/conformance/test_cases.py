@@ -24,6 +24,7 @@ from eurdf_conformance.corpus.expected import Expected, expected_text
 from eurdf_conformance.corpus.lint import lint
 from eurdf_conformance.corpus.protocol_rule import OF_RUNNERS, RULES
 from eurdf_conformance.corpus.read import CorpusCase, NotACase, all_cases, read_case
+from eurdf_conformance.corpus.release import case_files
 from eurdf_conformance.level import Level
 from eurdf_conformance.strict_yaml import load_strictly
 
@@ -316,10 +317,11 @@ def test_the_archive_is_complete_and_reproducible(tmp_path: Path) -> None:
         names = set(whole.namelist())
         assert {info.date_time for info in whole.infolist()} == {(1980, 1, 1, 0, 0, 0)}
         for case in CASES:
-            for name, content in archive.case_files(case):
+            for name, content in case_files(case):
                 assert whole.read(name) == content
                 names.remove(name)
-        assert names == {"README.txt", "LICENSE", "clauses.json", "case.schema.json"}
+        schemas = {f"schema/{path.name}" for path in (ROOT / "schema").glob("extended-urdf-*.schema.json")}
+        assert names == {"README.md", "LICENSE", "clauses.json", "index.json", "case.schema.json"} | schemas
         registry = json.loads(whole.read("clauses.json"))
         assert {entry["id"]: entry["text"] for entry in registry["clauses"]} == {
             id_: each.text for id_, each in read_clauses().items()
@@ -340,12 +342,12 @@ def test_links_in_the_zip_lead_to_its_own_files(tmp_path: Path) -> None:
             link = whole.read(name).decode().splitlines()[0].partition("$schema=")[2]
             schema = posixpath.normpath(posixpath.join(posixpath.dirname(name), link))
             assert whole.read(schema) == SCHEMA_FILE.read_bytes()
-        readme = whole.read("README.txt").decode()
+        readme = whole.read("README.md").decode()
         clauses = {entry["id"] for entry in json.loads(whole.read("clauses.json"))["clauses"]}
         assert set(re.findall(r"EU-[A-Z]{3}-[0-9]{3}", readme)) <= clauses
-        named = set(re.findall(r"(?<!>)(?<!>\.)\b[\w.]+\.(?:json|yaml|urdf)", readme))
+        named = set(re.findall(r"(?<!>)(?<!>\.)\b[\w.]+\.(?:json|yaml)\b", readme))
         assert named <= {Path(name).name for name in whole.namelist()}
-    assert all(re.search(rf"^  {level} ", readme, re.MULTILINE) for level in Level)
+    assert all(re.search(rf"^- `{level}`: ", readme, re.MULTILINE) for level in Level)
 
 
 def archived(*arguments: str | Path) -> int:

@@ -23,7 +23,7 @@ from eurdf_conformance.certificate.certificate import (
     read_certificate,
 )
 from eurdf_conformance.certificate.comparison_page import comparison_page
-from eurdf_conformance.certificate.fingerprint import clauses_hash, corpus_hash, files_hash
+from eurdf_conformance.certificate.fingerprint import clauses_hash
 from eurdf_conformance.certificate.issue import issue
 from eurdf_conformance.certificate.report import report
 from eurdf_conformance.certificate.write import write_certificate
@@ -37,6 +37,7 @@ from eurdf_conformance.command.replay import (
 )
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.read import CASES, all_cases, read_case
+from eurdf_conformance.corpus.release import corpus_hash, files_hash
 from eurdf_conformance.judging.known_failures import KnownFailure, KnownFailures
 from eurdf_conformance.judging.result import Result
 from eurdf_conformance.judging.verdict import Verdict

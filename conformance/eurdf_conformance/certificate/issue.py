@@ -6,10 +6,8 @@ import os
 import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable
-from contextlib import suppress
 from datetime import datetime, timezone
 from functools import cache
-from importlib.metadata import PackageNotFoundError, version
 
 from eurdf_conformance.certificate.certificate import (
     Certificate,
@@ -18,15 +16,13 @@ from eurdf_conformance.certificate.certificate import (
     Scope,
     Suite,
 )
-from eurdf_conformance.certificate.fingerprint import clauses_hash, corpus_hash, properties_hash
+from eurdf_conformance.certificate.fingerprint import clauses_hash, properties_hash
+from eurdf_conformance.corpus.release import corpus_hash, suite_version
 from eurdf_conformance.judging.level_result import is_certified, level_results
 from eurdf_conformance.judging.result import Result
 from eurdf_conformance.judging.run import Run
 from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.protocol.message import PROTOCOL
-
-#: The distributions that the suite is installed with: its own, and in a checkout that of the reference, of one version.
-_DISTRIBUTIONS = ("eurdf-conformance", "eurdf")
 
 # Which number a request has depends on what the process was asked before it, and that on how a run is spread over
 # processes. So does when a parser is given up that no longer starts.
@@ -38,19 +34,12 @@ _UNSTABLE = (Verdict.MISPLACED, Verdict.NOT_STARTED)
 def installed_suite() -> Suite:
     """The suite that is installed here, as this process read it."""
     return Suite(
-        version=_version(),
+        version=suite_version(),
         protocol=PROTOCOL,
         clauses=clauses_hash(),
         corpus=corpus_hash(),
         properties=properties_hash(),
     )
-
-
-def _version() -> str:
-    for name in _DISTRIBUTIONS[:-1]:
-        with suppress(PackageNotFoundError):
-            return version(name)
-    return version(_DISTRIBUTIONS[-1])
 
 
 def issue(run: Run) -> Certificate:

@@ -1,14 +1,11 @@
 """All cases for those who do not use pytest: ``python -m eurdf_conformance.corpus.archive OUT`` writes two files.
 
-``eurdf-conformance-cases.zip`` holds ``cases/<topic>/<name>.yaml`` of each case, its files in the folder
-``cases/<topic>/<name>/`` and, of a valid case, ``<name>.expected.json``; and beside them the schema of a case, the
-clauses, how to judge a parser by hand, and the license. ``eurdf-conformance-cases.json`` is the cases as one value,
-
-    {"manifest": "2.0", "protocol": "1.0", "clauses": {id: text}, "cases": [
-        {"name": "<topic>/<name>", "case": what the case says, "files": {name: content}, "expected": …}]}
-
-where the content is a text, or ``{"base64": …}`` if it is not UTF-8, or null if that file of the robot is missing. The
-bytes are the same whenever and wherever they are written.
+``eurdf-corpus.zip`` holds ``cases/<topic>/<name>.yaml`` of each case, its files in the folder ``cases/<topic>/<name>/``
+and, of a valid case, ``<name>.expected.json``; and beside them ``index.json``, the list of the cases, the schemas, the
+clauses, a README on how to judge a parser with them, and the license. ``eurdf-corpus.json`` is the cases as one value,
+the index with ``expected`` and, in place of the names of files, their contents: a text, or ``{"base64": …}`` if it is
+not UTF-8, or null if that file of the robot is missing. The bytes are the same whenever and wherever they are written.
+``eurdf_conformance.corpus.packages`` makes packages of the zip.
 """
 
 from __future__ import annotations
@@ -28,20 +25,26 @@ from eurdf_conformance.carried import carried
 from eurdf_conformance.corpus.case import SCHEMA_FILE, ValidCase
 from eurdf_conformance.corpus.clause import read_clauses, read_registry
 from eurdf_conformance.corpus.read import CorpusCase, NotACase, read_cases
+from eurdf_conformance.corpus.release import case_files, corpus_hash, suite_version
 from eurdf_conformance.protocol.message import PROTOCOL
 from eurdf_conformance.write_together import write_together
 
-NAME = "eurdf-conformance-cases"
+#: Name of the archive and of the packages made of it.
+NAME = "eurdf-corpus"
 
-MANIFEST = "2.0"
+#: Version of the form of `index.json` and of the one value.
+MANIFEST = "3.0"
+
+#: Schemas that the zip contains, by their names in it.
+_SCHEMAS = {
+    f"schema/extended-urdf-{version}.schema.json": carried(f"schema/extended-urdf-{version}.schema.json")
+    for version in ("1", "2.0", "2.1")
+}
 
 #: Keys of a case on how its files are made, which users of the archive do not need.
 _MAKING = {"base", "edits", "files", "edit"}
 
-#: Folder of the cases in the zip: as deep as here, so that the path of its schema in a case leads there.
-_CASES = "cases"
-
-_README = Path(__file__).with_name("archive_readme.txt")
+_README = Path(__file__).with_name("package") / "README.md"
 
 #: The earliest date that a zip file can contain.
 _DATE = (1980, 1, 1, 0, 0, 0)
@@ -55,8 +58,7 @@ def write_archive(folder: Path, cases: Iterable[CorpusCase]) -> None:
     """
     cases = list(cases)
     archive, plain = archive_paths(folder)
-    text = json.dumps(manifest(cases), ensure_ascii=False, indent=1) + "\n"
-    files = {archive: _zipped(cases), plain: text.encode("utf-8")}
+    files = {archive: _zipped(cases), plain: _json(manifest(cases))}
     folder.mkdir(parents=True, exist_ok=True)
     write_together(files)
 
@@ -67,7 +69,7 @@ def archive_paths(folder: Path) -> tuple[Path, Path]:
 
 
 def _zipped(cases: Iterable[CorpusCase]) -> bytes:
-    cases = list(cases)
+    cases = sorted(cases, key=lambda case: case.name)
     entries = {name: content for case in cases for name, content in case_files(case)} | _beside(cases)
     written = io.BytesIO()
     # Stored, since what deflate makes of the same bytes depends on the library that does it.
@@ -91,46 +93,54 @@ def _beside(cases: Iterable[CorpusCase]) -> dict[str, bytes]:
         "diagnostics": registry["diagnostics"],
     }
     return {
-        "README.txt": _README.read_bytes(),
-        "clauses.json": (json.dumps(clauses, ensure_ascii=False, indent=1) + "\n").encode("utf-8"),
+        _README.name: _README.read_bytes(),
+        "index.json": _json(index(cases)),
+        "clauses.json": _json(clauses),
+        **{name: path.read_bytes() for name, path in _SCHEMAS.items()},
         SCHEMA_FILE.name: SCHEMA_FILE.read_bytes(),
         "LICENSE": carried("LICENSE").read_bytes(),
     }
 
 
-def manifest(cases: Iterable[CorpusCase]) -> dict[str, Any]:
-    """All cases as one JSON value."""
+def index(cases: Iterable[CorpusCase]) -> dict[str, Any]:
+    """The list of the cases: of each what it says, the levels at which it is tested, and the names of its files."""
     cases = list(cases)
-    cited = {clause for case in cases for clause in case.case.clauses}
     return {
         "manifest": MANIFEST,
+        "version": suite_version(),
+        "corpus": corpus_hash(cases),
         "protocol": PROTOCOL,
-        "clauses": {name: clause.text for name, clause in sorted(read_clauses().items()) if name in cited},
         "cases": [
             {
                 "name": case.name,
+                "levels": case.levels,
                 "case": case.case.model_dump(mode="json", exclude_none=True, exclude=_MAKING),
-                "files": {name: _content(case.files.get(name)) for name in _names(case)},
-                "expected": case.expected.model_dump(mode="json") if isinstance(case.case, ValidCase) else None,
+                "files": sorted(case.files),
             }
             for case in cases
         ],
     }
 
 
-def case_files(case: CorpusCase) -> Iterator[tuple[str, bytes]]:
-    """Every file of a case, by its name in the zip."""
-    home = f"{_CASES}/{case.name}"
-    yield f"{home}.yaml", case.path.read_bytes()
-    if isinstance(case.case, ValidCase):
-        yield f"{home}.expected.json", case.expectation.read_bytes()
-    for name, content in case.files.items():
-        yield f"{home}/{name}", content
+def manifest(cases: Iterable[CorpusCase]) -> dict[str, Any]:
+    """All cases as one JSON value."""
+    cases = list(cases)
+    listed = index(cases)
+    for entry, case in zip(listed["cases"], cases, strict=True):
+        entry["files"] = {name: _content(case.files.get(name)) for name in _names(case)}
+        entry["expected"] = case.expected.model_dump(mode="json") if isinstance(case.case, ValidCase) else None
+    cited = {clause for case in cases for clause in case.case.clauses}
+    clauses = {name: clause.text for name, clause in sorted(read_clauses().items()) if name in cited}
+    return {**listed, "clauses": clauses}
 
 
 def _names(case: CorpusCase) -> Iterator[str]:
     """The names of the robot's two files, whether they exist or not, and then of the other files."""
     yield from dict.fromkeys((case.case.description, case.case.urdf, *case.files))
+
+
+def _json(value: Any) -> bytes:
+    return (json.dumps(value, ensure_ascii=False, indent=1) + "\n").encode("utf-8")
 
 
 def _content(content: bytes | None) -> str | dict[str, str] | None:
@@ -150,7 +160,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     parser = argparse.ArgumentParser(
         prog="python -m eurdf_conformance.corpus.archive",
-        description=f"Write all cases of the suite into a folder: {NAME}.zip, with a README.txt in it, and"
+        description=f"Write all cases of the suite into a folder: {NAME}.zip, with a README.md in it, and"
         f" {NAME}.json, the same as one JSON value.",
         epilog="Exit codes: 0 written, 2 not written.",
     )
