@@ -100,7 +100,7 @@ class SerialTwin:
         map: The positions of the motors as polynomials.
         neglected: What the twin neglects.
         workspace: The reachable set that the numbers refer to.
-        notes: What was left out for want of numbers.
+        notes: What was left out: limits for want of numbers, and springs of the linkage.
     """
 
     robot: Robot
@@ -182,6 +182,9 @@ def serial_twin(
     together at all points of the grid in it; the largest armature there. ``fitted``: the range of the workspace, and
     the means over its points of the torques, velocities and armatures.
 
+    Springs of the joints are kept. Those of the linkage are left out with it, and named in the notes: their torque
+    depends on the pose. As in `transmission`, springs that hold their joints do so as they are at q.
+
     Args:
         robot: The robot, with the geometry that it was loaded with.
         joints: As in `transmission`.
@@ -221,7 +224,8 @@ def serial_twin(
     diagonal = np.maximum(np.diagonal(needed, axis1=1, axis2=2), 0.0)
     added = diagonal[chosen].max(axis=0) if limits == "conservative" else diagonal.mean(axis=0)
     losses = _losses(robot, at_one(robot, serial, pose, by))
-    properties = _properties(serial, position, most.torque, most.velocity, added, *losses)
+    notes += _springs_left_out(robot, bodies)
+    properties = _properties(robot, serial, position, most.torque, most.velocity, added, *losses)
     mechanism = with_properties(plain.mechanism, properties)
     twin = build_robot(
         mechanism, geometry=robot.geometry is not None, resolve=partial(_found_mesh, files_of_meshes(robot))
@@ -343,7 +347,18 @@ def _losses(robot: Robot, at: Transmission) -> tuple[Vector, Vector]:
     )
 
 
+def _springs_left_out(robot: Robot, bodies: Sequence[str]) -> tuple[str, ...]:
+    """A note on the springs of the joints that are left out with the bodies of the linkage."""
+    gone = [joint.name for joint in robot.mechanism.joints if joint.child in bodies and any(joint.properties.stiffness)]
+    if not gone:
+        return ()
+    return (
+        f"springs of the linkage are left out, those of {', '.join(map(repr, gone))}: add their torque to the drives",
+    )
+
+
 def _properties(
+    robot: Robot,
     joints: Selection,
     position: Matrix,
     torque: Vector,
@@ -352,8 +367,9 @@ def _properties(
     damping: Vector,
     friction: Vector,
 ) -> dict[str, JointProperties]:
-    """The properties of each joint."""
+    """The properties of each joint; its spring is that of the robot's."""
     found: dict[str, JointProperties] = {}
+    before = {joint.name: joint.properties for joint in robot.mechanism.joints}
     for name in joints.joints:
         own = [index for index, label in enumerate(joints.names) if label.partition("[")[0] == name]
 
@@ -368,6 +384,8 @@ def _properties(
             of(damping),
             of(friction),
             of(armature),
+            stiffness=before[name].stiffness,
+            rest=before[name].rest,
         )
     return found
 
