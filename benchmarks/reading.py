@@ -1,10 +1,11 @@
-"""The least that Python takes to read a robot, against bare `pin.buildModelFromUrdf` on the same URDF.
+"""Reading a robot in Python without any check, against bare `pin.buildModelFromUrdf` on the same URDF.
 
-`least` is a short function that parses both files with the libraries that `eurdf` uses (lxml, libyaml), makes plain
-values of the description, and builds the model that `pin.buildModelFromUrdf` makes of the URDF. It checks nothing,
-keeps no positions for messages, and changes no joint as the description says. The column "with values" adds the
-frozen values of `robot.mechanism`, made from their fields. The last column is all of `eurdf.load(geometry=False)`.
-All three are ratios to the peer, which is compiled code and does not read the description.
+`read_unchecked` is a short function that parses both files with the libraries that `eurdf` uses (lxml, libyaml), makes
+plain values of the description, and builds the model that `pin.buildModelFromUrdf` makes of the URDF. It checks
+nothing, keeps no positions for messages, and changes no joint as the description says. The column "with values" adds
+the frozen values of `robot.mechanism`, made from their fields. The last column is all of `eurdf.load(geometry=False)`.
+All three are ratios to the peer, which is compiled code and does not read the description. What `eurdf.load` takes
+beyond that is for checks, positions in the files, and linking the two files.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ def tables(published: bool = True) -> Iterator[Table]:
     Args:
         published: Whether to measure published robots, too, where they are present beside the checkout.
     """
-    columns = ("robot", "joints", "least", "pin", "ratio", "with values", "`eurdf.load`")
+    columns = ("robot", "joints", "unchecked", "pin", "ratio", "with values", "`eurdf.load`")
     folders = [folder for folder in robots() if published or folder.parent == ROOT / "robots"]
     yield Table(columns, [row for folder in folders for row in _rows(folder)])
 
@@ -59,8 +60,8 @@ def _rows(folder: Path) -> Iterator[tuple[str, ...]]:
     made = list(_values(robot.mechanism, set()))
     functions: list[Callable[[], object]] = [
         partial(pin.buildModelFromUrdf, str(folder / "robot.urdf")),
-        partial(least, folder),
-        lambda: (least(folder), [kind(*arguments, **named) for kind, arguments, named in made]),
+        partial(read_unchecked, folder),
+        lambda: (read_unchecked(folder), [kind(*arguments, **named) for kind, arguments, named in made]),
         partial(eurdf.load, folder, geometry=False),
     ]
     peer, floor, with_values, ours = least_times(functions, 150)
@@ -75,7 +76,7 @@ def _rows(folder: Path) -> Iterator[tuple[str, ...]]:
     )
 
 
-def least(folder: Path) -> tuple[pin.Model, Any]:
+def read_unchecked(folder: Path) -> tuple[pin.Model, Any]:
     """The model of a robot's URDF without mimic joints, and the values in its description.
 
     Args:
