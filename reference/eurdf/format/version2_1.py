@@ -19,11 +19,12 @@ LEAST_LENGTH = 1e-4
 _KEYS_OF_TYPES = {"axis": "hinge", "axes": "hinge", "length": "distance"}
 
 
-class Closure(version2.Closure, Compliant):
+# A field of a base that is named earlier comes later: editors offer a name first.
+class Closure(Compliant, version2.Closure):
     """Two frames that are joined."""
 
 
-class _AddedClosure(Compliant):
+class _AddedClosure(StrictMapping):
     """Two frames, related by a closure of a type that version 2.0 does not have."""
 
     name: Name = Field(title="Name", description="Name of the closure, unique in the file.", examples=["knee_pin"])
@@ -46,7 +47,7 @@ class _Hinge(_AddedClosure):
     )
 
 
-class Hinge(_Hinge):
+class Hinge(Compliant, _Hinge):
     """A hinge about one axis, which both frames have."""
 
     model_config = ConfigDict(title="Hinge closure")
@@ -59,7 +60,7 @@ class Hinge(_Hinge):
     )
 
 
-class HingeAboutTwo(_Hinge):
+class HingeAboutTwo(Compliant, _Hinge):
     """A hinge that holds an axis of frame B along an axis of frame A."""
 
     model_config = ConfigDict(title="Hinge closure with two axes")
@@ -71,7 +72,7 @@ class HingeAboutTwo(_Hinge):
     )
 
 
-class Distance(_AddedClosure):
+class Distance(Compliant, _AddedClosure):
     """Two frames whose origins are at a fixed distance."""
 
     model_config = ConfigDict(title="Distance closure")
