@@ -45,6 +45,7 @@ DIMENSIONS = {
     "kangaroo_2legs": (126, {"6d": 6, "3d": 18}, 90, 90, 36, 12, 24),
     "kangaroo_leg": (63, {"6d": 3, "3d": 9}, 45, 45, 18, 6, 12),
     "planar_3rrr": (None, None, None, None, 3, 3, 0),
+    "reachy_mini": (24, {"3d": 5}, 15, 15, 9, 9, 0),
     "robotiq_2f85": (9, {"3d": 2}, 8, 6, 3, 1, 2),
     "sarrus": (None, None, None, None, 1, 1, 0),
     "screw_press": (11, {"hinge": 2, "6d": 1}, 16, 9, 2, 2, 0),
