@@ -11,7 +11,20 @@ from pathlib import Path
 
 import numpy as np
 
-from robots.builder import Box, Cylinder, Drawing, Motor, Solid, Sphere, Vector3, ball, cross, revolute, universal, write
+from robots.builder import (
+    Box,
+    Cylinder,
+    Drawing,
+    Motor,
+    Solid,
+    Sphere,
+    Vector3,
+    ball,
+    cross,
+    revolute,
+    universal,
+    write,
+)
 
 YAW = (0.0, 0.0, 0.0348)
 
