@@ -9,6 +9,9 @@ import { parse as parseYaml } from "yaml";
 class Wrong extends Error {} // what the parser throws for wrong files, ...
 class Lacking extends Error {} // ... and for a feature that it lacks
 
+const ROUND = ["radius", "length"];
+const SIZES = { box: ["size"], cylinder: ROUND, capsule: ROUND, sphere: ["radius"], mesh: ["scale"] };
+
 // The adapter: what it answers to each command.
 const parser = { name: "example", version: "0.1", language: "JavaScript" };
 const answers = {
@@ -50,6 +53,9 @@ function read(description, urdf) {
     return { name: `closure_${i + 1}`, type: types[i], a: bodies.get(pair[0]), b: bodies.get(pair[1]) };
   });
   const robot = { name: tree.getAttribute("name"), version: "1", root: "fixed", links, frames: [], closures };
+  robot.shapes = children(tree, "link").flatMap((link) =>
+    ["visual", "collision"].flatMap((use) => children(link, use).map((element) => shapeOf(link, use, element))),
+  );
   robot.joints = joints.filter((joint) => joint.type !== "fixed");
   robot.actuators = name_mot.map((joint) => ({ joint }));
   robot.own = Object.fromEntries(Object.entries(rest).map(([key, value]) => [`/${key}`, value]));
@@ -65,6 +71,25 @@ function jointOf(joint) {
   for (const key of ["velocity", "effort"]) read[key] = [said("limit", key) ? number(said("limit", key)) : null];
   for (const key of ["damping", "friction"]) read[key] = [number(said("dynamics", key, "0"))];
   return { ...read, armature: [0] };
+}
+
+function shapeOf(link, use, element) {
+  const numbers = (text) => text.trim().split(/\s+/).map(number);
+  const origin = children(element, "origin")[0];
+  const [r, p, y] = numbers(origin?.getAttribute("rpy") || "0 0 0");
+  const { sin, cos } = Math;
+  const rotation = [
+    [cos(y) * cos(p), cos(y) * sin(p) * sin(r) - sin(y) * cos(r), cos(y) * sin(p) * cos(r) + sin(y) * sin(r)],
+    [sin(y) * cos(p), sin(y) * sin(p) * sin(r) + cos(y) * cos(r), sin(y) * sin(p) * cos(r) - cos(y) * sin(r)],
+    [-sin(p), cos(p) * sin(r), cos(p) * cos(r)],
+  ];
+  const pose = { rotation, translation: numbers(origin?.getAttribute("xyz") || "0 0 0") };
+  const geometry = children(element, "geometry")[0];
+  const [type, sizes] = Object.entries(SIZES).find(([tag]) => children(geometry, tag).length);
+  const shape = children(geometry, type)[0];
+  const size = sizes.flatMap((key) => numbers(shape.getAttribute(key) || "1 1 1"));
+  const file = shape.getAttribute("filename") || undefined;
+  return { link: link.getAttribute("name"), use, type, size, file, pose };
 }
 
 function children(element, tag) {

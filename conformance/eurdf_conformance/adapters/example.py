@@ -1,5 +1,6 @@
 """A complete adapter, of a toy parser of version 1: ``--parser=eurdf_conformance.adapters.example:Example``."""
 
+from math import cos, sin
 from pathlib import Path
 from typing import Any, ClassVar
 from xml.etree import ElementTree
@@ -11,6 +12,9 @@ from eurdf_conformance.protocol.message import Accepted, Rejected, Unsupported
 from eurdf_conformance.protocol.reply import accepted, rejected, unsupported
 
 WRONG = (OSError, yaml.YAMLError, ElementTree.ParseError, KeyError, ValueError)  # raised for wrong files
+
+ROUND = ("radius", "length")
+SIZES = {"box": ("size",), "cylinder": ROUND, "capsule": ROUND, "sphere": ("radius",), "mesh": ("scale",)}
 
 
 class Example:
@@ -43,6 +47,12 @@ def read(said: Any, robot: ElementTree.Element) -> dict[str, Any]:
     canonical: dict[str, Any] = {"version": "1", "root": "fixed", "frames": [], "configurations": {}}
     canonical["name"], canonical["own"] = robot.attrib["name"], {f"/{key}": value for key, value in said.items()}
     canonical["links"] = [link.attrib["name"] for link in robot.findall("link")]
+    canonical["shapes"] = [
+        shape_of(link.attrib["name"], use, element)
+        for link in robot.findall("link")
+        for use in ("visual", "collision")
+        for element in link.findall(use)
+    ]
     joints = [joint_of(element) for element in robot.findall("joint")]
     canonical["joints"] = [joint for joint in joints if joint["type"] != "fixed"]
     canonical["actuators"] = [{"joint": name} for name in motors]
@@ -63,3 +73,25 @@ def joint_of(joint: ElementTree.Element) -> dict[str, Any]:
     read |= {key: [None if kind == "continuous" else float(limit.get(key, 0))] for key in ("lower", "upper")}
     read |= {key: [float(limit[key]) if limit else None] for key in ("velocity", "effort")}
     return read | {key: [float(dynamics.get(key, 0))] for key in ("damping", "friction")}
+
+
+def shape_of(link: str, use: str, element: ElementTree.Element) -> dict[str, Any]:
+    """One shape, with its pose in the frame of its link."""
+    (geometry,) = element.findall("geometry")
+    (shape,) = [child for child in geometry if child.tag in SIZES]
+    sizes = {key: shape.get(key, "1 1 1") if key == "scale" else shape.attrib[key] for key in SIZES[shape.tag]}
+    origin = {} if (found := element.find("origin")) is None else found.attrib
+    r, p, y = map(float, origin.get("rpy", "0 0 0").split())
+    rotation = [
+        [cos(y) * cos(p), cos(y) * sin(p) * sin(r) - sin(y) * cos(r), cos(y) * sin(p) * cos(r) + sin(y) * sin(r)],
+        [sin(y) * cos(p), sin(y) * sin(p) * sin(r) + cos(y) * cos(r), sin(y) * sin(p) * cos(r) - cos(y) * sin(r)],
+        [-sin(p), cos(p) * sin(r), cos(p) * cos(r)],
+    ]
+    return {
+        "link": link,
+        "use": use,
+        "type": shape.tag,
+        "size": [float(number) for size in sizes.values() for number in size.split()],
+        "file": shape.get("filename"),
+        "pose": {"rotation": rotation, "translation": [float(x) for x in origin.get("xyz", "0 0 0").split()]},
+    }

@@ -6,12 +6,14 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from eurdf.mechanism.body import Shape
 from eurdf.mechanism.constraint import RIGID, Compliance, DistanceClosure, HingeClosure
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.pose import Vector3
+from eurdf.pinocchio.placement import placement_of
 from eurdf_conformance.level import Version
 from eurdf_conformance.protocol.message import (
     CanonicalActuator,
@@ -21,6 +23,8 @@ from eurdf_conformance.protocol.message import (
     CanonicalJoint,
     CanonicalMimic,
     CanonicalRobot,
+    CanonicalShape,
+    Pose,
 )
 
 #: As the protocol calls them; a bare URDF is of version 2.
@@ -74,7 +78,25 @@ def canonical_robot(mechanism: Mechanism) -> CanonicalRobot:
             CanonicalCoupling(name=coupling.name, joints=dict(coupling.coefficients), offset=coupling.offset)
             for coupling in mechanism.couplings
         ],
+        shapes=[
+            _shape(body.name, use, shape)
+            for body in mechanism.bodies
+            for use, shapes in (("visual", body.visuals), ("collision", body.collisions))
+            for shape in shapes
+        ],
         own=dict(mechanism.own_data),
+    )
+
+
+def _shape(link: str, use: Any, shape: Shape) -> CanonicalShape:
+    placement = placement_of(shape.pose)
+    return CanonicalShape(
+        link=link,
+        use=use,
+        type=shape.kind,
+        size=list(shape.size),
+        file=shape.filename or None,
+        pose=Pose(rotation=placement.rotation.tolist(), translation=placement.translation.tolist()),
     )
 
 

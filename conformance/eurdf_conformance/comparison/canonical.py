@@ -9,7 +9,7 @@ from eurdf_conformance.comparison.difference import ABSENT, Difference
 from eurdf_conformance.comparison.json_value import value_differences
 from eurdf_conformance.comparison.plain_robot import Part, Placed, PlainRobot, plain_robot
 from eurdf_conformance.json_pointer import step
-from eurdf_conformance.protocol.message import CanonicalRobot
+from eurdf_conformance.protocol.message import CanonicalRobot, CanonicalShape
 
 
 def canonical_differences(
@@ -40,6 +40,7 @@ def canonical_differences(
         *_part_differences(one.closures, other.closures, "/closures", "closure"),
         *_part_differences(one.couplings, other.couplings, "/couplings", "coupling"),
         *_part_differences(one.actuators, other.actuators, "/actuators", "actuator of joint"),
+        *_shape_differences(expected, given),
         *_configuration_differences(one, other, expected.root),
         *value_differences(expected.own, given.own, "/own", "user data"),
     ]
@@ -72,6 +73,28 @@ def _part_differences(
     for name, found in given.items():
         if name not in expected:
             yield Difference(found.pointer, ABSENT, found.part, f"unexpected {kind} '{name}'")
+
+
+def _shape_differences(expected: CanonicalRobot, given: CanonicalRobot) -> Iterator[Difference]:
+    """EU-CAN-006: shapes by link and use, in their order."""
+    one, other = _shapes(expected), _shapes(given)
+    for key in dict.fromkeys((*one, *other)):
+        there, here = one.get(key, []), other.get(key, [])
+        link, use = key
+        if len(there) != len(here):
+            where = here[-1].pointer if len(here) > len(there) else "/shapes"
+            yield Difference(where, len(there), len(here), f"number of {use} shapes of link '{link}'")
+            continue
+        for number, (right, found) in enumerate(zip(there, here, strict=True), 1):
+            why = f"{use} shape {number} of link '{link}'"
+            yield from value_differences(right.part, found.part, found.pointer, why)
+
+
+def _shapes(robot: CanonicalRobot) -> dict[tuple[str, str], list[Placed[CanonicalShape]]]:
+    found: dict[tuple[str, str], list[Placed[CanonicalShape]]] = {}
+    for index, shape in enumerate(robot.shapes):
+        found.setdefault((shape.link, shape.use), []).append(Placed(shape, "/shapes" + step(index)))
+    return found
 
 
 def _configuration_differences(expected: PlainRobot, given: PlainRobot, root: str) -> Iterator[Difference]:

@@ -22,17 +22,18 @@ from eurdf_conformance.protocol.message import (
     CanonicalCoupling,
     CanonicalJoint,
     CanonicalRobot,
+    CanonicalShape,
 )
 
 #: The joint of a floating root.
 ROOT_JOINT = "root_joint"
 
-Part = TypeVar("Part", CanonicalJoint, CanonicalClosure, CanonicalCoupling, CanonicalActuator)
+Part = TypeVar("Part", CanonicalJoint, CanonicalClosure, CanonicalCoupling, CanonicalActuator, CanonicalShape)
 
 
 @dataclass(frozen=True, slots=True)
 class Placed(Generic[Part]):
-    """A joint, closure or actuator, and its place in the answer.
+    """A joint, closure, actuator or shape, and its place in the answer.
 
     Attributes:
         part: Without style.

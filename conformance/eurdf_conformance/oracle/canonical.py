@@ -10,7 +10,7 @@ from eurdf_conformance.oracle.description import Actuator, Coupling, Description
 from eurdf_conformance.oracle.joint_property import properties
 from eurdf_conformance.oracle.not_read import NotRead
 from eurdf_conformance.oracle.tree import Joint, Tree
-from eurdf_conformance.oracle.urdf import Urdf
+from eurdf_conformance.oracle.urdf import Shape, Urdf
 from eurdf_conformance.protocol.message import (
     CanonicalActuator,
     CanonicalClosure,
@@ -19,13 +19,15 @@ from eurdf_conformance.protocol.message import (
     CanonicalJoint,
     CanonicalMimic,
     CanonicalRobot,
+    CanonicalShape,
+    Pose,
 )
 
 
 def canonical(urdf: Urdf, description: Description, tree: Tree) -> CanonicalRobot:
     """The canonical description of a robot."""
     joints = {joint.name: joint for joint in tree.joints[1:]}
-    link = links_of_bodies(tree)
+    link_of = links_of_bodies(tree)
     motors = {actuator.joint: actuator for actuator in description.actuators}
     return CanonicalRobot(
         name=urdf.name,
@@ -34,7 +36,7 @@ def canonical(urdf: Urdf, description: Description, tree: Tree) -> CanonicalRobo
         links=list(urdf.links),
         frames=list(description.frames),
         joints=[
-            canonical_joint(joint, link[joint.parent], link[i], motors.get(joint.name))
+            canonical_joint(joint, link_of[joint.parent], link_of[i], motors.get(joint.name))
             for i, joint in enumerate(tree.joints)
             if i > 0
         ],
@@ -42,8 +44,8 @@ def canonical(urdf: Urdf, description: Description, tree: Tree) -> CanonicalRobo
             CanonicalClosure(
                 name=closure.name,
                 type=closure.type,
-                a=link[tree.refer(closure.a).body],
-                b=link[tree.refer(closure.b).body],
+                a=link_of[tree.refer(closure.a).body],
+                b=link_of[tree.refer(closure.b).body],
                 axes=[axis.tolist() for axis in closure.axes] or None,
                 length=closure.length,
                 compliance=CanonicalCompliance(**closure.compliance) if closure.compliance else None,
@@ -56,6 +58,7 @@ def canonical(urdf: Urdf, description: Description, tree: Tree) -> CanonicalRobo
             for name, configuration in description.configurations.items()
         },
         couplings=[canonical_coupling(coupling, tree) for coupling in description.couplings],
+        shapes=[canonical_shape(name, shape) for name, link in urdf.links.items() for shape in link.shapes],
         own=description.own,
     )
 
@@ -64,6 +67,19 @@ def canonical_coupling(coupling: Coupling, tree: Tree) -> CanonicalCoupling:
     """As written; its joints have one coordinate each, EU-CPL-003."""
     require_coupled(tree, coupling)
     return CanonicalCoupling(name=coupling.name, joints=coupling.coefficients, offset=coupling.offset)
+
+
+def canonical_shape(link: str, shape: Shape) -> CanonicalShape:
+    """A shape where the URDF puts it in its link, EU-CAN-006. No merge moves a link at zero."""
+    M = shape.placement
+    return CanonicalShape(
+        link=link,
+        use=cast(Any, shape.use),
+        type=cast(Any, shape.type),
+        size=shape.size.tolist(),
+        file=shape.file,
+        pose=Pose(rotation=M[:3, :3].tolist(), translation=M[:3, 3].tolist()),
+    )
 
 
 def links_of_bodies(tree: Tree) -> list[str]:

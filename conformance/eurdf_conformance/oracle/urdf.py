@@ -1,4 +1,4 @@
-"""The content of a URDF: links, joints and inertias, chapter The URDF. Shapes are not read."""
+"""The content of a URDF: links, joints, inertias and shapes, chapter The URDF."""
 
 from __future__ import annotations
 
@@ -30,11 +30,26 @@ class Inertia:
 
 
 @dataclass(frozen=True)
+class Shape:
+    """A shape of a link."""
+
+    use: str
+    type: str
+    #: Lengths in m; of a mesh its scale.
+    size: Array
+    file: str | None
+    #: Pose in the frame of the link.
+    placement: Array
+
+
+@dataclass(frozen=True)
 class Link:
     """A link; without `inertial` it has no mass."""
 
     name: str
     inertia: Inertia | None
+    #: Those of one use in the order of the file.
+    shapes: list[Shape]
 
 
 @dataclass(frozen=True)
@@ -164,7 +179,7 @@ def read_urdf(path: Path) -> Urdf:
     robot = parse(path.read_bytes())
     if robot.name != "robot":
         raise NotRead(f"the root element is {robot.name!r}")
-    links = [Link(element.text("name"), inertia(element)) for element in robot.all("link")]
+    links = [Link(element.text("name"), inertia(element), shapes(element)) for element in robot.all("link")]
     joints = [joint(element) for element in robot.all("joint")]
     urdf = Urdf(robot.text("name"), {link.name: link for link in links}, {found.name: found for found in joints})
     carried = {found.child for found in joints}
@@ -193,6 +208,40 @@ def inertia(link: Element) -> Inertia | None:
         inertial.one("mass").number("value"),
         M[:3, 3],
         R @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ R.T,
+    )
+
+
+#: For each type of shape the attributes of its size, and how many numbers each has.
+_SIZES = {
+    "box": {"size": 3},
+    "cylinder": {"radius": 1, "length": 1},
+    "capsule": {"radius": 1, "length": 1},
+    "sphere": {"radius": 1},
+    "mesh": {"scale": 3},
+}
+
+
+def shapes(link: Element) -> list[Shape]:
+    """The shapes of a link."""
+    return [shape(element, use) for use in ("visual", "collision") for element in link.all(use)]
+
+
+def shape(element: Element, use: str) -> Shape:
+    """The one shape in a `visual` or `collision`."""
+    found = [each for each in element.one("geometry").children if each.name in _SIZES]
+    if len(found) != 1:
+        raise NotRead(f"{len(found)} shapes in one geometry")
+    (only,) = found
+    if only.name != "mesh":  # only a scale may be left out
+        for name in _SIZES[only.name]:
+            only.text(name)
+    sizes = [only.numbers(name, [1.0] * count) for name, count in _SIZES[only.name].items()]
+    return Shape(
+        use,
+        only.name,
+        np.concatenate(sizes),
+        only.text("filename") if only.name == "mesh" else None,
+        origin(element),
     )
 
 

@@ -212,6 +212,29 @@ class CanonicalActuator(Value):
     )
 
 
+class Pose(Value):
+    """Pose of a frame in the world, or of a shape in the frame of its link."""
+
+    rotation: Annotated[list[Row3], Field(min_length=3, max_length=3)]
+    translation: Row3 = Field(description="m")
+
+
+class CanonicalShape(Value):
+    """A shape of a link."""
+
+    optional = frozenset({"file"})
+
+    link: str
+    use: Literal["visual", "collision"]
+    type: Literal["box", "cylinder", "sphere", "capsule", "mesh"]
+    size: Numbers = Field(
+        description="Box: lengths x, y, z; cylinder and capsule: radius, length; sphere: radius, all in m; "
+        "mesh: scale x, y, z."
+    )
+    file: str | None = Field(default=None, description="File name of a mesh, as in the URDF.")
+    pose: Pose = Field(description="Pose in the frame of the link.")
+
+
 class CanonicalRobot(Value):
     """The canonical description of a robot, as a parser has read it: chapter The canonical description."""
 
@@ -225,12 +248,15 @@ class CanonicalRobot(Value):
     actuators: list[CanonicalActuator]
     configurations: dict[str, dict[str, Numbers]]
     couplings: list[CanonicalCoupling] = Field(default=[], description="Left out where there are none.")
+    shapes: list[CanonicalShape] = Field(
+        default=[], description="Those of one link and use in the order of the URDF. Left out where there are none."
+    )
     own: dict[str, Any] = Field(description="User data, by the JSON pointer to the key.")
 
     @model_serializer(mode="wrap")
     def _of_its_version(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Without `couplings` where there are none: version 2.0 does not have them."""
-        return {name: value for name, value in handler(self).items() if value or name != "couplings"}
+        """Without `couplings` and `shapes` where there are none: version 2.0 does not have couplings."""
+        return {name: value for name, value in handler(self).items() if value or name not in ("couplings", "shapes")}
 
 
 class Accepted(Answer):
@@ -246,13 +272,6 @@ class Rejected(Answer):
 
     outcome: Literal["rejected"] = "rejected"
     issues: list[Issue]
-
-
-class Pose(Value):
-    """Pose of a frame in the world."""
-
-    rotation: Annotated[list[Row3], Field(min_length=3, max_length=3)]
-    translation: Row3 = Field(description="m")
 
 
 class Jacobian(Value):

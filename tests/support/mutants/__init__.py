@@ -20,6 +20,7 @@ from support.mutants import (  # noqa: F401  each adds its own
     reading_urdf,
     reading_yaml,
     reporting,
+    shapes,
 )
 from support.mutants.mutant import MUTANTS, Mutant
 from support.mutants.protocol import PROTOCOL_MUTANTS

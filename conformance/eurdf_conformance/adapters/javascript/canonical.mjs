@@ -5,6 +5,7 @@ import { toJson } from "./own.mjs";
 export function canonical(robot) {
   const moving = robot.joints.filter((joint) => joint.type !== "fixed");
   const velocities = new Map(moving.map((joint) => [joint.name, joint.velocity.length]));
+  const shapes = [...robot.links.values()].flatMap((link) => link.shapes.map((shape) => shapeOf(link.name, shape)));
   return {
     name: robot.name,
     version: robot.version,
@@ -16,6 +17,7 @@ export function canonical(robot) {
     actuators: robot.actuators.map((actuator) => actuatorOf(actuator, velocities.get(actuator.joint))),
     ...(robot.couplings.length && { couplings: robot.couplings.map(couplingOf) }),
     configurations: toJson(robot.configurations),
+    ...(shapes.length && { shapes }),
     own: toJson(robot.own),
   };
 }
@@ -39,3 +41,12 @@ function actuatorOf({ joint, gear_ratio, rotor_inertia, name, control }, velocit
 }
 
 const couplingOf = ({ name, joints, offset }) => ({ name, joints: toJson(joints), offset });
+
+const shapeOf = (link, { use, type, size, file, pose }) => ({
+  link,
+  use,
+  type,
+  size,
+  ...(file !== undefined && { file }),
+  pose: { rotation: pose.R, translation: pose.p },
+});

@@ -148,7 +148,8 @@ function originOf(element) {
 
 function linkOf(element, name) {
   const inertial = child(element, "inertial");
-  if (!inertial) return { name, mass: 0, inertia: null };
+  const shapes = element.children.filter(({ name }) => name === "visual" || name === "collision").map(shapeOf);
+  if (!inertial) return { name, mass: 0, inertia: null, shapes };
   const [mass] = numbersOf(inertial, "mass", "value", [0]);
   const of = (key) => numbersOf(inertial, "inertia", key, [0])[0];
   const [xx, xy, xz, yy, yz, zz] = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"].map(of);
@@ -157,7 +158,15 @@ function linkOf(element, name) {
     [xy, yy, yz],
     [xz, yz, zz],
   ];
-  return { name, mass, inertia: { pose: originOf(inertial), matrix } };
+  return { name, mass, inertia: { pose: originOf(inertial), matrix }, shapes };
+}
+
+function shapeOf(element) {
+  const shape = child(element, "geometry").children.find((each) => Object.hasOwn(SHAPES, each.name));
+  const counts = Object.entries(SHAPES[shape.name].numbers);
+  const size = counts.flatMap(([name, count]) => numbers(shape, name, count, shape.name) ?? Array(count).fill(1));
+  const file = shape.attributes.get("filename");
+  return { use: element.name, type: shape.name, size, ...(shape.name === "mesh" && { file }), pose: originOf(element) };
 }
 
 /** Limits, damping and friction are numbers, or null where there is no limit. */
