@@ -15,6 +15,12 @@ def _without(key: str) -> str:
     return rf"(?ms)\A((?!.*^{key}:).*?)\s*\Z"
 
 
+def _only_coupling(what: str, code: str, keys: str, fix: str) -> Fault:
+    """An error in a coupling that is added to a description without one."""
+    text = rf"\1\ncouplings:\n  - {{name: only, {keys}}}\n"
+    return _fault(f"{what} in the only coupling", Subject.COUPLING, code, _without("couplings"), text, fix)
+
+
 FAULTS_2_1 = (
     # Closures
     _fault(
@@ -98,13 +104,19 @@ FAULTS_2_1 = (
         r"\1¦\2_gone",
         "Name a joint.",
     ),
+    _only_coupling("zero coefficient", "out-of-range", "joints: {one: 1.0, other: ¦0.0}", "Write a coefficient."),
+    _only_coupling("only one joint", "wrong-length", "joints: ¦{one: 1.0}", "Name another joint."),
+    _only_coupling("unknown key", "unknown-key", "joints: {one: 1, other: 2}, ¦sum: 0", "Write `offset`."),
+    _only_coupling("text as coefficient", "wrong-type", 'joints: {one: 1, other: ¦"2"}', "Write a number."),
+    _only_coupling("list of joints", "wrong-type", "joints: ¦[one, other]", "Write the coefficients."),
     _fault(
-        "coefficient that is 0, of the only coupling",
+        "unknown joint in the only coupling",
         Subject.COUPLING,
-        "out-of-range",
-        _without("couplings"),
-        r"\1\ncouplings:\n  - {name: nothing, joints: {one: 1.0, other: ¦0.0}}\n",
-        "Write a coefficient.",
+        "unknown-coupled-joint",
+        # A number in a configuration is the coordinate of a joint that can be coupled.
+        r"(?ms)\A((?!.*^couplings:).*assembled: \{(?:[^\n]*, )?(joint\w+): -?[\d.e-]+[,}].*?)\s*\Z",
+        r"\1\ncouplings:\n  - {name: only, joints: {\2: 1.0, ¦nowhere: 2.0}}\n",
+        "Name a joint.",
     ),
     _fault(
         "coefficient that is 0",

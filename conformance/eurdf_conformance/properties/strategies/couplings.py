@@ -21,7 +21,8 @@ def with_couplings(draw: DrawFn, mechanism: Mechanism) -> Mechanism:
     several = st.lists(st.sampled_from(joints), unique=True, min_size=2, max_size=3)
     at = mechanism.configurations["assembled"]
     couplings: list[Coupling] = []
-    for names in draw(st.lists(several, unique_by=frozenset, max_size=2)):
+    least = draw(st.sampled_from([0, 1, 1]))
+    for names in draw(st.lists(several, unique_by=frozenset, min_size=least, max_size=2)):
         joined = {name: draw(decimals(-3, 3, 1).filter(bool)) for name in names}
         offset = sum(c * at[name][0] for name, c in joined.items())
         couplings.append(Coupling(name=f"coupling_{len(couplings) + 1}", joints=joined, offset=offset))
