@@ -5,6 +5,7 @@ pose; only those of a universal joint lie along its two axes. So the drawn pose 
 at zero, and every loop is closed there because both its sides are the same point of the drawing.
 """
 
+from robots.builder.assembled import assembled_at
 from robots.builder.drawing import Drawing, End
 from robots.builder.joint import Joint, Motor, Spring, ball, cross, prismatic, revolute, unit, universal
 from robots.builder.shape import Box, Cylinder, Shape, Sphere, Vector3, midpoint, rotation_of_quaternion
@@ -23,6 +24,7 @@ __all__ = [
     "Sphere",
     "Spring",
     "Vector3",
+    "assembled_at",
     "ball",
     "cross",
     "midpoint",

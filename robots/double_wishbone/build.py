@@ -8,8 +8,6 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-import eurdf
-from eurdf.pinocchio.robot import build_robot
 from robots.builder import (
     Cylinder,
     Drawing,
@@ -17,6 +15,7 @@ from robots.builder import (
     Sphere,
     Spring,
     Vector3,
+    assembled_at,
     ball,
     cross,
     prismatic,
@@ -25,7 +24,6 @@ from robots.builder import (
     universal,
     write,
 )
-from robots.builder.mechanism import mechanism_of
 
 WHEEL = (0.0, 0.78, 0.31)
 LOWER_AXIS = (0.0, 0.4, 0.2)
@@ -75,7 +73,7 @@ def draw() -> Drawing:
         "droop": {"spring_strut": 0.06, "motor_rack": 0.0},
         "left_turn": {"spring_strut": 0.0, "motor_rack": -0.06},
     }.items():
-        robot.configure(name, **closed(robot, held))
+        robot.configure(name, **assembled_at(robot, held))
     return robot
 
 
@@ -157,16 +155,6 @@ def draw_steering(robot: Drawing) -> None:
         material="rack",
     )
     robot.distance("tie_rod", ("rack", RACK_END), ("upright", STEERING_ARM))
-
-
-def closed(robot: Drawing, held: dict[str, float]) -> dict[str, float | tuple[float, ...]]:
-    """Coordinates of all joints where some are held, found from the drawn pose in small steps."""
-    built = build_robot(mechanism_of(robot), geometry=False)
-    q = built.configuration({})
-    for step in range(1, 21):
-        part: dict[str, tuple[float, ...]] = {name: (value * step / 20.0,) for name, value in held.items()}
-        q = eurdf.assemble(built, built.configuration(built.coordinates(q) | part), hold=tuple(held)).q
-    return {name: found if len(found) > 1 else found[0] for name, found in built.coordinates(q).items()}
 
 
 def minus(end: Vector3, start: Vector3) -> Vector3:

@@ -38,6 +38,7 @@ DIMENSIONS = {
     "disney_leg": (27, {"6d": 3}, 18, 18, 9, 6, 3),
     "doggo_leg": (4, {"hinge": 1}, 5, 2, 2, 2, 0),
     "double_wishbone": (12, {"hinge": 1, "distance": 1, "3d": 1}, 9, 9, 3, 1, 2),
+    "excavator": (12, {"3d": 4}, 12, 8, 4, 4, 0),
     "five_bar": (5, {"6d": 1}, 6, 3, 2, 2, 0),
     "five_bar_3d": (5, {"3d": 1}, 3, 3, 2, 2, 0),
     "five_bar_6d": (8, {"6d": 1}, 6, 6, 2, 2, 0),
