@@ -28,6 +28,7 @@ FIRST = (
     "test_explore.py",
     "test_random_mechanisms.py",
     "test_suite.py",
+    "test_workspace.py",
     "test_bad_input.py",
     "test_examples.py",
     "test_schema.py",
