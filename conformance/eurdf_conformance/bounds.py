@@ -10,6 +10,7 @@ from typing import Any
 
 from eurdf_conformance.corpus.case import CasePlace, InvalidCase, ValidCase
 from eurdf_conformance.corpus.read import CorpusCase, suite_cases
+from eurdf_conformance.feature import Feature
 from eurdf_conformance.level import Level, Version
 from eurdf_conformance.properties.files import DESCRIPTION, URDF
 
@@ -122,6 +123,11 @@ class BoundCase(CorpusCase):
     def files(self) -> dict[str, bytes]:
         """The contents of its files, by name."""
         return dict(zip((DESCRIPTION, URDF), self.bound.files(self.case.version, self.count), strict=True))
+
+    @property
+    def features(self) -> frozenset[Feature]:
+        """The features that its files use."""
+        return frozenset({Feature.FLOATING} if self.bound.files is _velocities else ())
 
     @property
     def levels(self) -> tuple[Level, ...]:

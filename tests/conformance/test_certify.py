@@ -11,6 +11,7 @@ import subprocess
 import sys
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -152,6 +153,21 @@ def test_a_smoke_run_names_the_verdict_before_the_reason() -> None:
     lines = list(smoke_lines([lacking, silent], asked=True))
     assert f"  {VALID}/accept: unsupported: version 2" in lines
     assert f"  {INVALID}/accept: skipped" in lines
+
+
+def test_smoke_run_states_equal_failures_once_with_the_log() -> None:
+    why = "the process ended with exit code 3 without answering"
+    log = "crashed: ended with exit code 3 without answering\n  log: no file 'model.bin'"
+    every = [item(VALID, Level.ACCEPT), item(INVALID, Level.ACCEPT), item("protocol/quiet-2", Level.ACCEPT)]
+    wrong = [replace(result(each, Verdict.CRASHED, why), log=log) for each in every]
+    assert list(smoke_lines(wrong, asked=True)) == [
+        "your adapter fails:",
+        f"  {VALID}/accept: crashed: {why}",
+        "    log: no file 'model.bin'",
+        f"    and so do 2 more: {INVALID}/accept, protocol/quiet-2/accept",
+        f"    pytest conformance/ -k {VALID}/accept",
+        "your parser was not tested any further: fix the adapter first",
+    ]
 
 
 @pytest.mark.slow

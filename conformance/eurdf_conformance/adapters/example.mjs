@@ -14,8 +14,9 @@ const SIZES = { box: ["size"], cylinder: ROUND, capsule: ROUND, sphere: ["radius
 
 // The adapter: what it answers to each command.
 const parser = { name: "example", version: "0.1", language: "JavaScript" };
+const lacks = ["planar", "floating", "spherical", "universal"];
 const answers = {
-  start: () => ({ outcome: "started", protocol: "1.0", parser, claims: { 1: ["accept", "structure"] } }),
+  start: () => ({ outcome: "started", protocol: "1.0", parser, claims: { 1: ["accept", "structure"] }, lacks }),
   load: (request) => ({ outcome: "accepted", robot: read(request.description, request.urdf), issues: [] }),
   evaluate: () => ({ outcome: "unsupported", feature: "evaluate" }),
   stop: () => ({ outcome: "stopped" }),
@@ -40,7 +41,8 @@ for await (const line of createInterface({ input: process.stdin })) {
 // The parser: the robot as a canonical description.
 function read(description, urdf) {
   const { closed_loop = [], type, name_mot = [], ...rest } = parsed(description, parseYaml) ?? {};
-  if ("extended_urdf" in rest || "joint_name" in rest) throw new Lacking("version 2, and joints that URDF lacks");
+  if ("extended_urdf" in rest) throw new Lacking("version 2");
+  if ("joint_name" in rest) throw new Lacking(String(rest.joint_type).includes("UJOINT") ? "universal" : "spherical");
   const types = (type ?? closed_loop.map(() => "6d")).map((each) => String(each).toLowerCase());
   if (types.some((each) => each !== "3d" && each !== "6d")) throw new Wrong("a closure is 3d or 6d");
   if (types.length !== closed_loop.length) throw new Wrong("type and closed_loop differ in length");
@@ -65,7 +67,7 @@ function read(description, urdf) {
 function jointOf(joint) {
   const said = (tag, key, absent) => children(joint, tag)[0]?.getAttribute(key) ?? absent;
   const type = joint.getAttribute("type");
-  if (["planar", "floating"].includes(type) || said("mimic", "joint")) throw new Lacking(`${type} joints, or mimics`);
+  if (["planar", "floating"].includes(type)) throw new Lacking(type);
   const read = { name: joint.getAttribute("name"), type, parent: said("parent", "link"), child: said("child", "link") };
   for (const key of ["lower", "upper"]) read[key] = [type === "continuous" ? null : number(said("limit", key, "0"))];
   for (const key of ["velocity", "effort"]) read[key] = [said("limit", key) ? number(said("limit", key)) : null];

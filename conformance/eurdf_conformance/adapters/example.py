@@ -22,6 +22,7 @@ class Example:
 
     name, version, language = "example", "0.1", "Python"
     claims: ClassVar = {"1": [Level.ACCEPT, Level.STRUCTURE]}
+    lacks: ClassVar = ["planar", "floating", "spherical", "universal"]
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected | Unsupported:
         """Let the parser read the files, and answer with the result."""
@@ -38,8 +39,10 @@ def read(said: Any, robot: ElementTree.Element) -> dict[str, Any]:
     """The parser: the robot as a canonical description."""
     if not isinstance(said, dict):
         raise ValueError("the description is not a mapping")
-    if said.keys() & {"extended_urdf", "joint_name"}:
-        raise NotImplementedError("version 2, and joints that URDF lacks")
+    if "extended_urdf" in said:
+        raise NotImplementedError("version 2")
+    if "joint_name" in said:
+        raise NotImplementedError("universal" if "UJOINT" in str(said) else "spherical")
     closed, motors = said.pop("closed_loop", []), said.pop("name_mot", [])
     types = [str(kind).lower() for kind in said.pop("type", ["6d"] * len(closed))]
     if not {"3d", "6d"}.issuperset(types):
@@ -65,8 +68,8 @@ def read(said: Any, robot: ElementTree.Element) -> dict[str, Any]:
 def joint_of(joint: ElementTree.Element) -> dict[str, Any]:
     """One joint of the URDF, with its limits."""
     kind, (parent,), (child,) = joint.attrib["type"], joint.findall("parent"), joint.findall("child")
-    if kind in ("planar", "floating") or joint.find("mimic") is not None:
-        raise NotImplementedError("planar and floating joints, and mimics")
+    if kind in ("planar", "floating"):
+        raise NotImplementedError(kind)
     limit, dynamics = ({} if (found := joint.find(tag)) is None else found.attrib for tag in ("limit", "dynamics"))
     read: dict[str, Any] = {"name": joint.attrib["name"], "type": kind, "armature": [0.0]}
     read |= {"parent": parent.attrib["link"], "child": child.attrib["link"]}

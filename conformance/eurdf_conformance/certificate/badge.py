@@ -5,7 +5,7 @@ from __future__ import annotations
 from lxml import etree
 
 from eurdf_conformance.certificate.certificate import Certificate
-from eurdf_conformance.certificate.summary import certified_levels, levels_text
+from eurdf_conformance.certificate.summary import but_for, certified_levels, levels_text
 from eurdf_conformance.level import VERSIONS
 
 _SVG = "http://www.w3.org/2000/svg"
@@ -46,9 +46,14 @@ def badge_texts(certificate: Certificate) -> tuple[str, str]:
     if not versions:
         return "Extended URDF", "not certified"
     said = [levels_text(certified[version], " ") for version in versions]
+    without = but_for(certificate)
     if len(set(said)) == 1:
-        return f"Extended URDF {', '.join(versions[:-1])}{' and ' * (len(versions) > 1)}{versions[-1]}", said[0]
-    return "Extended URDF", ", ".join(f"{version}: {text}" for version, text in zip(versions, said, strict=True))
+        return f"Extended URDF {', '.join(versions[:-1])}{' and ' * (len(versions) > 1)}{versions[-1]}", said[
+            0
+        ] + without
+    return "Extended URDF", ", ".join(
+        f"{version}: {text}" for version, text in zip(versions, said, strict=True)
+    ) + without
 
 
 def _add(parent: etree._Element, name: str, **attributes: object) -> etree._Element:

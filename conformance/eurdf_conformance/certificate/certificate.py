@@ -13,6 +13,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from eurdf_conformance.feature import Feature
 from eurdf_conformance.json_schema import published, schema_text
 from eurdf_conformance.judging.level_result import Count, LevelResult
 from eurdf_conformance.judging.verdict import Verdict
@@ -60,7 +61,7 @@ class Scope(_Part):
 
 
 class ClauseResult(_Part):
-    """How many items that test a clause ran, and how many of them passed."""
+    """How many items that test a clause ran, those excused not counted, and how many of them passed."""
 
     id: str
     items: Count
@@ -81,6 +82,8 @@ class Failure(_Part):
     """Whether it was expected, by a file that the certificate does not hold."""
     difference: str | None
     """What is wrong, and the first of what differs from the expected answer."""
+    log: str | None
+    """In a smoke run, further details, such as the end of the parser's standard error; it is not compared."""
     reproduce: str
     """Command line that runs this item alone."""
 
@@ -95,6 +98,8 @@ class Certificate(_Part):
     """The value of `--parser`: 'package.module:object', or 'cmd:' and a command line."""
     parser: ParserInfo | None
     """Name, version and claims that the parser reported; null if it could not be started."""
+    lacks: tuple[Feature, ...]
+    """The features that the parser lacks, and is not certified for."""
     scope: Scope
     date: Annotated[str, Field(pattern=r"^\d{4}-\d{2}-\d{2}$")] | None
     """Day of the run, if given. It is stated by the author of the certificate; a second run cannot verify it."""

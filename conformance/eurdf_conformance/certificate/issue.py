@@ -21,7 +21,7 @@ from eurdf_conformance.corpus.release import corpus_hash, suite_version
 from eurdf_conformance.judging.level_result import is_certified, level_results
 from eurdf_conformance.judging.result import Result
 from eurdf_conformance.judging.run import Run
-from eurdf_conformance.judging.verdict import Verdict
+from eurdf_conformance.judging.verdict import NO_FAILURE, Verdict
 from eurdf_conformance.protocol.message import PROTOCOL
 
 # Which number a request has depends on what the process was asked before it, and that on how a run is spread over
@@ -49,6 +49,7 @@ def issue(run: Run) -> Certificate:
         suite=installed_suite(),
         parser_option=run.parser,
         parser=run.started.parser if run.started else None,
+        lacks=run.lacks,
         scope=Scope(
             levels=run.levels,
             versions=run.versions,
@@ -61,7 +62,7 @@ def issue(run: Run) -> Certificate:
         certified=is_certified(run),
         levels=level_results(run),
         clauses=tuple(_clause_results(results)),
-        failures=tuple(_failure(result, run) for result in results if result.verdict != Verdict.PASSED),
+        failures=tuple(_failure(result, run) for result in results if result.verdict not in NO_FAILURE),
         unexpected=tuple(run.known_failures.unexpected(results, run.planned)),
     )
 
@@ -76,7 +77,8 @@ def _clause_results(results: Iterable[Result]) -> Iterable[ClauseResult]:
     verdicts: defaultdict[str, Counter[bool]] = defaultdict(Counter)
     for result in results:
         for clause in result.item.clauses:
-            verdicts[clause][result.verdict == Verdict.PASSED] += 1
+            if result.verdict != Verdict.EXCUSED:
+                verdicts[clause][result.verdict == Verdict.PASSED] += 1
     for clause, counts in sorted(verdicts.items()):
         yield ClauseResult(id=clause, items=counts.total(), passed=counts[True])
 
@@ -91,6 +93,7 @@ def _failure(result: Result, run: Run) -> Failure:
         verdict=result.verdict,
         known=run.known_failures.expects(result),
         difference=_difference(result, run),
+        log=result.log or None if run.smoke else None,
         reproduce=result.reproduce,
     )
 

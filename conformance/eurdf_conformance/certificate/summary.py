@@ -31,7 +31,12 @@ def headline(certificate: Certificate) -> str:
     missing = _by_version(certificate, False)
     if not certified:
         return "Not certified at any level"
-    return f"Certified for {certified}" + (f". Not for {missing}" if missing else "")
+    return f"Certified for {certified}{but_for(certificate)}" + (f". Not for {missing}" if missing else "")
+
+
+def but_for(certificate: Certificate) -> str:
+    """The features that the parser lacks, as what follows "certified"; empty if it lacks none."""
+    return f", but for {', '.join(certificate.lacks)}" if certificate.lacks else ""
 
 
 def level_words(result: LevelResult, smoke: bool = False) -> str:
@@ -45,9 +50,10 @@ def level_words(result: LevelResult, smoke: bool = False) -> str:
     if not result.items:
         return "no tests"
     if result.certified:
-        return f"certified: {result.items} passed"
+        excused = result.counts.get(Verdict.EXCUSED, 0)
+        return f"certified: {result.items - excused} passed" + (f", {excused} excused" if excused else "")
     known = [f"known failures: {result.known_failures}"] if result.known_failures else []
-    return f"not certified: {', '.join([*_counts(result), *known])}"
+    return f"not certified: {', '.join([*_counts(result), *known])}{_apart(result)}"
 
 
 def level_count(result: LevelResult) -> str:
@@ -73,6 +79,21 @@ def _by_version(certificate: Certificate, certified: bool) -> str:
 def levels_text(levels: Sequence[Level], separator: str) -> str:
     """The names of levels, or "all levels"."""
     return "all levels" if len(levels) == len(Level) else separator.join(levels)
+
+
+def _apart(result: LevelResult) -> str:
+    return f" ({tallies(result)})" if tallies(result) else ""
+
+
+def tallies(result: LevelResult) -> str:
+    """How many items with valid files passed, and how many with invalid ones; empty if a level has only valid ones.
+
+    A parser that rejects everything passes all invalid ones.
+    """
+    if not result.invalid.items:
+        return ""
+    kinds = (("valid", result.valid), ("invalid", result.invalid))
+    return " · ".join(f"{name} {each.passed} of {each.items}" for name, each in kinds)
 
 
 def _counts(result: LevelResult) -> list[str]:

@@ -53,6 +53,7 @@ def _smoke_lines(certificate: Certificate) -> Iterator[str]:
             failure.verdict,
             (failure.difference,) if failure.difference else (),
             failure.reproduce,
+            failure.log or "",
         )
         for failure in certificate.failures
     ]

@@ -172,7 +172,7 @@ def _essence(certificate: Certificate) -> dict[str, Any]:
     """The results that a second run must reproduce."""
     value = certificate.model_dump(exclude={"suite", "parser_option", "date", "unexpected"})
     for failure in value["failures"]:
-        del failure["known"], failure["reproduce"], failure["difference"]
+        del failure["known"], failure["reproduce"], failure["difference"], failure["log"]
     for level in value["levels"]:
         del level["known_failures"]
     return value
@@ -186,6 +186,9 @@ def _parser_info(before: Certificate, now: Certificate) -> Iterator[str]:
     for part, was in before.parser.model_dump().items():
         if (given := getattr(now.parser, part)) != was:
             yield f"parser, {part}: '{was}' then, '{given}' now"
+    if before.lacks != now.lacks:
+        then, here = (", ".join(each.lacks) or "nothing" for each in (before, now))
+        yield f"parser, lacks: {then} then, {here} now"
 
 
 def _levels(before: Certificate, now: Certificate) -> Iterator[str]:

@@ -16,6 +16,8 @@ from pydantic import ValidationError
 from eurdf_conformance.corpus.case import CASE, TOPICS, Case, InvalidCase, ValidCase
 from eurdf_conformance.corpus.content import content_bytes, edited
 from eurdf_conformance.corpus.expected import Expected, read_expected
+from eurdf_conformance.corpus.features import features_of_files, features_of_robot
+from eurdf_conformance.feature import Feature
 from eurdf_conformance.level import Level
 from eurdf_conformance.level_spec import Compared, levels_comparing
 from eurdf_conformance.strict_yaml import load_strictly
@@ -156,6 +158,14 @@ class CorpusCase:
     def expected(self) -> Expected:
         """The expectation of a valid case."""
         return read_expected(self.expectation)
+
+    @cached_property
+    def features(self) -> frozenset[Feature]:
+        """The features that its files use; those of an invalid case use them with its error or without it."""
+        stated = features_of_files(self.files.get(self.case.description, b""), self.files.get(self.case.urdf, b""))
+        if isinstance(self.case, ValidCase):
+            return stated | features_of_robot(self.expected.robot)
+        return stated if self.origin is None else stated | self.origin.features
 
     @property
     def levels(self) -> tuple[Level, ...]:

@@ -10,7 +10,7 @@ import sys
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
@@ -19,11 +19,15 @@ from pydantic import Field, TypeAdapter
 from eurdf_conformance.corpus.case import CasePlace, ExpectedWarning, InvalidCase, ValidCase
 from eurdf_conformance.corpus.content import Part
 from eurdf_conformance.corpus.expected import Expected
+from eurdf_conformance.corpus.features import features_of_files
 from eurdf_conformance.corpus.read import CorpusCase, suite_cases
+from eurdf_conformance.feature import Feature
 from eurdf_conformance.fresh.kind import TITLES, FreshKind, accept_clause, fresh_levels
 from eurdf_conformance.level import Level, Version
 from eurdf_conformance.properties.example import Example
 from eurdf_conformance.properties.files import DESCRIPTION, URDF
+from eurdf_conformance.properties.query import query_of
+from eurdf_conformance.properties.used import features_of_query
 
 #: Topic of fresh cases: the first part of their names.
 FRESH = "fresh"
@@ -89,6 +93,13 @@ class FreshCase(CorpusCase):
         """What is expected of a valid case."""
         assert self.drawn.expected is not None
         return self.drawn.expected
+
+    @cached_property
+    def features(self) -> frozenset[Feature]:
+        """The features that its files use, with its error or without it."""
+        version, mechanism = self.drawn.version, self.drawn.example.mechanism
+        stated = features_of_files(self.files[self.case.description], self.files[self.case.urdf])
+        return stated | features_of_query(query_of(mechanism, version))
 
     @property
     def levels(self) -> tuple[Level, ...]:

@@ -8,6 +8,7 @@ from typing import Protocol
 
 from eurdf_conformance.corpus.case import ValidCase
 from eurdf_conformance.corpus.read import CorpusCase
+from eurdf_conformance.feature import Feature
 from eurdf_conformance.judging.handout import Handout
 from eurdf_conformance.protocol.message import Accepted, Quantity
 from eurdf_conformance.runner.outcome import Answered, Outcome
@@ -34,11 +35,13 @@ class Conversation:
     Attributes:
         parser: The parser.
         handout: The files that it receives.
+        lacks: The features that it lacks.
     """
 
     def __init__(self, parser: Parser) -> None:
         self.parser = parser
         self.handout = Handout()
+        self.lacks: frozenset[Feature] = frozenset()
         self._case: CorpusCase | None = None
         self._loaded: Outcome | None = None
 

@@ -11,6 +11,7 @@ from eurdf_conformance.comparison.issues import error_differences, warning_diffe
 from eurdf_conformance.comparison.values import values_differences
 from eurdf_conformance.corpus.case import InvalidCase, ValidCase
 from eurdf_conformance.corpus.read import CorpusCase
+from eurdf_conformance.feature import Feature, ordered
 from eurdf_conformance.judging.conversation import Conversation
 from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level
@@ -72,6 +73,47 @@ def judge(case: CorpusCase, level: Level, conversation: Conversation) -> Judgeme
         level: One of its levels.
         conversation: The conversation with the parser.
     """
+    lacks = conversation.lacks
+    if lacked := lacks and lacks & case.features:
+        found = judge_lacking(conversation.load(case), lacked)
+        if found is not None and (found.verdict == Verdict.EXCUSED or _to_load(case) != "rejected"):
+            return found
+    judgement = _judge_at(case, level, conversation)
+    if judgement.verdict == Verdict.UNSUPPORTED:
+        return replace(judgement, reason=f"{judgement.reason}{_not_excused(conversation.load(case), lacks)}")
+    return judgement
+
+
+def judge_lacking(outcome: Outcome, lacked: frozenset[Feature]) -> Judgement | None:
+    """EU-CNF-004, EU-CNF-008: the judgement on loading files that use features that the parser lacks.
+
+    Args:
+        outcome: The outcome of loading them.
+        lacked: The features that the parser lacks and the files use.
+
+    Returns:
+        None if the outcome is judged as without these features.
+    """
+    match outcome:
+        case Answered(answer=Unsupported(feature=feature)) if feature in lacked:
+            return Judgement(Verdict.EXCUSED, f"the parser lacks {feature}")
+        case Answered(answer=Accepted(issues=issues)):
+            named = ", ".join(ordered(lacked))
+            why = f"the parser names {named} in `lacks`, but accepts a description that uses it"
+            wrong = Difference("/outcome", "unsupported", "accepted", why)
+            return Judgement(Verdict.FAILED, why, (wrong,), tuple(issues))
+    return None
+
+
+def _not_excused(outcome: Outcome, lacks: frozenset[Feature]) -> str:
+    """Why the answer `unsupported` is not excused, if it names a feature that a parser may lack."""
+    match outcome:
+        case Answered(answer=Unsupported(feature=feature)) if feature in list(Feature):
+            return "; the files do not use it" if feature in lacks else "; the parser does not name it in `lacks`"
+    return ""
+
+
+def _judge_at(case: CorpusCase, level: Level, conversation: Conversation) -> Judgement:
     match LEVELS[level].compared:
         case Compared.OUTCOME:
             return _judge_accept(case, conversation)

@@ -17,18 +17,21 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, TypeAdapter,
 
 from eurdf_conformance.json_schema import published, schema_text
 from eurdf_conformance.judging.result import Item, Result
-from eurdf_conformance.judging.verdict import Verdict
+from eurdf_conformance.judging.verdict import NO_FAILURE, Verdict
 from eurdf_conformance.level import Level
 from eurdf_conformance.strict_yaml import load_strictly
 
+#: Verdicts that are not those of a failure.
+_NO_KNOWN = NO_FAILURE | {Verdict.NOT_RUN}
+
 
 def _is_failure(verdict: Any) -> Any:
-    if verdict in (Verdict.PASSED, Verdict.NOT_RUN):
+    if verdict in _NO_KNOWN:
         raise ValueError(f"a known failure cannot be '{verdict}'")
     return verdict
 
 
-_FAILURES = [verdict.value for verdict in Verdict if verdict not in (Verdict.PASSED, Verdict.NOT_RUN)]
+_FAILURES = [verdict.value for verdict in Verdict if verdict not in _NO_KNOWN]
 
 
 class KnownFailure(BaseModel):

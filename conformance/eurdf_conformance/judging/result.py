@@ -31,6 +31,8 @@ class Item:
     clauses: tuple[str, ...]
     #: A sentence that says what is tested.
     title: str
+    #: Whether the files are valid; None for a rule of the protocol.
+    valid: bool | None = None
 
     @property
     def key(self) -> Key:
@@ -49,6 +51,8 @@ class Result:
     differences: tuple[str, ...] = ()
     #: Command line that runs this item alone.
     reproduce: str = ""
+    #: Further details, such as the end of the parser's standard error, which may differ from run to run.
+    log: str = ""
     #: Time of the whole item, s.
     seconds: float = 0.0
     #: Time of it spent waiting for the parser, s.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from eurdf_conformance.feature import Feature, ordered
 from eurdf_conformance.judging.known_failures import NONE_KNOWN, KnownFailures
 from eurdf_conformance.judging.result import Item, Result
 from eurdf_conformance.judging.verdict import Verdict
@@ -41,6 +42,11 @@ class Run:
     def claims(self, version: Version, level: Level) -> bool:
         """Whether the parser claims the level for the version."""
         return self.started is not None and level in self.started.claims.get(version, ())
+
+    @property
+    def lacks(self) -> tuple[Feature, ...]:
+        """The features that the parser lacks, in the order of the specification."""
+        return () if self.started is None else ordered(frozenset(self.started.lacks))
 
     def asks(self, version: Version, level: Level) -> bool:
         """Whether the user asked for the level of the version."""

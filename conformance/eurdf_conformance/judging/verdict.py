@@ -6,12 +6,14 @@ from eurdf_conformance.text_enum import TextEnum
 
 
 class Verdict(TextEnum):
-    """The verdict on an item. Only `PASSED` is a pass."""
+    """The verdict on an item. Only `PASSED` is a pass; `EXCUSED` is neither a pass nor a failure."""
 
     PASSED = "passed"
+    #: The parser answers that it lacks a feature, which it names in `lacks` and the files use.
+    EXCUSED = "excused"
     #: The answer is not the expected one.
     FAILED = "failed"
-    #: The parser says that it lacks a feature.
+    #: The parser answers that it lacks a feature, which it may not lack or which the files do not use.
     UNSUPPORTED = "unsupported"
     #: The parser chose not to answer.
     SKIPPED = "skipped"
@@ -31,6 +33,9 @@ class Verdict(TextEnum):
     #: The item was never asked: the run was cut short, or limited to other items.
     NOT_RUN = "not run"
 
+
+#: Verdicts that are no failure.
+NO_FAILURE = frozenset({Verdict.PASSED, Verdict.EXCUSED})
 
 #: Verdicts that point to an error in the adapter rather than in the parser.
 OF_THE_ADAPTER = frozenset(

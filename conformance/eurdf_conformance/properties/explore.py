@@ -14,9 +14,10 @@ from hypothesis.configuration import set_hypothesis_home_dir
 from hypothesis.errors import Flaky, FlakyFailure, Unsatisfiable
 from hypothesis.strategies import SearchStrategy
 
+from eurdf_conformance.feature import Feature
 from eurdf_conformance.judging.conversation import Parser
 from eurdf_conformance.judging.judge import PASSED, Judgement
-from eurdf_conformance.judging.verdict import Verdict
+from eurdf_conformance.judging.verdict import NO_FAILURE, Verdict
 from eurdf_conformance.level import Level, Version
 from eurdf_conformance.properties.conditioning import is_well_conditioned
 from eurdf_conformance.properties.culprit import culprit
@@ -50,6 +51,7 @@ class Trial:
         folder: Empty, to write files into.
         seed: What further mechanisms are drawn from.
         fresh: Examples that were drawn for this run.
+        lacks: The features that the parser lacks.
     """
 
     parser: Parser
@@ -58,18 +60,21 @@ class Trial:
     folder: Path
     seed: int = 0
     fresh: Sequence[Example] = ()
+    lacks: frozenset[Feature] = frozenset()
 
 
 def try_property(prop: Property, level: Level, trial: Trial) -> Judgement:
     """Whether a property holds of a parser; if the user explores, also whether it fails on a smaller mechanism."""
-    harness = Harness(trial.parser, trial.folder)
+    harness = Harness(trial.parser, trial.folder, trial.lacks)
     judgement = try_frozen(prop, level, trial.version, harness)
-    if judgement.verdict == Verdict.PASSED:
-        judgement = try_fresh(prop, level, trial, harness)
+    if judgement.verdict in NO_FAILURE and (fresh := try_fresh(prop, level, trial, harness)).verdict not in NO_FAILURE:
+        judgement = fresh
     if not trial.explore:
         return judgement
     further = explore(prop, level, trial, harness)
-    if judgement.verdict == Verdict.PASSED:
+    if judgement.verdict == Verdict.EXCUSED and further.verdict == Verdict.PASSED:
+        return judgement
+    if judgement.verdict in NO_FAILURE:
         return further
     return with_log(judgement, further.log)
 
@@ -80,7 +85,7 @@ def try_fresh(prop: Property, level: Level, trial: Trial, harness: Harness) -> J
         if len(example.mechanism.closures) < prop.closures or not prop.applies(example.mechanism):
             continue
         judgement = try_example(prop, level, trial.version, harness, example)
-        if judgement.verdict != Verdict.PASSED:
+        if judgement.verdict not in NO_FAILURE:
             small, _ = _reduced(prop, level, trial.version, harness, example, judgement)
             # Once more, so that the files are those of its queries.
             judgement = try_example(prop, level, trial.version, harness, small)
@@ -152,7 +157,7 @@ def search(
         if best and example != best[-1][0] and time.monotonic() - since > SHRINKING:
             return
         judgement = try_example(prop, level, version, harness, example)
-        if judgement.verdict == Verdict.PASSED or (best and judgement.verdict != best[0][1].verdict):
+        if judgement.verdict in NO_FAILURE or (best and judgement.verdict != best[0][1].verdict):
             return
         since = since or time.monotonic()
         best.append((example, judgement))

@@ -7,11 +7,15 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from eurdf_conformance.comparison.difference import Difference
+from eurdf_conformance.feature import Feature
 from eurdf_conformance.judging.conversation import Parser
+from eurdf_conformance.judging.judge import Judgement, judge_lacking
+from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.properties.files import Files
 from eurdf_conformance.properties.query import Query
 from eurdf_conformance.properties.shape import WrongShape, shaped
 from eurdf_conformance.properties.truth import truth
+from eurdf_conformance.properties.used import features_of_query
 from eurdf_conformance.protocol.message import Accepted, CanonicalRobot, Evaluated, Quantity, Values
 from eurdf_conformance.runner.outcome import Answered, Outcome
 
@@ -30,6 +34,18 @@ class NotAnswered(Exception):  # noqa: N818 - it says what happened
         super().__init__(str(outcome))
 
 
+class Lacked(Exception):  # noqa: N818 - it says what happened
+    """The parser answers that it lacks a feature, which it names in `lacks` and the files use.
+
+    Attributes:
+        judgement: The judgement on that.
+    """
+
+    def __init__(self, judgement: Judgement) -> None:
+        self.judgement = judgement
+        super().__init__(judgement.reason)
+
+
 class Harness:
     """Sends queries about one mechanism after the other to a parser.
 
@@ -38,10 +54,11 @@ class Harness:
         asked: What it was asked about since `begin`, and where the files of that are.
     """
 
-    def __init__(self, parser: Parser, folder: Path) -> None:
+    def __init__(self, parser: Parser, folder: Path, lacks: frozenset[Feature] = frozenset()) -> None:
         self.folder = folder
         self.queries: list[tuple[Query, tuple[Path, Path]]] = []
         self._parser = parser
+        self._lacks = lacks
         self._files: tuple[Files, tuple[Path, Path]] | None = None
         self._accepted: Accepted | None = None
 
@@ -53,6 +70,7 @@ class Harness:
         """Ask it to read two files, unless it read them last.
 
         Raises:
+            Lacked: It lacks a feature that they use.
             NotAnswered: It does not accept them.
         """
         if self._files is None or self._files[0] != query.files:
@@ -60,6 +78,9 @@ class Harness:
         self.queries.append((query, self._files[1]))
         if self._accepted is None:
             outcome = self._parser.load(*self._files[1])
+            lacked = self._lacks and self._lacks & features_of_query(query)
+            if lacked and (found := judge_lacking(outcome, lacked)) and found.verdict == Verdict.EXCUSED:
+                raise Lacked(found)
             if not (isinstance(outcome, Answered) and isinstance(outcome.answer, Accepted)):
                 raise NotAnswered("accepted", outcome)
             self._accepted = outcome.answer

@@ -10,19 +10,25 @@ from eurdf_conformance.judging.judge import PASSED, Judgement, judge_outcome
 from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.level import Level, Version
 from eurdf_conformance.properties.example import Example
-from eurdf_conformance.properties.harness import Harness, NotAnswered
+from eurdf_conformance.properties.harness import Harness, Lacked, NotAnswered
 from eurdf_conformance.properties.property import Property
 from eurdf_conformance.properties.shape import WrongShape
 
 
 def try_frozen(prop: Property, level: Level, version: Version, harness: Harness) -> Judgement:
-    """Whether a property holds on the examples of every certification, up to the first on which it does not."""
-    for number, example in enumerate(prop.frozen(version), 1):
+    """Whether a property holds on the examples of every certification, up to the first on which it does not.
+
+    It is excused if each example needs a feature that the parser lacks.
+    """
+    excused, excused_count = PASSED, 0
+    for number, example in enumerate(examples := prop.frozen(version), 1):
         judgement = try_example(prop, level, version, harness, example)
-        if judgement.verdict != Verdict.PASSED:
+        if judgement.verdict == Verdict.EXCUSED:
+            excused, excused_count = judgement, excused_count + 1
+        elif judgement.verdict != Verdict.PASSED:
             found = replace(judgement, reason=f"example {number}: {judgement.reason}")
             return with_log(found, *queried(harness, judgement))
-    return PASSED
+    return excused if 0 < len(examples) == excused_count else PASSED
 
 
 def queried(harness: Harness, judgement: Judgement) -> Iterable[str]:
@@ -41,6 +47,8 @@ def try_example(prop: Property, level: Level, version: Version, harness: Harness
     harness.begin()
     try:
         found = prop.check(harness, example, version, level)
+    except Lacked as lacking:
+        return lacking.judgement
     except NotAnswered as failure:
         return judge_outcome(failure.outcome, failure.expected)
     except WrongShape as wrong:

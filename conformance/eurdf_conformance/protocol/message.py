@@ -10,6 +10,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, SerializerFunctionWrapHandler, TypeAdapter, model_serializer
 
+from eurdf_conformance.feature import Feature
 from eurdf_conformance.level import Level, Version
 
 PROTOCOL: Literal["1.0"] = "1.0"
@@ -115,6 +116,11 @@ class Started(Answer):
     protocol: Literal["1.0"]
     parser: ParserInfo
     claims: dict[Version, list[Level]] = Field(description="The claimed levels, for each version of the format.")
+    lacks: list[Feature] = Field(default=[], description="Features that the parser lacks; left out if none.")
+
+    @model_serializer(mode="wrap")
+    def _without_empty(self, handler: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        return {name: value for name, value in handler(self).items() if value or name != "lacks"}
 
 
 class Issue(Value):
@@ -316,7 +322,7 @@ class Unsupported(Answer):
     """An answer to any request except `stop`: the parser lacks a feature."""
 
     outcome: Literal["unsupported"] = "unsupported"
-    feature: str
+    feature: str = Field(description="A feature that the parser names in `lacks`; any other is not excused.")
     reason: str = ""
 
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from typing import Any
 
+from eurdf_conformance.feature import Feature
 from eurdf_conformance.level import VERSIONS, Level
 
 _LEVELS = ", ".join(Level)
@@ -21,7 +22,8 @@ def parser_error(parser: Any) -> str:
             return f"its {name} is {described(said)}, expected a string"
     if not parser.name:
         return "its name is empty"
-    error = _claims_error(parser.claims) or _method_error(parser, "load", ("description", "urdf"))
+    error = _claims_error(parser.claims) or _lacks_error(getattr(parser, "lacks", ()))
+    error = error or _method_error(parser, "load", ("description", "urdf"))
     if not error and hasattr(parser, "evaluate"):
         error = _method_error(parser, "evaluate", ("configurations", "frames", "quantities"))
     return error
@@ -51,6 +53,16 @@ def _claims_error(claims: Any) -> str:
         for level in levels:
             if level not in list(Level):
                 return f"it claims level {level!r}; levels are {_LEVELS}"
+    return ""
+
+
+def _lacks_error(lacks: Any) -> str:
+    """What is wrong with the missing features."""
+    if isinstance(lacks, str) or not isinstance(lacks, Sequence | Set):
+        return f"what it lacks is {described(lacks)}, expected a list of features, as in ['planar']"
+    for feature in lacks:
+        if feature not in list(Feature):
+            return f"it lacks {feature!r}; features are {', '.join(Feature)}"
     return ""
 
 

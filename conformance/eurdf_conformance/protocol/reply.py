@@ -57,7 +57,7 @@ def unsupported(feature: str, reason: str = "") -> Unsupported:
     """The parser lacks a feature that the description uses.
 
     Args:
-        feature: The feature, in a word or two.
+        feature: The feature, a `Feature` that the parser lists in `lacks`.
         reason: An explanation for people.
 
     Raises:

@@ -15,6 +15,7 @@ from typing import IO, Any, Protocol, runtime_checkable
 
 from pydantic import ValidationError
 
+from eurdf_conformance.feature import Feature
 from eurdf_conformance.level import Level, Version
 from eurdf_conformance.protocol import message
 from eurdf_conformance.protocol.error_text import error_text
@@ -50,7 +51,10 @@ Configuration = Mapping[str, Sequence[float]]
 
 
 class PythonParser(Protocol):
-    """A parser in Python. It is also an `Evaluator` if it claims kinematics or dynamics."""
+    """A parser in Python. It is also an `Evaluator` if it claims kinematics or dynamics.
+
+    If it lacks features of the format, an attribute `lacks` lists them.
+    """
 
     @property
     def name(self) -> str:
@@ -182,7 +186,8 @@ def _answer(parser: PythonParser, request: AnyRequest) -> AnyAnswer | _NoAnswer:
             case Start():
                 who = ParserInfo(name=parser.name, version=parser.version, language=parser.language)
                 claims = {version: [Level(level) for level in levels] for version, levels in parser.claims.items()}
-                return Started(id=request.id, protocol=PROTOCOL, parser=who, claims=claims)
+                lacks = [Feature(feature) for feature in getattr(parser, "lacks", ())]
+                return Started(id=request.id, protocol=PROTOCOL, parser=who, claims=claims, lacks=lacks)
             case Load():
                 reply = parser.load(Path(request.description), Path(request.urdf))
                 return _with_id(reply, request, "use accepted, rejected, unsupported or skipped")

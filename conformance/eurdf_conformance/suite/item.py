@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from itertools import product
 
 from eurdf_conformance.bounds import BoundCase, bound_cases
-from eurdf_conformance.corpus.case import InvalidCase
+from eurdf_conformance.corpus.case import Case, InvalidCase, ValidCase
 from eurdf_conformance.corpus.clause import read_clauses
 from eurdf_conformance.corpus.protocol_rule import RULES, ProtocolRule
 from eurdf_conformance.corpus.read import CorpusCase
 from eurdf_conformance.fresh.case import fresh_name
-from eurdf_conformance.fresh.kind import COUNTS, TITLES, accept_clause, fresh_levels
+from eurdf_conformance.fresh.kind import COUNTS, TITLES, FreshKind, accept_clause, fresh_levels
 from eurdf_conformance.judging.result import Item
 from eurdf_conformance.level import VERSIONS, Level, Version
 from eurdf_conformance.level_spec import LEVELS
@@ -50,7 +50,12 @@ def case_items(cases: Iterable[CorpusCase]) -> Iterator[CaseItem]:
         for level in case.levels:
             said = case.case
             clauses = clauses_at(level, said.version, said.clauses, _general(case, level))
-            yield CaseItem(Item(case.name, level, said.version, clauses, said.title), case)
+            yield CaseItem(Item(case.name, level, said.version, clauses, said.title, is_valid(said)), case)
+
+
+def is_valid(case: Case) -> bool:
+    """Whether the files of a case are valid."""
+    return isinstance(case, ValidCase)
 
 
 def clauses_at(level: Level, version: Version, cited: Iterable[str], general: str) -> tuple[str, ...]:
@@ -70,6 +75,10 @@ def _general(case: CorpusCase, level: Level) -> str:
     return LEVELS[level].clause
 
 
+#: The kinds of fresh cases whose files are valid.
+_VALID = (FreshKind.VALID, FreshKind.WARNED)
+
+
 @dataclass(frozen=True)
 class FreshItem:
     """A fresh case at one of its levels; it is drawn when it is asked for."""
@@ -82,7 +91,9 @@ def fresh_items() -> Iterator[FreshItem]:
     for version, (kind, count) in product(VERSIONS, COUNTS.items()):
         for number, level in product(range(1, count + 1), fresh_levels(kind)):
             general = accept_clause(kind) if level is Level.ACCEPT else LEVELS[level].clause
-            yield FreshItem(Item(fresh_name(version, kind, number), level, version, (general,), TITLES[kind]))
+            yield FreshItem(
+                Item(fresh_name(version, kind, number), level, version, (general,), TITLES[kind], kind in _VALID)
+            )
 
 
 @dataclass(frozen=True)
@@ -98,7 +109,7 @@ def bound_items() -> Iterator[BoundItem]:
     for case in bound_cases():
         said = case.case
         clauses = clauses_at(Level.ACCEPT, said.version, said.clauses, _general(case, Level.ACCEPT))
-        yield BoundItem(Item(case.name, Level.ACCEPT, said.version, clauses, said.title), case)
+        yield BoundItem(Item(case.name, Level.ACCEPT, said.version, clauses, said.title, is_valid(said)), case)
 
 
 def planned_items(cases: Iterable[CorpusCase]) -> Iterator[Item]:
@@ -123,4 +134,6 @@ def property_items() -> Iterator[PropertyItem]:
     for each in PROPERTIES:
         for level, version in product(each.levels, each.versions):
             clauses = clauses_at(level, version, each.clauses, LEVELS[level].clause)
-            yield PropertyItem(Item(f"properties/{each.name}-{version}", level, version, clauses, each.title), each)
+            yield PropertyItem(
+                Item(f"properties/{each.name}-{version}", level, version, clauses, each.title, valid=True), each
+            )

@@ -77,6 +77,8 @@ class ItemRunner:
             folder: The folder of files for the parser other than those of a case.
         """
         started = self._started()
+        if started is not None:
+            self.conversation.lacks = frozenset(started.lacks)
         claimed = tuple(Level) if started is None else started.claims.get(item.version, ())
         if started is not None and item.level not in claimed:
             name = visible(started.parser.name, kept="")
@@ -96,7 +98,7 @@ class ItemRunner:
         for given in filter(None, (self.conversation.handout.folder, folder)):
             # Its name differs from run to run.
             texts = tuple(re.sub(re.escape(str(given)) + "(/[0-9a-f]{16})?", item.id, text) for text in texts)
-        result = Result(item, judgement.verdict, texts, reproduce, seconds, in_parser)
+        result = Result(item, judgement.verdict, texts, reproduce, judgement.log, seconds, in_parser)
         self._keep(RESULT, result.to_json())
         self.keep_left()
         self._tell(result, judgement, case)
@@ -113,6 +115,8 @@ class ItemRunner:
             pytest.xfail(f"listed as '{known}' in the known failures")
         if known is not None and result.verdict == Verdict.PASSED:
             pytest.fail(f"listed as '{known}' but passes; remove it from the known failures", pytrace=False)
+        if result.verdict == Verdict.EXCUSED:
+            pytest.skip(f"excused: {judgement.reason}")
         if result.verdict != Verdict.PASSED:
             text = failure_text(result.item, judgement, result.reproduce, case)
             pytest.fail(text + (f"\n  listed as '{known}' in the known failures" if known else ""), pytrace=False)

@@ -10,8 +10,9 @@ from eurdf_conformance.comparison.canonical import canonical_differences
 from eurdf_conformance.comparison.difference import Difference
 from eurdf_conformance.corpus.protocol_rule import GOES_ON, QUIET, START, STOP, ProtocolRule
 from eurdf_conformance.corpus.read import CorpusCase
+from eurdf_conformance.feature import Feature
 from eurdf_conformance.judging.handout import Handout
-from eurdf_conformance.judging.judge import PASSED, Judgement, judge_outcome
+from eurdf_conformance.judging.judge import PASSED, Judgement, judge_lacking, judge_outcome
 from eurdf_conformance.judging.verdict import Verdict
 from eurdf_conformance.protocol.message import Accepted, Rejected, Started
 from eurdf_conformance.runner.outcome import Answered, Outcome
@@ -28,6 +29,7 @@ class Setup:
         valid: A case that the parser should accept.
         invalid: A case that it should reject.
         handout: The files that it receives.
+        lacks: The features that the parser lacks.
     """
 
     session: Session
@@ -35,6 +37,7 @@ class Setup:
     valid: CorpusCase
     invalid: CorpusCase
     handout: Handout = field(default_factory=Handout)
+    lacks: frozenset[Feature] = frozenset()
 
     def load(self, case: CorpusCase) -> Outcome:
         """The outcome of loading a case."""
@@ -71,6 +74,9 @@ def _quiet(setup: Setup) -> Judgement:
 def _goes_on(setup: Setup) -> Judgement:
     """EU-PRO-004, EU-PRO-005."""
     first, rejected, again = [setup.load(case) for case in (setup.valid, setup.invalid, setup.valid)]
+    lacked = setup.lacks and setup.lacks & setup.valid.features
+    if lacked and (lacking := judge_lacking(first, lacked)):
+        return lacking
     match rejected:
         case Answered(answer=Rejected()):
             pass

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from eurdf_conformance.corpus.read import CorpusCase
 from eurdf_conformance.judging.result import Result
-from eurdf_conformance.judging.verdict import OF_THE_ADAPTER
+from eurdf_conformance.judging.verdict import OF_THE_ADAPTER, Verdict
 from eurdf_conformance.level import Level, Version
 from eurdf_conformance.level_spec import Compared, levels_comparing
 from eurdf_conformance.suite.item import CaseItem
@@ -38,6 +38,9 @@ SMOKE: dict[Version, Three] = {
     ),
 }
 
+
+#: Lines shown of a log.
+_LOG = 30
 
 _LEVELS: Mapping[str, tuple[Level, ...]] = {
     name: levels
@@ -77,7 +80,8 @@ def smoke_lines(wrong: Sequence[Result], asked: bool) -> Iterator[str]:
     parser = [result for result in wrong if result.verdict not in OF_THE_ADAPTER]
     yield from _part("adapter", "it follows the protocol", adapter)
     if adapter and not parser:
-        yield "your parser was not tested: fix the adapter first"
+        further = "" if all(result.verdict == Verdict.NOT_STARTED for result in adapter) else " any further"
+        yield f"your parser was not tested{further}: fix the adapter first"
     else:
         yield from _part("parser", "its answers are correct", parser)
 
@@ -87,7 +91,22 @@ def _part(name: str, right: str, wrong: list[Result]) -> Iterator[str]:
         yield f"your {name} works so far: {right}"
         return
     yield f"your {name} fails:"
+    groups: dict[str, list[Result]] = {}
     for result in wrong:
         why = "".join(result.differences[:1]).partition("\n")[0]
-        yield f"  {result.item.id}/{result.item.level}: {result.verdict}{f': {why}' if why else ''}"
-        yield f"    {result.reproduce}"
+        groups.setdefault(f"{result.verdict}{f': {why}' if why else ''}", []).append(result)
+    for how, alike in groups.items():
+        # A case before the rules of the protocol, whose failure is mostly that of a case.
+        first = min(alike, key=lambda result: result.item.id.startswith("protocol/"))
+        more = len(alike) - 1
+        yield f"  {first.item.id}/{first.item.level}: {how}"
+        # The first line of a log names the verdict again.
+        lines = (line.strip() for line in first.log.splitlines() if not line.startswith(f"{first.verdict}:"))
+        yield from (f"    {line}" for line in list(lines)[-_LOG:])
+        if more:
+            yield f"    and so {'does' if more == 1 else 'do'} {more} more: {_names(alike, first)}"
+        yield f"    {first.reproduce}"
+
+
+def _names(alike: Sequence[Result], first: Result) -> str:
+    return ", ".join(f"{each.item.id}/{each.item.level}" for each in alike if each is not first)

@@ -6,9 +6,11 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from eurdf_conformance.certificate.summary import tallies
+from eurdf_conformance.feature import Feature
 from eurdf_conformance.judging.level_result import LevelResult, level_results
 from eurdf_conformance.judging.run import Run
-from eurdf_conformance.judging.verdict import Verdict
+from eurdf_conformance.judging.verdict import NO_FAILURE, Verdict
 from eurdf_conformance.suite.smoke import smoke_lines
 from eurdf_conformance.visible import visible
 
@@ -35,11 +37,11 @@ def _lines(run: Run, unexpected: Sequence[str], certificate: Path | None) -> Ite
         parser = run.started.parser
         yield visible(f"{parser.name} {parser.version} ({parser.language})", kept="")
     if run.smoke:
-        wrong = [result for result in run.results if result.verdict != Verdict.PASSED]
+        wrong = [result for result in run.results if result.verdict not in NO_FAILURE]
         yield from smoke_lines(wrong, asked=bool(run.results))
     else:
         asked = [result for result in level_results(run) if result.asked]
-        yield from (_level(result) for result in asked if result.claimed and _was_run(result))
+        yield from (_level(result, run.lacks) for result in asked if result.claimed and _was_run(result))
         yield from _others("not run", [result for result in asked if result.claimed and not _was_run(result)])
         if run.started is not None:
             yield from _others("not claimed", [result for result in asked if not result.claimed])
@@ -63,13 +65,15 @@ def _others(what: str, level_results: Sequence[LevelResult]) -> Iterator[str]:
         yield f"{what}: " + ", ".join(f"{each.level} of version {each.version}" for each in level_results)
 
 
-def _level(result: LevelResult) -> str:
+def _level(result: LevelResult, lacks: Sequence[Feature]) -> str:
     passed = result.counts.get(Verdict.PASSED, 0)
     others = [f"{count} {verdict}" for verdict, count in result.counts.items() if verdict != Verdict.PASSED and count]
     text = f"version {result.version}, {result.level}: {passed} of {sum(result.counts.values())} passed"
+    text += f", {apart}" if (apart := tallies(result)) else ""
     known = f"; known failures: {result.known_failures}" if result.known_failures else ""
     detail = f" ({', '.join(others)}{known})" if others else ""
-    return text + detail + (": certified" if result.certified else ": not certified")
+    without = f", but for {', '.join(lacks)}" if lacks else ""
+    return text + detail + (f": certified{without}" if result.certified else ": not certified")
 
 
 def _times(run: Run) -> str:

@@ -34,13 +34,14 @@ def test_property(
 def try_item(item: PropertyItem, item_runner: ItemRunner, folder: Path) -> Judgement:
     """Try the property on the frozen and the fresh examples, and on further random mechanisms if requested."""
     level, version, options = item.item.level, item.item.version, item_runner.options
+    lacks = item_runner.conversation.lacks
     fresh = fresh_examples(options.seed, version)
     if not options.explore:
-        trial = Trial(item_runner.session, version, 0, folder, options.seed, fresh)
+        trial = Trial(item_runner.session, version, 0, folder, options.seed, fresh, lacks)
         return try_property(item.property, level, trial)
     # Shrinking repeats requests that crash the parser, so it uses a session of its own.
     with item_runner.new_session() as session:
-        trial = Trial(session, version, options.explore, folder, options.seed, fresh)
+        trial = Trial(session, version, options.explore, folder, options.seed, fresh, lacks)
         judgement = try_property(item.property, level, trial)
     item_runner.session.seconds_in_parser += session.seconds_in_parser
     item_runner.session.left += session.left

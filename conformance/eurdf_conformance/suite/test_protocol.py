@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from eurdf_conformance.corpus.read import all_cases
+from eurdf_conformance.judging.judge import Judgement
 from eurdf_conformance.suite.item import ProtocolItem, protocol_items
 from eurdf_conformance.suite.item_runner import ItemRunner
 from eurdf_conformance.suite.options import options_of
@@ -25,5 +26,12 @@ def test_protocol(protocol_item: ProtocolItem, item_runner: ItemRunner) -> None:
     """The parser follows the rule."""
     item, three = protocol_item.item, SMOKE[protocol_item.item.version]
     valid, invalid = (smoke_case(all_cases(), case_id) for case_id in (three.valid, three.invalid))
-    setup = Setup(item_runner.session, item_runner.new_session, valid, invalid, item_runner.conversation.handout)
-    item_runner.run(item, lambda: check(protocol_item.rule, setup))
+    conversation = item_runner.conversation
+
+    def ask() -> Judgement:
+        setup = Setup(
+            item_runner.session, item_runner.new_session, valid, invalid, conversation.handout, conversation.lacks
+        )
+        return check(protocol_item.rule, setup)
+
+    item_runner.run(item, ask)

@@ -229,7 +229,7 @@ def missing_features_are_errors(right: Answer, description: Path, urdf: Path) ->
     return rejected("no such joint") if isinstance(right, Accepted) and lacking else right
 
 
-@answers("EU-CNF-005", verdict=Verdict.UNSUPPORTED)
+@answers("EU-CNF-007", "EU-CNF-008", verdict=Verdict.UNSUPPORTED)
 def claims_what_it_does_not_support(right: Answer, description: Path, urdf: Path) -> Any:
     """A parser that claims a level lacks universal and helical joints, and says so."""
     lacking = "UJOINT_" in description.read_text("utf-8-sig") or _types(right) & {"universal", "helical"}
