@@ -91,7 +91,7 @@ def draw_hip(robot: Drawing) -> None:
     robot.body(
         "left_hip_z",
         revolute("left_motor_hip_z", "torso", HIP_YAW, UP, degrees=(-40.0, 40.0), motor=X8_90),
-        Box((-0.05, 0.125, -0.0572), (0.14, 0.07, 0.012), mass=0.15),
+        Box((-0.05, 0.125, -0.0557), (0.14, 0.07, 0.015), mass=0.15),
         Box((-0.118, 0.125, -0.12), (0.012, 0.07, 0.13), mass=0.15),
         Cylinder((-0.12, 0.125, -0.1898), (-0.06, 0.125, -0.1898), radius=0.05, mass=2.341),
         material="leg",
@@ -99,7 +99,7 @@ def draw_hip(robot: Drawing) -> None:
     robot.body(
         "left_hip_x",
         revolute("left_motor_hip_x", "left_hip_z", HIP_ROLL, BACK, degrees=(-30.0, 30.0), motor=X8_90),
-        Box((-0.02, 0.16, -0.1898), (0.06, 0.06, 0.07), mass=0.35),
+        Box((-0.025, 0.16, -0.1898), (0.07, 0.06, 0.07), mass=0.35),
         Cylinder((0.0295, 0.16, -0.1898), (0.0295, 0.212, -0.1898), radius=0.06, mass=1.901),
         material="motor",
     )
