@@ -15,6 +15,7 @@ import pytest
 from hypothesis import settings
 
 from support.shared_runs import SharedRun, certify_once
+from support.warm import SESSION
 
 #: Files whose tests are run by one worker, since they share something that takes long to make.
 TOGETHER = ("test_site.py", "test_editor.py", "test_explore.py", "test_examples.py")
@@ -45,7 +46,12 @@ def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("filterwarnings", "error")
     # The matrices are small, and there is a worker for each processor: more threads would only slow each other.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    if os.environ.get("PYTHONDONTWRITEBYTECODE") and not hasattr(config, "workerinput"):
+    if hasattr(config, "workerinput"):
+        return
+    session = tempfile.TemporaryDirectory(prefix="eurdf-tests-")
+    config.add_cleanup(session.cleanup)
+    os.environ[SESSION] = session.name
+    if os.environ.get("PYTHONDONTWRITEBYTECODE"):
         # Tests start the package in some hundred processes, and each would compile it: keep what is compiled elsewhere.
         compiled = tempfile.TemporaryDirectory(prefix="eurdf-tests-")
         config.add_cleanup(compiled.cleanup)

@@ -23,6 +23,9 @@ TIMEOUT = 300
 #: The seed whose fresh cases that process has drawn: a run of the suite with it need not draw them.
 SEED = 0
 
+#: Names a folder that all workers share: fresh cases are drawn once a session.
+SESSION = "EURDF_TESTS_SESSION"
+
 
 def run_module(
     module: str, arguments: Sequence[str], *, cwd: Path | None = None, environment: Mapping[str, str] | None = None
@@ -71,10 +74,9 @@ def _serve() -> None:
     for name in ("pytest", "hypothesis", "numpy", "eurdf.commands.main", "eurdf_conformance.suite.plugin"):
         importlib.import_module(name)
     from eurdf_conformance.corpus.read import all_cases
-    from eurdf_conformance.fresh.case import fresh_cases
 
     all_cases()
-    fresh_cases(SEED)
+    _draw()
     gc.freeze()
     answers = os.fdopen(os.dup(1), "w")
     for line in sys.stdin:
@@ -85,6 +87,23 @@ def _serve() -> None:
         _, status = os.waitpid(child, 0)
         answers.write(f"{os.waitstatus_to_exitcode(status)}\n")
         answers.flush()
+
+
+def _draw() -> None:
+    """Draw the fresh cases, unless another worker has."""
+    import fcntl
+
+    from eurdf_conformance.fresh.case import drawn_text, fresh_cases, keep_drawn
+
+    session = Path(os.environ[SESSION])
+    drawn = session / "drawn.json"
+    with (session / "lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if drawn.exists():
+            keep_drawn(SEED, drawn.read_text(encoding="utf-8"))
+        else:
+            drawn.write_text(drawn_text(SEED), encoding="utf-8")
+    fresh_cases(SEED)
 
 
 def _run(argv: list[str], cwd: str, environment: dict[str, str], streams: list[str]) -> int:
