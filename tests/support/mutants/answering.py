@@ -229,9 +229,16 @@ def missing_features_are_errors(right: Answer, description: Path, urdf: Path) ->
     return rejected("no such joint") if isinstance(right, Accepted) and lacking else right
 
 
-@answers("EU-CNF-007", "EU-CNF-008", verdict=Verdict.UNSUPPORTED)
+@answers("EU-CNF-007", verdict=Verdict.UNSUPPORTED)
 def claims_what_it_does_not_support(right: Answer, description: Path, urdf: Path) -> Any:
     """A parser that claims a level lacks universal and helical joints, and says so."""
+    lacking = "UJOINT_" in description.read_text("utf-8-sig") or _types(right) & {"universal", "helical"}
+    return unsupported("universal") if isinstance(right, Accepted) and lacking else right
+
+
+@answers("EU-CNF-008", verdict=Verdict.UNSUPPORTED)
+def names_no_feature_of_the_list(right: Answer, description: Path, urdf: Path) -> Any:
+    """A parser that lacks universal and helical joints answers with a name of its own."""
     lacking = "UJOINT_" in description.read_text("utf-8-sig") or _types(right) & {"universal", "helical"}
     return unsupported("joints") if isinstance(right, Accepted) and lacking else right
 
