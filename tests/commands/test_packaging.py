@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from pathlib import Path
 from typing import Any
@@ -50,6 +51,10 @@ def test_addresses_and_versions_agree() -> None:
     recipe = yaml.safe_load((ROOT / "recipe" / "recipe.yaml").read_text(encoding="utf-8"))
     assert recipe["context"]["version"] == READER["version"]
     assert recipe["about"]["repository"] == urls["Source"]
+    corpus = ROOT / "conformance" / "eurdf_conformance" / "corpus" / "package"
+    npm = json.loads((corpus / "package.json").read_text(encoding="utf-8"))
+    assert (npm["homepage"], npm["repository"]) == (SUITE["urls"]["Documentation"], urls["Source"])
+    assert project(corpus)["urls"] == {"Documentation": npm["homepage"], "Source": npm["repository"]}
 
 
 def test_recipe_for_conda_has_the_dependencies() -> None:
