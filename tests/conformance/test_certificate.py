@@ -302,6 +302,24 @@ def test_a_comparison_shows_only_clauses_with_different_results(failed: Certific
     assert "different versions of the suite" not in page
 
 
+def test_a_comparison_tells_in_words_what_each_parser_gets_wrong(failed: Certificate) -> None:
+    page = text_of(comparison_page([failed, issue(run(started=started({"2": [Level.ACCEPT]}, name="your_parser")))]))
+    assert "Failures by topic topic my_parser 0.3 your_parser 0.3 closures 1 0" in page
+    assert "my_parser 0.3 (1) closures Two closures may not have one name. (failed) 2 accept" in page
+    assert "your_parser 0.3: nothing at the levels that it claims." in page
+
+
+def test_a_comparison_distinguishes_parsers_with_the_same_name(failed: Certificate) -> None:
+    assert failed.parser is not None
+    other = failed.model_copy(update={"parser": failed.parser.model_copy(update={"language": "Rust"})})
+    heads = re.findall(r"<th[^>]*>(my_parser[^<]*)</th>", comparison_page([failed, other, other]))
+    assert list(dict.fromkeys(heads)) == [
+        "my_parser 0.3 (C++)",
+        "my_parser 0.3 (Rust), no. 1",
+        "my_parser 0.3 (Rust), no. 2",
+    ]
+
+
 def test_a_comparison_reports_different_versions_of_the_suite(failed: Certificate) -> None:
     older = failed.suite.model_copy(update={"corpus": f"sha256:{'0' * 64}"})
     assert "different versions of the suite" in comparison_page([failed, failed.model_copy(update={"suite": older})])

@@ -1,11 +1,11 @@
-"""Several certificates on one page: levels by parser, then the clauses on which the parsers differ."""
+"""Several certificates on one page: levels and topics by parser, what each gets wrong, and clauses that differ."""
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 
-from eurdf_conformance.certificate.certificate import Certificate, ClauseResult
+from eurdf_conformance.certificate.certificate import Certificate, ClauseResult, Failure
 from eurdf_conformance.certificate.page import Element, element, marked_up, page, table
 from eurdf_conformance.certificate.report import level_cell
 from eurdf_conformance.certificate.summary import level_count, parser_title
@@ -16,14 +16,16 @@ from eurdf_conformance.level import VERSIONS, Level
 def comparison_page(certificates: Sequence[Certificate]) -> str:
     """The page as the text of its file; parsers are in the order given."""
     title = "Parsers of Extended URDF compared"
-    parts = _parsers, _levels, _clauses
+    parts = _parsers, _levels, _topics, _wrong, _clauses
     content = [content for part in parts for content in part(certificates)]
     return page(title, [element("h1", title), *content], "comparison")
 
 
 def _parsers(certificates: Sequence[Certificate]) -> Iterator[Element]:
     yield element(
-        "p", "Items passed of all items of the suite. ✓ certified, ✗ claimed but not certified.", class_="soft"
+        "p",
+        "Each parser was run for this page. Items passed of all items. ✓ certified, ✗ claimed but not certified.",
+        class_="soft",
     )
     yield element("h2", "Parsers")
     dated = any(each.date for each in certificates)
@@ -32,11 +34,12 @@ def _parsers(certificates: Sequence[Certificate]) -> Iterator[Element]:
             element("th", title, scope="row"),
             element("td", each.parser.language if each.parser else "could not be started"),
             element("td", each.suite.version),
+            element("td", f"{each.scope.seed}"),
             *([element("td", each.date or "unknown")] if dated else []),
         )
         for title, each in zip(_titles(certificates), certificates, strict=True)
     )
-    yield table("Parsers", ("parser", "language", "suite", *(["date"] if dated else [])), rows)
+    yield table("Parsers", ("parser", "language", "suite", "seed", *(["date"] if dated else [])), rows)
     if len({(each.suite.clauses, each.suite.corpus) for each in certificates}) > 1:
         said = "These certificates come from different versions of the suite, which may test different things."
         yield element("p", said, class_="headline bad")
@@ -70,6 +73,45 @@ def _levels(certificates: Sequence[Certificate]) -> Iterator[Element]:
             for level in Level
         )
         yield table(title, ("level", *_titles(certificates)), rows)
+
+
+def _topics(certificates: Sequence[Certificate]) -> Iterator[Element]:
+    counts = [Counter(_topic(failure) for failure in each.failures) for each in certificates]
+    topics = sorted(set().union(*counts))
+    if not topics:
+        return
+    title = "Failures by topic"
+    yield element("h2", title)
+    rows = (
+        (
+            element("th", topic, scope="row"),
+            *(element("td", f"{of_one[topic]}", class_="number") for of_one in counts),
+        )
+        for topic in topics
+    )
+    yield table(title, ("topic", *_titles(certificates)), rows)
+
+
+def _wrong(certificates: Sequence[Certificate]) -> Iterator[Element]:
+    """For each parser the titles of the cases that it fails, once each, by topic."""
+    yield element("h2", "What each parser gets wrong")
+    for title, certificate in zip(_titles(certificates), certificates, strict=True):
+        levels: defaultdict[tuple[str, str], dict[str, None]] = defaultdict(dict)
+        for failure in certificate.failures:
+            levels[_topic(failure), f"{failure.title} ({failure.verdict})"][f"{failure.version} {failure.level}"] = None
+        if not levels:
+            yield element("p", f"{title}: nothing at the levels that it claims.")
+            continue
+        items = (
+            element("li", element("code", topic), f" {said} ", element("span", ", ".join(at), class_="soft"))
+            for (topic, said), at in sorted(levels.items())
+        )
+        summary = f"{title} ({len(levels)})"
+        yield element("details", element("summary", summary), element("ul", *items))
+
+
+def _topic(failure: Failure) -> str:
+    return failure.id.partition("/")[0]
 
 
 def _clauses(certificates: Sequence[Certificate]) -> Iterator[Element]:
