@@ -16,6 +16,7 @@ from eurdf_conformance.adapters.reference import PARSER
 from eurdf_conformance.certificate.issue import issue
 from eurdf_conformance.command.replay import replay_differences
 from eurdf_conformance.corpus.read import all_cases
+from eurdf_conformance.fresh import draw
 from eurdf_conformance.fresh.case import FRESH, FreshCase, drawn_hash, fresh_cases
 from eurdf_conformance.fresh.fault import Fault, with_fault
 from eurdf_conformance.fresh.faults import FAULTS
@@ -62,6 +63,19 @@ def test_every_version_has_fresh_cases_of_every_kind(cases: dict[str, FreshCase]
         assert {subjects[each.error] for each in drawn if each.error} == wanted
         errors = [each.error for each in drawn if each.kind is FreshKind.INVALID]
         assert len(set(errors)) == len(errors)  # different errors before the same one again
+
+
+def test_mechanism_without_inertia_gets_no_error_of_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    examples = list(frozen_examples("1")[: sum(COUNTS.values())])
+    first = COUNTS[FreshKind.VALID]  # of those with a warning
+    mechanism = examples[first].mechanism
+    massless = mechanism.replace(links=tuple(link.model_copy(update={"inertia": None}) for link in mechanism.links))
+    examples[first] = examples[first].model_copy(update={"mechanism": massless})
+    monkeypatch.setattr(draw, "VERSIONS", ("1",))
+    monkeypatch.setattr(draw, "drawn_examples", lambda *_: examples)
+    drawn = list(draw.draw(0))
+    assert Counter(each.kind for each in drawn) == COUNTS
+    assert [each.kind for each in drawn if each.example.mechanism == massless] == [FreshKind.INVALID]
 
 
 def test_items_are_those_of_the_cases_whatever_is_drawn(cases: dict[str, FreshCase]) -> None:

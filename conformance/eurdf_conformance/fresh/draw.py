@@ -38,15 +38,16 @@ _KEPT = 3
 def draw(seed: int) -> Iterator[Drawn]:
     """The fresh cases of a seed, in the order of their versions and kinds."""
     for version in VERSIONS:
-        faults = [fault for fault in FAULTS if version in fault.versions]
-        left = iter(drawn_examples(version, seed))
+        left = drawn_examples(version, seed)
         for kind, count in COUNTS.items():
-            examples = list(islice(left, count))
+            faults = [fault for fault in FAULTS if version in fault.versions and fault.makes is kind]
             if kind is FreshKind.VALID:
+                examples = left[:count]
                 yield from (_valid(kind, version, example) for example in examples)
             else:
-                of_kind = [fault for fault in faults if fault.makes is kind]
-                yield from _faulty(kind, version, examples, of_kind, Chance(seed))
+                examples = list(islice((each for each in left if _takes_one(each, version, faults)), count))
+                yield from _faulty(kind, version, examples, faults, Chance(seed))
+            left = [each for each in left if not any(each is example for example in examples)]
 
 
 def drawn_examples(version: Version, seed: int) -> list[Example]:
@@ -95,6 +96,12 @@ def _valid(
     )
 
 
+def _takes_one(example: Example, version: Version, faults: Iterable[Fault]) -> bool:
+    """Whether one of the errors can be put into a mechanism: without an inertia there is none of an inertia."""
+    files = _texts(query_of(example.mechanism, version))
+    return any(with_fault(fault, files[fault.file], Chance(0)) for fault in faults)
+
+
 def _faulty(
     kind: FreshKind, version: Version, examples: Iterable[Example], faults: Iterable[Fault], chance: Chance
 ) -> Iterator[Drawn]:
@@ -102,12 +109,11 @@ def _faulty(
     left, subjects = chance.shuffled(faults), Counter[Subject]()
     for example in examples:
         files = _texts(query_of(example.mechanism, version))
-        for fault in sorted(left, key=lambda each: subjects[each.subject]):
-            faulty = with_fault(fault, files[fault.file], chance)
-            if faulty is not None:
-                break
-        else:
-            raise AssertionError("any robot can have a second root, and has an inertia")
+        fault, faulty = next(
+            (fault, faulty)
+            for fault in sorted(left, key=lambda each: subjects[each.subject])
+            if (faulty := with_fault(fault, files[fault.file], chance)) is not None
+        )
         left = [*(other for other in left if other is not fault), fault]  # it is the last to be used again
         subjects[fault.subject] += 1
         texts = {**files, fault.file: faulty.text}
