@@ -53,17 +53,8 @@ def is_built(candidate: Candidate) -> list[str] | None:
         # Build in a copy, so that the checked files are not overwritten.
         copy = Path(place, candidate.folder.name)
         shutil.copytree(candidate.folder, copy, ignore=shutil.ignore_patterns(*_WRITTEN, "*.png", "__pycache__"))
-        search = os.pathsep.join(filter(None, (str(_CHECKOUT), os.environ.get("PYTHONPATH", ""))))
         try:
-            subprocess.run(
-                [sys.executable, "build.py"],
-                cwd=copy,
-                env={**os.environ, "PYTHONPATH": search, "PYTHONDONTWRITEBYTECODE": "1"},
-                check=True,
-                capture_output=True,
-                text=True,
-                timeout=_LONGEST_BUILD,
-            )
+            _build(copy)
         except subprocess.CalledProcessError as failed:
             last = failed.stderr.strip().rpartition("\n")[2]
             return [f"build.py fails: {last or f'exit code {failed.returncode}'}"]
@@ -74,6 +65,20 @@ def is_built(candidate: Candidate) -> list[str] | None:
             for name in _WRITTEN
             if not _is_written(candidate.folder / name, copy / name)
         ]
+
+
+def _build(folder: Path) -> None:
+    """Run the build.py of a folder in a process of its own."""
+    search = os.pathsep.join(filter(None, (str(_CHECKOUT), os.environ.get("PYTHONPATH", ""))))
+    subprocess.run(
+        [sys.executable, "build.py"],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": search, "PYTHONDONTWRITEBYTECODE": "1"},
+        check=True,
+        capture_output=True,
+        text=True,
+        timeout=_LONGEST_BUILD,
+    )
 
 
 def _is_written(file: Path, copy: Path) -> bool:

@@ -182,14 +182,15 @@ def test_freely_turning_actuator_is_not_called_locked(tmp_path: Path, kind: str,
 FILES = {
     name: yaml.safe_load((ROBOTS / name / "robot.yaml").read_text(encoding="utf-8")) for name in collection_names()
 }
-#: Of the robots on a fixed root; those that walk are large, and have the same linkages.
-ACTUATORS = [(name, actuated(each)) for name, file in FILES.items() if "root" not in file for each in file["actuators"]]
+#: The robots on a fixed root; those that walk are large, and have the same linkages.
+STANDING = [name for name, file in FILES.items() if "root" not in file and file["actuators"]]
 
 
-@pytest.mark.parametrize(("name", "joint"), ACTUATORS)
-def test_missing_actuator_leaves_reported_motion(advice, name: str, joint: str) -> None:
-    (found,) = advice(name, without(joint))
-    alone = sum(other == name for other, _ in ACTUATORS) == 1
+@pytest.mark.parametrize("name", STANDING)
+def test_missing_actuator_leaves_reported_motion(advice, name: str) -> None:
+    actuators = FILES[name]["actuators"]
+    (found,) = advice(name, without(actuated(actuators[-1])))
+    alone = len(actuators) == 1
     assert found.code == ("x-no-actuator" if alone else "x-uncontrolled-motion")
     assert found.pointer == ("/closures" if alone else "/actuators")
 

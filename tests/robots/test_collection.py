@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from collections import Counter
@@ -18,6 +19,7 @@ import eurdf
 from robots.builder.version_1 import can_be_version_1
 from robots.quality.candidate import Candidate
 from robots.quality.verdict import judge
+from support.warm import run_module
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = sorted(file.parent for file in ROOT.glob("robots/*/robot.yaml"))
@@ -90,12 +92,18 @@ def test_all_requested_robots_exist():
     assert {folder.name for folder in FOLDERS} == set(DIMENSIONS) == set(eurdf.collection_names())
 
 
+def built_in_warm_process(folder):
+    run_module("build", [], cwd=folder, environment=os.environ | {"PYTHONPATH": str(ROOT)}).check_returncode()
+
+
 @pytest.mark.parametrize(
     "folder",
     [pytest.param(folder, marks=[pytest.mark.slow] * (folder.name in TWO_LEGGED)) for folder in FOLDERS],
     ids=named,
 )
-def test_robot_passes_all_quality_rules(folder):
+def test_robot_passes_all_quality_rules(folder, monkeypatch):
+    # The command starts Python for each robot (test_quality.py), which takes longer than most builds.
+    monkeypatch.setattr("robots.quality.files._build", built_in_warm_process)
     candidate = Candidate.find(folder)
     errors = judge(candidate).errors
     assert {rule: found for rule, found in errors.items() if found} == {}

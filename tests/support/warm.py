@@ -73,6 +73,9 @@ def _serve() -> None:
 
     for name in ("pytest", "hypothesis", "numpy", "eurdf.commands.main", "eurdf_conformance.suite.plugin"):
         importlib.import_module(name)
+    sys.path.append(str(Path(__file__).parents[2]))
+    importlib.import_module("robots.builder")
+    sys.path.pop()
     from eurdf_conformance.corpus.read import all_cases
 
     all_cases()

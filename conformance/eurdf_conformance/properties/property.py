@@ -21,7 +21,7 @@ LARGEST = 11
 SHARED: tuple[Version, ...] = ("1", "2")
 
 #: Number of frozen examples tried, among those that the property applies to.
-MOST = 24
+MOST = 16
 
 
 def anything(mechanism: Mechanism) -> bool:

@@ -446,8 +446,8 @@ def always_rejected_with_chatter(request):
 
 
 def starts_as(name):
-    """The answer to `start` of one that claims the level accept for both versions."""
-    who, claims = {"name": name, "version": "1", "language": "Python"}, {"1": ["accept"], "2": ["accept"]}
+    """The answer to `start` of one that claims the level accept for versions 1 and 2.1."""
+    who, claims = {"name": name, "version": "1", "language": "Python"}, {"1": ["accept"], "2.1": ["accept"]}
     return lambda request: started(request) | {"parser": who, "claims": claims}
 
 
