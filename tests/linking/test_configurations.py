@@ -18,7 +18,7 @@ from eurdf.pinocchio.configuration import configuration_vector
 from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand
 from support.by_hand import rotation
-from support.described import at, codes, link_poses, load
+from support.described import at, codes, link_poses, load, written
 from support.star import STAR
 
 HALF = math.sqrt(0.5)
@@ -196,3 +196,10 @@ def test_wrong_shape_is_refused(shape: tuple[int, ...]) -> None:
     robot = eurdf.load(WORKBENCH, geometry=False)
     with pytest.raises(ValueError, match="q has the shape"):
         robot.coordinates(np.zeros(shape))
+
+
+def test_message_shows_digits_that_are_beyond_the_bound(tmp_path: Path) -> None:
+    text = "joints: {d: spherical}\nconfigurations: {ready: {a: 2.000000002, d: [0, 0.6, 0, 0.8000014]}}\n"
+    limit, length = eurdf.check(written(tmp_path, STAR, text)).diagnostics
+    assert "2.000000002 of joint 'a'" in limit.message
+    assert "has length 1.00000112, not 1" in length.message

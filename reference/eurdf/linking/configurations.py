@@ -114,7 +114,7 @@ def _coordinates(
             unit = [round(value / norm, 6) for value in values[start : start + 4]] if norm > 1e-9 else [0, 0, 0, 1]
             reporter.report(
                 "configuration-quaternion",
-                f"the quaternion of joint '{joint.name}' in configuration '{entry.name}' has length {norm:.6g}, not 1",
+                f"the quaternion of joint '{joint.name}' in configuration '{entry.name}' has length {norm:.9g}, not 1",
                 pointer,
                 f"write a unit quaternion x, y, z, w: {unit}",
             )
@@ -126,8 +126,8 @@ def _coordinates(
         if not within_limits(value, lower, upper):
             reporter.report(
                 "configuration-limits",
-                f"{name} {value:g} of joint '{joint.name}' in configuration '{entry.name}' is outside its limits "
-                f"{lower:g} to {upper:g}",
+                f"{name} {value:.12g} of joint '{joint.name}' in configuration '{entry.name}' is outside its limits "
+                f"{lower:.12g} to {upper:.12g}",
                 pointer,
             )
             return None
