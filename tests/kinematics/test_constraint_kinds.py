@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -18,6 +19,7 @@ from hypothesis import strategies as st
 import eurdf
 from eurdf.commands.robot_info import robot_info
 from eurdf.kinematics.constraints import KINDS
+from eurdf.kinematics.constraints.vector import plane_across
 from eurdf.kinematics.residual import acceleration_drift
 from eurdf.mechanism.constraint import (
     Closure,
@@ -242,6 +244,14 @@ def test_hinge_residual_is_the_rotation_vector_between_the_axes(angle: float) ->
     np.testing.assert_allclose(r, [0.0, 0.0, 0.0, angle, 0.0], atol=1e-12)
     np.testing.assert_allclose(K[:, 0], [0.0, 0.0, 0.0, 1.0, 0.0], atol=1e-6)
     np.testing.assert_allclose(acceleration_drift(linkage, q, np.ones(1)), 0.0, atol=1e-6)
+
+
+@pytest.mark.parametrize(("off", "first"), [(0.9e-9, 1.0), (1.1e-9, -1.0), (5e-9, -1.0), (1e-3, -1.0)])
+def test_plane_across_an_axis_near_minus_z_is_orthonormal(off: float, first: float) -> None:
+    a = np.array([math.sin(off), 0.0, -math.cos(off)])
+    across = plane_across(a)
+    np.testing.assert_allclose(np.column_stack((across, a)).T @ np.column_stack((across, a)), np.eye(3), atol=1e-8)
+    np.testing.assert_allclose(across, [[first, 0.0], [0.0, -first], [0.0, 0.0]], atol=2e-3)
 
 
 def test_opposite_hinge_axes_are_half_a_turn_apart() -> None:

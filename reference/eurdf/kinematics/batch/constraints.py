@@ -14,6 +14,7 @@ import numpy as np
 
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.batch import rigid
+from eurdf.kinematics.constraints.vector import plane_across
 from eurdf.mechanism.constraint import Closure, DistanceClosure, FrameClosure, HingeClosure, PointClosure
 
 AnyClosure = TypeVar("AnyClosure", bound=Closure)
@@ -94,7 +95,7 @@ class Hinges(ClosureKind[HingeClosure]):
         axes /= np.abs(axes).max(axis=2, keepdims=True)  # of any length, also of one whose square is out of range
         axes /= np.linalg.norm(axes, axis=2, keepdims=True)
         self._a, self._b = axes[:, 0].T[:, :, None], axes[:, 1].T[:, :, None]
-        self._across = np.stack([_plane_across(a) for a in axes[:, 0]], axis=-1)[..., None]
+        self._across = np.stack([plane_across(a) for a in axes[:, 0]], axis=-1)[..., None]
 
     def rows(self, R: Matrix, p: Matrix) -> Matrix:
         """See `ClosureKind`."""
@@ -168,11 +169,3 @@ def _velocity_of_origin(p: Matrix) -> Matrix:
     rows[:, :3] = np.eye(3).reshape(3, 3, *(1,) * (p.ndim - 1))
     rows[:, 3:] = -rigid.skew(p)
     return rows
-
-
-def _plane_across(a: Vector) -> Matrix:
-    """E (3, 2): what the shortest rotation that takes z to a makes of x and y; of -z, the half turn about x."""
-    if a[2] < -1.0 + 1e-9 and np.hypot(a[0], a[1]) < 1e-9:
-        return np.array([[1.0, 0.0], [0.0, -1.0], [0.0, 0.0]])
-    turn = rigid.skew(np.array([-a[1], a[0], 0.0]))
-    return np.asarray((np.eye(3) + turn + turn @ turn / (1.0 + a[2]))[:, :2])

@@ -11,7 +11,7 @@ import numpy as np
 from eurdf.kinematics.array import Indices, Matrix, Vector
 from eurdf.kinematics.constraints.kind import Closures
 from eurdf.kinematics.constraints.relative_motion import RelativeMotions
-from eurdf.kinematics.constraints.vector import cross, dot, origins, skew, velocity_of_origin
+from eurdf.kinematics.constraints.vector import cross, dot, origins, plane_across, skew, velocity_of_origin
 from eurdf.kinematics.tree_kinematics import TreeKinematics
 from eurdf.mechanism.constraint import HingeClosure
 
@@ -42,7 +42,7 @@ class HingeClosures(Closures[HingeClosure]):
         axes /= np.abs(axes).max(axis=2, keepdims=True)  # of any length, also of one whose square is out of range
         axes /= np.linalg.norm(axes, axis=2, keepdims=True)
         self._a, self._b = axes[:, 0], axes[:, 1]
-        self._across = np.array([_plane_across(a) for a in self._a])
+        self._across = np.array([plane_across(a) for a in self._a])
 
     def rows(self, placements: Sequence[Any]) -> Matrix:
         """P and Eᵀ s."""
@@ -97,14 +97,6 @@ def _rotations(placements: Sequence[Any]) -> Matrix:
 def _along(across: Matrix, s: Matrix) -> Matrix:
     """Eᵀ s (k, 2)."""
     return np.asarray(np.einsum("kij,ki->kj", across, s))
-
-
-def _plane_across(a: Vector) -> Matrix:
-    """E (3, 2): what the shortest rotation that takes z to a makes of x and y; of -z, the half turn about x."""
-    if a[2] < -1.0 + 1e-9 and math.hypot(a[0], a[1]) < 1e-9:
-        return np.array([[1.0, 0.0], [0.0, -1.0], [0.0, 0.0]])
-    (turn,) = skew(np.array([[-a[1], a[0], 0.0]]))
-    return np.asarray((np.eye(3) + turn + turn @ turn / (1.0 + a[2]))[:, :2])
 
 
 def _profile(theta: Vector) -> tuple[Vector, Vector, Vector]:

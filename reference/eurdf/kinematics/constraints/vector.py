@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -31,6 +32,19 @@ def skew(a: Matrix) -> Matrix:
     matrices[:, 0, 2], matrices[:, 2, 0] = y, -y
     matrices[:, 1, 0], matrices[:, 0, 1] = z, -z
     return matrices
+
+
+def plane_across(a: Vector) -> Matrix:
+    """E (3, 2): what the shortest rotation that takes z to the unit vector a makes of x and y (EU-CLO-014).
+
+    Of an axis within 1e-9 of -z, it is the half turn about x.
+    """
+    x, y, z = a
+    if z < -1.0 + 1e-9 and math.hypot(x, y) < 1e-9:
+        return np.array([[1.0, 0.0], [0.0, -1.0], [0.0, 0.0]])
+    above = 1.0 + z if z > 0.0 else (x * x + y * y) / (1.0 - z)  # 1 + z, which rounding makes 0 near -z
+    (turn,) = skew(np.array([[-y, x, 0.0]]))
+    return np.asarray((np.eye(3) + turn + turn @ turn / above)[:, :2])
 
 
 def origins(placements: Sequence[Any]) -> Matrix:

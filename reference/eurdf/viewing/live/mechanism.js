@@ -128,9 +128,11 @@
   function planeAcross(a) {
     if (a[2] < -1 + 1e-9 && Math.hypot(a[0], a[1]) < 1e-9) return [[1, 0, 0], [0, -1, 0]];
     const turn = [-a[1], a[0], 0];
+    // 1 + z, which rounding makes 0 near -z, of a unit vector.
+    const above = a[2] > 0 ? 1 + a[2] : (a[0] ** 2 + a[1] ** 2) / (1 - a[2]);
     return [[1, 0, 0], [0, 1, 0]].map((each) => {
       const once = cross(turn, each);
-      return add(add(each, once), scaled(1 / (1 + a[2]), cross(turn, once)));
+      return add(add(each, once), scaled(1 / above, cross(turn, once)));
     });
   }
 
