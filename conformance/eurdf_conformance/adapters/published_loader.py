@@ -5,8 +5,15 @@ them is part of this package. Install both, or set the environment variable `EUR
 their checkouts, separated as in `PATH`. The toolbox imports CasADi, Pinocchio's bindings of CasADi and qpsolvers, which
 loading does not use: empty modules replace those that are not installed.
 
-`Lenient` answers with what the loader returns. `Strict` rejects the robot if the loader has dropped a closure, a motor,
-a changed joint or a type that the description names.
+`Strict` gives the loader the files as they are, and rejects the robot if the loader has dropped a closure, a motor, a
+changed joint or a type that the description names. `Lenient` helps it: keys that the description leaves out, without
+which it fails, are empty lists, the name of the robot, which it drops, is that of the URDF, and all that it drops
+otherwise is lost in silence.
+
+The loader is of the time of Pinocchio 3. With Pinocchio 4.1 it crashes at random while it locks joints; with 3.4 it
+does not. So give it an environment of its own, with this package, SciPy, ``pin==3.4.0``, ``cmeel-urdfdom==4.0.1`` and
+``cmeel-tinyxml2==10.0.0``, and start it there: ``--parser="cmd:PYTHON -m eurdf_conformance.protocol.serve
+eurdf_conformance.adapters.published_loader:Strict"``.
 """
 
 from __future__ import annotations
@@ -22,9 +29,11 @@ from functools import cache
 from pathlib import Path
 from types import ModuleType
 from typing import Any, ClassVar
+from unittest import mock
 
 import pinocchio as pin
 import yaml
+from lxml import etree
 
 from eurdf_conformance.level import Level
 from eurdf_conformance.protocol.message import Accepted, Rejected
@@ -40,10 +49,10 @@ class LoaderMissing(Exception):  # noqa: N818 - it says what is wrong
     """The published loader cannot be imported."""
 
 
-class Lenient:
-    """The loader as it answers."""
+class Strict:
+    """The loader; what it drops without a message is an error."""
 
-    name, version, language = "published loader (lenient)", "1.2.0", "Python"
+    name, version, language = "published loader (strict)", "1.2.0", "Python"
     claims: ClassVar[Mapping[str, Sequence[Level]]] = {"1": (Level.ACCEPT, Level.STRUCTURE)}
 
     def __init__(self) -> None:
@@ -51,27 +60,23 @@ class Lenient:
 
     def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
         """Read a robot."""
-        folder = description.parent
-        name = os.path.relpath(urdf, folder)
         try:
             with contextlib.redirect_stdout(io.StringIO()), warnings.catch_warnings():
                 warnings.simplefilter("ignore")
-                loaded = self._loader.completeRobotLoader(str(folder), name, description.name)
+                loaded = self.loaded(description, urdf)
         except Exception as error:  # it has no type of its own for wrong files
             return rejected(f"{type(error).__name__}: {error}")
         if dropped := list(self.dropped(description, *loaded[:3])):
             return rejected(*dropped)
-        return accepted(_canonical(folder, *loaded))
+        return accepted(self.named(urdf, _canonical(description.parent, *loaded)))
 
-    def dropped(self, description: Path, model: Any, closures: Any, actuation: Any) -> Iterator[str]:
-        """What the loader has dropped without a message."""
-        yield from ()
-
-
-class Strict(Lenient):
-    """The loader; what it drops without a message is an error."""
-
-    name = "published loader (strict)"
+    def loaded(self, description: Path, urdf: Path) -> Sequence[Any]:
+        """What the loader returns: the model, its closures, its motors, and its visual and collision shapes."""
+        folder = description.parent
+        found: Sequence[Any] = self._loader.completeRobotLoader(
+            str(folder), os.path.relpath(urdf, folder), description.name
+        )
+        return found
 
     def dropped(self, description: Path, model: Any, closures: Any, actuation: Any) -> Iterator[str]:
         """Parts that the description names and the result does not have."""
@@ -92,6 +97,38 @@ class Strict(Lenient):
                 yield f"there is no motor {name!r}"
         for name in {name for pair in data.get("closed_loop", ()) for name in pair} - frames:
             yield f"there is no frame {name!r}"
+
+    def named(self, urdf: Path, robot: dict[str, Any]) -> dict[str, Any]:
+        """The canonical description with the name that the loader gives the robot."""
+        return robot
+
+
+class Lenient(Strict):
+    """The loader, helped where it needs or drops what a file may leave out or say."""
+
+    name = "published loader (lenient)"
+
+    def loaded(self, description: Path, urdf: Path) -> Sequence[Any]:
+        """What the loader returns where no key is left out."""
+        contents = self._loader.getYAMLcontents
+
+        def filled(*place: str) -> Any:
+            found = contents(*place)
+            if isinstance(found, dict):
+                found = {"closed_loop": [], "name_mot": [], **found}
+                found.setdefault("type", ["6d"] * len(found["closed_loop"] or ()))
+            return found
+
+        with mock.patch.object(self._loader, "getYAMLcontents", filled):
+            return super().loaded(description, urdf)
+
+    def dropped(self, description: Path, model: Any, closures: Any, actuation: Any) -> Iterator[str]:
+        """Nothing that matters here."""
+        yield from ()
+
+    def named(self, urdf: Path, robot: dict[str, Any]) -> dict[str, Any]:
+        """The canonical description with the name in the URDF."""
+        return robot | {"name": etree.parse(urdf, etree.XMLParser(recover=True)).getroot().get("name")}
 
 
 @cache
@@ -172,12 +209,17 @@ def _joint(model: Any, index: int, link_of: Mapping[int, str]) -> dict[str, Any]
         "child": link_of[index],
         "lower": _limits(model.lowerPositionLimit[q]) if bounded else unbounded,
         "upper": _limits(model.upperPositionLimit[q]) if bounded else unbounded,
-        "velocity": _limits(model.upperVelocityLimit[v]),
-        "effort": _limits(model.upperEffortLimit[v]),
+        "velocity": _limits(_one_of(model, "velocityLimit", "upperVelocityLimit")[v]),
+        "effort": _limits(_one_of(model, "effortLimit", "upperEffortLimit")[v]),
         "damping": model.damping[v].tolist(),
-        "friction": model.upperDryFrictionLimit[v].tolist(),
+        "friction": _one_of(model, "friction", "upperDryFrictionLimit")[v].tolist(),
         "armature": model.armature[v].tolist(),
     }
+
+
+def _one_of(model: Any, before: str, now: str) -> Any:
+    """What has another name since Pinocchio 4."""
+    return getattr(model, now if hasattr(model, now) else before)
 
 
 def _limits(values: Any) -> list[float | None]:
@@ -188,10 +230,12 @@ def _shapes(folder: Path, model: Any, geometry: Any, use: str, link_of: Mapping[
     """Shapes in the frame of their link, or, if the model moves them by another joint, in the frame of that joint."""
     for shape in geometry.geometryObjects:
         link = shape.name.rpartition("_")[0]  # Pinocchio names shapes by link and number
-        frame = model.frames[model.getFrameId(link)]
-        fMg = frame.placement.actInv(shape.placement)
-        if frame.parentJoint != shape.parentJoint:
+        # A root link is lost if a joint is locked.
+        frame = model.frames[model.getFrameId(link)] if model.existFrame(link) else None
+        if frame is None or frame.parentJoint != shape.parentJoint:
             link, fMg = link_of[shape.parentJoint], shape.placement
+        else:
+            fMg = frame.placement.actInv(shape.placement)
         type_, size = _size(shape)
         yield {
             "link": link,
