@@ -12,6 +12,7 @@ from typing import Any
 import jsonschema
 import pytest
 from lxml import etree, html
+from markdown_it import MarkdownIt
 
 from eurdf_conformance.certificate import certificate as certificate_module
 from eurdf_conformance.certificate import fingerprint
@@ -22,7 +23,7 @@ from eurdf_conformance.certificate.certificate import (
     certificate_schema,
     read_certificate,
 )
-from eurdf_conformance.certificate.comparison_page import comparison_page
+from eurdf_conformance.certificate.comparison_page import comparison_markdown, comparison_page
 from eurdf_conformance.certificate.fingerprint import clauses_hash
 from eurdf_conformance.certificate.issue import issue
 from eurdf_conformance.certificate.report import report
@@ -305,8 +306,18 @@ def test_a_comparison_shows_only_clauses_with_different_results(failed: Certific
 def test_a_comparison_tells_in_words_what_each_parser_gets_wrong(failed: Certificate) -> None:
     page = text_of(comparison_page([failed, issue(run(started=started({"2": [Level.ACCEPT]}, name="your_parser")))]))
     assert "Failures by topic topic my_parser 0.3 your_parser 0.3 closures 1 0" in page
-    assert "my_parser 0.3 (1) closures Two closures may not have one name. (failed) 2 accept" in page
-    assert "your_parser 0.3: nothing at the levels that it claims." in page
+    told = "Reads or computes something else: 1 closures Two closures may not have one name. accept of version 2"
+    assert f"my_parser 0.3 {told} your_parser 0.3 Nothing at the levels that it claims." in page
+
+
+def test_a_comparison_in_markdown_says_the_same(failed: Certificate) -> None:
+    other = issue(run(started=started({"2": [Level.ACCEPT]}, name="your_parser |*`_<b>$")))
+    page = comparison_page([failed, other])
+    made = MarkdownIt().enable("table").render(comparison_markdown([failed, other]))
+    captions = re.compile("<caption>.*?</caption>")
+    assert text_of(made).split() == text_of(captions.sub("", page)).split()
+    for tag in ("table", "tr", "h3", "details", "li", "code", "b"):
+        assert made.count(f"<{tag}>") == len(re.findall(f"<{tag}[ >]", page)), tag
 
 
 def test_a_comparison_distinguishes_parsers_with_the_same_name(failed: Certificate) -> None:

@@ -33,7 +33,6 @@ from unittest import mock
 
 import pinocchio as pin
 import yaml
-from lxml import etree
 
 from eurdf_conformance.level import Level
 from eurdf_conformance.protocol.message import Accepted, Rejected
@@ -128,7 +127,7 @@ class Lenient(Strict):
 
     def named(self, urdf: Path, robot: dict[str, Any]) -> dict[str, Any]:
         """The canonical description with the name in the URDF."""
-        return robot | {"name": etree.parse(urdf, etree.XMLParser(recover=True)).getroot().get("name")}
+        return robot | {"name": pin.buildModelFromUrdf(str(urdf)).name}
 
 
 @cache

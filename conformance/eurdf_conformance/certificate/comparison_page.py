@@ -2,31 +2,64 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 
 from eurdf_conformance.certificate.certificate import Certificate, ClauseResult, Failure
+from eurdf_conformance.certificate.markdown import markdown
 from eurdf_conformance.certificate.page import Element, element, marked_up, page, table
 from eurdf_conformance.certificate.report import level_cell
 from eurdf_conformance.certificate.summary import level_count, parser_title
 from eurdf_conformance.corpus.clause import read_clauses
+from eurdf_conformance.judging.verdict import NO_FAILURE, Verdict
 from eurdf_conformance.level import VERSIONS, Level
+
+_TITLE = "Parsers of Extended URDF compared"
+
+#: What a parser is asked at each level.
+_ASKED = {
+    Level.ACCEPT: "accepts valid files, and rejects those with an error",
+    Level.STRUCTURE: "returns what it has read: links, joints, limits, closures, actuators",
+    Level.KINEMATICS: "computes poses, and the residuals and Jacobians of the closures",
+    Level.DYNAMICS: "computes the mass matrix, the mass and the centre of mass",
+    Level.DIAGNOSE: "names each error and its line",
+}
+
+#: Kinds of failures, and how each is recognised by the verdict and by what is wrong.
+_KINDS = (
+    ("Rejects valid files", Verdict.FAILED, "rejects a valid description"),
+    ("Accepts files with an error", Verdict.FAILED, "accepts an invalid description"),
+    ("Reads or computes something else", Verdict.FAILED, ""),
+    *((f"Ends as {verdict}", verdict, "") for verdict in Verdict if verdict not in {*NO_FAILURE, Verdict.FAILED}),
+)
+
+#: A difference: where it is, what it is of, and the two values. Names in it differ from case to case.
+_DIFFERENCE = re.compile(r"^/\S*: (?P<of>.*?): expected ", re.MULTILINE)
+_NAME = re.compile(r"'[^']*'")
 
 
 def comparison_page(certificates: Sequence[Certificate]) -> str:
-    """The page as the text of its file; parsers are in the order given."""
-    title = "Parsers of Extended URDF compared"
+    """The page as the text of its HTML file; parsers are in the order given."""
+    return page(_TITLE, _comparison(certificates), "comparison")
+
+
+def comparison_markdown(certificates: Sequence[Certificate]) -> str:
+    """The page as the text of a Markdown file."""
+    return markdown(_comparison(certificates))
+
+
+def _comparison(certificates: Sequence[Certificate]) -> list[Element]:
     parts = _parsers, _levels, _topics, _wrong, _clauses
-    content = [content for part in parts for content in part(certificates)]
-    return page(title, [element("h1", title), *content], "comparison")
+    return [element("h1", _TITLE), *(content for part in parts for content in part(certificates))]
 
 
 def _parsers(certificates: Sequence[Certificate]) -> Iterator[Element]:
-    yield element(
-        "p",
-        "Each parser was run for this page. Items passed of all items. ✓ certified, ✗ claimed but not certified.",
-        class_="soft",
-    )
+    cases = " and ".join(dict.fromkeys(each.suite.corpus[:19] for each in certificates))
+    run = f"Each parser was run for this page, on the cases of corpus {cases}. What is asked at each level:"
+    yield element("p", run)
+    yield element("ul", *(element("li", f"{level.value}: the parser {asked}") for level, asked in _ASKED.items()))
+    yield element("p", "Items passed of all items. ✓ certified, ✗ claimed but not certified.", class_="soft")
     yield element("h2", "Parsers")
     dated = any(each.date for each in certificates)
     rows = (
@@ -93,21 +126,42 @@ def _topics(certificates: Sequence[Certificate]) -> Iterator[Element]:
 
 
 def _wrong(certificates: Sequence[Certificate]) -> Iterator[Element]:
-    """For each parser the titles of the cases that it fails, once each, by topic."""
+    """For each parser the titles of the cases that it fails, once each, by the kind of the failure and by topic."""
     yield element("h2", "What each parser gets wrong")
     for title, certificate in zip(_titles(certificates), certificates, strict=True):
-        levels: defaultdict[tuple[str, str], dict[str, None]] = defaultdict(dict)
+        yield element("h3", title)
+        of_kind = defaultdict[str, list[Failure]](list)
         for failure in certificate.failures:
-            levels[_topic(failure), f"{failure.title} ({failure.verdict})"][f"{failure.version} {failure.level}"] = None
-        if not levels:
-            yield element("p", f"{title}: nothing at the levels that it claims.")
-            continue
-        items = (
-            element("li", element("code", topic), f" {said} ", element("span", ", ".join(at), class_="soft"))
-            for (topic, said), at in sorted(levels.items())
+            of_kind[_kind(failure)].append(failure)
+        if not of_kind:
+            yield element("p", "Nothing at the levels that it claims.")
+        for kind in filter(of_kind.__contains__, (kind for kind, *_ in _KINDS)):
+            yield element("details", element("summary", f"{kind}: {len(of_kind[kind])}"), *_failures(of_kind[kind]))
+
+
+def _kind(failure: Failure) -> str:
+    said = failure.difference or ""
+    return next(kind for kind, verdict, words in _KINDS if verdict == failure.verdict and words in said)
+
+
+def _failures(failures: Sequence[Failure]) -> Iterator[Element]:
+    differing = Counter(
+        _NAME.sub("…", found["of"])
+        for failure in failures
+        if (found := _DIFFERENCE.search(failure.difference or "")) and "/outcome:" not in found[0]
+    )
+    if differing:
+        yield element("p", f"What differs first: {', '.join(f'{of} ({n})' for of, n in differing.most_common())}.")
+    levels: defaultdict[tuple[str, str], dict[str, None]] = defaultdict(dict)
+    for failure in failures:
+        levels[_topic(failure), failure.title][f"{failure.level} of version {failure.version}"] = None
+    items = (
+        element(
+            "li", element("code", topic), " ", *marked_up(title), " ", element("span", ", ".join(at), class_="soft")
         )
-        summary = f"{title} ({len(levels)})"
-        yield element("details", element("summary", summary), element("ul", *items))
+        for (topic, title), at in sorted(levels.items())
+    )
+    yield element("ul", *items)
 
 
 def _topic(failure: Failure) -> str:

@@ -57,10 +57,10 @@ def level_words(result: LevelResult, smoke: bool = False) -> str:
 
 
 def level_count(result: LevelResult) -> str:
-    """The result of a level as two numbers, for narrow columns."""
+    """The result of a level in numbers, for narrow columns; of valid and invalid files apart."""
     if not (result.claimed and result.asked):
         return level_words(result)
-    return f"{result.counts.get(Verdict.PASSED, 0)} of {result.items}"
+    return f"{result.counts.get(Verdict.PASSED, 0)} of {result.items}{_apart(result)}"
 
 
 def _by_version(certificate: Certificate, certified: bool) -> str:

@@ -19,7 +19,7 @@ from eurdf.commands.robot_options import ending
 from eurdf.diagnostics.text import Line
 from eurdf.diagnostics.visible import visible
 from eurdf_conformance.certificate.certificate import Certificate, NoCertificate, read_certificate
-from eurdf_conformance.certificate.comparison_page import comparison_page
+from eurdf_conformance.certificate.comparison_page import comparison_markdown, comparison_page
 from eurdf_conformance.certificate.write import NoRoom, make_room, write_certificate
 from eurdf_conformance.command.output import show
 from eurdf_conformance.command.replay import (
@@ -89,7 +89,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument(
         "--parser-start-timeout", metavar="S", type=_seconds, help="time limit of the start (default: 30 s)"
     )
-    parser.add_argument("-o", "--output", metavar="FILE", type=Path, help="the page that --compare writes")
+    page = "the page that --compare writes: HTML, or Markdown if its name ends with .md"
+    parser.add_argument("-o", "--output", metavar="FILE", type=Path, help=page)
     parser.add_argument("--force", action="store_true", help="replace existing files")
     parser.add_argument("--json", action="store_true", help="write one JSON object")
     return parser
@@ -173,7 +174,8 @@ def _compare(args: argparse.Namespace) -> int:
     for number, parser in enumerate(args.compare, 1):
         write_lines([[(f"{number} of {len(args.compare)}: ", ""), (visible(parser), "bold")]], sys.stderr)
         certificates.append(_run_suite(_suite_run(args, parser)))
-    write_new(args.output, comparison_page(certificates), args.force)
+    written = comparison_markdown if args.output.suffix == ".md" else comparison_page
+    write_new(args.output, written(certificates), args.force)
     return 0
 
 
