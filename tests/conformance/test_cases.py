@@ -323,7 +323,8 @@ def test_the_archive_is_complete_and_reproducible(tmp_path: Path) -> None:
                 assert whole.read(name) == content
                 names.remove(name)
         schemas = {f"schema/{path.name}" for path in (ROOT / "schema").glob("extended-urdf-*.schema.json")}
-        assert names == {"README.md", "LICENSE", "clauses.json", "index.json", "case.schema.json"} | schemas
+        schemas |= {f"{name}.schema.json" for name in ("case", "index", "expected")}
+        assert names == {"README.md", "LICENSE", "clauses.json", "index.json"} | schemas
         registry = json.loads(whole.read("clauses.json"))
         assert {entry["id"]: entry["text"] for entry in registry["clauses"]} == {
             id_: each.text for id_, each in read_clauses().items()

@@ -9,6 +9,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from jsonschema import Draft202012Validator
 
 from eurdf_conformance.corpus import archive, packages
 from eurdf_conformance.corpus.read import suite_cases
@@ -55,6 +56,24 @@ def test_packages_contain_the_archive_in_its_version(made: Path) -> None:
     assert package["version"] == found["version"] == suite_version()
     assert f'name = "{package["name"]}"' in python["pyproject.toml"].decode()
     assert package["name"] == archive.NAME
+
+
+def test_schemas_describe_the_json_files_and_nothing_else(made: Path) -> None:
+    index, expected = (
+        Draft202012Validator(json.loads((made / "npm" / f"{name}.schema.json").read_bytes()))
+        for name in ("index", "expected")
+    )
+    listed = json.loads((made / "npm" / "index.json").read_bytes())
+    index.validate(listed)
+    values = [json.loads((made / "npm" / "cases" / f"{name}.expected.json").read_bytes()) for name in VALID]
+    for value in values:
+        expected.validate(value)
+    for entry in listed["cases"]:
+        wrong = {**entry, "case": {key: each for key, each in entry["case"].items() if key != "clauses"}}
+        assert not index.is_valid({**listed, "cases": [wrong]})
+        wrong = {**entry, "case": {**entry["case"], "edits": []}}
+        assert not index.is_valid({**listed, "cases": [wrong]})
+    assert not expected.is_valid({key: each for key, each in values[0].items() if key != "robot"})
 
 
 def test_command_of_the_readme_computes_the_hash_of_certificates(made: Path) -> None:

@@ -22,6 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from eurdf_conformance.carried import carried
+from eurdf_conformance.corpus.archive_schema import MAKING, expected_schema, index_schema
 from eurdf_conformance.corpus.case import SCHEMA_FILE, ValidCase
 from eurdf_conformance.corpus.clause import read_clauses, read_registry
 from eurdf_conformance.corpus.read import CorpusCase, NotACase, read_cases
@@ -40,9 +41,6 @@ _SCHEMAS = {
     f"schema/extended-urdf-{version}.schema.json": carried(f"schema/extended-urdf-{version}.schema.json")
     for version in ("1", "2.0", "2.1")
 }
-
-#: Keys of a case on how its files are made, which users of the archive do not need.
-_MAKING = {"base", "edits", "files", "edit"}
 
 _README = Path(__file__).with_name("package") / "README.md"
 
@@ -98,6 +96,8 @@ def _beside(cases: Iterable[CorpusCase]) -> dict[str, bytes]:
         "clauses.json": _json(clauses),
         **{name: path.read_bytes() for name, path in _SCHEMAS.items()},
         SCHEMA_FILE.name: SCHEMA_FILE.read_bytes(),
+        "index.schema.json": _json(index_schema()),
+        "expected.schema.json": _json(expected_schema()),
         "LICENSE": carried("LICENSE").read_bytes(),
     }
 
@@ -114,7 +114,7 @@ def index(cases: Iterable[CorpusCase]) -> dict[str, Any]:
             {
                 "name": case.name,
                 "levels": case.levels,
-                "case": case.case.model_dump(mode="json", exclude_none=True, exclude=_MAKING),
+                "case": case.case.model_dump(mode="json", exclude_none=True, exclude=set(MAKING)),
                 "files": sorted(case.files),
             }
             for case in cases
