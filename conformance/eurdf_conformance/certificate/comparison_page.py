@@ -36,7 +36,7 @@ _KINDS = (
 
 #: A difference: where it is, what it is of, and the two values. Names in it differ from case to case.
 _DIFFERENCE = re.compile(r"^/\S*: (?P<of>.*?): expected ", re.MULTILINE)
-_NAME = re.compile(r"'[^']*'")
+_NAME = re.compile(r"'[^']*(?:'|$)")
 
 
 def comparison_page(certificates: Sequence[Certificate]) -> str:
@@ -172,7 +172,7 @@ def _clauses(certificates: Sequence[Certificate]) -> Iterator[Element]:
     results = [{each.id: each for each in certificate.clauses} for certificate in certificates]
     texts = {id_: clause.text for id_, clause in read_clauses().items()}
     ids = sorted({id_ for of_one in results for id_ in of_one})
-    differing = [id_ for id_ in ids if len({_is_met(of_one.get(id_)) for of_one in results}) > 1]
+    differing = [id_ for id_ in ids if len({_is_met(of_one[id_]) for of_one in results if id_ in of_one}) > 1]
     title = "Clauses with different results"
     yield element("h2", f"{title} ({len(differing)} of {len(ids)})")
     if differing:
@@ -186,8 +186,8 @@ def _clauses(certificates: Sequence[Certificate]) -> Iterator[Element]:
         yield table(title, ("clause", *_titles(certificates)), rows)
 
 
-def _is_met(result: ClauseResult | None) -> bool | None:
-    return None if result is None else result.passed == result.items
+def _is_met(result: ClauseResult) -> bool:
+    return result.passed == result.items
 
 
 def _clause_cell(result: ClauseResult | None) -> Element:

@@ -9,6 +9,7 @@ from eurdf_conformance.certificate.page import Element
 
 # What would be read as markup: of Markdown, of HTML, and of mathematics.
 _MARKUP = re.compile(r"([\\`*_\[\]<>&$|{}~#])")
+_LINE_END = re.compile(r"\s*\n\s*")
 
 
 def markdown(content: Iterable[Element]) -> str:
@@ -38,7 +39,7 @@ def _inline(part: Element) -> str:
 def _marked(part: Element) -> str:
     match part.tag:
         case "code":
-            return f"`{part.text}`"
+            return f"`{_LINE_END.sub(' ', part.text or '')}`"
         case "div":  # on a line of its own
             return f" {_inline(part)}"
         case _:
@@ -46,4 +47,4 @@ def _marked(part: Element) -> str:
 
 
 def _plain(text: str | None) -> str:
-    return _MARKUP.sub(r"\\\1", text or "")
+    return _MARKUP.sub(r"\\\1", _LINE_END.sub(" ", text or ""))
