@@ -7,8 +7,8 @@ loading does not use: empty modules replace those that are not installed.
 
 `Strict` gives the loader the files as they are, and rejects the robot if the loader has dropped a closure, a motor, a
 changed joint or a type that the description names. `Lenient` helps it: keys that the description leaves out, without
-which it fails, are empty lists, the name of the robot, which it drops, is that of the URDF, and all that it drops
-otherwise is lost in silence.
+which it fails, are empty lists, and what it drops is lost in silence. Both give the robot the name in the URDF, which
+the loader drops.
 
 The loader is of the time of Pinocchio 3. With Pinocchio 4.1 it crashes at random while it locks joints; with 3.4 it
 does not. So give it an environment of its own, with this package, SciPy, ``pin==3.4.0``, ``cmeel-urdfdom==4.0.1`` and
@@ -67,7 +67,7 @@ class Strict:
             return rejected(f"{type(error).__name__}: {error}")
         if dropped := list(self.dropped(description, *loaded[:3])):
             return rejected(*dropped)
-        return accepted(self.named(urdf, _canonical(description.parent, *loaded)))
+        return accepted(_canonical(description.parent, *loaded) | {"name": _name(urdf)})
 
     def loaded(self, description: Path, urdf: Path) -> Sequence[Any]:
         """What the loader returns: the model, its closures, its motors, and its visual and collision shapes."""
@@ -97,10 +97,6 @@ class Strict:
         for name in {name for pair in data.get("closed_loop", ()) for name in pair} - frames:
             yield f"there is no frame {name!r}"
 
-    def named(self, urdf: Path, robot: dict[str, Any]) -> dict[str, Any]:
-        """The canonical description with the name that the loader gives the robot."""
-        return robot
-
 
 class Lenient(Strict):
     """The loader, helped where it needs or drops what a file may leave out or say."""
@@ -124,10 +120,6 @@ class Lenient(Strict):
     def dropped(self, description: Path, model: Any, closures: Any, actuation: Any) -> Iterator[str]:
         """Nothing that matters here."""
         yield from ()
-
-    def named(self, urdf: Path, robot: dict[str, Any]) -> dict[str, Any]:
-        """The canonical description with the name in the URDF."""
-        return robot | {"name": pin.buildModelFromUrdf(str(urdf)).name}
 
 
 @cache
@@ -159,12 +151,19 @@ def published_loader() -> ModuleType:
         ) from error
 
 
+def _name(urdf: Path) -> str:
+    """The robot's name, which the loader drops; none where it cannot be decoded."""
+    try:
+        return str(pin.buildModelFromUrdf(str(urdf)).name)
+    except UnicodeDecodeError:
+        return ""
+
+
 def _canonical(folder: Path, model: Any, closures: Any, actuation: Any, visual: Any, collision: Any) -> dict[str, Any]:
     links = [frame for frame in model.frames if frame.type == pin.FrameType.BODY]
     link_of = dict(enumerate(model.names))
     link_of |= {frame.parentJoint: frame.name for frame in reversed(links)}
     return {
-        "name": model.name,
         "version": "1",
         "root": "fixed",
         "links": [frame.name for frame in links],

@@ -151,7 +151,10 @@ def _failures(failures: Sequence[Failure]) -> Iterator[Element]:
         if (found := _DIFFERENCE.search(failure.difference or "")) and "/outcome:" not in found[0]
     )
     if differing:
-        yield element("p", f"What differs first: {', '.join(f'{of} ({n})' for of, n in differing.most_common())}.")
+        counted = ", ".join(f"{of} ({n})" for of, n in differing.most_common())
+        yield element(
+            "p", f"What differs first, where a revolute joint without limits counts as continuous: {counted}."
+        )
     levels: defaultdict[tuple[str, str], dict[str, None]] = defaultdict(dict)
     for failure in failures:
         levels[_topic(failure), failure.title][f"{failure.level} of version {failure.version}"] = None
