@@ -27,11 +27,11 @@ def _robot(*content: str, own: str = "") -> bytes:
     return f'<robot name="large"{own}><link name="base"/>{"".join(content)}</robot>'.encode()
 
 
-def _hanging(name: str, joint: str, link: str = "") -> str:
-    """A link that hangs from the base."""
+def _hanging(name: str, joint: str, link: str = "", *, parent: str = "base", own: str = "") -> str:
+    """A link that hangs from the base, or from another link."""
     return (
         f'<link name="{name}">{link}</link>'
-        f'<joint name="to_{name}" type="{joint}"><parent link="base"/><child link="{name}"/></joint>'
+        f'<joint name="to_{name}" type="{joint}"><parent link="{parent}"/><child link="{name}"/>{own}</joint>'
     )
 
 
@@ -63,10 +63,32 @@ def _joints(version: Version, count: int) -> _Files:
     return _HEAD[version].encode(), _robot(*(_hanging(f"l{i}", "fixed") for i in range(count)))
 
 
+def _joints_with_merged_ones(version: Version, count: int) -> _Files:
+    """A merge does not change the count."""
+    axes = {"x": "1 0 0", "y": "0 1 0", "z": "0 0 1"}
+    chain = [
+        _hanging(name, "continuous", parent=parent, own=f'<axis xyz="{axes[name]}"/>')
+        for parent, name in (("base", "x"), ("x", "y"), ("y", "z"))
+    ]
+    others = [_hanging(f"l{i}", "fixed") for i in range(count - 3)]
+    merged = f"{_HEAD[version]}joints: {{ball: {{type: spherical, merges: [to_x, to_y, to_z]}}}}\n"
+    return merged.encode(), _robot(*chain, *others)
+
+
 def _velocities(version: Version, count: int) -> _Files:
     free, rest = divmod(count, 6)
     links = [_hanging(f"f{i}", "floating", _INERTIAL) for i in range(free)]
     return _HEAD[version].encode(), _robot(*links, *(_hanging(f"c{i}", "continuous", _INERTIAL) for i in range(rest)))
+
+
+def _velocities_with_mimic(version: Version, count: int) -> _Files:
+    """Half of the velocities are those of mimic joints, and the root, which does not count, is free."""
+    leader = _hanging("leader", "continuous", _INERTIAL)
+    links = [
+        _hanging(f"c{i}", "continuous", _INERTIAL, own='<mimic joint="to_leader"/>' if i % 2 else "")
+        for i in range(count - 1)
+    ]
+    return f"{_HEAD[version]}root: floating\n".encode(), _robot(leader, *links)
 
 
 def _rows(version: Version, count: int) -> _Files:
@@ -89,6 +111,7 @@ class Bound:
         beyond: The smallest count that is not.
         files: Description and URDF of a robot with so many.
         versions: The versions of the format in which it is tested.
+        features: The features that its files use.
     """
 
     name: str
@@ -96,6 +119,7 @@ class Bound:
     beyond: int
     files: Callable[[Version, int], _Files]
     versions: tuple[Version, ...] = ("1", "2")
+    features: frozenset[Feature] = frozenset()
 
 
 ALL = (
@@ -106,7 +130,16 @@ ALL = (
     Bound("tags-and-attributes", 1_000_000, 1_000_001, _tags_and_attributes),
     Bound("attribute-bytes", 10_000_000, 10_000_001, _attribute_bytes),
     Bound("joints", 10_000, 10_001, _joints),
-    Bound("velocities", 4_000, 4_001, _velocities),
+    Bound("joints-with-merged-ones", 10_000, 10_001, _joints_with_merged_ones, ("2",), frozenset({Feature.SPHERICAL})),
+    Bound("velocities", 4_000, 4_001, _velocities, features=frozenset({Feature.FLOATING})),
+    Bound(
+        "velocities-with-mimic-joints",
+        4_000,
+        4_001,
+        _velocities_with_mimic,
+        ("2",),
+        frozenset({Feature.MIMIC, Feature.FLOATING_ROOT}),
+    ),
     # In version 1 frames are links, of which there would be too many; rows of version 2.0 come in threes.
     Bound("rows", 19_998, 20_001, _rows, ("2",)),
 )
@@ -127,7 +160,7 @@ class BoundCase(CorpusCase):
     @property
     def features(self) -> frozenset[Feature]:
         """The features that its files use."""
-        return frozenset({Feature.FLOATING} if self.bound.files is _velocities else ())
+        return self.bound.features
 
     @property
     def levels(self) -> tuple[Level, ...]:

@@ -34,9 +34,9 @@ def counted(case: BoundCase) -> int:
             return urdf.count("<") + urdf.count("=")
         case "attribute-bytes":
             return max(map(len, re.findall(r'"([^"]*)"', urdf)))
-        case "joints":
+        case "joints" | "joints-with-merged-ones":
             return len(types)
-        case "velocities":
+        case "velocities" | "velocities-with-mimic-joints":
             return sum(_VELOCITIES[each] for each in types)
         case _:
             return 6 * description.count("type: 6d") + 3 * description.count("type: 3d")
