@@ -46,8 +46,12 @@ def _urdf_bytes(version: Version, count: int) -> _Files:
 
 
 def _nodes(version: Version, count: int) -> _Files:
-    # The mapping; the key that is there, its value; the key of the list, the list.
-    return f"{_HEAD[version]}x-list: [{', '.join('1' * (count - 5))}]\n".encode(), _robot()
+    # The mapping; the key that is there, its value; the key of the list, the list; the list that has the anchor.
+    aliases = 20_000
+    return (
+        f"{_HEAD[version]}x-list: [&a [1, 2], {'*a, ' * aliases}{'1, ' * (count - 8 - aliases)}]\n".encode(),
+        _robot(),
+    )
 
 
 def _tags_and_attributes(version: Version, count: int) -> _Files:
@@ -56,7 +60,8 @@ def _tags_and_attributes(version: Version, count: int) -> _Files:
 
 
 def _attribute_bytes(version: Version, count: int) -> _Files:
-    return _HEAD[version].encode(), _robot(own=f' note="{"x" * count}"')
+    """Of characters of two bytes each, and one of one byte if the count is odd."""
+    return _HEAD[version].encode(), _robot(own=f' note="{"é" * (count // 2)}{"x" * (count % 2)}"')
 
 
 def _joints(version: Version, count: int) -> _Files:
@@ -73,6 +78,16 @@ def _joints_with_merged_ones(version: Version, count: int) -> _Files:
     others = [_hanging(f"l{i}", "fixed") for i in range(count - 3)]
     merged = f"{_HEAD[version]}joints: {{ball: {{type: spherical, merges: [to_x, to_y, to_z]}}}}\n"
     return merged.encode(), _robot(*chain, *others)
+
+
+def _joints_with_split_ones(version: Version, count: int) -> _Files:
+    """A thousand of the joints are split in two."""
+    links = [_hanging(f"u{i}", "continuous", _INERTIAL) for i in range(1_000)]
+    split = [f"to_u{i}" for i in range(len(links))]
+    others = [_hanging(f"l{i}", "fixed") for i in range(count - 2 * len(split))]
+    types = ["UJOINT_XY"] * len(split)
+    description = f"{_HEAD[version]}joint_name: [{', '.join(split)}]\njoint_type: [{', '.join(types)}]\n"
+    return description.encode(), _robot(*links, *others)
 
 
 def _velocities(version: Version, count: int) -> _Files:
@@ -131,6 +146,7 @@ ALL = (
     Bound("attribute-bytes", 10_000_000, 10_000_001, _attribute_bytes),
     Bound("joints", 10_000, 10_001, _joints),
     Bound("joints-with-merged-ones", 10_000, 10_001, _joints_with_merged_ones, ("2",), frozenset({Feature.SPHERICAL})),
+    Bound("joints-with-split-ones", 10_000, 10_001, _joints_with_split_ones, ("1",), frozenset({Feature.UNIVERSAL})),
     Bound("velocities", 4_000, 4_001, _velocities, features=frozenset({Feature.FLOATING})),
     Bound(
         "velocities-with-mimic-joints",
@@ -192,7 +208,14 @@ def _said(bound: Bound, version: Version, count: int) -> ValidCase | InvalidCase
     place = CasePlace(
         file=DESCRIPTION if bound.name in ("description-bytes", "nodes", "rows") else URDF, line=None, column=None
     )
-    # Not checked: the valid twin and the edit are not those of a stored case.
+    # Not checked: there is no edit of a stored case.
     return InvalidCase.model_construct(
-        valid=False, code="file-too-large", place=place, fix="Make it smaller.", either=False, features=[], **common
+        valid=False,
+        code="file-too-large",
+        place=place,
+        fix="Make it smaller.",
+        either=False,
+        features=[],
+        twin=None,
+        **common,
     )

@@ -28,14 +28,16 @@ def counted(case: BoundCase) -> int:
         case "urdf-bytes":
             return len(urdf.encode())
         case "nodes":
-            events = (yaml.ScalarEvent, yaml.MappingStartEvent, yaml.SequenceStartEvent)
+            events = (yaml.ScalarEvent, yaml.MappingStartEvent, yaml.SequenceStartEvent, yaml.AliasEvent)
             return sum(isinstance(event, events) for event in yaml.parse(description, yaml.CSafeLoader))
         case "tags-and-attributes":
             return urdf.count("<") + urdf.count("=")
         case "attribute-bytes":
-            return max(map(len, re.findall(r'"([^"]*)"', urdf)))
+            return max(map(len, re.findall(rb'"([^"]*)"', urdf.encode())))
         case "joints" | "joints-with-merged-ones":
             return len(types)
+        case "joints-with-split-ones":
+            return len(types) + description.count("UJOINT")
         case "velocities" | "velocities-with-mimic-joints":
             return sum(_VELOCITIES[each] for each in types)
         case _:

@@ -451,6 +451,17 @@ def test_one_mistake_gives_one_error_with_code_and_place(issues: list[Issue], po
     assert [found.pointer for found in error_differences(ERROR, issues)] == pointers
 
 
+def test_warnings_of_the_valid_files_may_stand_beside_the_error() -> None:
+    beside = [ExpectedWarning(code="near-miss-key", place=CasePlace(file="robot.yaml", line=9, column=1))]
+    near = issue("near-miss-key", severity="warning")
+    assert error_differences(ERROR, [near, issue()], beside) == []
+    assert error_differences(ERROR, [issue()], beside) == []
+    assert [found.pointer for found in error_differences(ERROR, [near, issue(line=4)], beside)] == ["/issues/1/line"]
+    assert [found.pointer for found in error_differences(ERROR, [issue("near-miss-key"), issue()], beside)] == [
+        "/issues/0"
+    ]
+
+
 def test_error_of_a_whole_file_has_no_line() -> None:
     whole = ExpectedWarning(code="file-not-utf8", place=CasePlace(file="robot.yaml"))
     assert error_differences(whole, [issue("file-not-utf8", line=None, column=None)]) == []

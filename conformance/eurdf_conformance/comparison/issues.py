@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from typing import Literal, Protocol
 
 from eurdf_conformance.comparison.difference import ABSENT, Difference
@@ -43,9 +43,12 @@ class Finding(Protocol):
         """Where it is."""
 
 
-def error_differences(error: Finding, issues: Sequence[Issue]) -> list[Difference]:
-    """EU-DIA-001, EU-DIA-002: differences from the one error of a case, at its place, without any other."""
-    return _differences([error], issues, "error")
+def error_differences(error: Finding, issues: Sequence[Issue], beside: Iterable[Finding] = ()) -> list[Difference]:
+    """EU-DIA-001, EU-DIA-002: differences from the one error of a case, at its place, without any other.
+
+    EU-DIA-003: ``beside`` are warnings that the files have without the error, too. They may be reported, or not.
+    """
+    return _differences([error], issues, "error", {warning.code for warning in beside})
 
 
 def warning_differences(warnings: Iterable[Finding], issues: Sequence[Issue]) -> list[Difference]:
@@ -53,9 +56,11 @@ def warning_differences(warnings: Iterable[Finding], issues: Sequence[Issue]) ->
     return _differences(list(warnings), issues, "warning")
 
 
-def _differences(expected: Sequence[Finding], issues: Sequence[Issue], severity: Severity) -> list[Difference]:
+def _differences(
+    expected: Sequence[Finding], issues: Sequence[Issue], severity: Severity, allowed: Collection[str] = ()
+) -> list[Difference]:
     found = []
-    rest = [(index, issue) for index, issue in enumerate(issues) if not _is_own(issue)]
+    rest = [(index, issue) for index, issue in enumerate(issues) if not _is_allowed(issue, allowed)]
     codes = [issue.code for _, issue in rest]
     for finding in expected:
         matching = [numbered for numbered in rest if numbered[1].code == finding.code]
@@ -71,9 +76,11 @@ def _differences(expected: Sequence[Finding], issues: Sequence[Issue], severity:
     return found
 
 
-def _is_own(issue: Issue) -> bool:
-    """EU-DIA-006: whether the issue is advice of the parser, with a code of its own."""
-    return issue.severity == "warning" and issue.code is not None and issue.code.startswith("x-")
+def _is_allowed(issue: Issue, codes: Collection[str]) -> bool:
+    """Whether the issue is a warning with one of the codes, or advice with a code of the parser's own (EU-DIA-006)."""
+    return (
+        issue.severity == "warning" and issue.code is not None and (issue.code in codes or issue.code.startswith("x-"))
+    )
 
 
 def _misplaced(finding: Finding, severity: Severity, index: int, issue: Issue) -> list[Difference]:

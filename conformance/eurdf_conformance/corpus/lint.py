@@ -134,8 +134,6 @@ def _twin(case: CorpusCase, corpus: Corpus) -> Iterator[str]:
     twin = case.origin.case
     if twin.version != case.case.version:
         yield f"the twin is of version {twin.version}"
-    if isinstance(twin, ValidCase) and twin.warnings:  # which the error might hide, or not
-        yield "the twin has warnings"
     if isinstance(edit := case.case.edit, Replace) and edit.replace.count("\n") >= LINES:
         yield f"the edit replaces more than {LINES} lines"
 

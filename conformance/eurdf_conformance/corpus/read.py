@@ -13,7 +13,7 @@ from pathlib import Path
 import yaml
 from pydantic import ValidationError
 
-from eurdf_conformance.corpus.case import CASE, TOPICS, Case, InvalidCase, ValidCase
+from eurdf_conformance.corpus.case import CASE, TOPICS, Case, ExpectedWarning, InvalidCase, ValidCase
 from eurdf_conformance.corpus.content import content_bytes, edited
 from eurdf_conformance.corpus.expected import Expected, read_expected
 from eurdf_conformance.corpus.features import features_of_files, features_of_robot
@@ -166,6 +166,14 @@ class CorpusCase:
         if isinstance(self.case, ValidCase):
             return stated | features_of_robot(self.expected.robot)
         return stated if self.origin is None else stated | self.origin.features
+
+    @property
+    def warnings(self) -> tuple[ExpectedWarning, ...]:
+        """The warnings that a parser reports on a valid case, and may report beside the error of an invalid one."""
+        if isinstance(self.case, ValidCase):
+            return tuple(self.case.warnings)
+        origin = self.origin
+        return () if origin is None else origin.warnings
 
     @property
     def levels(self) -> tuple[Level, ...]:

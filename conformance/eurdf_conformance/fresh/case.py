@@ -186,7 +186,7 @@ def _said(drawn: Drawn) -> ValidCase | InvalidCase:
         at: dict[str, Any] = {"configurations": drawn.configurations, "frames": drawn.frames}
         return ValidCase(valid=True, warnings=warnings, **at, **common)
     either = drawn.kind is FreshKind.EITHER
-    # Not checked: the valid twin and the edit are not those of a stored case.
+    # Not checked: there is no edit of a stored case.
     return InvalidCase.model_construct(
-        valid=False, code=drawn.code, place=drawn.place, fix=drawn.fix, either=either, features=[], **common
+        valid=False, code=drawn.code, place=drawn.place, fix=drawn.fix, either=either, features=[], twin=None, **common
     )

@@ -240,7 +240,7 @@ def _judge_diagnose(case: CorpusCase, conversation: Conversation) -> Judgement:
         case Answered(answer=Accepted()), InvalidCase(either=False):
             return _judge_accept(case, conversation)
         case Answered(answer=Accepted(issues=issues) | Rejected(issues=issues)), InvalidCase() as invalid:
-            return _unless(error_differences(invalid, issues), "the reported errors differ", "", issues)
+            return _unless(error_differences(invalid, issues, case.warnings), "the reported errors differ", "", issues)
     return judge_outcome(outcome, _to_load(case))
 
 
