@@ -15,7 +15,7 @@ from support.language_server import MISSING, Editor, in_editor
 
 ROOT = Path(__file__).parents[2]
 
-pytestmark = pytest.mark.skipif(bool(MISSING), reason=MISSING)
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING), reason=MISSING)]
 
 HEAD = '# yaml-language-server: $schema={}\nextended_urdf: "2.0"\n'
 TOP = ["urdf", "root", "closures", "joints", "actuators", "frames", "configurations", "metadata"]
@@ -126,7 +126,6 @@ def test_robot_schema_completes_robot_names(tmp_path: Path) -> None:
     assert "free_rocker" in completed(tmp_path, "joints:\n  |\n", schema="four_bar.schema.json")
 
 
-@pytest.mark.slow
 def test_collection_opens_without_underlines() -> None:
     # Of every version; `eurdf check` holds all of them to the same schemas.
     robots = [*sorted(ROOT.glob("robots/*/robot*.yaml"))[::4], *sorted(ROOT.glob("robots/t*/robot.yaml"))]

@@ -1,4 +1,4 @@
-"""The cases: what they say, and how they are read. `test_certify` sees how the reference answers them."""
+"""The cases: what they say, and how they are read. `.ci/run` sees how the reference answers them."""
 
 import ast
 import base64
@@ -36,6 +36,7 @@ VALID = [case for case in CASES if isinstance(case.case, ValidCase)]
 # The cases of the suite
 
 
+@pytest.mark.slow
 def test_the_lint_finds_nothing_wrong_with_the_cases() -> None:
     assert [str(error) for error in lint()] == []
 
@@ -308,6 +309,7 @@ def test_expect_rewrites_stale_expectations_but_none_by_hand(
 # The archive
 
 
+@pytest.mark.slow
 def test_the_archive_is_complete_and_reproducible(tmp_path: Path) -> None:
     some = CASES[::30]
     for folder, cases in ("a", some), ("b", reversed(some)), ("whole", CASES):

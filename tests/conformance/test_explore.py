@@ -34,6 +34,8 @@ from eurdf_conformance.runner.outcome import Crashed, Outcome
 from support.parsers.oracle import OracleParser
 from support.parsers.relations import ForgetsInlineAngles, UniversalBackwards
 
+pytestmark = pytest.mark.slow
+
 #: What is drawn from a seed depends on the version of Hypothesis too: as many are drawn as find it from any.
 SEED, COUNT = 1, 400
 
@@ -114,7 +116,6 @@ def test_failure_on_a_fresh_example_is_reduced(tmp_path: Path) -> None:
     assert try_fresh(property_of("agreement"), Level.KINEMATICS, right, harness).verdict == Verdict.PASSED
 
 
-@pytest.mark.slow
 def test_of_two_differing_robots_the_misread_one_is_written(tmp_path: Path) -> None:
     # The property compares frames that are said in place, which this parser gets wrong, with others.
     explored("frames", ForgetsInlineAngles(), tmp_path)
@@ -124,7 +125,6 @@ def test_of_two_differing_robots_the_misread_one_is_written(tmp_path: Path) -> N
     assert case.topic == "closures"
 
 
-@pytest.mark.slow
 def test_no_case_is_written_without_a_failure(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     judgement = explored("moving-base", OracleParser(), tmp_path, 60)
@@ -149,7 +149,6 @@ def test_a_family_is_explored_by_its_size(tmp_path: Path) -> None:
     assert len(found[0].mechanism.joints) == 10
 
 
-@pytest.mark.slow
 def test_a_crash_is_shrunk_to_a_smaller_crash(tmp_path: Path) -> None:
     class CrashesOnBalls(InProcess):
         def load(self, description: Path, urdf: Path) -> Outcome:
@@ -203,7 +202,6 @@ def test_the_misread_robot_is_blamed_not_the_last(tmp_path: Path) -> None:
     assert culprit(harness, Level.KINEMATICS) == harness.queries[0][0]
 
 
-@pytest.mark.slow
 def test_exploring_continues_after_a_frozen_example_failed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     (tmp_path / "files").mkdir()

@@ -112,6 +112,7 @@ def test_parser_without_planar_joints_is_certified_but_for_planar() -> None:
     assert accept.valid.passed + accept.invalid.passed == accept.items - excused
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("parser", "verdict", "why"),
     [

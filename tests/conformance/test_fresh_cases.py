@@ -37,13 +37,14 @@ from eurdf_conformance.suite.reproduce import Setting, command_line
 from support.parsers.case_parser import content, index
 from support.suite_runs import run
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def cases() -> dict[str, FreshCase]:
     return fresh_cases(0)
 
 
-@pytest.mark.slow
 def test_seed_decides_the_fresh_cases(cases: dict[str, FreshCase]) -> None:
     program = "from eurdf_conformance.fresh.case import drawn_hash; print(drawn_hash(0))"
     # In another process, which has imported other modules.
@@ -105,7 +106,6 @@ class KnowsTheCorpus:
         return rejected("known") if known and not known[0].case.valid else accepted()
 
 
-@pytest.mark.slow
 def test_parser_that_knows_all_stored_cases_is_not_certified(cases: dict[str, FreshCase]) -> None:
     conversation = Conversation(InProcess(KnowsTheCorpus()))  # type: ignore[arg-type]
     stored = [case for case in all_cases() if case.case.version in VERSIONS]

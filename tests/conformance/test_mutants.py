@@ -34,6 +34,7 @@ def test_a_correct_parser_is_not_caught(parser: type, version: Version) -> None:
     assert catching(mutant, version) is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PROTOCOL_MUTANTS)
 def test_a_protocol_rule_catches_the_wrong_program(name: str) -> None:
     mutant = PROTOCOL_MUTANTS[name]

@@ -206,6 +206,7 @@ def spoiled_answers(draw: st.DrawFn) -> tuple[str, dict[str, Any]]:
     return command, answer
 
 
+@pytest.mark.slow
 @settings(max_examples=500, deadline=None)
 @given(spoiled_answers())
 @example(("load", {"id": 1, "outcome": "rejected", "issues": [{"message": "m", "line": 1e22}]}))

@@ -110,6 +110,7 @@ def test_misbehaviour_is_never_a_rejection() -> None:
         assert session.restarts == 0
 
 
+@pytest.mark.slow
 def test_a_late_answer_does_not_answer_the_next_request() -> None:
     with Session(fake("late"), timeout=0.3) as session:
         assert isinstance(load(session, "trigger"), TimedOut)
@@ -145,6 +146,7 @@ def test_crash_between_requests_is_reported_at_the_next() -> None:
         assert accepts(load(session, "next"), "next")
 
 
+@pytest.mark.slow
 def test_crash_after_an_answer_has_exit_code() -> None:
     with Session(fake("exits_after_answering")) as session:
         for _ in range(30):

@@ -470,6 +470,7 @@ def test_printed_command_reproduces_a_failure() -> None:
     assert "passed" not in out.splitlines()[-1]
 
 
+@pytest.mark.slow
 def test_a_lenient_parser_fails_accept_and_diagnose() -> None:
     code, out = suite("-k", FEW, parser="Lenient")
     assert code == 1
@@ -545,6 +546,7 @@ def test_fixed_known_failure_is_reported(tmp_path: Path) -> None:
     assert "frames/nobody/accept: the suite has no such item" in out
 
 
+@pytest.mark.slow
 def test_impossible_requests_of_the_user_are_reported(tmp_path: Path) -> None:
     for arguments, why in (
         ([f"--known-failures={tmp_path / 'nowhere.yaml'}"], "No such file"),
@@ -585,6 +587,7 @@ def test_smoke_distinguishes_wrong_adapter_from_wrong_parser() -> None:
     assert "your parser was not tested: fix the adapter first" in out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("parser", "asked"),
     [
@@ -638,6 +641,7 @@ def test_the_suite_runs_as_an_installed_package() -> None:
     assert code == 0
 
 
+@pytest.mark.slow
 def test_in_another_folder_the_printed_command_names_the_package(tmp_path: Path) -> None:
     code, out = suite(
         "-k",

@@ -111,6 +111,7 @@ numbers = st.floats(allow_nan=False, allow_infinity=False)
 names = st.text(st.characters(exclude_categories=["Cs"]), min_size=1)
 
 
+@pytest.mark.slow
 @settings(max_examples=200, deadline=None)
 @given(
     coordinates=st.dictionaries(names, st.lists(numbers, min_size=1, max_size=7), min_size=1),

@@ -91,6 +91,7 @@ BALL = ("rev0 revolute base int10 x", "rev1 revolute int10 int20 y", "rev2 revol
 # -- published robots ---------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @needs_wild
 @pytest.mark.parametrize("name", WILD_ROBOTS)
 def test_names_of_published_robot_match_its_file(name: str) -> None:
@@ -110,6 +111,7 @@ def test_names_of_published_robot_match_its_file(name: str) -> None:
     assert found.warnings == ()
 
 
+@pytest.mark.slow
 @needs_wild
 @pytest.mark.parametrize("name", WILD_ROBOTS)
 def test_both_versions_give_the_same_model(name: str) -> None:
@@ -472,6 +474,7 @@ def read_back(text: str) -> Any:
     return read_yaml(Source("", text, text.encode())).data
 
 
+@pytest.mark.slow
 @settings(max_examples=300, deadline=None, derandomize=True)
 @given(name=xml_text | nasty)
 def test_names_survive_round_trip_everywhere(name: str) -> None:

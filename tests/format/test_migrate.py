@@ -265,6 +265,7 @@ def says_half_of_a_universal_joint(document: dict[str, Any]) -> bool:
     return any(name.endswith(ends) for name in names)
 
 
+@pytest.mark.slow
 @settings(max_examples=120, deadline=None, derandomize=True)
 @given(st.data())
 def test_any_document_keeps_its_model(data: st.DataObject) -> None:
@@ -299,6 +300,7 @@ def test_any_document_keeps_its_kinematics(data: st.DataObject) -> None:
     assert_same_motion(description.mechanism, migrate(description).mechanism)
 
 
+@pytest.mark.slow
 @settings(max_examples=100, deadline=None, derandomize=True)
 @given(st.data())
 def test_no_comment_is_lost_or_duplicated(data: st.DataObject) -> None:

@@ -427,6 +427,7 @@ def test_valid_documents_pass_model_and_schema(version: str, data: st.DataObject
     assert accepted(version, data.draw(DOCUMENTS[version]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("version", VERSIONS)
 @settings(max_examples=150, derandomize=True, deadline=None, database=None)
 @given(st.data())

@@ -150,6 +150,7 @@ def test_forward_kinematics_equals_single_one(name: str) -> None:
     assert batch.converged.any()
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(
     seed=seeds,
@@ -421,6 +422,7 @@ def test_executor_is_given_every_block() -> None:
     assert executor.lengths == [2] * 100
 
 
+@pytest.mark.slow
 def test_process_pool_gives_the_same() -> None:
     robot, values = some_values(9)
     with ProcessPoolExecutor(2, multiprocessing.get_context("spawn")) as pool:

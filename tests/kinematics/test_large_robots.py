@@ -87,6 +87,7 @@ def test_kinematics_of_hundred_four_bars_needs_small_data_only(tmp_path: Path, m
 # -- the bounds of EU-FIL-002 --------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_number_of_velocities_is_bounded(tmp_path: Path) -> None:
     spherical = "joints: {j0: spherical}\n"
     at, beyond = (write(tmp_path / str(count), VERSION2 + spherical, star(count)) for count in (3998, 3999))

@@ -24,6 +24,7 @@ def test_imports_follow_the_layers() -> None:
     assert " 0 broken." in said, said
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("file", "wrong", "complaint"),
     [

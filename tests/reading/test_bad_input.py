@@ -98,7 +98,8 @@ def tried(seed: int, first: int, count: int, *folders: Path) -> list[str]:
     return outcomes
 
 
-@pytest.mark.parametrize("batch", [0, *(pytest.param(batch, marks=pytest.mark.slow) for batch in range(1, BATCHES))])
+@pytest.mark.slow
+@pytest.mark.parametrize("batch", range(BATCHES))
 def test_damaged_robot_gives_diagnostics_or_robot(request: pytest.FixtureRequest, batch: int) -> None:
     count, seed = request.config.getoption("--mutations"), request.config.getoption("--mutation-seed")
     first, beyond = count * batch // BATCHES, count * (batch + 1) // BATCHES

@@ -85,6 +85,7 @@ def test_loops_close_from_neutral_configuration(robots: dict[str, eurdf.Robot], 
     assert np.max(np.abs(assembly.residual)) < 1e-10
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in FACTS if FACTS[name]["closes"]])
 def test_every_actuator_moves_without_range(robots: dict[str, eurdf.Robot], name: str) -> None:
     robot = robots[name]

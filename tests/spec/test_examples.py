@@ -26,6 +26,8 @@ from examples import (
     squat_torques,
 )
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
 PAGE = (ROOT / "docs" / "toolbox.md").read_text(encoding="utf-8")

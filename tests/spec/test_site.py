@@ -26,6 +26,7 @@ ROOT = Path(__file__).parents[2]
 ROBOTS = ("digit_leg", "digit_leg_3d")
 
 pytestmark = [
+    pytest.mark.slow,
     pytest.mark.skipif(sys.version_info < (3, 11), reason="Sphinx 8.2, which the site needs, needs Python 3.11"),
     pytest.mark.skipif(
         any(importlib.util.find_spec(name) is None for name in ("sphinx", "myst_parser", "furo", "latex2mathml")),
@@ -320,7 +321,6 @@ def test_code_schemas_and_pages_state_no_address_of_the_project() -> None:
     assert [path for path in files if any(url in path.read_text(encoding="utf-8") for url in addresses)] == []
 
 
-@pytest.mark.slow
 def test_robot_moves_on_its_page_from_a_file_and_offline(tmp_path: Path) -> None:
     with browser() as chromium:  # first: without one, nothing is built
         source = _small_site(tmp_path, "# Site\n\n```{toctree}\nrobots/index\n```\n")

@@ -31,6 +31,7 @@ def found(ankle: eurdf.Robot) -> eurdf.Workspace:
     return eurdf.workspace(ankle, ANKLE, grid=13)
 
 
+@pytest.mark.slow
 def test_polygon_separates_reachable_poses_from_others(ankle: eurdf.Robot, found: eurdf.Workspace) -> None:
     lower, upper = ankle.model.lowerPositionLimit, ankle.model.upperPositionLimit
     limited = upper < 1e3
@@ -52,6 +53,7 @@ def test_polygon_separates_reachable_poses_from_others(ankle: eurdf.Robot, found
     assert seen == {True, False}
 
 
+@pytest.mark.slow
 def test_every_boundary_point_is_at_its_stop(ankle: eurdf.Robot, found: eurdf.Workspace) -> None:
     limits = ankle.model.lowerPositionLimit, ankle.model.upperPositionLimit
     assert {str(stop) for stop in found.stops} >= {
