@@ -20,7 +20,8 @@ export function readDescription(value) {
     if (!version) fail('extended_urdf is not "2.0" or "2.1"');
     return readVersion2(value, version);
   }
-  const misspelt = (key) => VERSION_2_KEYS.includes(key) || isNear(key, "extended_urdf");
+  const isOwn = (key) => key.startsWith("x-"); // of neither version
+  const misspelt = (key) => VERSION_2_KEYS.includes(key) || (!isOwn(key) && isNear(key, "extended_urdf"));
   if (!keys.some((key) => VERSION_1_KEYS.includes(key)) && keys.some(misspelt)) {
     fail('the key extended_urdf is missing; add extended_urdf: "2.0"');
   }
