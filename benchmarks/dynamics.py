@@ -48,7 +48,7 @@ def states(robot: eurdf.Robot, count: int = 20) -> list[tuple[Vector, Vector]]:
 
 
 class Peers:
-    """The same by Pinocchio and NumPy."""
+    """The same by Pinocchio and NumPy, which are given the force of the springs: Pinocchio knows none."""
 
     def __init__(self, robot: eurdf.Robot) -> None:
         self._model, self._data = robot.model, robot.model.createData()
@@ -61,16 +61,17 @@ class Peers:
         self._S = robot.actuation.selection
         pin.initConstraintDynamics(self._model, self._data, self._models, self._datas)
 
-    def forward(self, q: Vector, v: Vector, u: Vector) -> tuple[Vector, Vector]:
+    def forward(self, q: Vector, v: Vector, u: Vector, passive: Vector) -> tuple[Vector, Vector]:
         """Acceleration (nv,) and λ (nc,)."""
         model, data = self._model, self._data
-        a = pin.constraintDynamics(model, data, q, v, self._S @ u, self._models, self._datas, self._settings)
+        tau = self._S @ u + passive
+        a = pin.constraintDynamics(model, data, q, v, tau, self._models, self._datas, self._settings)
         return np.array(a), -data.lambda_c
 
-    def inverse(self, q: Vector, v: Vector, a: Vector) -> tuple[Vector, Vector]:
+    def inverse(self, q: Vector, v: Vector, a: Vector, passive: Vector) -> tuple[Vector, Vector]:
         """Motor torques (nu,) and λ (nc,)."""
         model, data = self._model, self._data
-        required = np.array(pin.rnea(model, data, q, v, a))
+        required = np.array(pin.rnea(model, data, q, v, a)) - passive
         pin.computeJointJacobians(model, data, q)
         for constraint_model, constraint_data in self._each:
             constraint_model.calc(model, data, constraint_data)
@@ -101,17 +102,19 @@ def _rows(name: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
     robot = robot_called(name)
     peers, data, u = Peers(robot), robot.model.createData(), np.ones(len(robot.actuation.idx_v))
     given = states(robot)
-    motions = []
+    motions, driven, moved = [], [], []
     for q, v in given:
-        a = eurdf.forward_dynamics(robot, q, v, u).a
-        np.testing.assert_allclose(a, peers.forward(q, v, u)[0], atol=1e-9 * np.abs(a).max())
+        passive, a = eurdf.spring_force(robot, q), eurdf.forward_dynamics(robot, q, v, u).a
         motions.append((robot, q, v, a))
+        driven.append((q, v, u, passive))
+        moved.append((q, v, a, passive))
+        np.testing.assert_allclose(a, peers.forward(*driven[-1])[0], atol=1e-9 * np.abs(a).max())
     calls = (
         (lambda q, v: eurdf.forward_dynamics(robot, q, v, u, data=data), given),
         (lambda q, v: eurdf.forward_dynamics(robot, q, v, u), given),
-        (peers.forward, [(*state, u) for state in given]),
+        (peers.forward, driven),
         (eurdf.inverse_dynamics, motions),
-        (peers.inverse, [motion[1:] for motion in motions]),
+        (peers.inverse, moved),
     )
     times = least_times([partial(each, *call) for call in calls], 60)
     ours, alone, pinocchio, inverse, plain = (taken / len(given) for taken in times)

@@ -24,7 +24,7 @@ _HINGES = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.UNIVERSAL)
 
 
 def mujoco_model(robot: eurdf.Robot, step: float) -> tuple[mujoco.MjModel, mujoco.MjData]:
-    """The spanning tree of a robot, its 3d closures as `connect` and its 6d closures as `weld`.
+    """The spanning tree of a robot with its springs, its 3d closures as `connect` and its 6d closures as `weld`.
 
     MuJoCo's integrator is RK4, its other options are its defaults, and it has no contacts and no limits.
 
@@ -46,9 +46,13 @@ def mujoco_model(robot: eurdf.Robot, step: float) -> tuple[mujoco.MjModel, mujoc
         part = bodies[body.name] = ET.SubElement(
             bodies[joint.parent], "body", {"name": body.name, **_at(joint.placement)}
         )
+        properties = joint.properties
         for index, attributes in enumerate(_motions(joint)):
-            armature = joint.properties.armature[index] if joint.properties.armature else 0.0
-            ET.SubElement(part, "joint", {"name": f"{joint.name}/{index}", "armature": repr(armature), **attributes})
+            attributes["armature"] = repr(properties.armature[index] if properties.armature else 0.0)
+            if properties.stiffness:
+                attributes["stiffness"] = repr(properties.stiffness[index])
+                attributes["springref"] = repr(properties.rest[index])
+            ET.SubElement(part, "joint", {"name": f"{joint.name}/{index}", **attributes})
         _add_inertia(part, body)
     equality = ET.SubElement(top, "equality")
     for closure in mechanism.closures:

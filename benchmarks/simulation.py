@@ -1,8 +1,8 @@
 """`eurdf.simulate` against MuJoCo's RK4 on the same robots, from the same state, with the same step.
 
 MuJoCo has closures as soft constraints (`connect`, `weld`) with its default options; its loops open by micrometres
-where ours are closed to rounding (m, rad). Gravity acts, and nothing else; the chain of four-bars is horizontal, and
-its bars turn at first, so that it exchanges no energy. Twenty steps of 1 ms are simulated.
+where ours are closed to rounding (m, rad). Gravity and springs act, and nothing else; the chain of four-bars is
+horizontal, and its bars turn at first, so that it exchanges no energy. Twenty steps of 1 ms are simulated.
 """
 
 from __future__ import annotations
