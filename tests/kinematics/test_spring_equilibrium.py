@@ -116,6 +116,50 @@ def test_batch_is_in_the_same_equilibrium() -> None:
         np.testing.assert_array_equal(split_configuration(robot, q)[0], value)
 
 
+@pytest.mark.parametrize("name", ["cassie_leg", "digit_2legs"])
+def test_springs_that_loops_let_rest_are_kept_at_rest(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    robot = eurdf.load(name, geometry=False)
+    q0 = eurdf.assemble(robot).q
+    values = split_configuration(robot, q0)[0] + np.linspace(-0.05, 0.05, 4)[:, None]
+
+    def refuse(*_: Any) -> None:
+        raise AssertionError("springs were brought into equilibrium afterwards, which takes long")
+
+    for module in ("eurdf.kinematics.forward_kinematics", "eurdf.kinematics.batch.forward_kinematics"):
+        monkeypatch.setattr(f"{module}.spring_equilibrium", refuse)
+    found = eurdf.batch.forward_kinematics(robot, values, q0)
+    assert found.converged.all()
+    for value, q in zip(values, found.q, strict=True):
+        assert eurdf.spring_energy(robot, q) == 0.0
+        assert np.abs(eurdf.residual(robot, q)).max() < 1e-10
+        np.testing.assert_allclose(eurdf.forward_kinematics(robot, value, q0), q, atol=1e-9)
+
+
+def test_batch_brings_only_springs_that_cannot_rest_into_equilibrium() -> None:
+    # The loop holds the spring of a 5-bar away from rest once the motor has moved far enough.
+    robot = linkage(5, {"j2": "stiffness: 7, rest: 1.2"})
+    values = np.linspace(-0.6, 0.6, 7)[:, None]
+    found = eurdf.batch.forward_kinematics(robot, values)
+    at_rest = [abs(coordinate(robot, q, "j2") - 1.2) < 1e-9 for q in found.q]
+    assert found.converged.all()
+    assert 0 < sum(at_rest) < len(values)
+    for value, q in zip(values, found.q, strict=True):
+        np.testing.assert_allclose(eurdf.forward_kinematics(robot, value), q, atol=1e-7)
+
+
+def test_spring_of_a_mimic_joint_that_stands_still_acts_on_nothing() -> None:
+    robot = load(
+        """<robot name="pair"><link name="base"/><link name="one"/><link name="two"/>
+        <joint name="leader" type="continuous"><parent link="base"/><child link="one"/></joint>
+        <joint name="follower" type="continuous"><parent link="one"/><child link="two"/>
+        <mimic joint="leader" multiplier="0"/></joint></robot>""",
+        HEAD + "joints: {follower: {stiffness: 7, rest: 0.2}}\n",
+    )
+    q = eurdf.forward_kinematics(robot, {})
+    assert coordinate(robot, q, "leader") == 0.0
+    assert eurdf.spring_energy(robot, q) == pytest.approx(0.14)
+
+
 def test_rod_that_spins_does_not_delay_the_springs(monkeypatch: pytest.MonkeyPatch) -> None:
     robot, steps = eurdf.load("cassie_leg", geometry=False), []
     closed = Assembler.closed

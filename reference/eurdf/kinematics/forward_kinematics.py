@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,7 +15,7 @@ from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.driven_motion import DrivenMotion
 from eurdf.kinematics.exceptions import NotClosable
 from eurdf.kinematics.residual import all_openings, residual_and_jacobian
-from eurdf.kinematics.spring_equilibrium import spring_equilibrium
+from eurdf.kinematics.spring_equilibrium import joints_at_rest, spring_equilibrium
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.mechanism.mechanism import ROOT_JOINT
 from eurdf.pinocchio.arguments import checked_array, checked_tolerance
@@ -28,6 +28,8 @@ _MOST_CORRECTION = 0.25
 # or by this much (rad, or characteristic lengths). If not, the step is halved, down to this fraction of the path.
 _LEAST_CORRECTION = 1e-6
 _SHORTEST_STEP = 2.0**-10
+# The same where the springs are kept at rest: if that takes many steps, they are brought into equilibrium afterwards.
+SHORTEST_STEP_AT_REST = 2.0**-3
 # Bound of the motion of each joint in one step (rad, or characteristic lengths).
 _LONGEST_MOTION = 0.5
 # A direction counts as blocked if the other joints would have to move this many times faster than the given ones.
@@ -80,13 +82,16 @@ def forward_kinematics(
     goal = np.array(first)
     goal[given.coordinates] = given.values
     goal = start(robot, goal, "actuated")
+    given = replace(given, values=goal[given.coordinates])
+    if (resting := _with_springs_at_rest(robot, given, first, tolerance)) is not None:
+        return resting
     velocities = tuple(given.velocities.tolist())
     with borrowed(robot, Assembler, tuple(given.joints)) as assembler, borrowed(robot, DrivenMotion, velocities) as by:
         assembler.tolerance, assembler.limits = tolerance, None
         q, part = _follow(robot, given, first, goal, assembler, by, _SHORTEST_STEP)
         if part < 1.0:
             raise _stopped(robot, assembler, q, goal, given.coordinates)
-        return _at_rest(robot, q, given, assembler)
+        return _in_equilibrium(robot, q, given, assembler)
 
 
 def farthest(
@@ -107,16 +112,41 @@ def farthest(
         ValueError: ``values`` does not fit this robot.
     """
     given = _given_by_name(robot, values)
+    if (resting := _with_springs_at_rest(robot, given, first, 1e-10)) is not None:
+        return resting, 1.0
     goal = np.array(first)
     goal[given.coordinates] = given.values
     velocities = tuple(given.velocities.tolist())
     with borrowed(robot, Assembler, tuple(given.joints)) as assembler, borrowed(robot, DrivenMotion, velocities) as by:
         assembler.tolerance, assembler.limits = 1e-10, None
         q, part = _follow(robot, given, first, goal, assembler, by, shortest)
-        return _at_rest(robot, q, given, assembler), part
+        return _in_equilibrium(robot, q, given, assembler), part
 
 
-def _at_rest(robot: Robot, q: Vector, given: _Given, assembler: Assembler) -> Vector:
+def _with_springs_at_rest(robot: Robot, given: _Given, first: Vector, tolerance: float) -> Vector | None:
+    """The result if every spring can be at rest on the way: a configuration (nq,) of no energy, of which none is less.
+
+    The joints with springs are then given, too. None if the loops may not let them rest.
+    """
+    resting = joints_at_rest(robot, given.velocities)
+    if resting is None:
+        return None
+    both = _Given(
+        (*given.joints, *resting.joints),
+        np.concatenate((given.coordinates, resting.coordinates)),
+        np.concatenate((given.velocities, resting.velocities)),
+        np.concatenate((given.values, resting.values)),
+    )
+    goal = np.array(first)
+    goal[both.coordinates] = both.values
+    velocities = tuple(both.velocities.tolist())
+    with borrowed(robot, DrivenMotion, velocities) as by, borrowed(robot, Assembler, both.joints) as assembler:
+        assembler.tolerance, assembler.limits = tolerance, None
+        q, part = _follow(robot, both, first, goal, assembler, by, SHORTEST_STEP_AT_REST, sure=True)
+    return q if part == 1.0 else None
+
+
+def _in_equilibrium(robot: Robot, q: Vector, given: _Given, assembler: Assembler) -> Vector:
     if not len(robot.tree.springs):
         return q
     return spring_equilibrium(robot, q, given.velocities, given.coordinates, assembler)
@@ -146,8 +176,12 @@ def _follow(
     assembler: Assembler,
     driven: DrivenMotion,
     shortest: float,
+    sure: bool = False,
 ) -> tuple[Vector, float]:
-    """Move the given joints from the first configuration toward the goal; where they get, and the part of the path."""
+    """Move the given joints from the first configuration toward the goal; where they get, and the part of the path.
+
+    If it is to be sure, they stop where the loops may block them.
+    """
     tree, scale = robot.tree, derived(robot, TangentSpaces).scale
     path = tree.difference(first, goal)  # zero except for the given joints
     q, done, step = first, 0.0, 1.0
@@ -155,6 +189,8 @@ def _follow(
         step = min(step, 1.0 - done)
         v = driven.velocity(q, step * path[given.velocities])
         if v is None:
+            if sure:
+                return q, done
             v = _blocked_velocity(robot, q, given, step * path[given.velocities])
         motion = v / scale
         if np.abs(motion).max(initial=0.0) > _LONGEST_MOTION and step > shortest:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import itertools
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -27,6 +28,65 @@ _SAVED = 1e-4
 # Stiffness along a motion, relative to the largest one, below which no spring acts on it.
 _SLACK = 1e-9
 _SHORTEST_STEP = 2.0**-20
+
+
+class Resting(NamedTuple):
+    """Joints whose springs are at rest.
+
+    Attributes:
+        joints: Their names.
+        coordinates: Indices in q of all their coordinates.
+        velocities: Indices in v of all their velocities.
+        values: Their coordinates at rest, rad or m.
+    """
+
+    joints: tuple[str, ...]
+    coordinates: Indices
+    velocities: Indices
+    values: Vector
+
+
+def joints_at_rest(robot: Robot, given: Indices) -> Resting | None:
+    """The joints with springs, but for given ones, at the coordinates where no spring stores energy.
+
+    Args:
+        robot: The robot.
+        given: Indices in v of the joints that are given.
+
+    Returns:
+        The joints. None if there are none, if a joint has springs on some of its coordinates only, or if two springs
+        act on one coordinate.
+    """
+    held = set(given.tolist())
+    free = [each for each in derived(robot, _sprung) or () if each[2][0] not in held]
+    if not free:
+        return None
+    names, coordinates, velocities, values = zip(*free, strict=True)
+    chain = itertools.chain.from_iterable
+    return Resting(
+        names,
+        np.fromiter(chain(coordinates), np.intp),
+        np.fromiter(chain(velocities), np.intp),
+        np.fromiter(chain(values), float),
+    )
+
+
+def _sprung(robot: Robot) -> list[tuple[str, list[int], list[int], list[float]]] | None:
+    """Each joint with springs as in `Resting`; None as for `joints_at_rest`."""
+    springs = robot.tree.springs
+    velocities = springs.idx_v.tolist()
+    found = []
+    for name, slot in robot.slots.items():
+        own = [index for index, velocity in enumerate(velocities) if slot.idx_v <= velocity < slot.idx_v + slot.nv]
+        if own and (slot.nq != slot.nv or sorted(velocities[index] - slot.idx_v for index in own) != [*range(slot.nv)]):
+            return None
+        if own:
+            with np.errstate(all="ignore"):
+                rest = -springs.shift[own] / springs.ratio[own]
+            if not np.isfinite(rest).all():  # of a mimic joint that does not move with its leader
+                return None
+            found.append((name, springs.idx_q[own].tolist(), springs.idx_v[own].tolist(), rest.tolist()))
+    return found
 
 
 def spring_equilibrium(robot: Robot, q: Vector, held: Indices, coordinates: Indices, assembler: Assembler) -> Vector:

@@ -18,8 +18,9 @@ from eurdf.kinematics.batch.problem import Group, Problem, driving_stack, held_g
 from eurdf.kinematics.batch.stack import BatchStack
 from eurdf.kinematics.batch.tangent import SURE, following
 from eurdf.kinematics.derived import borrowed
+from eurdf.kinematics.forward_kinematics import SHORTEST_STEP_AT_REST
 from eurdf.kinematics.residual import residual as residual_of
-from eurdf.kinematics.spring_equilibrium import spring_equilibrium
+from eurdf.kinematics.spring_equilibrium import joints_at_rest, spring_equilibrium
 from eurdf.pinocchio.arguments import checked_tolerance
 
 if TYPE_CHECKING:
@@ -48,6 +49,8 @@ class Driven:
         coordinates: Indices in q of the given coordinates.
         velocities: Indices in v of the given velocities.
         tolerance: Bound of each row of the residual for closed loops, m or rad.
+        rest: The last of the given coordinates, those of springs at rest; the same for all elements.
+        shortest: Smallest step, as a part of the path.
     """
 
     problem: Problem
@@ -56,6 +59,8 @@ class Driven:
     coordinates: Indices
     velocities: Indices
     tolerance: float
+    rest: Vector
+    shortest: float
 
 
 #: Why forward kinematics did not converge: no closed configuration was found near the start; the loops do not close at
@@ -101,8 +106,8 @@ def forward_kinematics(
     """The closed configurations at which the actuated joints have the given coordinates; B elements.
 
     Each element equals the result of `eurdf.forward_kinematics` to 1e-9, on the branch of its start. It does not
-    depend on the other elements or on how the batch is divided. If joints have springs, each element is moved to their
-    equilibrium afterwards, one after the other.
+    depend on the other elements or on how the batch is divided. If joints have springs that the loops do not let rest,
+    each element is moved to their equilibrium afterwards, one after the other.
 
     Args:
         robot: The robot.
@@ -123,22 +128,41 @@ def forward_kinematics(
         ValueError: An argument has a wrong shape or is not finite.
         NotImplementedError: A joint or constraint has a type that is not supported.
     """
-    model, actuation = problem(robot), robot.actuation
+    actuation = robot.actuation
     values = checked_rows("values", values, len(actuation.idx_q))
     q, common = starts(robot, q0, len(values))
-    held = held_groups(robot, actuation.idx_v.tolist())
-    driving = tuple(driving_stack(robot, group, actuation.idx_v) for group in held)
-    driven = Driven(model, held, driving, actuation.idx_q, actuation.idx_v, checked_tolerance(tolerance))
+    driven = _driven(robot, actuation.idx_q, actuation.idx_v, checked_tolerance(tolerance))
     _refuse_zero(driven, values)
+    at_rest = None
+    if (resting := joints_at_rest(robot, actuation.idx_v)) is not None:
+        coordinates = np.concatenate((actuation.idx_q, resting.coordinates))
+        velocities = np.concatenate((actuation.idx_v, resting.velocities))
+        at_rest = _driven(robot, coordinates, velocities, driven.tolerance, resting.values, SHORTEST_STEP_AT_REST)
     work = blocks(_numbers(driven), block, threads, executor, progress)
     closed = None
     if common:
         first, closed = _close_start(driven, q[:1])
         q, closed = np.broadcast_to(first, q.shape), np.broadcast_to(closed, len(q))
-    found, residual, code = work.map(_solved, driven, (values, q) if closed is None else (values, q, closed))
+    batch = (values, q) if closed is None else (values, q, closed)
+    found, residual, code, rests = work.map(_solved, (driven, at_rest), batch)
     if len(robot.tree.springs):
-        _to_equilibrium(robot, driven, found, residual, np.flatnonzero(code == 0))
+        _to_equilibrium(robot, driven, found, residual, np.flatnonzero((code == 0) & ~rests))
     return ForwardKinematics(found, code == 0, residual, tuple(_REASONS[each] for each in code.tolist()))
+
+
+def _driven(
+    robot: Robot,
+    coordinates: Indices,
+    velocities: Indices,
+    tolerance: float,
+    rest: Vector | None = None,
+    shortest: float = _SHORTEST_STEP,
+) -> Driven:
+    """A robot whose joints at these indices in q and v are given."""
+    held = held_groups(robot, velocities.tolist())
+    driving = tuple(driving_stack(robot, group, velocities) for group in held)
+    rest = np.empty(0) if rest is None else rest
+    return Driven(problem(robot), held, driving, coordinates, velocities, tolerance, rest, shortest)
 
 
 def _to_equilibrium(robot: Robot, driven: Driven, q: Matrix, residual: Vector, elements: Indices) -> None:
@@ -175,11 +199,27 @@ def _close_start(driven: Driven, q: Matrix) -> tuple[Matrix, Mask]:
     return first.T, closed
 
 
-def _solved(driven: Driven, values: Matrix, q: Matrix, closed: Mask | None = None) -> tuple[Matrix, Vector, Indices]:
+def _solved(
+    robots: tuple[Driven, Driven | None], values: Matrix, q: Matrix, closed: Mask | None = None
+) -> tuple[Matrix, Vector, Indices, Mask]:
+    """What `solve` finds, and for which elements the springs are at rest; the norms (B,) of the residual."""
+    driven, at_rest = robots
     if closed is None:
         q, closed = _close_start(driven, q)
-    found, residual, code = solve(driven, q.T, closed, values.T)
-    return found.T, np.linalg.norm(residual, axis=0), code
+    found, residual, code = np.array(q), np.zeros(len(q)), np.zeros(len(q), np.intp)
+    rests = np.zeros(len(q), dtype=bool)
+    if at_rest is not None:
+        free = np.flatnonzero(closed)
+        free = free[_is_sure(at_rest, q[free].T)]
+        rest = np.broadcast_to(at_rest.rest, (len(free), len(at_rest.rest)))
+        there, r, why = solve(at_rest, q[free].T, closed[free], np.hstack((values[free], rest)).T)
+        resting = free[why == 0]
+        found[resting], residual[resting] = there.T[why == 0], np.linalg.norm(r[:, why == 0], axis=0)
+        rests[resting] = True
+    others = np.flatnonzero(~rests)
+    there, r, code[others] = solve(driven, q[others].T, closed[others], values[others].T)
+    found[others], residual[others] = there.T, np.linalg.norm(r, axis=0)
+    return found, residual, code, rests
 
 
 def solve(driven: Driven, first: Matrix, closed: Mask, values: Matrix) -> tuple[Matrix, Matrix, Indices]:
@@ -211,7 +251,7 @@ def solve(driven: Driven, first: Matrix, closed: Mask, values: Matrix) -> tuple[
         fresh[new] = True
         step[going] = np.minimum(step[going], 1.0 - done[going])
         fastest = np.abs(v[:, going] / driven.problem.scale[:, None]).max(axis=0, initial=0.0)
-        while (far := (fastest * step[going] > _LONGEST_MOTION) & (step[going] > _SHORTEST_STEP)).any():
+        while (far := (fastest * step[going] > _LONGEST_MOTION) & (step[going] > driven.shortest)).any():
             step[going[far]] *= 0.5
         h = step[going]
         motion = h * v[:, going]
@@ -229,7 +269,7 @@ def solve(driven: Driven, first: Matrix, closed: Mask, values: Matrix) -> tuple[
         step[there] *= 2.0
         fresh[there] = False
         step[refused] *= 0.5
-        code[refused[step[refused] < _SHORTEST_STEP]] = 2
+        code[refused[step[refused] < driven.shortest]] = 2
         going = np.flatnonzero((code == 0) & (done < 1.0))
     stopped = np.flatnonzero(code == 2)
     if len(stopped):
@@ -252,18 +292,31 @@ def _following(driven: Driven, q: Matrix, path: Matrix) -> Matrix:
     """
     v = np.zeros((driven.problem.tree.nv, q.shape[1]))
     v[driven.velocities] = path[driven.velocities]
-    doubtful = np.zeros(q.shape[1], dtype=bool)
-    for group, driving in zip(driven.groups, driven.driving, strict=True):
-        at, weights = group.stack.at(q), group.row_scale[:, None]
-        A = group.stack.jacobian(at) * weights[:, :, None]
-        b = linear.times(driving.jacobian(at), v[driving.velocities])
-        y, pivot = linear.solve(linear.gram(A), -weights * b)
-        v[group.stack.velocities] = linear.times_back(A, y)
-        doubtful |= ~(pivot > SURE)
-    which = np.flatnonzero(doubtful)
+    sure = _follow(driven, q, v)
+    which = np.flatnonzero(~sure)
     part = max(1, _MOST_NUMBERS // driven.problem.whole.numbers)
     for own in (which[first : first + part] for first in range(0, len(which), part)):
         K = driven.problem.whole.jacobian(driven.problem.whole.at(q[:, own]))
         given = driven.velocities
         v[:, own] = following(driven.problem, K, given, path[np.ix_(given, own)], _FASTEST)
     return v
+
+
+def _follow(driven: Driven, q: Matrix, v: Matrix) -> Mask:
+    """Complete velocities (nv, B) by those that follow from the given ones; for which elements (B,) that is sure."""
+    sure = np.ones(q.shape[1], dtype=bool)
+    for group, driving in zip(driven.groups, driven.driving, strict=True):
+        at, weights = group.stack.at(q), group.row_scale[:, None]
+        A = group.stack.jacobian(at) * weights[:, :, None]
+        b = linear.times(driving.jacobian(at), v[driving.velocities])
+        y, pivot = linear.solve(linear.gram(A), -weights * b)
+        v[group.stack.velocities] = linear.times_back(A, y)
+        sure &= pivot > SURE
+    return sure
+
+
+def _is_sure(driven: Driven, q: Matrix) -> Mask:
+    """Whether the loops leave the given joints free at q (nq, B), beyond doubt."""
+    v = np.zeros((driven.problem.tree.nv, q.shape[1]))
+    v[driven.velocities] = 1.0
+    return _follow(driven, q, v)
