@@ -285,7 +285,9 @@ def daemon():
             os.execv("/bin/sleep", ["sleep", "60"])
         os._exit(0)
     os.waitpid(parent, 0)
-    return int(os.read(told, 20))
+    os.close(tell)
+    with os.fdopen(told) as pid:
+        return int(pid.read())  # to its end, which is when the daemon has become `sleep`
 
 
 def has_a_daemon(request):
