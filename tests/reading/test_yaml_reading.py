@@ -6,17 +6,22 @@ import contextlib
 import json
 import random
 import re
+from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from eurdf.collection import collection_names
 from eurdf.diagnostics import Diagnostic, FileError, Place
 from eurdf.reading.core_schema import resolve
-from eurdf.reading.source import FILE_LIMIT, Source
+from eurdf.reading.source import FILE_LIMIT, Source, read_source
 from eurdf.reading.yaml_reader import DEPTH_LIMIT, DIRECTIVE_LIMIT, NODE_LIMIT, YamlDocument, read_yaml
+from eurdf.reading.yaml_values import usual_values
 from support.watchdog import watchdog
+
+ROBOTS = Path(__file__).parents[2] / "robots"
 
 Pointer = tuple[str | int, ...]
 
@@ -44,6 +49,9 @@ metadata:
     Two lines,
     the second indented
 """
+
+#: The same values, without anchor and alias.
+USUAL = SAMPLE.replace("&tip ", "").replace("*tip", "[0, 0, 0.31]")
 
 
 def source_of(text: str) -> Source:
@@ -521,7 +529,7 @@ def test_damaged_file_gives_document_or_error() -> None:
     ]
     outcomes = set()
     for _ in range(3000):
-        text = SAMPLE
+        text = chance.choice([SAMPLE, USUAL])
         for _ in range(chance.randint(1, 4)):
             start = chance.randrange(len(text))
             end = start + chance.choice([0, 1, 1, 8])
@@ -537,8 +545,9 @@ def test_damaged_file_gives_document_or_error() -> None:
             outcomes.add(diagnostic.code)
         else:
             document.place(("closures", 1, "frames", 1, "xyz", 2))
-            outcomes.add("read")
-    assert {"read", "yaml-syntax", "yaml-alias", "yaml-several-documents"} <= outcomes
+            assert repr(document.data) == repr(document.root.data)
+            outcomes.add("read in less time" if usual_values(document.source) else "read")
+    assert {"read", "read in less time", "yaml-syntax", "yaml-alias", "yaml-several-documents"} <= outcomes
 
 
 @settings(deadline=None, max_examples=300)
@@ -548,11 +557,51 @@ def test_damaged_file_gives_document_or_error() -> None:
 )
 def test_any_text_gives_document_or_error(text: str) -> None:
     try:
-        data = read(text).data
+        document = read(text)
     except FileError as error:
         assert error.diagnostic.code.startswith("yaml-")  # noqa: PT017 - either outcome is right
     else:
-        json.dumps(data, allow_nan=False)
+        assert json.dumps(document.data, allow_nan=False) == json.dumps(document.root.data)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a: " + "[" * 200 + "]" * 200,
+        "a: " + "[" * 10_000 + "]" * 10_000,
+        "a:\n  " + "- " * 250 + "b",
+        "".join(f"{' ' * depth}a:\n" for depth in range(190)),
+        "a: {" + "b: {" * 70 + "}" * 71,
+    ],
+)
+def test_deep_nesting_is_left_to_reader_without_recursion(text: str) -> None:
+    assert usual_values(source_of(text)) is None
+    assert error_of(text).code == "yaml-too-deep"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a: &b 1",
+        "a: !!str 1",
+        "? a\n: 1",
+        "%YAML 1.2\n---\na: 1",
+        "a: .inf",
+        "1: a",
+        "[a]: b",
+        "a: 1\na: 2",
+        "a: [",
+        "a",
+    ],
+)
+def test_unusual_file_is_left_to_reader_event_by_event(text: str) -> None:
+    assert usual_values(source_of(text)) is None
+
+
+def test_descriptions_of_collection_are_usual() -> None:
+    for name in collection_names():
+        source = read_source(ROBOTS / name / "robot.yaml")
+        assert usual_values(source) == read_yaml(source).root.data
 
 
 # What is no YAML mapping

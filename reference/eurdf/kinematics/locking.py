@@ -87,9 +87,7 @@ def lock(
     return LockedRobot(
         built.mechanism,
         built.model,
-        built.tree,
-        built.actuation,
-        built.configurations,
+        built.sites,
         carried_over(robot, built),
         robot.no_geometry,
         lambda _: diagnostics,

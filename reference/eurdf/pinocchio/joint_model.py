@@ -76,14 +76,22 @@ def aligned(axis: Vector3) -> int | None:
     return None
 
 
+# Models are kept: the legs of a robot have the same axes, and to make one takes longer than all else of a joint. Equal
+# axes have equal models: -0.0, which equals 0.0, becomes 0.0.
+@lru_cache(maxsize=256)
 def _revolute(axis: Vector3) -> pin.JointModel:
     index = aligned(axis)
-    return pin.JointModelRevoluteUnaligned(np.array(unit(axis))) if index is None else _REVOLUTE[index]
+    if index is not None:
+        return _REVOLUTE[index]
+    return pin.JointModel(pin.JointModelRevoluteUnaligned(np.array(unit(axis)) + 0.0))
 
 
+@lru_cache(maxsize=256)
 def _prismatic(axis: Vector3) -> pin.JointModel:
     index = aligned(axis)
-    return pin.JointModelPrismaticUnaligned(np.array(unit(axis))) if index is None else _PRISMATIC[index]
+    if index is not None:
+        return _PRISMATIC[index]
+    return pin.JointModel(pin.JointModelPrismaticUnaligned(np.array(unit(axis)) + 0.0))
 
 
 def _continuous(axis: Vector3) -> pin.JointModel:
@@ -107,11 +115,12 @@ def _helical(axis: Vector3, pitch: float) -> pin.JointModel:
     return _HELICAL[index](per_radian)
 
 
+@lru_cache(maxsize=256)
 def _universal(first: Vector3, second: Vector3) -> pin.JointModel:
     """Two revolutes in one point. Pinocchio's universal joint requires exactly perpendicular axes."""
     (a, b, c), (x, y, z) = unit(first), unit(second)
     if a * x + b * y + c * z == 0.0:
-        return pin.JointModelUniversal(np.array((a, b, c)), np.array((x, y, z)))
+        return pin.JointModel(pin.JointModelUniversal(np.array((a, b, c)) + 0.0, np.array((x, y, z)) + 0.0))
     return _in_series(_revolute(first), _revolute(second))
 
 
@@ -119,4 +128,4 @@ def _in_series(first: pin.JointModel, second: pin.JointModel) -> pin.JointModel:
     composite = pin.JointModelComposite(2)
     composite.addJoint(first)
     composite.addJoint(second)
-    return composite
+    return pin.JointModel(composite)

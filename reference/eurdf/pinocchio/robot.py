@@ -17,6 +17,7 @@ from eurdf.pinocchio.actuation import Actuation, build_actuation
 from eurdf.pinocchio.configuration import Vector, configuration_vector, joint_coordinates, own_coordinates
 from eurdf.pinocchio.constraint import build_constraint_models
 from eurdf.pinocchio.coordinates import Slot, slots
+from eurdf.pinocchio.frame_pairs import Site
 from eurdf.pinocchio.geometry import MeshCache, Resolve, build_geometry, carry_over, meshes_of
 from eurdf.pinocchio.meshes import Mesh
 from eurdf.pinocchio.model import build_model_and_sites
@@ -46,9 +47,7 @@ class Robot:
     Attributes:
         mechanism: What it was built from, as plain data.
         model: The spanning tree.
-        tree: The same as kinematics asks for it.
-        actuation: The actuated joints, in file order.
-        configurations: For each named configuration its q.
+        sites: For each body, by name, where its frame is in the model.
         geometry: Its shapes; None without geometry.
         no_geometry: What makes the error that `visual_model` and `collision_model` raise, where the geometry was asked
             for and cannot be built; else None.
@@ -58,9 +57,7 @@ class Robot:
 
     mechanism: Mechanism
     model: pin.Model
-    tree: PinocchioTree
-    actuation: Actuation
-    configurations: Mapping[str, Vector]
+    sites: Mapping[str, Site]
     geometry: Geometry | None = None
     no_geometry: Callable[[], Exception] | None = None
     diagnose: Callable[[Robot], tuple[Diagnostic, ...]] | None = None
@@ -74,6 +71,22 @@ class Robot:
         ``check_loops=True``. Inertias and this configuration are checked when the diagnostics are first used.
         """
         return () if self.diagnose is None else self.diagnose(self)
+
+    @cached_property
+    def tree(self) -> PinocchioTree:
+        """The spanning tree as kinematics asks for it."""
+        return build_tree(self.mechanism, self.model, self.sites, self.slots)
+
+    @cached_property
+    def actuation(self) -> Actuation:
+        """The actuated joints, in file order."""
+        return build_actuation(self.mechanism, self.model, self.slots)
+
+    @cached_property
+    def configurations(self) -> Mapping[str, Vector]:
+        """For each named configuration its q (nq,)."""
+        named = self.mechanism.configurations
+        return MappingProxyType({name: self.configuration(coordinates) for name, coordinates in named.items()})
 
     @property
     def constraints(self) -> tuple[Constraint, ...]:
@@ -207,22 +220,7 @@ def build_robot(
             build_geometry(mechanism, model, pin.GeometryType.VISUAL, find, meshes, cache),
             build_geometry(mechanism, model, pin.GeometryType.COLLISION, find, meshes, cache),
         )
-    at = slots(mechanism)
-    return Robot(
-        mechanism,
-        model,
-        build_tree(mechanism, model, sites, at),
-        build_actuation(mechanism, model, at),
-        MappingProxyType(
-            {
-                name: configuration_vector(mechanism, model, coordinates, at)
-                for name, coordinates in mechanism.configurations.items()
-            }
-        ),
-        shapes,
-        no_geometry,
-        diagnose,
-    )
+    return Robot(mechanism, model, sites, shapes, no_geometry, diagnose)
 
 
 def carried_over(before: Robot, after: Robot) -> Geometry | None:

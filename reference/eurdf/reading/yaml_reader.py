@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from functools import cached_property
 from math import isfinite
 from typing import Any
 
@@ -27,6 +28,7 @@ from eurdf.reading.core_schema import TAG_PREFIX, resolve, resolve_tagged
 from eurdf.reading.source import FILE_LIMIT, Source, short, too_large
 from eurdf.reading.yaml_node import Alias, Collection, Node, Span, json_pointer
 from eurdf.reading.yaml_syntax import stray_mark, syntax_error, unusual_name
+from eurdf.reading.yaml_values import usual_values
 
 #: Maximum depth of nested mappings and lists, aliases expanded.
 DEPTH_LIMIT = 64
@@ -48,17 +50,18 @@ class YamlDocument:
 
     Attributes:
         source: The text.
-        root: The top level, with the place of everything in it.
         data: ``dict`` with string keys, ``list``, ``str``, ``int``, ``float``, ``bool`` and ``None``. A value with
             several aliases is one object in several places.
     """
 
-    __slots__ = ("data", "root", "source")
-
-    def __init__(self, source: Source, root: Collection) -> None:
+    def __init__(self, source: Source, data: dict[str, Any]) -> None:
         self.source = source
-        self.data: dict[str, Any] = root.data
-        self.root = root
+        self.data = data
+
+    @cached_property
+    def root(self) -> Collection:
+        """The top level, with the place of everything in it."""
+        return _read_nodes(self.source)
 
     def span(self, pointer: Sequence[str | int] = (), key: bool = False) -> Span:
         """Indices in the text of the first character of a value, or of its key, and of the one after the last.
@@ -92,6 +95,17 @@ def read_yaml(source: Source) -> YamlDocument:
     Raises:
         FileError: ``file-too-large`` or one of the ``yaml-`` codes, at the first error.
     """
+    values = usual_values(source)
+    if values is not None:
+        return YamlDocument(source, values)
+    root = _read_nodes(source)
+    document = YamlDocument(source, root.data)
+    document.root = root
+    return document
+
+
+def _read_nodes(source: Source) -> Collection:
+    """The top level of a file, or its first error."""
     if len(source.data) > FILE_LIMIT:
         raise too_large(source.file, f"{FILE_LIMIT:,} bytes")
     text, original = without_other_breaks(source)
@@ -102,12 +116,12 @@ def read_yaml(source: Source) -> YamlDocument:
     if data.count(b"\n%TAG") + data.count(b"\r%TAG") + data.startswith(b"%TAG") > DIRECTIVE_LIMIT:
         raise too_large(source.file, f"{DIRECTIVE_LIMIT} %TAG directives")
     try:
-        document = YamlDocument(source, _Reader(source, CSafeLoader(data).get_event, original).read())
+        root = _Reader(source, CSafeLoader(data).get_event, original).read()
     except (YAMLError, UnicodeDecodeError) as error:
         raise syntax_error(source, error) from None
     if "\ufeff" in source.text and (mark := stray_mark(source, data)) is not None:
         raise mark
-    return document
+    return root
 
 
 def without_other_breaks(source: Source) -> tuple[str, dict[int, str]]:

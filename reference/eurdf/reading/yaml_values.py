@@ -1,0 +1,104 @@
+"""The values of a usual YAML file, without their places: those are looked for when something is to be reported.
+
+PyYAML composes nodes in compiled code, which takes two thirds of the time of `yaml_reader`, event by event. But it does
+so by recursion, and forgets which anchors and tags it saw. So a file that has any, that could be nested deeply, or in
+which anything is wrong is left to `yaml_reader`, which decides.
+"""
+
+from __future__ import annotations
+
+import operator
+import re
+from math import isfinite
+from typing import Any
+
+from yaml import CSafeLoader
+from yaml.error import YAMLError
+from yaml.nodes import MappingNode, ScalarNode
+
+from eurdf.reading.core_schema import Scalar, resolve
+from eurdf.reading.source import Source
+
+#: Bytes of a file that is read so. The depth of its blocks is at most the square root of twice as much: each is
+#: indented more than the one around it.
+MOST_BYTES = 20_000
+
+#: Characters of a file that may begin a nested list or mapping on the same line.
+MOST_OPENED = 300
+
+#: Mappings and lists nested, at most, well below `yaml_reader.DEPTH_LIMIT`.
+_MOST_NESTED = 32
+
+#: Where an anchor, an alias, a tag or an explicit key may begin, or a directive.
+_UNUSUAL = re.compile(rb"(?:^|[\s,:\[{-])[&*!%?]")
+
+#: Byte order marks and breaks that libyaml takes for others than YAML 1.2 does.
+_BREAKS = "\ufeff\x85\u2028\u2029"
+
+
+class _UnusualError(Exception):
+    """Something that is left to `yaml_reader`."""
+
+
+class _Composer(CSafeLoader):
+    """Composes nodes whose tags are their values, or the texts of keys."""
+
+    # It calls these for each node, for tags that depend on the path: functions that do nothing, in no time.
+    descend_resolver = staticmethod(operator.is_)  # type: ignore[assignment]
+    ascend_resolver = staticmethod(tuple)  # type: ignore[assignment]
+
+    def resolve(self, kind: type[Any], text: Any, implicit: Any) -> Scalar:
+        return resolve(text) if kind is ScalarNode and implicit[0] else text
+
+
+def usual_values(source: Source) -> dict[str, Any] | None:
+    """The mapping that a YAML file consists of, as `yaml_reader` reads it; None if only that can tell."""
+    data = source.data
+    if len(data) > MOST_BYTES or data.count(b"[") + data.count(b"{") + data.count(b"-") > MOST_OPENED:
+        return None
+    if any(map(data.__contains__, b"&*!%?")) and _UNUSUAL.search(data) is not None:
+        return None
+    if data.endswith(b" ") or (not data.isascii() and any(map(source.text.__contains__, _BREAKS))):
+        return None
+    try:
+        node = _Composer(data).get_single_node()
+        return _mapping(node, 0) if type(node) is MappingNode else None
+    except (YAMLError, _UnusualError):
+        return None
+
+
+def _mapping(node: Any, depth: int) -> dict[str, Any]:
+    if depth == _MOST_NESTED:
+        raise _UnusualError
+    values = {}
+    for key, value in node.value:
+        kind = type(value)
+        name = key.tag
+        if type(key) is not ScalarNode or type(name) is not str:
+            raise _UnusualError
+        if kind is ScalarNode:
+            value = value.tag
+            if type(value) is float and not isfinite(value):
+                raise _UnusualError
+        else:
+            value = _mapping(value, depth + 1) if kind is MappingNode else _list(value, depth + 1)
+        values[name] = value
+    if len(values) < len(node.value):  # a key twice
+        raise _UnusualError
+    return values
+
+
+def _list(node: Any, depth: int) -> list[Any]:
+    if depth == _MOST_NESTED:
+        raise _UnusualError
+    values = []
+    for value in node.value:
+        kind = type(value)
+        if kind is ScalarNode:
+            value = value.tag
+            if type(value) is float and not isfinite(value):
+                raise _UnusualError
+        else:
+            value = _mapping(value, depth + 1) if kind is MappingNode else _list(value, depth + 1)
+        values.append(value)
+    return values
