@@ -24,7 +24,7 @@ from eurdf.kinematics.batch.stack import BatchStack
 from eurdf.kinematics.batch.tree import BatchTree
 from eurdf.mechanism.constraint import Closure
 from eurdf.mechanism.joint_type import JointType
-from eurdf.pinocchio.robot import Robot
+from eurdf.pinocchio.robot import Robot, build_robot
 from support import by_hand
 from support.actuated import robot_called
 from support.closed_tree import closed_tree
@@ -319,7 +319,8 @@ def four_bar(
     robot = load(text, f"actuators: [{actuator}]\nclosures: [{{name: pin, type: 3d, frames: [{ends}]}}]\n")
     if assembled is None:
         return robot
-    return replace(robot, configurations={"assembled": eurdf.assemble(robot, np.array(assembled)).q})
+    closed = robot.coordinates(eurdf.assemble(robot, np.array(assembled)).q)
+    return build_robot(replace(robot.mechanism, configurations={"assembled": closed}), geometry=False)
 
 
 def placed(xyz: str) -> str:

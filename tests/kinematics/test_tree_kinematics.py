@@ -49,7 +49,9 @@ def test_kinematics_asks_the_tree_alone(name: str) -> None:
     robot = eurdf.load(ROBOTS / "four_bar", geometry=False)
     q = eurdf.assemble(robot).q
     expected = ANSWERS[name](robot, q)
-    np.testing.assert_equal(ANSWERS[name](replace(robot, model=Refused()), q), expected)
+    asked = replace(robot, model=Refused())
+    vars(asked).update(tree=robot.tree, actuation=robot.actuation, configurations=robot.configurations)
+    np.testing.assert_equal(ANSWERS[name](asked, q), expected)
 
 
 @pytest.mark.parametrize("reference", [pin.LOCAL, pin.WORLD, pin.LOCAL_WORLD_ALIGNED])

@@ -133,8 +133,8 @@ class _Compiler:
             for kind in _TYPES[resolved["type"]]:
                 by_type.setdefault(kind, []).append(check)
 
-        of_type = {kind: _any_of(checks) for kind, checks in by_type.items()}
-        return lambda value: of_type.get(type(value), _nothing)(value)
+        of_type = {kind: _any_of(checks) for kind, checks in by_type.items()}.get
+        return lambda value: of_type(type(value), _nothing)(value)
 
     def _string(self, schema: Mapping[str, Any]) -> Check:
         least = schema.get("minLength", 0)
@@ -144,6 +144,8 @@ class _Compiler:
         return lambda value: type(value) is str and is_own_key(value)
 
     def _number(self, schema: Mapping[str, Any]) -> Check:
+        if "minimum" not in schema and "not" not in schema:
+            return _is_number
         least = schema.get("minimum", float("-inf"))
         excluded = schema.get("not", {"const": None})["const"]
         return lambda value: type(value) in (float, int) and value >= least and value != excluded
@@ -183,17 +185,33 @@ class _Compiler:
                     return False
             if one_of and one_of.isdisjoint(value):
                 return False
-            return all(others <= value.keys() for key, others in needed if key in value)
+            return not needed or all(others <= value.keys() for key, others in needed if key in value)
 
         return check
 
 
 def _any_of(checks: list[Check]) -> Check:
-    return checks[0] if len(checks) == 1 else lambda value: any(check(value) for check in checks)
+    if len(checks) == 1:
+        return checks[0]
+
+    def check(value: Any) -> bool:
+        for each in checks:  # noqa: SIM110 - `any` takes twice as long
+            if each(value):
+                return True
+        return False
+
+    return check
 
 
 def _among(values: list[Any]) -> Check:
+    if all(type(value) is str for value in values):
+        texts = frozenset(values)
+        return lambda value: type(value) is str and value in texts
     return lambda value: any(type(value) is type(each) and value == each for each in values)
+
+
+def _is_number(value: Any) -> bool:
+    return type(value) is float or type(value) is int
 
 
 def _anything(value: Any) -> bool:

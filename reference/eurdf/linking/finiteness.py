@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from itertools import chain
-from operator import add
+from operator import add, attrgetter
 
 from eurdf.diagnostics import Diagnostics, Place
 from eurdf.format.extension import Extension
@@ -19,6 +19,10 @@ from eurdf.mechanism.pose import IDENTITY, Pose
 
 #: Three factors below this, m, kg or kg·m², have a finite product, and so have sums of many of these.
 _MODERATE = 1e90
+
+# In compiled code, since each robot that is loaded is asked.
+_mass, _moments, _centre = attrgetter("mass"), attrgetter("moments"), attrgetter("pose.xyz")
+_origin = attrgetter("placement.xyz")
 
 
 def check_finite(mechanism: Mechanism, urdf: Urdf, extension: Extension | None, diagnostics: Diagnostics) -> None:
@@ -64,16 +68,17 @@ def _not_finite(mechanism: Mechanism, urdf: Urdf, extension: Extension | None) -
 
 
 def _is_moderate(mechanism: Mechanism) -> bool:
-    """Whether all lengths, masses and moments together are so small that no pose and no inertia can overflow."""
+    """Whether the norm of all lengths, masses and moments is so small that no pose and no inertia can overflow."""
     inertias = [body.inertia for body in mechanism.bodies if body.inertia is not None]
-    poses = [inertia.pose for inertia in inertias]
-    poses += [joint.placement for joint in mechanism.joints]
-    poses += [joint.offset for joint in mechanism.joints if joint.offset is not IDENTITY]
-    poses += [frame.pose for frame in mechanism.frames]
-    poses += [anchor.pose for closure in mechanism.closures for anchor in closure.anchors]
-    numbers = [pose.xyz for pose in poses] + [inertia.moments for inertia in inertias]
-    masses = [inertia.mass for inertia in inertias]
-    return sum(map(abs, chain(chain.from_iterable(numbers), masses))) < _MODERATE
+    vectors = chain(
+        map(_moments, inertias),
+        map(_centre, inertias),
+        map(_origin, mechanism.joints),
+        [joint.offset.xyz for joint in mechanism.joints if joint.offset is not IDENTITY],
+        [frame.pose.xyz for frame in mechanism.frames],
+        [anchor.pose.xyz for closure in mechanism.closures for anchor in closure.anchors],
+    )
+    return math.hypot(*chain.from_iterable(vectors), *map(_mass, inertias)) < _MODERATE
 
 
 def _poses_and_inertias_not_finite(
