@@ -43,7 +43,10 @@ def actuated(linkage: Linkage, joints: Sequence[str] | None = None) -> Robot:
     actuation = Actuation(names, idx_q, idx_v, model.nv, names, np.full((len(idx_v), 2), (-np.inf, np.inf)))
     closures = tuple(found for found in linkage.constraints if isinstance(found, Closure))
     mechanism = Mechanism("linkage", "", "fixed", (), (), closures=closures)  # without bodies and joints
-    return Robot(mechanism, model, linkage.tree, actuation, linkage.configurations)
+    robot = Robot(mechanism, model)
+    # In place of what it would make of its mechanism.
+    vars(robot).update(tree=linkage.tree, actuation=actuation, configurations=linkage.configurations)
+    return robot
 
 
 def closed_near(robot: Any, random: np.random.Generator, spread: float = 0.3, limits: bool = False) -> Any:

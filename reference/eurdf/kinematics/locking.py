@@ -87,7 +87,6 @@ def lock(
     return LockedRobot(
         built.mechanism,
         built.model,
-        built.sites,
         carried_over(robot, built),
         robot.no_geometry,
         lambda _: diagnostics,

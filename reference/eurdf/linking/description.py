@@ -145,7 +145,7 @@ def describe(
             # Another file that the description names may be anyone's: no line of it is shown.
             read = partial(read_source, named, is_quoted=is_inside)
         # Without a version, whether a mimic has an effect is not known.
-        version = None if document is None else version_of(document)
+        version = extension.version if extension is not None else document and version_of(document)
         mimic_errors = "ignored" if version in (None, "1") else "refused" if mimic else "kept"
     tree = _read_urdf(read, diagnostics, geometry, mimic_errors)
     if tree is None:

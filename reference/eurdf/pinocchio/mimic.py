@@ -65,6 +65,8 @@ def with_followers(mechanism: Mechanism, led: Following) -> dict[str, JointPrope
     A mimic joint moves with the velocity m v of its leader. So its armature and damping count m² times at the leader,
     and its friction |m| times. In a bare URDF nothing is added, as in Pinocchio's own parser.
     """
+    if not led.mimics:
+        return {}
     joints = {joint.name: joint for joint in mechanism.joints}
     folded: dict[str, JointProperties] = {}
     for name, mimic in led.mimics.items() if mechanism.version else ():

@@ -16,7 +16,6 @@ from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY
-from eurdf.pinocchio.frame_pairs import Site
 from eurdf.pinocchio.inertia import inertias_of, is_zero
 from eurdf.pinocchio.joint_model import joint_model
 from eurdf.pinocchio.limits import set_limits
@@ -37,11 +36,6 @@ _BODY, _JOINT, _FIXED_JOINT, _OP_FRAME = (
 
 
 def build_model(mechanism: Mechanism) -> pin.Model:
-    """The model of `build_model_and_sites`."""
-    return build_model_and_sites(mechanism)[0]
-
-
-def build_model_and_sites(mechanism: Mechanism) -> tuple[pin.Model, dict[str, Site]]:
     """Build the model of the spanning tree, with every link, joint and named frame of the mechanism.
 
     Pinocchio's own URDF parser fails on a joint that mimics one that comes later or itself mimics, and on one that
@@ -56,14 +50,15 @@ def build_model_and_sites(mechanism: Mechanism) -> tuple[pin.Model, dict[str, Si
         mechanism: A sound mechanism.
 
     Returns:
-        The model, and for each body by name where its frame is. Frames that the description adds are OP_FRAME; the
-        frame of a joint that was split in two is FIXED_JOINT, under the joint's name.
+        The model. Frames that the description adds are OP_FRAME; the frame of a joint that was split in two is
+        FIXED_JOINT, under the joint's name.
     """
     model = pin.Model()
     model.name = mechanism.name
     led = following(mechanism)
-    root = mechanism.bodies[0]
-    joint_id, body_frame = _add_root(model, mechanism)
+    root, *bodies = mechanism.bodies
+    root_inertia, *inertias = inertias_of([body.inertia for body in mechanism.bodies])
+    joint_id, body_frame = _add_root(model, mechanism, root_inertia)
     root_nq, root_nv = model.nq, model.nv
 
     free: list[tuple[Joint, int]] = []  # joints with coordinates of their own, in the model's order
@@ -77,17 +72,12 @@ def build_model_and_sites(mechanism: Mechanism) -> tuple[pin.Model, dict[str, Si
 
     add_joint, add_frame, append_body = model.addJoint, model.addFrame, model.appendBodyToJoint
     add_joint_frame, add_body_frame = model.addJointFrame, model.addBodyFrame
-    bodies = mechanism.bodies[1:]
     mimics, unwrapped = led.mimics, led.unwrapped
     # For each body: the joint that moves it, its placement in that joint, and its frame.
-    sites = {root.name: Site(joint_id, _HERE)}
-    frames = {root.name: body_frame}
-    for joint, body, inertia in zip(
-        mechanism.joints, bodies, inertias_of([body.inertia for body in bodies]), strict=True
-    ):
+    sites = {root.name: (joint_id, _HERE, body_frame)}
+    for joint, body, inertia in zip(mechanism.joints, bodies, inertias, strict=True):
         name = joint.name
-        parent_joint, parent_placement = sites[joint.parent]
-        parent_frame = frames[joint.parent]
+        parent_joint, parent_placement, parent_frame = sites[joint.parent]
         placement = placement_of(joint.placement)
         if parent_placement is not _HERE:
             placement = parent_placement * placement
@@ -114,14 +104,15 @@ def build_model_and_sites(mechanism: Mechanism) -> tuple[pin.Model, dict[str, Si
                 joint_frame = add_frame(pin.Frame(name, joint_id, parent_frame, placement, _JOINT))
             if body.inertia is not None and not is_zero(body.inertia):
                 append_body(joint_id, inertia, placement)
-        sites[body.name] = Site(joint_id, placement)
-        frames[body.name] = joint_frame if body.virtual else add_body_frame(body.name, joint_id, placement, joint_frame)
+        if not body.virtual:
+            joint_frame = add_body_frame(body.name, joint_id, placement, joint_frame)
+        sites[body.name] = joint_id, placement, joint_frame
 
     for frame in mechanism.frames:
-        joint_id, placement = sites[frame.body]
+        joint_id, placement, parent_frame = sites[frame.body]
         kind = _OP_FRAME if frame.kind == "frame" else _FIXED_JOINT
         placement = placement * placement_of(frame.pose)
-        add_frame(pin.Frame(frame.name, joint_id, frames[frame.body], placement, kind), False)
+        add_frame(pin.Frame(frame.name, joint_id, parent_frame, placement, kind), False)
     folded = with_followers(mechanism, led)
     set_limits(
         model,
@@ -129,13 +120,12 @@ def build_model_and_sites(mechanism: Mechanism) -> tuple[pin.Model, dict[str, Si
         root_nq,
         root_nv,
     )
-    return model, sites
+    return model
 
 
-def _add_root(model: pin.Model, mechanism: Mechanism) -> tuple[int, int]:
+def _add_root(model: pin.Model, mechanism: Mechanism, inertia: pin.Inertia) -> tuple[int, int]:
     """EU-VER-004: add the root body, fixed or floating; returns the joint that moves it, and its frame."""
     root = mechanism.bodies[0]
-    (inertia,) = inertias_of([root.inertia])
     if mechanism.root == "fixed":
         return _UNIVERSE, model.addFrame(pin.Frame(root.name, _UNIVERSE, 0, _HERE, _BODY, inertia))
     joint_id = model.addJoint(_UNIVERSE, _FREE_FLYER, _HERE, ROOT_JOINT)

@@ -17,10 +17,9 @@ from eurdf.pinocchio.actuation import Actuation, build_actuation
 from eurdf.pinocchio.configuration import Vector, configuration_vector, joint_coordinates, own_coordinates
 from eurdf.pinocchio.constraint import build_constraint_models
 from eurdf.pinocchio.coordinates import Slot, slots
-from eurdf.pinocchio.frame_pairs import Site
 from eurdf.pinocchio.geometry import MeshCache, Resolve, build_geometry, carry_over, meshes_of
 from eurdf.pinocchio.meshes import Mesh
-from eurdf.pinocchio.model import build_model_and_sites
+from eurdf.pinocchio.model import build_model
 from eurdf.pinocchio.tree import PinocchioTree, build_tree
 
 
@@ -47,7 +46,6 @@ class Robot:
     Attributes:
         mechanism: What it was built from, as plain data.
         model: The spanning tree.
-        sites: For each body, by name, where its frame is in the model.
         geometry: Its shapes; None without geometry.
         no_geometry: What makes the error that `visual_model` and `collision_model` raise, where the geometry was asked
             for and cannot be built; else None.
@@ -57,7 +55,6 @@ class Robot:
 
     mechanism: Mechanism
     model: pin.Model
-    sites: Mapping[str, Site]
     geometry: Geometry | None = None
     no_geometry: Callable[[], Exception] | None = None
     diagnose: Callable[[Robot], tuple[Diagnostic, ...]] | None = None
@@ -75,7 +72,7 @@ class Robot:
     @cached_property
     def tree(self) -> PinocchioTree:
         """The spanning tree as kinematics asks for it."""
-        return build_tree(self.mechanism, self.model, self.sites, self.slots)
+        return build_tree(self.mechanism, self.model, self.slots)
 
     @cached_property
     def actuation(self) -> Actuation:
@@ -210,7 +207,7 @@ def build_robot(
         UnreadableMesh: A mesh file cannot be read as a mesh.
         FileNotFoundError: `resolve` does not find a mesh.
     """
-    model, sites = build_model_and_sites(mechanism)
+    model = build_model(mechanism)
     shapes = None
     if geometry:
         find = _nothing if resolve is None else resolve
@@ -220,7 +217,7 @@ def build_robot(
             build_geometry(mechanism, model, pin.GeometryType.VISUAL, find, meshes, cache),
             build_geometry(mechanism, model, pin.GeometryType.COLLISION, find, meshes, cache),
         )
-    return Robot(mechanism, model, sites, shapes, no_geometry, diagnose)
+    return Robot(mechanism, model, shapes, no_geometry, diagnose)
 
 
 def carried_over(before: Robot, after: Robot) -> Geometry | None:

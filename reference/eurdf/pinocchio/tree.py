@@ -312,7 +312,6 @@ class PinocchioTree:
 def build_tree(
     mechanism: Mechanism,
     model: pin.Model,
-    sites: Mapping[str, Site] | None = None,
     at: Mapping[str, Slot] | None = None,
 ) -> PinocchioTree:
     """The tree of a mechanism.
@@ -320,15 +319,13 @@ def build_tree(
     Args:
         mechanism: The mechanism.
         model: The result of `build_model`.
-        sites: For each body where its frame is, if the caller has it.
         at: The `slots` of the mechanism, if the caller has them.
     """
-    if sites is None:
-        frames = model.frames
-        sites = {
-            name: Site(frames[index].parentJoint, pin.SE3(frames[index].placement))
-            for name, index in body_frame_ids(mechanism).items()
-        }
+    frames = model.frames
+    sites = {
+        name: Site(frames[index].parentJoint, pin.SE3(frames[index].placement))
+        for name, index in body_frame_ids(mechanism).items()
+    }
     at = slots(mechanism) if at is None else at
     first = {name: (slot.idx_q, slot.nq, slot.idx_v, slot.nv) for name, slot in at.items()}
     return PinocchioTree(model, sites, first, build_springs(mechanism, at))

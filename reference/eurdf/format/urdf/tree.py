@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
+from typing import TypeVar
 
 from eurdf.diagnostics import did_you_mean, quoted
 from eurdf.format.urdf.data import Urdf, UrdfJoint, UrdfLink
 from eurdf.format.urdf.elements import UrdfReader, cycle_of
 from eurdf.format.urdf.mimics import check_mimics
+
+_Named = TypeVar("_Named", UrdfLink, UrdfJoint)
 
 
 def build_tree(reader: UrdfReader, name: str, links: Sequence[UrdfLink], joints: Sequence[UrdfJoint]) -> Urdf | None:
@@ -47,22 +50,29 @@ def build_tree(reader: UrdfReader, name: str, links: Sequence[UrdfLink], joints:
 
 def _links_by_name(reader: UrdfReader, links: Sequence[UrdfLink]) -> dict[str, UrdfLink]:
     """EU-URD-009: the names of links are unique."""
-    by_name: dict[str, UrdfLink] = {}
-    for link in links:
-        if link.name in by_name:
+    by_name = {link.name: link for link in links}
+    if len(by_name) < len(links):
+        for link in _repeated(links):
             reader.report("urdf-duplicate-link", f"two links are named '{link.name}'", link.element, "name")
-        by_name[link.name] = link
     return by_name
 
 
 def _joints_by_name(reader: UrdfReader, joints: Sequence[UrdfJoint]) -> dict[str, UrdfJoint]:
     """EU-URD-010: the names of joints are unique."""
-    by_name: dict[str, UrdfJoint] = {}
-    for joint in joints:
-        if joint.name in by_name:
+    by_name = {joint.name: joint for joint in joints}
+    if len(by_name) < len(joints):
+        for joint in _repeated(joints):
             reader.report("urdf-duplicate-joint", f"two joints are named '{joint.name}'", joint.element, "name")
-        by_name[joint.name] = joint
     return by_name
+
+
+def _repeated(items: Sequence[_Named]) -> Iterator[_Named]:
+    """Those whose name an earlier one has."""
+    seen: set[str] = set()
+    for item in items:
+        if item.name in seen:
+            yield item
+        seen.add(item.name)
 
 
 def _check_links_of_joints(reader: UrdfReader, joints: Sequence[UrdfJoint], links: Mapping[str, UrdfLink]) -> None:
