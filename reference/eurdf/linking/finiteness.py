@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import chain
 from operator import add, attrgetter
 
@@ -12,9 +12,10 @@ from eurdf.format.extension import Extension
 from eurdf.format.urdf.data import Urdf
 from eurdf.linking.inertia import turned
 from eurdf.mechanism.body import Inertia
+from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Mechanism
-from eurdf.mechanism.mimic import drivers
+from eurdf.mechanism.mimic import Mimic, drivers
 from eurdf.mechanism.pose import IDENTITY, Pose
 
 #: Three factors below this, m, kg or kg·m², have a finite product, and so have sums of many of these.
@@ -46,17 +47,18 @@ def check_finite(mechanism: Mechanism, urdf: Urdf, extension: Extension | None, 
 
 
 def _not_finite(mechanism: Mechanism, urdf: Urdf, extension: Extension | None) -> Iterator[tuple[str, Place]]:
+    joints = {joint.name: joint for joint in mechanism.joints}
+    leaders = drivers({name: joint.mimic for name, joint in joints.items() if joint.mimic is not None})
     if extension is not None:
-        joints = {joint.name: joint for joint in mechanism.joints}
         for entry in extension.actuators:
             if not all(map(math.isfinite, joints[entry.joint].properties.armature)):
                 what = f"the armature of joint '{entry.joint}', gear_ratio² · rotor_inertia,"
                 yield what, extension.document.place(entry.pointer)
         pointers = {entry.name: entry.pointer for entry in extension.joints}
-        for name, what in _not_finite_at_leaders(mechanism):
+        for name, what in _not_finite_at_leaders(leaders, joints):
             place = urdf.document.place(urdf.joints[name].element)
             yield what, extension.document.place(pointers[name]) if name in pointers else place
-    for name, mimic in drivers({joint.name: joint.mimic for joint in mechanism.joints if joint.mimic}).items():
+    for name, mimic in leaders.items():
         if not (math.isfinite(mimic.multiplier) and math.isfinite(mimic.offset)):
             element = next(urdf.joints[name].element.iterchildren("mimic"))
             what = f"the relation of mimic joint '{name}' to joint '{mimic.joint}', multiplier or offset,"
@@ -127,10 +129,9 @@ def _couplings_not_finite(mechanism: Mechanism, extension: Extension) -> Iterato
             yield what, extension.document.place(pointers[coupling.name])
 
 
-def _not_finite_at_leaders(mechanism: Mechanism) -> Iterator[tuple[str, str]]:
+def _not_finite_at_leaders(leaders: Mapping[str, Mimic], joints: Mapping[str, Joint]) -> Iterator[tuple[str, str]]:
     """The mimic joints with a property that is not finite at their leader (EU-JNT-032), and what it is."""
-    joints = {joint.name: joint for joint in mechanism.joints}
-    for name, mimic in drivers({joint.name: joint.mimic for joint in mechanism.joints if joint.mimic}).items():
+    for name, mimic in leaders.items():
         m, own = abs(mimic.multiplier), joints[name].properties
         for key, factor in (("armature", m * m), ("damping", m * m), ("friction", m), ("stiffness", m * m)):
             # Zero times infinity is not a number, but nothing is added at the leader.
