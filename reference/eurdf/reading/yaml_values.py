@@ -16,7 +16,7 @@ from yaml import CSafeLoader
 from yaml.error import YAMLError
 from yaml.nodes import MappingNode, ScalarNode
 
-from eurdf.reading.core_schema import Scalar, resolve
+from eurdf.reading.core_schema import WORDS, Scalar, resolve
 from eurdf.reading.source import Source
 
 #: Bytes of a file that is read so. The depth of its blocks is at most the square root of twice as much: each is
@@ -48,7 +48,10 @@ class _Composer(CSafeLoader):
     ascend_resolver = staticmethod(tuple)  # type: ignore[assignment]
 
     def resolve(self, kind: type[Any], text: Any, implicit: Any) -> Scalar:
-        return resolve(text) if kind is ScalarNode and implicit[0] else text
+        if kind is not ScalarNode or not implicit[0]:
+            return text
+        # Most plain scalars are names.
+        return text if text.isidentifier() and text not in WORDS else resolve(text)
 
 
 def usual_values(source: Source) -> dict[str, Any] | None:
