@@ -16,7 +16,7 @@ from yaml import CSafeLoader
 from yaml.error import YAMLError
 from yaml.nodes import MappingNode, ScalarNode
 
-from eurdf.reading.core_schema import WORDS, Scalar, resolve
+from eurdf.reading.core_schema import WORDS, resolve
 from eurdf.reading.source import Source
 
 #: Bytes of a file that is read so. The depth of its blocks is at most the square root of twice as much: each is
@@ -47,7 +47,7 @@ class _Composer(CSafeLoader):
     descend_resolver = staticmethod(operator.is_)  # type: ignore[assignment]
     ascend_resolver = staticmethod(tuple)  # type: ignore[assignment]
 
-    def resolve(self, kind: type[Any], text: Any, implicit: Any) -> Scalar:
+    def resolve(self, kind: type[Any], text: Any, implicit: Any) -> Any:
         if kind is not ScalarNode or not implicit[0]:
             return text
         # Most plain scalars are names.
