@@ -21,10 +21,10 @@ from eurdf.reading.source import Source
 
 #: Bytes of a file that is read so. The depth of its blocks is at most the square root of twice as much: each is
 #: indented more than the one around it.
-MOST_BYTES = 20_000
+MOST_BYTES = 10_000
 
 #: Characters of a file that may begin a nested list or mapping on the same line.
-MOST_OPENED = 300
+MOST_OPENED = 200
 
 #: Mappings and lists nested, at most, well below `yaml_reader.DEPTH_LIMIT`.
 _MOST_NESTED = 32
@@ -65,43 +65,29 @@ def usual_values(source: Source) -> dict[str, Any] | None:
         return None
     try:
         node = _Composer(data).get_single_node()
-        return _mapping(node, 0) if type(node) is MappingNode else None
+        values: dict[str, Any] | None = _value(node, 0) if type(node) is MappingNode else None
     except (YAMLError, _UnusualError):
         return None
-
-
-def _mapping(node: Any, depth: int) -> dict[str, Any]:
-    if depth == _MOST_NESTED:
-        raise _UnusualError
-    values = {}
-    for key, value in node.value:
-        kind = type(value)
-        name = key.tag
-        if type(key) is not ScalarNode or type(name) is not str:
-            raise _UnusualError
-        if kind is ScalarNode:
-            value = value.tag
-            if type(value) is float and not isfinite(value):
-                raise _UnusualError
-        else:
-            value = _mapping(value, depth + 1) if kind is MappingNode else _list(value, depth + 1)
-        values[name] = value
-    if len(values) < len(node.value):  # a key twice
-        raise _UnusualError
     return values
 
 
-def _list(node: Any, depth: int) -> list[Any]:
+def _value(node: Any, depth: int) -> Any:
+    """The value of a node in so many mappings and lists."""
+    kind = type(node)
+    if kind is ScalarNode:
+        value = node.tag
+        if type(value) is float and not isfinite(value):
+            raise _UnusualError
+        return value
     if depth == _MOST_NESTED:
         raise _UnusualError
-    values = []
-    for value in node.value:
-        kind = type(value)
-        if kind is ScalarNode:
-            value = value.tag
-            if type(value) is float and not isfinite(value):
-                raise _UnusualError
-        else:
-            value = _mapping(value, depth + 1) if kind is MappingNode else _list(value, depth + 1)
-        values.append(value)
+    if kind is not MappingNode:
+        return [_value(item, depth + 1) for item in node.value]
+    values = {}
+    for key, item in node.value:
+        if type(key) is not ScalarNode or type(key.tag) is not str:
+            raise _UnusualError
+        values[key.tag] = _value(item, depth + 1)
+    if len(values) < len(node.value):  # a key twice
+        raise _UnusualError
     return values
