@@ -71,7 +71,7 @@ def find_robot(path: Given, urdf: Given | None = None) -> RobotFiles:
     assert not isinstance(path, bytes)
     if os.fspath(path) == "":  # Path takes it for the working directory
         raise RobotNotFound("", "the path of the robot is empty; '.' is the working directory")
-    where = Path(path)
+    where = path if isinstance(path, Path) else Path(path)
     # os.path takes a text that no file system does for a path of nothing; Path raises.
     if os.path.isdir(where):
         return _in_folder(where, _given_urdf(urdf))

@@ -16,7 +16,6 @@ TAG_LIMIT = 1_000_000
 #: Bytes of the value of an attribute, in UTF-8.
 ATTRIBUTE_LIMIT = 10_000_000
 
-#: Without its own limits, which are below those of the format, libxml2 takes files that are deeper.
 _TOO_DEEP = etree.XPath(f"boolean({'/*' * (DEPTH_LIMIT + 1)})")
 
 _DECLARED_VERSION = re.compile(r"""<\?xml\s+version\s*=\s*(["'])(.*?)\1""")
@@ -122,7 +121,25 @@ def read_xml(source: Source) -> XmlDocument:
     _refuse_other_encoding(source)
     _refuse_doctype(source)
     try:
-        root = etree.fromstring(source.data, _PARSER)
+        root = etree.fromstring(source.data, _BOUNDED)
+    except etree.XMLSyntaxError:
+        root = _read_unbounded(source)
+    if source.text.rfind("xmlns") >= 0:  # from the end, which takes a third of the time of `in`
+        for element in root.iter("{*}*"):
+            local = element.tag.rpartition("}")[2]
+            if element.prefix is None and ":" not in local:  # which lxml would not take for a name
+                element.tag = local
+    return XmlDocument(source, root)
+
+
+def _read_unbounded(source: Source) -> etree._Element:
+    """Read a file that has an error, or that is beyond one of libxml2's own limits.
+
+    Its limit of depth is that of the format; without it, deeper files are taken. Its others are below those of the
+    format.
+    """
+    try:
+        root = etree.fromstring(source.data, _parser())
     except etree.XMLSyntaxError as error:
         wrong = syntax_error(source, error)
         if wrong is not None:
@@ -132,22 +149,17 @@ def read_xml(source: Source) -> XmlDocument:
         _refuse_long_attribute(source, root)
     if _TOO_DEEP(root) and (wrong := syntax_error(source)) is not None:
         raise wrong
-    if source.text.rfind("xmlns") >= 0:  # from the end, which takes a third of the time of `in`
-        for element in root.iter("{*}*"):
-            local = element.tag.rpartition("}")[2]
-            if element.prefix is None and ":" not in local:  # which lxml would not take for a name
-                element.tag = local
-    return XmlDocument(source, root)
+    return root
 
 
-def _parser(recover: bool = False) -> etree.XMLParser:
+def _parser(recover: bool = False, bounded: bool = False) -> etree.XMLParser:
     """EU-SEC-002, EU-SEC-003: nothing is resolved, included or fetched."""
     return etree.XMLParser(
         encoding="utf-8",
         resolve_entities=False,
         no_network=True,
         load_dtd=False,
-        huge_tree=True,  # the bounds of the format are checked here
+        huge_tree=not bounded,
         remove_blank_text=True,  # no text of a URDF has a meaning
         remove_comments=True,
         remove_pis=True,
@@ -156,7 +168,7 @@ def _parser(recover: bool = False) -> etree.XMLParser:
     )
 
 
-_PARSER = _parser()
+_BOUNDED = _parser(bounded=True)
 
 
 def _read_with_namespace_errors(source: Source) -> etree._Element:
