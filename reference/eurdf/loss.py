@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from eurdf.dataclass import dataclass
 from eurdf.text_enum import TextEnum
 
 

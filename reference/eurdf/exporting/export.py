@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 from typing import get_args
 
+from eurdf.dataclass import dataclass
 from eurdf.diagnostics import did_you_mean
 from eurdf.exceptions import InvalidRobot
 from eurdf.exporting.coordinates import Coordinates, OwnVectors, Place

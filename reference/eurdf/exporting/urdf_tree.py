@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 from lxml import etree
 
+from eurdf.dataclass import dataclass
 from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.mesh_file import MeshFiles
 from eurdf.exporting.written import Exportable

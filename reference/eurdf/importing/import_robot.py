@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
 
+from eurdf.dataclass import dataclass
 from eurdf.diagnostics import did_you_mean
 from eurdf.exceptions import RobotNotFound
 from eurdf.format.schema import FILES, SchemaVersion, json_schema, schema_text

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from types import MappingProxyType
 
+from eurdf.dataclass import dataclass
 from eurdf.loss import Loss, LossKind
 from eurdf.mechanism.mechanism import Mechanism
 

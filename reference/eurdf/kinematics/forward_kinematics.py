@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Indices, Vector
 from eurdf.kinematics.assembly import Assembler, start
 from eurdf.kinematics.derived import borrowed, derived

@@ -5,9 +5,10 @@ from __future__ import annotations
 import difflib
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from types import MappingProxyType
 
+from eurdf.dataclass import dataclass
 from eurdf.kinematics.exceptions import CannotLock
 from eurdf.mechanism.constraint import Constraint
 from eurdf.mechanism.joint import Joint

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Indices, Matrix, Vector
 from eurdf.kinematics.finite import finite
 from eurdf.kinematics.least_solution import CERTAIN, least_solution

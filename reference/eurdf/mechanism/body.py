@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
+from eurdf.dataclass import dataclass
 from eurdf.mechanism.pose import IDENTITY, Pose
-from eurdf.mechanism.slot_setters import with_slot_setters
 
 
-@with_slot_setters
 @dataclass(frozen=True, slots=True)
 class Inertia:
     """Inertia of a body, as URDF gives it.
@@ -46,7 +44,6 @@ class Shape:
     texture: str = ""
 
 
-@with_slot_setters
 @dataclass(frozen=True, slots=True)
 class Body:
     """A link.

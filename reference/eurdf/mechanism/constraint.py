@@ -6,13 +6,15 @@ What a kind means, its residual and the derivatives of that, is in `eurdf.kinema
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
-from typing import ClassVar, Literal
+from dataclasses import field, replace
+from typing import TYPE_CHECKING, ClassVar, Literal
 
-from typing_extensions import Self
-
+from eurdf.dataclass import dataclass
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.pose import Vector3
+
+if TYPE_CHECKING:
+    from typing_extensions import Self
 
 #: Unit of a row of a residual; empty for one whose unit its coefficients decide.
 Unit = Literal["m", "rad", ""]

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
 
+from eurdf.dataclass import dataclass
 from eurdf.mechanism.pose import IDENTITY, Pose
-from eurdf.mechanism.slot_setters import with_slot_setters
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +25,6 @@ class Frame:
     kind: Literal["frame", "joint"] = "frame"
 
 
-@with_slot_setters
 @dataclass(frozen=True, slots=True)
 class Anchor:
     """One side of a closure.

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cache
 
+from eurdf.dataclass import dataclass
 from eurdf.mechanism.joint_type import COORDINATES, Coordinates, JointType
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
-from eurdf.mechanism.slot_setters import with_slot_setters
 
 
-@with_slot_setters
 @dataclass(frozen=True, slots=True)
 class JointProperties:
     """Limits, losses, motor and springs of a joint: one number per velocity; for position limits, one per coordinate.
@@ -56,7 +54,6 @@ class JointProperties:
         return cls((-math.inf,) * n, (math.inf,) * n, infinite, infinite, zero, zero, zero, (1.0,) * nv, zero)
 
 
-@with_slot_setters
 @dataclass(frozen=True, slots=True)
 class Joint:
     """A joint of the spanning tree.

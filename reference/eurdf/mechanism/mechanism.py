@@ -8,10 +8,11 @@ body come in the byte order of their names: the order of Pinocchio's and urdfdom
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from types import MappingProxyType
 from typing import Literal
 
+from eurdf.dataclass import dataclass
 from eurdf.mechanism.body import Body
 from eurdf.mechanism.constraint import Closure, Constraint, Coupling
 from eurdf.mechanism.frame import Frame

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
-from eurdf.mechanism.slot_setters import with_slot_setters
+from eurdf.dataclass import dataclass
 
 Vector3 = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 
 
-@with_slot_setters
 @dataclass(frozen=True, slots=True)
 class Pose:
     """Pose of a frame in another.

@@ -7,13 +7,13 @@ import os
 import signal
 import stat
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from eurdf.dataclass import dataclass
 from eurdf.program import command_of
 
 #: Bytes that the mesh files of a robot may have together.

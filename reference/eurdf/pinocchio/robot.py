@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import pinocchio as pin
 
+from eurdf.dataclass import dataclass
 from eurdf.diagnostics import Diagnostic
 from eurdf.mechanism.constraint import Constraint
 from eurdf.mechanism.mechanism import Mechanism

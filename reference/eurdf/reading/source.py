@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import os
 import stat
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
+from eurdf.dataclass import dataclass
 from eurdf.diagnostics import FileError, Place
 from eurdf.diagnostics.lines import Lines
 

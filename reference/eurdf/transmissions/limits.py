@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
 from typing import TYPE_CHECKING
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Indices, Matrix, Vector
 from eurdf.kinematics.several import several
 from eurdf.pinocchio.arguments import checked_array

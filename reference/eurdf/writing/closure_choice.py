@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from eurdf.dataclass import dataclass
 from eurdf.mechanism.constraint import CLOSURES, Closure
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.writing.naming_conventions import ClosureType

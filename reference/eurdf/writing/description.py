@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, Literal, cast
 
 from lxml import etree
 
+from eurdf.dataclass import dataclass
 from eurdf.format.own_key import is_own_key
 from eurdf.format.yaml_text import Entry, Value, item_of_mapping, lines_of, lines_of_item, modeline, section, text_of
 from eurdf.mechanism.body import Body

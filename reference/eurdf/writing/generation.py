@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from eurdf.dataclass import dataclass
 from eurdf.diagnostics import Diagnostics
 from eurdf.format.own_key import is_own_key
 from eurdf.format.urdf.data import Urdf

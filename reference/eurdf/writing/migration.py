@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from eurdf.dataclass import dataclass
 from eurdf.diagnostics import Diagnostics
 from eurdf.format.urdf.data import Urdf
 from eurdf.format.urdf.elements import UrdfReader

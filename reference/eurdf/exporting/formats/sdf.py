@@ -10,12 +10,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from operator import mul
 
 import numpy as np
 from lxml import etree
 
+from eurdf.dataclass import dataclass
 from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.exceptions import CannotExport
 from eurdf.exporting.inertia import Matrix, about_centre, physical

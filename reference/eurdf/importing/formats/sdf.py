@@ -12,13 +12,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 from lxml import etree
 
+from eurdf.dataclass import dataclass
 from eurdf.importing.elements import Elements, named
 from eurdf.importing.mesh_copies import MeshCopies
 from eurdf.importing.robot_read import ImportFormat, RobotRead

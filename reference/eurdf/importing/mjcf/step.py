@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from eurdf.dataclass import dataclass
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 

@@ -1,0 +1,141 @@
+"""Frozen dataclasses as those of the standard library, defined in a sixth of the time.
+
+Up to Python 3.12, the standard library compiles six functions for each class, which takes 0.7 ms, and a command defines
+fifty classes before it does anything. Here, only the constructor is compiled. It also takes 40 % less time than that of
+the standard library: it calls the setters of the slots, which are known beforehand, and does not look each up by name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import MISSING, FrozenInstanceError, fields
+from functools import partial
+from operator import attrgetter
+from types import MemberDescriptorType
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
+
+if TYPE_CHECKING:
+    from dataclasses import dataclass as dataclass
+else:
+    import dataclasses
+
+    def dataclass(cls=None, /, *, frozen=False, **options):
+        """As `dataclasses.dataclass`, for classes without ``order`` and ``InitVar``.
+
+        Nothing can be assigned to an instance of a subclass that is no dataclass, either.
+        """
+        if cls is None:
+            return lambda cls: dataclass(cls, frozen=frozen, **options)
+        if not frozen:
+            return dataclasses.dataclass(cls, **options)
+        has_equality, has_repr = options.pop("eq", True), options.pop("repr", True)
+        # That bases and subclasses are all frozen or none is checked. To be told of it compiles two functions.
+        inherits = any(map(dataclasses.is_dataclass, cls.__bases__))
+        plain = dataclasses.dataclass(cls, init=False, eq=False, repr=False, frozen=inherits, **options)
+        plain.__dataclass_params__.frozen = True
+        return _frozen(plain, has_equality, has_repr)
+
+
+_Class = TypeVar("_Class", bound=type[Any])
+
+
+class _Factory:
+    """Default of a parameter whose value a function makes anew for each instance."""
+
+    def __repr__(self) -> str:
+        return "<factory>"
+
+
+_FACTORY = _Factory()
+
+
+def _frozen(cls: _Class, has_equality: bool, has_repr: bool) -> _Class:
+    methods: dict[str, Any] = {"__init__": _constructor(cls)}
+    if "__slots__" in cls.__dict__:
+        methods |= {"__getstate__": _state, "__setstate__": _set_state}
+    if has_repr:
+        methods["__repr__"] = _repr
+    if has_equality:
+        methods |= _equality([field.name for field in fields(cls) if field.compare])
+    for name, method in methods.items():
+        if cls.__dict__.get(name) is None:  # Python gives a class that defines `__eq__` a `__hash__` of None
+            setattr(cls, name, method)
+    for name, method in (("__setattr__", _refuse_to_assign), ("__delattr__", _refuse_to_delete)):
+        setattr(cls, name, method)
+    return cls
+
+
+def _constructor(cls: type[Any]) -> Any:
+    scope: dict[str, Any] = {"_FACTORY": _FACTORY, "_set": object.__setattr__}
+    positional: list[str] = []
+    keywords: list[str] = []
+    body: list[str] = []
+    for field in fields(cls):
+        name = field.name
+        value, default = name, ""
+        if field.default is not MISSING:
+            scope[f"_default_{name}"] = field.default
+            default = f"_default_{name}"
+        elif field.default_factory is not MISSING:
+            scope[f"_make_{name}"] = field.default_factory
+            default = "_FACTORY" if field.init else f"_make_{name}()"
+            value = f"_make_{name}() if {name} is _FACTORY else {name}"
+        if field.init:
+            (keywords if field.kw_only else positional).append(f"{name}={default}" if default else name)
+        elif default:
+            value = default
+        else:
+            continue  # left to `__post_init__`
+        slot = getattr(cls, name, None)
+        if isinstance(slot, MemberDescriptorType):
+            scope[f"_set_{name}"] = slot.__set__
+            body.append(f"    _set_{name}(self, {value})")
+        else:
+            body.append(f"    _set(self, {name!r}, {value})")
+    if hasattr(cls, "__post_init__"):
+        body.append("    self.__post_init__()")
+    parameters = ", ".join(["self", *positional, *(["*", *keywords] if keywords else [])])
+    exec("\n".join([f"def __init__({parameters}):", *(body or ["    pass"])]), scope)
+    constructor = scope["__init__"]
+    constructor.__annotations__ = {field.name: field.type for field in fields(cls) if field.init} | {"return": None}
+    constructor.__module__, constructor.__qualname__ = cls.__module__, f"{cls.__qualname__}.__init__"
+    return constructor
+
+
+def _equality(names: Sequence[str]) -> dict[str, Any]:
+    # A tuple of one value or none, too: what is identical is equal.
+    values: Callable[[Any], Any] = attrgetter(*names) if len(names) > 1 else partial(_values, names)
+
+    def equal(self: object, other: object) -> Any:
+        return values(self) == values(other) if other.__class__ is self.__class__ else NotImplemented
+
+    def hash_of(self: object) -> int:
+        return hash(values(self))
+
+    return {"__eq__": equal, "__hash__": hash_of}
+
+
+def _values(names: Sequence[str], self: object) -> tuple[Any, ...]:
+    return tuple([getattr(self, name) for name in names])
+
+
+def _repr(self: Any) -> str:
+    shown = ", ".join([f"{field.name}={getattr(self, field.name)!r}" for field in fields(self) if field.repr])
+    return f"{self.__class__.__qualname__}({shown})"
+
+
+def _refuse_to_assign(self: object, name: str, value: object) -> NoReturn:
+    raise FrozenInstanceError(f"cannot assign to field {name!r}")
+
+
+def _refuse_to_delete(self: object, name: str) -> NoReturn:
+    raise FrozenInstanceError(f"cannot delete field {name!r}")
+
+
+def _state(self: Any) -> list[Any]:
+    return [getattr(self, field.name) for field in fields(self)]
+
+
+def _set_state(self: Any, state: Sequence[Any]) -> None:
+    for field, value in zip(fields(self), state, strict=True):
+        object.__setattr__(self, field.name, value)
