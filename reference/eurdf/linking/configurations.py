@@ -11,7 +11,6 @@ from eurdf.format.extension import ConfigurationEntry
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.reading.reporter import YamlReporter
-from eurdf.reading.yaml_node import Pointer
 
 #: A quaternion in a file may be off unit length by this much; it is normalised when read (EU-CFG-003).
 QUATERNION_TOLERANCE = 1e-6
@@ -42,12 +41,10 @@ def link_configurations(
         for name, values in entry.joints.items():
             if name in skip:
                 continue
-            pointer = (*entry.pointer, name)
-            joint = _joint(name, joints, merged, pointer, entry, reporter)
-            if joint is not None:
-                checked = _coordinates(joint, values, pointer, entry, reporter)
-                if checked is not None:
-                    configuration[name] = checked
+            joint = _joint(name, joints, merged, entry, reporter)
+            checked = None if joint is None else _coordinates(joint, values, entry, reporter)
+            if checked is not None:
+                configuration[name] = checked
         configurations[entry.name] = configuration
     return configurations
 
@@ -56,7 +53,6 @@ def _joint(
     name: str,
     joints: Mapping[str, Joint],
     merged: Mapping[str, str],
-    pointer: Pointer,
     entry: ConfigurationEntry,
     reporter: YamlReporter,
 ) -> Joint | None:
@@ -79,7 +75,7 @@ def _joint(
     reporter.report(
         "configuration-joint",
         f"'{name}' in configuration '{entry.name}' {why}",
-        pointer,
+        (*entry.pointer, name),
         hint,
         key=True,
     )
@@ -88,13 +84,12 @@ def _joint(
 
 def within_limits(value: float, lower: float, upper: float) -> bool:
     """EU-CFG-004: whether a coordinate is within its limits, rad or m; limits that are both 0 are no range."""
-    return lower == upper == 0.0 or lower - LIMIT_TOLERANCE <= value <= upper + LIMIT_TOLERANCE
+    return lower - LIMIT_TOLERANCE <= value <= upper + LIMIT_TOLERANCE or lower == upper == 0.0
 
 
 def _coordinates(
     joint: Joint,
     values: tuple[float, ...],
-    pointer: Pointer,
     entry: ConfigurationEntry,
     reporter: YamlReporter,
 ) -> tuple[float, ...] | None:
@@ -104,7 +99,7 @@ def _coordinates(
             "configuration-length",
             f"{joint.type} joint '{joint.name}' has {len(values)} coordinates in configuration '{entry.name}'; "
             f"it must have {len(coordinates.names)}: {', '.join(coordinates.names)}",
-            pointer,
+            (*entry.pointer, joint.name),
         )
         return None
     start = coordinates.quaternion
@@ -115,7 +110,7 @@ def _coordinates(
             reporter.report(
                 "configuration-quaternion",
                 f"the quaternion of joint '{joint.name}' in configuration '{entry.name}' has length {norm:.9g}, not 1",
-                pointer,
+                (*entry.pointer, joint.name),
                 f"write a unit quaternion x, y, z, w: {unit}",
             )
             return None
@@ -128,7 +123,7 @@ def _coordinates(
                 "configuration-limits",
                 f"{name} {value:.12g} of joint '{joint.name}' in configuration '{entry.name}' is outside its limits "
                 f"{lower:.12g} to {upper:.12g}",
-                pointer,
+                (*entry.pointer, joint.name),
             )
             return None
     return values
