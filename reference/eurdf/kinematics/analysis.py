@@ -11,6 +11,7 @@ import numpy as np
 from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.assembly import Assembler, Assembly, start
+from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.evaluation import Evaluation
 from eurdf.kinematics.finite_mobility import Evidence, FiniteMobility, MobilityTest
 from eurdf.kinematics.loop import LoopGroup
@@ -183,11 +184,17 @@ def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
     Raises:
         ValueError: ``q`` is not a configuration.
     """
+    at = start(robot, q, "q")
+    with borrowed(robot, Assembler, ()) as assembler:
+        assembler.tolerance, assembler.limits = 1e-10, None
+        return _analysis(robot, assembler, assembler.assemble(at))
+
+
+def _analysis(robot: Robot, assembler: Assembler, assembly: Assembly) -> Analysis:
+    """The dimensions where the assembler has closed the loops, or where they are the least open."""
     tree = robot.tree
     actuated: Mask = np.zeros(tree.nv, dtype=bool)
     actuated[robot.actuation.idx_v] = True
-    assembler = Assembler(robot)
-    assembly = assembler.assemble(start(robot, q, "q"))
     nv, nc = tree.nv, sum(len(evaluation.group.rows) for evaluation in assembler.evaluations)
     names = tree.velocity_names
     loops: tuple[LoopAnalysis, ...] = ()
