@@ -9,7 +9,7 @@ from typing import NamedTuple
 from eurdf.collection.near_paths import near_path
 from eurdf.diagnostics import FileError, Place
 from eurdf.exceptions import RobotNotFound
-from eurdf.reading.given import Given, is_stream, is_xml, shown, source_of
+from eurdf.reading.given import STDIN, Given, is_stream, is_xml, shown, source_of
 from eurdf.reading.source import Source
 
 _HERE = Path(__file__).parent
@@ -62,6 +62,9 @@ def find_robot(path: Given, urdf: Given | None = None) -> RobotFiles:
     """
     if urdf is not None and is_stream(path) and path == urdf:
         raise RobotNotFound(shown(path), f"{shown(path)} cannot be both the description and its URDF")
+    # os.path takes a text that no file system does for a path of nothing; Path raises.
+    if not isinstance(path, bytes) and path != STDIN and os.path.isdir(path):
+        return _in_folder(path if isinstance(path, Path) else Path(path), _given_urdf(urdf))
     source = source_of(path)
     if source is not None:
         if is_xml(source):
@@ -71,10 +74,7 @@ def find_robot(path: Given, urdf: Given | None = None) -> RobotFiles:
     assert not isinstance(path, bytes)
     if os.fspath(path) == "":  # Path takes it for the working directory
         raise RobotNotFound("", "the path of the robot is empty; '.' is the working directory")
-    where = path if isinstance(path, Path) else Path(path)
-    # os.path takes a text that no file system does for a path of nothing; Path raises.
-    if os.path.isdir(where):
-        return _in_folder(where, _given_urdf(urdf))
+    where = Path(path)
     if os.path.lexists(where):
         if where.suffix.lower() in _URDF:
             _refuse_second_urdf(path, urdf)
@@ -125,7 +125,7 @@ def _refuse_second_urdf(path: Given, urdf: Given | None) -> None:
 def _in_folder(folder: Path, given: Path | Source | None) -> RobotFiles:
     for ending in _YAML:
         description = folder / f"robot{ending}"
-        if os.path.lexists(description) and not os.path.isdir(description):
+        if os.path.isfile(description) or (os.path.lexists(description) and not os.path.isdir(description)):
             return RobotFiles(description, given)
     files = _files(folder)
     descriptions = [path for path in files if path.suffix.lower() in _YAML]
