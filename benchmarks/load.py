@@ -4,11 +4,12 @@ Inertias, and whether the loops close in the configuration `assembled`, are chec
 used: the last column is the ratio with them.
 
 How Python was compiled matters, since the peer is compiled code: of the robots with 10 joints or more, on one machine
-on 2026-11-23, the Python 3.11.2 of Debian 12 took 1.29 to 1.94 of the peer's time, and a Python 3.11.7 compiled without
-profile-guided and link-time optimization 1.54 to 2.24.
+on 2026-11-23, the Python 3.11.2 of Debian 12 took 1.28 to 1.97 of the peer's time, and a Python 3.11.7 compiled without
+profile-guided and link-time optimization 1.46 to 2.14.
 
 Then whole processes, imports included, against processes that only import what `eurdf` needs. All are times of the
-processor, the least of several that run in turns.
+processor, the least of several that run in turns. OpenBLAS has one thread: started with more, as it is by default where
+a program does not say otherwise, an import of pinocchio takes twice as long, and `eurdf check`, which does, does not.
 """
 
 from __future__ import annotations
