@@ -8,8 +8,8 @@ on 2026-11-23, the Python 3.11.2 of Debian 12 took 1.28 to 1.97 of the peer's ti
 profile-guided and link-time optimization 1.46 to 2.14.
 
 Then whole processes, imports included, against processes that only import what `eurdf` needs. All are times of the
-processor, the least of several that run in turns. OpenBLAS has one thread: started with more, as it is by default where
-a program does not say otherwise, an import of pinocchio takes twice as long, and `eurdf check`, which does, does not.
+processor, the least of several that run in turns. OpenBLAS has one thread. By default it has more, and an import of
+pinocchio takes up to twice as long; `eurdf check` chooses one thread itself.
 """
 
 from __future__ import annotations

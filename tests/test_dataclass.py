@@ -9,7 +9,7 @@ import math
 import pickle
 from functools import cached_property
 from types import SimpleNamespace
-from typing import Any, ClassVar
+from typing import Any, ClassVar, get_type_hints
 
 import pytest
 
@@ -39,9 +39,10 @@ def classes(dataclass: Any) -> Any:
 
     @dataclass(frozen=True, slots=True)
     class Single:
-        """A value of one field."""
+        """A value of one field, and one that has no hash."""
 
         value: float
+        parts: list[float] = dataclasses.field(default_factory=list, hash=False)
 
     @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
     class Square:
@@ -85,6 +86,13 @@ def test_signature_is_that_of_the_fields(of: Any) -> None:
     assert str(inspect.signature(of.Point)) == expected
     assert str(inspect.signature(of.Square)) == "(*, side: 'float') -> None"
     assert of.Point.__match_args__ == ("x", "y", "tags", "note")
+    assert get_type_hints(of.Point.__init__) == {
+        "x": float,
+        "y": float,
+        "tags": list[str],
+        "note": str,
+        "return": type(None),
+    }
 
 
 def test_equality_is_that_of_the_fields(of: Any) -> None:

@@ -62,7 +62,7 @@ def find_robot(path: Given, urdf: Given | None = None) -> RobotFiles:
     """
     if urdf is not None and is_stream(path) and path == urdf:
         raise RobotNotFound(shown(path), f"{shown(path)} cannot be both the description and its URDF")
-    # os.path takes a text that no file system does for a path of nothing; Path raises.
+    # With os.path, which takes any string for a path that may not exist, where Path can raise.
     if not isinstance(path, bytes) and path != STDIN and os.path.isdir(path):
         return _in_folder(path if isinstance(path, Path) else Path(path), _given_urdf(urdf))
     source = source_of(path)
@@ -125,6 +125,7 @@ def _refuse_second_urdf(path: Given, urdf: Given | None) -> None:
 def _in_folder(folder: Path, given: Path | Source | None) -> RobotFiles:
     for ending in _YAML:
         description = folder / f"robot{ending}"
+        # Asked in two ways, since the first takes one call of the system and is nearly always true.
         if os.path.isfile(description) or (os.path.lexists(description) and not os.path.isdir(description)):
             return RobotFiles(description, given)
     files = _files(folder)

@@ -30,7 +30,7 @@ def start() -> int:
         code = main()
         if handled:
             signal.signal(signal.SIGINT, signal.SIG_DFL)  # nothing to clean up
-        gc.freeze()  # the interpreter looks for garbage twice more when it ends
+        gc.freeze()  # or else the interpreter would look at all objects for garbage, twice, when it ends
     except KeyboardInterrupt:
         return INTERRUPTED
     return code

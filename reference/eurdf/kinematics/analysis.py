@@ -185,7 +185,7 @@ def analyze(robot: Robot, q: Vector | None = None) -> Analysis:
         ValueError: ``q`` is not a configuration.
     """
     at = start(robot, q, "q")
-    with borrowed(robot, Assembler, ()) as assembler:
+    with borrowed(robot, Assembler) as assembler:
         assembler.tolerance, assembler.limits = 1e-10, None
         return _analysis(robot, assembler, assembler.assemble(at))
 

@@ -133,7 +133,8 @@ def assemble(
             ``tolerance`` or ``restarts`` is negative.
     """
     q = start(robot, q0)
-    with borrowed(robot, Assembler, several(hold)) as assembler:
+    held = several(hold)
+    with borrowed(robot, Assembler, *([held] if held else [])) as assembler:  # others borrow one that holds none, too
         assembler.tolerance = checked_tolerance(tolerance)
         assembler.limits = chosen_limits(robot, limits)
         return assembler.assemble(q, checked_count("restarts", restarts, 0))
