@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import eurdf
+from benchmarks.loops import four_bars
 from eurdf.collection import collection_names
 from eurdf.kinematics.rank import numerical_rank
 from eurdf.kinematics.residual import residual_and_jacobian
@@ -72,3 +73,17 @@ def test_rank_in_doubt_is_that_of_the_singular_values() -> None:
         values = np.linalg.svd(near * spaces.dimensionless, compute_uv=False)
         free = K.shape[1] - numerical_rank(values, values[0])
         assert spaces.at(near).basis.shape[1] == free
+
+
+def test_loops_of_one_shape_are_decomposed_alike() -> None:
+    """Four loops of three rows, two with a redundant one."""
+    robot = four_bars(4, in_series=True)
+    spaces, (_, K) = TangentSpaces(robot), residual_and_jacobian(robot, np.linspace(0.1, 1.2, 12))
+    for first in (0, 6):
+        K[first : first + 3, first : first + 3] = np.random.default_rng(first).normal(size=(3, 3))
+    space, A = spaces.at(K), K * spaces.dimensionless
+    assert np.linalg.matrix_rank(A) == 10
+    assert space.basis.shape[1] == 2
+    np.testing.assert_allclose(K @ space.basis, 0.0, atol=1e-12)
+    expected = spaces.scale[:, None] * np.linalg.pinv(A, rcond=1e-9) * spaces.row_scale
+    np.testing.assert_allclose(space.inverse, expected, rtol=0.0, atol=1e-12 * np.abs(expected).max())

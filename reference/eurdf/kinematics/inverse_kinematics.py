@@ -321,9 +321,10 @@ class _Search:
 
     def _step(self, q: Vector, e: Vector, E: Matrix, damping: float) -> Vector:
         """The v (nv,) with K v = 0 that minimises |E v + e|² + λ|v|² within the limits; at most 1 rad or length."""
-        v = self._step_in_the_open(q, e, E, damping)
+        K = self._constraint_jacobian(q)
+        v = self._step_in_the_open(q, K, e, E, damping)
         if v is None:
-            Z = self._free_motions(q)
+            Z = self.spaces.at(K).free
             A = E @ Z
             H = A.T @ A
             damping = _damping(damping, float(np.trace(H)))
@@ -335,14 +336,14 @@ class _Search:
             v = Z @ y
         return np.asarray(v / np.abs(v / self.spaces.scale).max(initial=1.0), dtype=np.float64)
 
-    def _step_in_the_open(self, q: Vector, e: Vector, E: Matrix, damping: float) -> Vector | None:
+    def _step_in_the_open(self, q: Vector, K: Matrix, e: Vector, E: Matrix, damping: float) -> Vector | None:
         """The same step where the rows of K are independent for certain and no limit bounds it; else None.
 
         With A the dimensionless K, P = 1 - Aᵀ (A Aᵀ)⁻¹ A projects on the free motions, and B = E P takes the place of
         the derivative.
         """
         scale = self.spaces.scale
-        A = self._constraint_jacobian(q) * self.spaces.dimensionless
+        A = K * self.spaces.dimensionless
         B = E * scale
         if len(A):
             inverse = certain_inverse(A.dot(A.T), math.sqrt(float(np.vdot(A, A))))

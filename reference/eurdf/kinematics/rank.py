@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eurdf.kinematics.array import Vector
+from eurdf.kinematics.array import Indices, Matrix, Vector
 
 #: Singular values below this, relative to the largest one, are rounding and do not affect the rank.
 FLOOR = 1e-9
@@ -29,3 +29,15 @@ def numerical_rank(singular_values: Vector, reference: float) -> int:
         return 0
     ladder = np.concatenate(([1.0], np.clip(singular_values / reference, FLOOR, 1.0), [FLOOR]))
     return int(np.argmax(ladder[:-1] / ladder[1:]))
+
+
+def numerical_ranks(values: Matrix, reference: Vector | None = None) -> Indices:
+    """`numerical_rank` of the singular values (B, k) of several matrices; by default relative to the first of each."""
+    B, k = values.shape
+    if k == 0:
+        return np.zeros(B, dtype=np.intp)
+    reference = values[:, :1] if reference is None else reference[:, None]
+    nothing = ~(reference[:, 0] > NOTHING)
+    relative = np.clip(values / np.where(reference > NOTHING, reference, 1.0), FLOOR, 1.0)
+    ladder = np.concatenate((np.ones((B, 1)), relative, np.full((B, 1), FLOOR)), axis=1)
+    return np.where(nothing, 0, np.argmax(ladder[:, :-1] / ladder[:, 1:], axis=1))

@@ -5,24 +5,26 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Indices, Matrix, Vector
 from eurdf.kinematics.finite import finite
 from eurdf.kinematics.least_solution import CERTAIN, least_solution
 from eurdf.kinematics.loop import LoopGroup, independent_groups
-from eurdf.kinematics.rank import numerical_rank
+from eurdf.kinematics.rank import numerical_rank, numerical_ranks
 from eurdf.kinematics.scale import characteristic_length, row_scale, velocity_scale
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 
-@dataclass(frozen=True, eq=False)
-class _Block:
+#: From so many groups of one shape on, they are decomposed together; of fewer, each alone takes less time.
+_MANY = 3
+
+
+class _Block(NamedTuple):
     """The part of a tangent space in one group of loops.
 
     Attributes:
@@ -95,11 +97,17 @@ class TangentSpaces:
         self.scale = velocity_scale(robot, self.length)
         self.row_scale = row_scale(robot, self.length)
         self.dimensionless = self.row_scale[:, None] * self.scale
-        self._groups = [group for group in independent_groups(robot) if len(group.velocities)]
+        groups = [group for group in independent_groups(robot) if len(group.velocities)]
         outside = np.ones(robot.tree.nv, dtype=bool)
-        for group in self._groups:
+        alike: dict[tuple[int, int], list[LoopGroup]] = {}  # by the numbers of their rows and velocities
+        for group in groups:
             outside[group.velocities] = False
+            alike.setdefault((len(group.rows), len(group.velocities)), []).append(group)
         self._outside = np.flatnonzero(outside)
+        self._alike = [
+            (groups, np.array([group.rows for group in groups]), np.array([group.velocities for group in groups]))
+            for groups in alike.values()
+        ]
 
     def least(self, K: Matrix, b: Vector) -> Vector:
         """K⁺ b (nv,), as `at` has it, but without a decomposition where the rows of K (nc, nv) are independent."""
@@ -119,22 +127,55 @@ class TangentSpaces:
         """
         A = K * self.dimensionless
         finite("the constraint Jacobian", A)
-        blocks = [self._block(group, A[group.rows[:, None], group.velocities]) for group in self._groups]
+        blocks: list[_Block] = []
+        for groups, rows, velocities in self._alike:
+            if len(groups) < _MANY:
+                parts = [_part(A[group.rows[:, None], group.velocities]) for group in groups]
+            else:
+                parts = _parts(A[rows[:, :, None], velocities[:, None]])
+            blocks += [_Block(group.velocities, group.rows, *part) for group, part in zip(groups, parts, strict=True)]
         return TangentSpace(blocks, self.scale, self.row_scale, self._outside)
 
-    def _block(self, group: LoopGroup, A: Matrix) -> _Block:
-        """The part of a group; the singular values decide on its rank where that is in doubt."""
-        m, n = A.shape
-        if m <= n:
-            Q, R = np.linalg.qr(A.T, mode="complete")
-            try:
-                inverse = np.linalg.inv(R[:m])
-            except np.linalg.LinAlgError:  # singular to the last digit
-                inverse = np.full((m, m), np.inf)
-            # 1/|R⁻¹| bounds the smallest singular value of A from below.
-            if CERTAIN * np.linalg.norm(A) * np.linalg.norm(inverse) < 1.0:
-                return _Block(group.velocities, group.rows, Q[:, m:], Q[:, :m] @ inverse.T)
+
+_Part = tuple[Matrix, Matrix]  # the null space (n, f) and the pseudoinverse (n, m) of a matrix (m, n)
+
+
+def _part(A: Matrix) -> _Part:
+    """Those of a matrix (m, n); the singular values decide on its rank where that is in doubt."""
+    part = _of_independent_rows(A)
+    if part is None:
         left, values, right = np.linalg.svd(A)
         rank = numerical_rank(values, values.max(initial=0.0))
-        pseudoinverse = (right[:rank].T / values[:rank]) @ left[:, :rank].T
-        return _Block(group.velocities, group.rows, right[rank:].T, pseudoinverse)
+        return right[rank:].T, (right[:rank].T / values[:rank]) @ left[:, :rank].T
+    return part
+
+
+def _parts(A: Matrix) -> list[_Part]:
+    """The same for several matrices (g, m, n)."""
+    squares = np.einsum("gij,gij->gi", A, A)
+    # The smallest singular value is at most the norm of a row.
+    may_be = squares.min(axis=1) > CERTAIN * CERTAIN * squares.sum(axis=1)
+    found = [
+        _of_independent_rows(each) if possible else None for each, possible in zip(A, may_be.tolist(), strict=True)
+    ]
+    doubtful = [index for index, part in enumerate(found) if part is None]
+    if doubtful:
+        left, values, right = np.linalg.svd(A[doubtful])
+        for index, rank, U, s, Vt in zip(doubtful, numerical_ranks(values).tolist(), left, values, right, strict=True):
+            found[index] = Vt[rank:].T, (Vt[:rank].T / s[:rank]) @ U[:, :rank].T
+    return [part for part in found if part is not None]
+
+
+def _of_independent_rows(A: Matrix) -> _Part | None:
+    """That of a matrix (m, n) whose rows are independent beyond doubt; None for any other."""
+    m, n = A.shape
+    if m > n:
+        return None
+    Q, R = np.linalg.qr(A.T, mode="complete")
+    try:
+        inverse = np.linalg.inv(R[:m])
+    except np.linalg.LinAlgError:  # singular to the last digit
+        return None
+    # 1/|R⁻¹| bounds the smallest singular value of A from below.
+    is_certain = CERTAIN * np.linalg.norm(A) * np.linalg.norm(inverse) < 1.0
+    return (Q[:, m:], Q[:, :m] @ inverse.T) if is_certain else None

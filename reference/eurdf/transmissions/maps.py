@@ -18,9 +18,10 @@ import numpy as np
 from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Indices, Mask, Matrix, Vector
 from eurdf.kinematics.batch.problem import Problem
-from eurdf.kinematics.batch.tangent import numerical_ranks, tangents
+from eurdf.kinematics.batch.tangent import tangents
 from eurdf.kinematics.derived import derived
 from eurdf.kinematics.exceptions import NotClosable
+from eurdf.kinematics.rank import numerical_ranks
 from eurdf.kinematics.residual import all_openings, residual_and_jacobian
 from eurdf.kinematics.tangent_space import TangentSpaces
 

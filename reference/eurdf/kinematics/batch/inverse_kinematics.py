@@ -22,10 +22,11 @@ from eurdf.kinematics.batch.blocks import Progress, blocks
 from eurdf.kinematics.batch.descent import clip, close, closes, room
 from eurdf.kinematics.batch.frames import BatchFrames
 from eurdf.kinematics.batch.problem import Problem, problem
-from eurdf.kinematics.batch.tangent import SURE, numerical_ranks, tangents
+from eurdf.kinematics.batch.tangent import SURE, tangents
 from eurdf.kinematics.bounded_step import bounded_step
 from eurdf.kinematics.inverse_kinematics import InverseKinematicsReason
 from eurdf.kinematics.position_limit import BEYOND, Limits, PositionLimits, chosen_limits
+from eurdf.kinematics.rank import numerical_ranks
 from eurdf.pinocchio.arguments import checked_array, checked_count, checked_tolerance
 
 if TYPE_CHECKING:

@@ -15,8 +15,9 @@ from eurdf.kinematics.batch.arguments import checked_configurations
 from eurdf.kinematics.batch.blocks import Progress, blocks
 from eurdf.kinematics.batch.frames import BatchFrames
 from eurdf.kinematics.batch.problem import Group, Problem, held_groups, problem
-from eurdf.kinematics.batch.tangent import SURE, numerical_ranks, tangents
+from eurdf.kinematics.batch.tangent import SURE, tangents
 from eurdf.kinematics.metric import metric
+from eurdf.kinematics.rank import numerical_ranks
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot

@@ -8,25 +8,13 @@ from typing import NamedTuple
 import numpy as np
 
 from eurdf.dataclass import dataclass
-from eurdf.kinematics.array import Indices, Matrix, Vector
+from eurdf.kinematics.array import Indices, Matrix
 from eurdf.kinematics.batch.problem import Group, Problem
-from eurdf.kinematics.rank import FLOOR, NOTHING
+from eurdf.kinematics.rank import numerical_ranks
 
 #: If the smallest pivot of K Kᵀ is above this part of its largest diagonal entry, K has full rank beyond doubt; if not,
 #: singular values decide.
 SURE = 1e-6
-
-
-def numerical_ranks(values: Matrix, reference: Vector | None = None) -> Indices:
-    """`eurdf.kinematics.rank.numerical_rank` of descending singular values (B, k); by default relative to the first."""
-    B, k = values.shape
-    if k == 0:
-        return np.zeros(B, dtype=np.intp)
-    reference = values[:, :1] if reference is None else reference[:, None]
-    nothing = ~(reference[:, 0] > NOTHING)
-    relative = np.clip(values / np.where(reference > NOTHING, reference, 1.0), FLOOR, 1.0)
-    ladder = np.concatenate((np.ones((B, 1)), relative, np.full((B, 1), FLOOR)), axis=1)
-    return np.where(nothing, 0, np.argmax(ladder[:, :-1] / ladder[:, 1:], axis=1))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
