@@ -158,11 +158,15 @@ def _parts(A: Matrix) -> list[_Part]:
     found = [
         _of_independent_rows(each) if possible else None for each, possible in zip(A, may_be.tolist(), strict=True)
     ]
-    doubtful = [index for index, part in enumerate(found) if part is None]
-    if doubtful:
+    doubtful = np.array([index for index, part in enumerate(found) if part is None], dtype=np.intp)
+    if len(doubtful):
         left, values, right = np.linalg.svd(A[doubtful])
-        for index, rank, U, s, Vt in zip(doubtful, numerical_ranks(values).tolist(), left, values, right, strict=True):
-            found[index] = Vt[rank:].T, (Vt[:rank].T / s[:rank]) @ U[:, :rank].T
+        ranks = numerical_ranks(values)
+        for rank in set(ranks.tolist()):
+            own = ranks == rank
+            V, s, Ut = right[own].swapaxes(1, 2), values[own, None, :rank], left[own, :, :rank].swapaxes(1, 2)
+            for index, *part in zip(doubtful[own].tolist(), V[:, :, rank:], V[:, :, :rank] / s @ Ut, strict=True):
+                found[index] = tuple(part)
     return [part for part in found if part is not None]
 
 
