@@ -137,11 +137,11 @@ class TangentSpaces:
         return TangentSpace(blocks, self.scale, self.row_scale, self._outside)
 
 
-_Part = tuple[Matrix, Matrix]  # the null space (n, f) and the pseudoinverse (n, m) of a matrix (m, n)
+_Part = tuple[Matrix, Matrix]  # free motions (n, f) and pseudoinverse (n, m) of a block of K (m, n)
 
 
 def _part(A: Matrix) -> _Part:
-    """Those of a matrix (m, n); the singular values decide on its rank where that is in doubt."""
+    """Free motions and pseudoinverse of a block (m, n); the singular values decide on its rank where it is in doubt."""
     part = _of_independent_rows(A)
     if part is None:
         left, values, right = np.linalg.svd(A)
@@ -151,7 +151,7 @@ def _part(A: Matrix) -> _Part:
 
 
 def _parts(A: Matrix) -> list[_Part]:
-    """The same for several matrices (g, m, n)."""
+    """The same of several blocks (g, m, n)."""
     squares = np.einsum("gij,gij->gi", A, A)
     # The smallest singular value is at most the norm of a row.
     may_be = squares.min(axis=1) > CERTAIN * CERTAIN * squares.sum(axis=1)
@@ -165,13 +165,13 @@ def _parts(A: Matrix) -> list[_Part]:
         for rank in set(ranks.tolist()):
             own = ranks == rank
             V, s, Ut = right[own].swapaxes(1, 2), values[own, None, :rank], left[own, :, :rank].swapaxes(1, 2)
-            for index, *part in zip(doubtful[own].tolist(), V[:, :, rank:], V[:, :, :rank] / s @ Ut, strict=True):
+            for index, *part in zip(doubtful[own].tolist(), V[:, :, rank:], (V[:, :, :rank] / s) @ Ut, strict=True):
                 found[index] = tuple(part)
     return [part for part in found if part is not None]
 
 
 def _of_independent_rows(A: Matrix) -> _Part | None:
-    """That of a matrix (m, n) whose rows are independent beyond doubt; None for any other."""
+    """The same of a block (m, n) whose rows are independent beyond doubt; None for any other."""
     m, n = A.shape
     if m > n:
         return None
