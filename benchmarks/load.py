@@ -4,11 +4,11 @@ Inertias, and whether the loops close in the configuration `assembled`, are chec
 used: the last column is the ratio with them.
 
 How Python was compiled matters, since the peer is compiled code: of the robots with 10 joints or more, on one machine
-on 2026-11-23, the Python 3.11.2 of Debian 12 took 1.28 to 1.97 of the peer's time, and a Python 3.11.7 compiled without
-profile-guided and link-time optimization 1.46 to 2.14.
+on 2026-11-23, the Python 3.11.2 of Debian 12 took 1.23 to 1.97 of the peer's time, and a Python 3.11.7 compiled without
+profile-guided and link-time optimization 1.41 to 2.15.
 
 Then whole processes, imports included, against processes that only import what `eurdf` needs. All are times of the
-processor, the least of several that run in turns. OpenBLAS has one thread. By default it has more, and an import of
+processor, in the turn that took both the least. OpenBLAS has one thread. By default it has more, and an import of
 pinocchio takes up to twice as long; `eurdf check` chooses one thread itself.
 """
 
@@ -67,7 +67,7 @@ def alternate(
     seconds: float = 1.5,
     clock: Callable[[], float] = time.process_time,
 ) -> tuple[float, float]:
-    """Least times of two functions run by turns, in s."""
+    """Times of two functions run by turns, in s: of the turn that took the least, since processors change speed."""
     times: tuple[list[float], list[float]] = ([], [])
     one(), other()
     end = time.perf_counter() + seconds
@@ -76,7 +76,7 @@ def alternate(
             start = clock()
             function()
             taken.append(clock() - start)
-    return min(times[0]), min(times[1])
+    return min(zip(*times, strict=True), key=sum)
 
 
 def of_children() -> float:
