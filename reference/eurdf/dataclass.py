@@ -30,8 +30,8 @@ else:
         if not frozen:
             return dataclasses.dataclass(cls, **options)
         has_equality, has_repr = options.pop("eq", True), options.pop("repr", True)
-        # The standard library refuses a frozen class with a base that is not frozen, and the reverse. So it is told
-        # that this class is frozen: at once if it has such a base, for which it takes longer; else afterwards.
+        # The standard library checks that a frozen class has no base that can be assigned to, and the reverse. To check
+        # the bases, it must define the class as frozen, which takes longer; a subclass only reads the flag set below.
         inherits = any(map(dataclasses.is_dataclass, cls.__bases__))
         plain = dataclasses.dataclass(cls, init=False, eq=False, repr=False, frozen=inherits, **options)
         parameters = plain.__dataclass_params__
