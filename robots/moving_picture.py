@@ -13,6 +13,7 @@ import pinocchio as pin
 
 import eurdf
 from eurdf.kinematics.array import Vector
+from eurdf.viewing.palette import with_palette
 from eurdf.viewing.picture import Drawn, Image, View, drawn, seen
 
 _ROBOT, _DRAGGED = "digit_leg", "foot"
@@ -21,6 +22,7 @@ _PIXELS = 340, 460  # width and height of each view
 _HEIGHT = 1.08  # m, of what a view shows
 _CENTER = (-0.1, 0.08, -0.53)  # of the views, in the world, m: it leaves out most of the torso
 _FRAMES, _TIME = 72, 55  # number of frames, and the time of each, ms
+_COLORS = 96  # of all frames
 _FOOT_TIP = (0.11, 0.0, 0.0)  # where the pointer holds the foot, in its frame, m
 # An arrow that points to the origin, pixels.
 _POINTER = ((0, 0), (0, 26), (6, 20), (10, 30), (15, 28), (11, 18), (19, 18))
@@ -45,16 +47,20 @@ def dragged(robot: eurdf.Robot, frames: int = _FRAMES) -> Iterator[tuple[Vector,
 
 
 def moving_picture(robot: eurdf.Robot, frames: int = _FRAMES) -> list[Image]:
-    """The frames, pixels (height, width, 3)."""
+    """The frames, pixels (height, width, 4)."""
     return [_frame(drawn(robot, q, loops=False), held) for q, held in dragged(robot, frames)]
 
 
 def save_moving_picture(frames: Sequence[Image], file: Path) -> None:
-    """Write frames to an animated WebP file that repeats without end."""
+    """Write frames to an animated WebP file that repeats without end.
+
+    A palette makes it small without loss; where colors are lossy, WebP needs more for the transparency than for them.
+    """
     from PIL import Image as Pillow
 
-    first, *others = (Pillow.fromarray(frame) for frame in frames)
-    first.save(file, format="WEBP", save_all=True, append_images=others, duration=_TIME, loop=0, quality=75, method=6)
+    colors, indices = with_palette(np.concatenate(frames), _COLORS)
+    first, *others = (Pillow.fromarray(frame) for frame in colors[indices].reshape(len(frames), *frames[0].shape))
+    first.save(file, format="WEBP", save_all=True, append_images=others, duration=_TIME, loop=0, lossless=True)
 
 
 def _frame(shown: Drawn, held: Vector) -> Image:

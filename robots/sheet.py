@@ -15,22 +15,23 @@ from eurdf.viewing.picture import VIEWS, Image, picture, save_picture
 _COLUMNS = 7
 _CELL = 170, 190  # width and height of a robot and its name, pixels
 _NAME = 22  # height of a name, pixels
+_GRAY = "#777"  # of the names: the sheet is seen on white and on black
 
 
 def sheet(robots: Sequence[str]) -> Image:
-    """Robots, seen from the front right above, each with its name below: pixels (height, width, 3)."""
+    """Robots, seen from the front right above, each with its name below: pixels (height, width, 4)."""
     from PIL import Image as Pillow
     from PIL import ImageDraw
 
     width, height = _CELL
-    whole = Pillow.new("RGB", (_COLUMNS * width, -(-len(robots) // _COLUMNS) * height), "white")
+    whole = Pillow.new("RGBA", (_COLUMNS * width, -(-len(robots) // _COLUMNS) * height), _GRAY + "0")
     pen = ImageDraw.Draw(whole)
     for index, name in enumerate(robots):
         left, top = index % _COLUMNS * width, index // _COLUMNS * height
         seen = Pillow.fromarray(picture(eurdf.load(name), VIEWS[1:2]))
         seen.thumbnail((width - 10, height - _NAME), Pillow.Resampling.LANCZOS)
         whole.paste(seen, (left + (width - seen.width) // 2, top + (height - _NAME - seen.height) // 2))
-        pen.text((left + width / 2, top + height - _NAME / 2), name, fill="black", anchor="mm", font_size=12)
+        pen.text((left + width / 2, top + height - _NAME / 2), name, fill=_GRAY, anchor="mm", font_size=12)
     return np.asarray(whole)
 
 

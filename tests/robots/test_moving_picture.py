@@ -25,12 +25,13 @@ def test_dragged_foot_keeps_loops_closed_and_returns_to_its_start():
     assert np.abs(held[0] - held[-1]).max() < 0.1
 
 
-def test_picture_is_animated_without_end_and_small():
+def test_picture_is_transparent_animated_without_end_and_small():
     image = pytest.importorskip("PIL.Image", reason="Pillow is not installed: pip install -e '.[pictures]'")
     assert PICTURE.stat().st_size < 2_000_000
     with image.open(PICTURE) as picture:
         assert picture.n_frames > 24
         assert picture.info["loop"] == 0
+        assert all(picture.convert("RGBA").getpixel((0, y))[3] == 0 for y in (0, picture.height - 1))
 
 
 @pytest.mark.slow

@@ -1,4 +1,4 @@
-"""Pictures of robots: three views side by side, in colour, on white."""
+"""Pictures of robots: three views side by side, in colour, on a transparent background."""
 
 from __future__ import annotations
 
@@ -20,6 +20,12 @@ from robots import picture as pictures
 from robots import sheet
 
 ROOT = Path(__file__).parents[2]
+
+
+def on_white(image):
+    """The pixels (height, width, 3) of a picture on a white page."""
+    alpha = image[..., 3:] / 255.0
+    return alpha * image[..., :3] + 255.0 * (1.0 - alpha)
 
 
 def test_missing_renderer_says_what_to_install(monkeypatch, capsys, tmp_path):
@@ -60,11 +66,13 @@ def test_command_draws_a_configuration_with_its_loops(capsys, tmp_path):
     }.items():
         file = tmp_path / f"{name}.png"
         assert main(["picture", str(tmp_path), "-o", str(file), *options]) == 0
-        drawn[name] = np.asarray(Image.open(file).convert("RGB")).astype(int)
+        drawn[name] = on_white(np.asarray(Image.open(file).convert("RGBA")))
     red = {name: ((pixels[..., 0] - pixels[..., 1:].max(axis=2)) > 120).sum() for name, pixels in drawn.items()}
     assert red["apart"] > 100  # the line across the open closure
     assert red["loops"] < 20
-    assert (drawn["assembled"] != 255).any()
+    violet = {name: ((pixels[..., 2] - pixels[..., 1]) > 100).sum() for name, pixels in drawn.items()}
+    assert violet["assembled"] == 0
+    assert violet["loops"] > 60  # a dot has a diameter of 12 pixels
     assert drawn["assembled"].shape == drawn["neutral"].shape  # the assembled configuration is the neutral one
     assert main(["picture", str(tmp_path), "-o", str(file)]) == 2
     assert "already exists; --force replaces it" in capsys.readouterr().err
@@ -75,26 +83,33 @@ def test_command_draws_a_configuration_with_its_loops(capsys, tmp_path):
 def test_robot_without_shapes_is_drawn_as_lines(tmp_path):
     pytest.importorskip("pyvista", reason="pyvista is not installed: pip install -e '.[pictures]'")
     image = picture(eurdf.load("four_bar", geometry=False))
-    assert ((image < 200).any(axis=2)).sum() > 200
+    assert (image[..., 3] > 200).sum() > 200
 
 
 def test_views_fill_picture_within_margin():
     pytest.importorskip("pyvista", reason="pyvista is not installed: pip install -e '.[pictures]'")
     image = picture(eurdf.load("four_bar"))
     height, width, _ = image.shape
+    assert (image[[0, 0, -1, -1], [0, -1, 0, -1], 3] == 0).all()
     assert abs(width - 780) <= 3
     assert height <= 860
-    seen = (image < 250).any(axis=2)
+    seen = image[..., 3] > 10
     rows, columns = np.flatnonzero(seen.any(axis=1)), np.flatnonzero(seen.any(axis=0))
     assert (columns[0], width - 1 - columns[-1]) == pytest.approx((12, 12), abs=2)
     assert (rows[0], height - 1 - rows[-1]) == pytest.approx((12, 12), abs=2)
 
 
-def test_each_robot_has_small_pictures_and_its_graph(tmp_path):
+def test_each_robot_has_small_transparent_pictures_and_its_graph(tmp_path):
+    images = pytest.importorskip("PIL.Image", reason="Pillow is not installed: pip install -e '.[pictures]'")
     for name in eurdf.collection_names():
         folder = ROOT / "robots" / name
         for file in (folder / "picture.png", folder / "loops.png"):
             assert file.stat().st_size <= 60_000, file
+            seen = np.asarray(images.open(file).convert("RGBA"))
+            assert not seen[[0, 0, -1, -1], [0, -1, 0, -1], 3].any(), file
+            # It is seen on white and on black: few pixels are near one of the two.
+            near = seen[seen[..., 3] > 250][:, :3].astype(int) - 128
+            assert (np.abs(near).min(axis=1) < 115).mean() > 0.98, file
         save_graph(describe(folder / "robot.yaml", geometry=False).mechanism, tmp_path / "graph.svg")
         drawn = (folder / "graph.svg").read_text()
         assert drawn == (tmp_path / "graph.svg").read_text(), f"python -m robots.picture {name}"
@@ -113,8 +128,24 @@ def test_graph_names_joints_closures_and_couplings(capsys, tmp_path):
 
 def test_distance_is_no_open_closure():
     pytest.importorskip("pyvista", reason="pyvista is not installed: pip install -e '.[pictures]'")
-    pixels = picture(eurdf.load("tello"), VIEWS[1:2], loops=True).astype(int)
+    pixels = on_white(picture(eurdf.load("tello"), VIEWS[1:2], loops=True))
     assert ((pixels[..., 0] - pixels[..., 1:].max(axis=2)) > 120).sum() < 20
+
+
+def test_palette_keeps_colors_and_transparency():
+    pytest.importorskip("PIL", reason="Pillow is not installed: pip install -e '.[pictures]'")
+    from eurdf.viewing.palette import with_palette
+
+    rng = np.random.default_rng(0)
+    few = np.r_[rng.integers(0, 256, (200, 4)), [[0, 0, 0, 0]]].astype(np.uint8)
+    few[:100, 3] = 255
+    image = few[rng.integers(0, len(few), (40, 50))]
+    colors, indices = with_palette(image)
+    back, alpha = colors[indices].astype(float), image[..., 3:] / 255.0
+    assert np.abs(back[..., 3] - image[..., 3]).mean() < 4
+    assert np.abs(back[..., :3] * back[..., 3:] / 255.0 - image[..., :3] * alpha).mean() < 4
+    assert (back[image[..., 3] == 255][:, 3] == 255).mean() > 0.9
+    assert with_palette(image, 16)[0].shape == (16, 4)
 
 
 def test_sheet_shows_each_robot_with_name():
@@ -122,7 +153,7 @@ def test_sheet_shows_each_robot_with_name():
     one, two = sheet.sheet(["four_bar"]), sheet.sheet(["four_bar", "bennett"])
     width, height = 170, 190
     assert one.shape == two.shape
-    assert (one[:, width:] == 255).all()
+    assert (one[:, width:, 3] == 0).all()
     assert (two[:, :width] == one[:, :width]).all()
     for part in (two[: height - 22, width : 2 * width], two[height - 22 :, width : 2 * width]):
-        assert (part < 128).any()
+        assert (part[..., 3] > 200).any()

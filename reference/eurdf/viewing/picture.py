@@ -17,6 +17,7 @@ from eurdf.exceptions import MissingExtra
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.residual import openings_once
 from eurdf.pinocchio.robot import Robot
+from eurdf.viewing.palette import with_palette
 from eurdf.viewing.scene import Scene
 from eurdf.viewing.session import ASSEMBLED
 from eurdf.viewing.surface import Surface
@@ -28,13 +29,14 @@ Color = tuple[float, ...]
 
 _MOST_WIDTH, _MOST_HEIGHT = 780, 860  # of the picture, pixels
 _MARGIN = 12  # around each view, pixels
-_OVERSAMPLING = 2  # pixels drawn for one of the picture, along each side: VTK smooths edges, and this does the rest
-_COLORS = 96  # of the picture: enough for primitives, and it keeps the file small
+_OVERSAMPLING = 4  # pixels drawn for one of the picture, along each side: this smooths edges
 
 _LINE = 2.5  # width of a line, pixels
 _DOT = 12  # diameter of a dot, pixels
-_TRANSLUCENT = 0.3  # opacity of shapes behind which closures are shown
-_SKELETON: Color = (0.35, 0.35, 0.35)
+_TRANSLUCENT = 0.4  # opacity of shapes behind which closures are shown
+_DARK = 0.15  # luminance below which colors are lightened: a picture is also seen on a dark page
+_GAMMA = 2.2  # of colors; near enough to that of sRGB
+_SKELETON: Color = (0.5, 0.5, 0.5)
 _CLOSURE: Color = (0.55, 0.2, 0.8)
 _OPEN: Color = (0.9, 0.1, 0.1)
 
@@ -80,7 +82,7 @@ class Drawn:
 
 
 def picture(robot: Robot, views: Sequence[View] = VIEWS, *, q: Vector | None = None, loops: bool = False) -> Image:
-    """Views of a robot side by side, all at one scale, on white.
+    """Views of a robot side by side, all at one scale, on a transparent background.
 
     It shows the visual shapes, or lines from link to link if there are none.
 
@@ -92,7 +94,7 @@ def picture(robot: Robot, views: Sequence[View] = VIEWS, *, q: Vector | None = N
             if a closure is open, a red line between its frames. The shapes are then translucent.
 
     Returns:
-        Pixels (height, width, 3).
+        Pixels (height, width, 4): red, green, blue, alpha.
 
     Raises:
         MissingExtra: The extra ``pictures`` is not installed.
@@ -120,15 +122,19 @@ def picture(robot: Robot, views: Sequence[View] = VIEWS, *, q: Vector | None = N
 
 
 def save_picture(image: Image, file: str | os.PathLike[str]) -> None:
-    """Write pixels (height, width, 3) to a PNG file; an existing one is replaced.
+    """Write pixels (height, width, 4) to a PNG file; an existing one is replaced.
+
+    The file has a palette, which makes it small; each pixel gets the nearest of its colors.
 
     Raises:
         OSError: It cannot be written.
     """
     from PIL import Image as Pillow
 
-    palette = Pillow.fromarray(image).quantize(_COLORS, kmeans=1, dither=Pillow.Dither.NONE)
-    palette.save(file, format="PNG", optimize=True)
+    colors, indices = with_palette(image)
+    indexed = Pillow.fromarray(indices)
+    indexed.putpalette(colors.tobytes(), "RGBA")
+    indexed.save(file, format="PNG", optimize=True)
 
 
 def drawn(robot: Robot, q: Vector | None, loops: bool) -> Drawn:
@@ -151,7 +157,7 @@ def drawn(robot: Robot, q: Vector | None, loops: bool) -> Drawn:
             oMp = placed.poses[part.body] * part.pose
             vertices = part.surface.vertices @ oMp.rotation.T + oMp.translation
             alpha = part.color[3] * (_TRANSLUCENT if loops else 1.0)
-            solids.append((replace(part.surface, vertices=vertices), (*part.color[:3], alpha)))
+            solids.append((replace(part.surface, vertices=vertices), (*_lightened(part.color[:3]), alpha)))
     if visual_model is None or not solids:
         lines.append((scene.skeleton(placed), _SKELETON))
     dots = np.empty((0, 3))
@@ -167,6 +173,16 @@ def drawn(robot: Robot, q: Vector | None, loops: bool) -> Drawn:
     if not (len(together) and np.ptp(together, axis=0).any()):
         raise ValueError("there is nothing to draw: it has no visual shapes, and all links are at one point")
     return Drawn(solids, lines, dots, together)
+
+
+def _lightened(color: Color) -> Color:
+    """A color (3,) that is visible on black: a luminance y below `_DARK` becomes (y + `_DARK`) / 2."""
+    light = np.array(color) ** _GAMMA
+    luminance = float(light @ (0.2126, 0.7152, 0.0722))
+    if luminance >= _DARK:
+        return color
+    toward_white = 0.5 * (_DARK - luminance) / (1.0 - luminance)
+    return tuple(((light + toward_white * (1.0 - light)) ** (1.0 / _GAMMA)).tolist())
 
 
 def _renderer() -> Any:
@@ -187,7 +203,7 @@ def _renderer() -> Any:
 
 
 def seen(shown: Drawn, view: View, center: Points, pixels: tuple[int, int], scale: float) -> Image:
-    """One view: pixels (height, width, 3).
+    """One view: pixels (height, width, 4).
 
     Args:
         shown: What is shown.
@@ -200,7 +216,7 @@ def seen(shown: Drawn, view: View, center: Points, pixels: tuple[int, int], scal
 
     pv = _renderer()
     plotter = pv.Plotter(off_screen=True, window_size=[_OVERSAMPLING * side for side in pixels], lighting="none")
-    plotter.set_background("white")
+    plotter.set_background("black")  # then the pixels of a transparent picture are colors times alpha
     for surface, color in shown.solids:
         faces = np.column_stack((np.full(len(surface.triangles), 3), surface.triangles))
         plotter.add_mesh(
@@ -234,7 +250,8 @@ def seen(shown: Drawn, view: View, center: Points, pixels: tuple[int, int], scal
     camera.focal_point, camera.position, camera.up = focus, focus + 2.0 * reach * toward, up
     camera.parallel_scale = pixels[1] / scale / 2.0
     camera.clipping_range = (0.5 * reach, 3.5 * reach)
-    plotter.enable_anti_aliasing("ssaa")
-    pixels_drawn = plotter.screenshot(return_img=True)
+    plotter.disable_anti_aliasing()
+    drawn_pixels = np.ascontiguousarray(plotter.screenshot(return_img=True, transparent_background=True))
     plotter.close()
-    return np.asarray(Pillow.fromarray(pixels_drawn).resize(pixels, Pillow.Resampling.LANCZOS))
+    large = Pillow.frombuffer("RGBa", drawn_pixels.shape[1::-1], drawn_pixels)
+    return np.asarray(large.resize(pixels, Pillow.Resampling.LANCZOS).convert("RGBA"))
