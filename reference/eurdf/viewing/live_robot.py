@@ -34,7 +34,9 @@ SCRIPTS = tuple(
     _FOLDER / f"{name}.js" for name in ("linear_algebra", "mechanism", "springs", "motion", "drawing", "live_page")
 )
 STYLE = _FOLDER / "live_page.css"
+_PAGE_STYLE = _FOLDER / "offline_page.css"  # of a page with nothing else
 
+_HELP = "Drag to turn the robot; Shift and drag to move it; click it and scroll, or pinch, to zoom."
 _GRAY = (0.9, 0.9, 0.9, 1.0)  # of a shape without a colour
 
 
@@ -46,12 +48,13 @@ def live_page(robot: Robot, q: Vector | None = None) -> str:
         q: Where to start (nq,); see `live_robot`.
     """
     name = html.escape(robot.mechanism.name)
+    style = "".join(file.read_text(encoding="utf-8") for file in (STYLE, _PAGE_STYLE))
     scripts = "".join(f"<script>{script.read_text(encoding='utf-8')}</script>" for script in SCRIPTS)
     return (
         f'<!doctype html><html lang="en"><head><meta charset="utf-8"><title>{name}</title>'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
-        f"<style>body {{ margin: 1rem; font-family: sans-serif; }}\n{STYLE.read_text(encoding='utf-8')}</style></head>"
-        f"<body>{live_view(robot, q)}{scripts}</body></html>\n"
+        f"<style>{style}</style></head>"
+        f"<body><main><h1>{name}</h1>{live_view(robot, q)}</main><footer>{_HELP}</footer>{scripts}</body></html>\n"
     )
 
 

@@ -55,4 +55,5 @@ def _colors(numbers: npt.NDArray[np.uint32]) -> Bytes:
 
 def _nearest(colors: Bytes, palette: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
     """For each color the number of the nearest one of the palette."""
-    return ((palette**2).sum(axis=1) - 2.0 * colors @ palette.T).argmin(axis=1)
+    squares: npt.NDArray[np.float64] = (palette**2).sum(axis=1) - 2.0 * colors @ palette.T
+    return squares.argmin(axis=1)

@@ -84,11 +84,17 @@
 
   const VERTEX = `#version 300 es
     in vec3 position; in vec3 normal; in vec4 color;
-    uniform mat4 model; uniform mat4 view; uniform mat4 projection;
+    uniform mat4 model; uniform mat4 view; uniform mat4 projection; uniform float dark;
     out vec3 towards; out vec4 shade; out vec3 at;
+    vec3 lightened(vec3 color) { // a luminance y below dark becomes (y + dark) / 2
+      vec3 light = pow(color, vec3(2.2));
+      float luminance = dot(light, vec3(0.2126, 0.7152, 0.0722));
+      if (luminance >= dark) return color;
+      return pow(mix(light, vec3(1.0), 0.5 * (dark - luminance) / (1.0 - luminance)), vec3(1.0 / 2.2));
+    }
     void main() {
       vec4 seen = view * model * vec4(position, 1.0);
-      towards = mat3(view) * mat3(model) * normal; at = seen.xyz; shade = color;
+      towards = mat3(view) * mat3(model) * normal; at = seen.xyz; shade = vec4(lightened(color.rgb), color.a);
       gl_Position = projection * seen;
     }`;
   const FRAGMENT = `#version 300 es
@@ -133,7 +139,7 @@
       gl.linkProgram(program);
       if (!gl.getProgramParameter(program, gl.LINK_STATUS)) throw new Error(gl.getProgramInfoLog(program));
       this.places = {};
-      for (const name of ["model", "view", "projection", "opacity", "lit"])
+      for (const name of ["model", "view", "projection", "opacity", "lit", "dark"])
         this.places[name] = gl.getUniformLocation(program, name);
       const found = new Map(); // of each body, opaque and translucent shapes apart
       for (const shape of shapes) {
@@ -171,6 +177,7 @@
       const R = [...right, ...up, ...toward];
       gl.uniformMatrix4fv(places.view, false, matrixOf({ R, p: rotate(R, scaled(-1, eye)) }));
       gl.uniformMatrix4fv(places.projection, false, this._projection(width / height));
+      gl.uniform1f(places.dark, Number(getComputedStyle(canvas).getPropertyValue("--eu-live-dark")));
       gl.uniform1f(places.opacity, 1);
       gl.uniform1f(places.lit, 0);
       gl.uniformMatrix4fv(places.model, false, matrixOf({ R: UPRIGHT, p: [0, 0, 0] }));

@@ -35,7 +35,7 @@
       this.motion = new globalThis.eurdf.Motion(data);
       this.closures = this.motion.mechanism.constraints.filter((each) => each.type !== "coupling");
       const view = element(root, "div", { class: "eu-live-view" });
-      const canvas = element(view, "canvas", { tabindex: "0", role: "img" });
+      const canvas = element(view, "canvas", { tabindex: "0", role: "application" });
       const label = `The robot ${data.name}, in three dimensions. Arrow keys turn it, + and - zoom.`;
       canvas.setAttribute("aria-label", label);
       const panel = element(root, "form", { class: "eu-live-panel", "aria-label": "Actuators" });
@@ -49,6 +49,9 @@
         this.drawing = new globalThis.eurdf.Drawing(canvas, data.shapes, data);
         this._look(canvas);
         new ResizeObserver(() => this._soon()).observe(canvas);
+        // The style says how dark the page is: by the browser's preference, or by the theme that the user chose.
+        matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this._soon());
+        new MutationObserver(() => this._soon()).observe(document.body, { attributeFilter: ["data-theme"] });
       } catch (error) {
         canvas.remove();
         element(view, "p", {}, `The robot is not drawn: ${error.message}.`);
