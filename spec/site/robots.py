@@ -1,6 +1,7 @@
 """The pages of the robots of the collection: a gallery, and for each robot a page on which it moves.
 
-They are made when the site is built. A page has no server behind it: its scripts close the loops.
+They are made when the site is built. A page has no server behind it: its scripts close the loops. The directive
+``{live-robot}`` shows a robot that moves on any other page.
 """
 
 from __future__ import annotations
@@ -11,8 +12,12 @@ import re
 import shutil
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
+from docutils import nodes
+from docutils.nodes import Node
 from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
 
 import eurdf
 from eurdf.commands.main import main as run_command
@@ -30,6 +35,8 @@ _INTRODUCTION = """\
 Open a robot and move its actuators: the loops stay closed. Each robot is also a folder of files to start from, and a
 name that the commands know: `eurdf view digit_leg`.
 """
+
+_LIVE = "eu-live-robot"  # class of the element with a robot that moves
 
 # A link or picture of Markdown: what is shown, and the target, without its anchor.
 _LINK = re.compile(r"(?P<shown>!?\[[^\]]*\])\((?!https?:|#)(?P<path>[^)#\s]+)(?P<anchor>#[^)\s]*)?\)")
@@ -62,7 +69,6 @@ def _write_page(pages: Path, name: str) -> str:
     files = sorted(file for file in source.iterdir() if file.suffix in (".urdf", ".yaml", ".py"))
     for file in (*files, *source.glob("*.png"), *source.glob("*.svg")):
         shutil.copy(file, own)
-    (own / "live.html").write_text(_scripts() + live_view(robot), encoding="utf-8")
     (own / "graph.html").write_text(
         f'<div style="overflow-x: auto; padding: 2px 8px">{graph_svg(robot.mechanism)}</div>', encoding="utf-8"
     )
@@ -72,7 +78,7 @@ def _write_page(pages: Path, name: str) -> str:
     meshes = "" if not (source / "meshes").is_dir() else "\n- meshes: in the folder of the robot in the repository"
     (pages / f"{name}.md").write_text(
         f"{title}\n\n"
-        f"```{{raw}} html\n:file: {name}/live.html\n```\n\n"
+        f"```{{live-robot}} {name}\n```\n\n"
         f"{_with_links_of_the_site(text, name, pages).strip()}\n\n"
         f"## Links and loops\n\n```{{raw}} html\n:file: {name}/graph.html\n```\n\n"
         f"## What `eurdf info {name}` says\n\n```{{literalinclude}} {name}/info.txt\n:language: none\n```\n\n"
@@ -89,12 +95,6 @@ def _write_page(pages: Path, name: str) -> str:
         f"{loops} loop{'s' * (loops != 1)}, {actuators} actuator{'s' * (actuators != 1)}, "
         f"mobility {analysis.mobility}\n:::"
     )
-
-
-def _scripts() -> str:
-    """The elements that load the scripts and the style of a live page."""
-    style = f'<link rel="stylesheet" href="../_static/{STYLE.name}">'
-    return style + "".join(f'<script defer src="../_static/{script.name}"></script>' for script in SCRIPTS)
 
 
 def _info(path: Path) -> str:
@@ -127,6 +127,32 @@ def _with_links_of_the_site(text: str, name: str, pages: Path) -> str:
     return _LINK.sub(translated, text)
 
 
+class LiveRobotDirective(SphinxDirective):
+    """``{live-robot}``: a robot of the collection that moves; the content is shown where scripts do not run."""
+
+    has_content = True
+    required_arguments = 1
+
+    def run(self) -> list[Node]:
+        """The robot, and what replaces it."""
+        robot = eurdf.load(ROOT / FOLDER / self.arguments[0])
+        shown: list[Node] = [nodes.raw("", live_view(robot), format="html", classes=[_LIVE])]
+        if self.content:
+            start, end = (nodes.raw("", tag, format="html") for tag in ("<noscript>", "</noscript>"))
+            shown += [start, *self.parse_content_to_nodes(), end]
+        return shown
+
+
+def _add_scripts(app: Sphinx, page: str, template: str, context: dict[str, Any], tree: nodes.document | None) -> None:
+    """Load the scripts and the style of live robots on the pages that have one."""
+    if tree is not None and any(_LIVE in raw["classes"] for raw in tree.findall(nodes.raw)):
+        app.add_css_file(STYLE.name)
+        for script in SCRIPTS:
+            app.add_js_file(script.name, loading_method="defer")
+
+
 def setup(app: Sphinx) -> None:
-    """Publish the scripts and the style of the pages."""
+    """Add the directive, and publish the scripts and the style of the pages."""
+    app.add_directive("live-robot", LiveRobotDirective)
+    app.connect("html-page-context", _add_scripts)
     app.connect("config-inited", lambda _, config: config.html_static_path.append(str(STYLE.parent)))

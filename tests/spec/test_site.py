@@ -15,6 +15,7 @@ import pytest
 
 import eurdf
 from eurdf.diagnostics import REGISTRY
+from eurdf.viewing.live_robot import SCRIPTS
 from spec.site.citation import case_citations
 from spec.site.clause import SPEC, read_chapters, read_clauses
 from spec.site.pages import address
@@ -76,8 +77,13 @@ def test_pages_of_docs_are_on_the_site(site: Path) -> None:
 def test_first_screen_moves_and_leads_on(site: Path) -> None:
     page = (site / "index.html").read_text(encoding="utf-8")
     first = page[page.index("eu-start") : page.index("robot.yaml")]
-    assert '<img alt="The foot of Digit' in first
-    assert 'src="_images/digit_leg.webp"' in first
+    robot, without_scripts = first.split("<noscript>")
+    scripts = [site / "_static" / script.name for script in SCRIPTS]
+    assert all(f'src="_static/{script.name}' in page for script in scripts)
+    assert len(robot) + sum(script.stat().st_size for script in scripts) < 150_000
+    assert '<img alt="The foot of Digit' in without_scripts
+    assert 'src="_images/digit_leg.webp"' in without_scripts
+    assert "live_page.js" not in (site / "tutorial.html").read_text(encoding="utf-8")
     targets = ("robots/digit_leg.html", "tutorial.html", "robots/index.html", "scope.html", "write_an_adapter.html")
     assert [target for target in targets if f'href="{target}"' not in first] == []
 

@@ -25,11 +25,14 @@ def chromium() -> Iterator[Any]:
         yield started
 
 
-def opened(chromium: Any, folder: Path, robot: eurdf.Robot, width: int = 1000) -> tuple[Any, list[str], list[str]]:
+def opened(
+    chromium: Any, folder: Path, robot: eurdf.Robot, width: int = 1000, height: int = 700, scheme: str = "light"
+) -> tuple[Any, list[str], list[str]]:
     """A page that shows the robot, its errors, and what it loads."""
     file = folder / "page.html"
     file.write_text(live_page(robot), encoding="utf-8")
-    page = chromium.new_context(offline=True, viewport={"width": width, "height": 700}).new_page()
+    size = {"width": width, "height": height}
+    page = chromium.new_context(offline=True, viewport=size, color_scheme=scheme).new_page()
     errors: list[str] = []
     loads: list[str] = []
     page.on("pageerror", lambda error: errors.append(str(error)))
@@ -95,6 +98,63 @@ def test_sliders_move_the_drawn_robot_with_loops_closed(chromium: Any, tmp_path:
     assert abs(page.evaluate("document.querySelector('.eu-live').page.motion.value(0)")) > 0.01
     assert errors == []
     assert len(loads) == 1  # the page itself
+    page.context.close()
+
+
+def lightness(image: Any, at: tuple[int, int]) -> int:
+    return int(image.convert("L").getpixel(at))
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize(
+    ("name", "width", "height"), [("digit_leg", 1280, 700), ("unitree_g1", 390, 700), ("double_wishbone", 700, 390)]
+)
+def test_page_fills_window_in_colors_of_theme(
+    chromium: Any, tmp_path: Path, name: str, width: int, height: int, scheme: str
+) -> None:
+    from PIL import Image, ImageChops
+
+    page, errors, _ = opened(chromium, tmp_path, eurdf.load(name), width, height, scheme)
+    assert page.get_by_role("heading", level=1).text_content() == name
+    size = "[document.documentElement.scrollWidth, document.documentElement.scrollHeight]"
+    assert page.evaluate(size) == [width, height]
+    for each in ("footer", ".eu-live-status"):
+        box = page.locator(each).bounding_box()
+        assert 0 < box["y"] < box["y"] + box["height"] < height
+    canvas = page.locator("canvas").bounding_box()
+    assert canvas["width"] * canvas["height"] > 0.35 * width * height
+
+    whole = Image.open(io.BytesIO(page.screenshot(timeout=60_000)))
+    before, _ = drawn(page)
+    corners = lightness(whole, (2, 2)), lightness(before, (5, 5)), lightness(before, (5, before.height - 5))
+    assert all(corner < 80 if scheme == "dark" else corner > 230 for corner in corners)
+
+    page.get_by_role("slider").first.fill("0.3")
+    assert residual(page) < 1e-9
+    assert changed(before, drawn(page)[0]) > 20
+    page.get_by_role("button", name="Reset").click()
+    page.evaluate("(({drawing}) => { drawing.parts = []; })(document.querySelector('.eu-live').page)")
+    page.get_by_role("button", name="Reset").click()  # draws the ground alone
+    robot = ImageChops.difference(before, drawn(page)[0]).convert("L").point(lambda value: 255 * (value > 12))
+    left, top, right, bottom = robot.getbbox()
+    assert min(left, top, before.width - right, before.height - bottom) > 2  # head and foot are in the picture
+    assert max((right - left) / before.width, (bottom - top) / before.height) > 0.5
+    assert errors == []
+    page.context.close()
+
+
+def test_theme_that_the_user_chooses_repaints_the_robot(chromium: Any, tmp_path: Path) -> None:
+    page, errors, _ = opened(chromium, tmp_path, eurdf.load("double_wishbone"))
+    light, _ = drawn(page)
+    page.evaluate("document.body.dataset.theme = 'dark'")
+    dark, _ = drawn(page)
+    assert lightness(light, (5, 5)) > 230
+    assert lightness(dark, (5, 5)) < 80
+    # The tyre is nearly black; where the page is dark, it is lighter.
+    assert sum(dark.convert("L").histogram()[:36]) < 0.1 * sum(light.convert("L").histogram()[:36])
+    page.evaluate("document.body.dataset.theme = 'light'")
+    assert changed(light, drawn(page)[0]) == 0
+    assert errors == []
     page.context.close()
 
 
