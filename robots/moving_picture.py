@@ -54,7 +54,7 @@ def moving_picture(robot: eurdf.Robot, frames: int = _FRAMES) -> list[Image]:
 def save_moving_picture(frames: Sequence[Image], file: Path) -> None:
     """Write frames to an animated WebP file that repeats without end.
 
-    A palette makes it small without loss; where colors are lossy, WebP needs more for the transparency than for them.
+    A palette makes it small without loss; where colours are lossy, WebP needs more for the transparency than for them.
     """
     from PIL import Image as Pillow
 

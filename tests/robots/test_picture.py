@@ -132,7 +132,7 @@ def test_distance_is_no_open_closure():
     assert ((pixels[..., 0] - pixels[..., 1:].max(axis=2)) > 120).sum() < 20
 
 
-def test_palette_keeps_colors_and_transparency():
+def test_palette_keeps_colours_and_transparency():
     pytest.importorskip("PIL", reason="Pillow is not installed: pip install -e '.[pictures]'")
     from eurdf.viewing.palette import with_palette
 

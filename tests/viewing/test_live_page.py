@@ -109,7 +109,7 @@ def lightness(image: Any, at: tuple[int, int]) -> int:
 @pytest.mark.parametrize(
     ("name", "width", "height"), [("digit_leg", 1280, 700), ("unitree_g1", 390, 700), ("double_wishbone", 700, 390)]
 )
-def test_page_fills_window_in_colors_of_theme(
+def test_page_fills_window_in_colours_of_theme(
     chromium: Any, tmp_path: Path, name: str, width: int, height: int, scheme: str
 ) -> None:
     from PIL import Image, ImageChops
@@ -154,6 +154,9 @@ def test_theme_that_the_user_chooses_repaints_the_robot(chromium: Any, tmp_path:
     assert sum(dark.convert("L").histogram()[:36]) < 0.1 * sum(light.convert("L").histogram()[:36])
     page.evaluate("document.body.dataset.theme = 'light'")
     assert changed(light, drawn(page)[0]) == 0
+    page.evaluate("delete document.body.dataset.theme")
+    page.emulate_media(color_scheme="dark")
+    assert changed(dark, drawn(page)[0]) < 100  # the border differs at the corners
     assert errors == []
     page.context.close()
 

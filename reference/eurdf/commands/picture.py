@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 _DESCRIPTION = """\
 Draw the visual shapes of a robot to a PNG file: from the right, from the front right above, and from behind. A robot
-without visual shapes is drawn as lines from link to link. No window is opened.
+without visual shapes is drawn as lines from link to link. The background is transparent. No window is opened.
 
 With --graph, draw the graph of its links, joints, closures and couplings to an SVG file instead.
 """

@@ -1,4 +1,4 @@
-"""The palette of a picture: few colors, with transparency, that replace all that it has."""
+"""The palette of a picture: few colours, with transparency, that replace all that it has."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-_ROUNDS = 8  # of averaging; later ones change no color that is seen
+_ROUNDS = 8  # of averaging; later ones change no colour that is seen
 
 Bytes = npt.NDArray[np.uint8]
 
@@ -15,15 +15,15 @@ Bytes = npt.NDArray[np.uint8]
 def with_palette(image: Bytes, most: int = 256) -> tuple[Bytes, Bytes]:
     """The palette of a picture, and the number of each pixel in it.
 
-    Pillow's fast octree gives the first palette; each color then becomes the average of the pixels nearest to it
-    (Lloyd's algorithm). Distances are those of colors multiplied by alpha, so that transparent ones are alike.
+    Pillow's fast octree gives the first palette; each colour then becomes the average of the pixels nearest to it
+    (Lloyd's algorithm). Distances are those of colours multiplied by alpha, so that transparent ones are alike.
 
     Args:
         image: Pixels (height, width, 4): red, green, blue, alpha.
-        most: How many colors the palette has at most, at most 256.
+        most: How many colours the palette has at most, at most 256.
 
     Returns:
-        The colors (n, 4), and the indices (height, width).
+        The colours (n, 4), and the indices (height, width).
     """
     from PIL import Image as Pillow
 
@@ -44,16 +44,16 @@ def with_palette(image: Bytes, most: int = 256) -> tuple[Bytes, Bytes]:
 
 
 def _premultiplied(picture: Any) -> npt.NDArray[np.uint32]:
-    """The colors (n,) of the pixels times alpha, each as one number."""
+    """The colours (n,) of the pixels times alpha, each as one number."""
     return np.asarray(picture.convert("RGBa")).view(np.uint32).ravel()
 
 
 def _colors(numbers: npt.NDArray[np.uint32]) -> Bytes:
-    """The colors (n, 4) of such numbers."""
+    """The colours (n, 4) of such numbers."""
     return numbers.view(np.uint8).reshape(-1, 4)
 
 
 def _nearest(colors: Bytes, palette: npt.NDArray[np.float64]) -> npt.NDArray[np.intp]:
-    """For each color the number of the nearest one of the palette."""
-    squares: npt.NDArray[np.float64] = (palette**2).sum(axis=1) - 2.0 * colors @ palette.T
-    return squares.argmin(axis=1)
+    """For each colour the number of the nearest one of the palette."""
+    nearest: npt.NDArray[np.intp] = ((palette**2).sum(axis=1) - 2.0 * colors @ palette.T).argmin(axis=1)
+    return nearest

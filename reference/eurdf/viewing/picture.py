@@ -34,8 +34,8 @@ _OVERSAMPLING = 4  # pixels drawn for one of the picture, along each side: this 
 _LINE = 2.5  # width of a line, pixels
 _DOT = 12  # diameter of a dot, pixels
 _TRANSLUCENT = 0.4  # opacity of shapes behind which closures are shown
-_DARK = 0.15  # luminance below which colors are lightened: a picture is also seen on a dark page
-_GAMMA = 2.2  # of colors; near enough to that of sRGB
+_DARK = 0.15  # luminance below which colours are lightened: a picture is also seen on a dark page
+_GAMMA = 2.2  # of colours; near enough to that of sRGB
 _SKELETON: Color = (0.5, 0.5, 0.5)
 _CLOSURE: Color = (0.55, 0.2, 0.8)
 _OPEN: Color = (0.9, 0.1, 0.1)
@@ -124,7 +124,7 @@ def picture(robot: Robot, views: Sequence[View] = VIEWS, *, q: Vector | None = N
 def save_picture(image: Image, file: str | os.PathLike[str]) -> None:
     """Write pixels (height, width, 4) to a PNG file; an existing one is replaced.
 
-    The file has a palette, which makes it small; each pixel gets the nearest of its colors.
+    The file has a palette, which makes it small; each pixel gets the nearest of its colours.
 
     Raises:
         OSError: It cannot be written.
@@ -176,7 +176,7 @@ def drawn(robot: Robot, q: Vector | None, loops: bool) -> Drawn:
 
 
 def _lightened(color: Color) -> Color:
-    """A color (3,) that is visible on black: a luminance y below `_DARK` becomes (y + `_DARK`) / 2."""
+    """A colour (3,) that is visible on black: a luminance y below `_DARK` becomes (y + `_DARK`) / 2."""
     light = np.array(color) ** _GAMMA
     luminance = float(light @ (0.2126, 0.7152, 0.0722))
     if luminance >= _DARK:
@@ -216,7 +216,7 @@ def seen(shown: Drawn, view: View, center: Points, pixels: tuple[int, int], scal
 
     pv = _renderer()
     plotter = pv.Plotter(off_screen=True, window_size=[_OVERSAMPLING * side for side in pixels], lighting="none")
-    plotter.set_background("black")  # then the pixels of a transparent picture are colors times alpha
+    plotter.set_background("black")  # then the pixels of a transparent picture are colours times alpha
     for surface, color in shown.solids:
         faces = np.column_stack((np.full(len(surface.triangles), 3), surface.triangles))
         plotter.add_mesh(
