@@ -29,7 +29,8 @@ Color = tuple[float, ...]
 
 _MOST_WIDTH, _MOST_HEIGHT = 780, 860  # of the picture, pixels
 _MARGIN = 12  # around each view, pixels
-_OVERSAMPLING = 4  # pixels drawn for one of the picture, along each side: this smooths edges
+# Pixels drawn for one of the picture, along each side: this smooths edges. SSAA of VTK makes lines and dots thinner.
+_OVERSAMPLING = 4
 
 _LINE = 2.5  # width of a line, pixels
 _DOT = 12  # diameter of a dot, pixels
