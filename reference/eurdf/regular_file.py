@@ -1,0 +1,31 @@
+"""Opening a file whose path another file names: it may be a pipe, a device, or larger than memory."""
+
+from __future__ import annotations
+
+import os
+import stat
+from typing import BinaryIO
+
+
+def open_now(path: str | os.PathLike[str]) -> int:
+    """A descriptor of a file, to read from, without waiting: to open a pipe would wait for someone to write into it.
+
+    Raises:
+        OSError: It cannot be opened.
+        ValueError: The path has a NUL.
+    """
+    return os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC | os.O_NOCTTY)
+
+
+def open_regular(path: str | os.PathLike[str]) -> BinaryIO:
+    """A regular file, opened to be read.
+
+    Raises:
+        OSError: It cannot be opened, or is not a regular file.
+        ValueError: The path has a NUL.
+    """
+    descriptor = open_now(path)
+    if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+        os.close(descriptor)
+        raise OSError(f"'{os.fsdecode(path)}' is not a regular file")
+    return open(descriptor, "rb")
