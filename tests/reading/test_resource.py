@@ -69,7 +69,9 @@ def test_files_may_be_in_package_of_urdf_or_given_ones(tmp_path: Path) -> None:
     (tmp_path / "arm" / "package.xml").touch()
     folders = FileFinder(urdf).folders
     assert folders.contains(inside)
-    assert [folders.contains(path) for path in (outside, urdf / "linked.stl", urdf / "../../other/a.stl")] == [False] * 3
+    assert [folders.contains(path) for path in (outside, urdf / "linked.stl", urdf / "../../other/a.stl")] == [
+        False
+    ] * 3
     assert FileFinder(urdf, [outside.parent]).folders.contains(urdf / "linked.stl")
 
 

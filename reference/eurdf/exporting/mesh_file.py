@@ -22,7 +22,9 @@ def mesh_names(paths: Mapping[str, Path]) -> dict[str, str]:
 def report_unread(given: Exportable, uri: str, losses: Losses) -> bool:
     """Whether a mesh is not there to be read, which is a loss."""
     if uri in given.refused:
-        losses.add("export-mesh-refused", uri, f"is left out: it is outside the folder of the robot, {given.refused[uri]}")
+        losses.add(
+            "export-mesh-refused", uri, f"is left out: it is outside the folder of the robot, {given.refused[uri]}"
+        )
     elif uri not in given.meshes:
         losses.add("export-mesh-missing", uri)
     else:

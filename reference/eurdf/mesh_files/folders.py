@@ -34,6 +34,11 @@ class Folders:
     def __str__(self) -> str:
         return ", ".join(f"'{folder}'" for folder in self._real)
 
+    @property
+    def real(self) -> tuple[str, ...]:
+        """Their real paths."""
+        return tuple(self._real)
+
     def add(self, folder: str | os.PathLike[str]) -> None:
         """Allow one more folder."""
         self._real[os.path.realpath(folder)] = None

@@ -14,7 +14,9 @@ from typing import Any
 #: Bytes of the beginning that tell the format.
 HEAD = 1 << 16
 
-_PICTURES = frozenset(".png .jpg .jpeg .bmp .tga .gif .tif .tiff .dds .ktx .ktx2 .webp .hdr .exr".split())
+_PICTURES = frozenset(
+    (".png", ".jpg", ".jpeg", ".bmp", ".tga", ".gif", ".tif", ".tiff", ".dds", ".ktx", ".ktx2", ".webp", ".hdr", ".exr")
+)
 
 _BOM = b"\xef\xbb\xbf"
 

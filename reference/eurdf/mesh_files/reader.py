@@ -34,7 +34,18 @@ BYTES_LIMIT = 1 << 30
 _ALONE = (".stl", ".dae", ".ply", ".off", ".3ds")
 
 #: What the mesh loader needs of a glTF file. Pictures and materials are left out.
-_GEOMETRY = "asset scene scenes nodes meshes accessors bufferViews buffers extensionsUsed extensionsRequired".split()
+_GEOMETRY = (
+    "asset",
+    "scene",
+    "scenes",
+    "nodes",
+    "meshes",
+    "accessors",
+    "bufferViews",
+    "buffers",
+    "extensionsUsed",
+    "extensionsRequired",
+)
 
 #: Files that a mesh may name.
 REFERENCES_LIMIT = 1_000

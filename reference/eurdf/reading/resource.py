@@ -52,9 +52,7 @@ class FileFinder:
         self._given, self._installed = _given_homes(package_dirs), _installed_homes()
         self._around = folders_of_robot(folder)
         real = () if real_folder is None else folders_of_robot(real_folder)[-1:]
-        self.folders = Folders(
-            (self._around[-1], *real, *self._given, *self._installed), allow_outside=allow_outside
-        )
+        self.folders = Folders((self._around[-1], *real, *self._given, *self._installed), allow_outside=allow_outside)
         self._packages: dict[str, list[Path]] = {}
 
     def find(self, uri: str) -> str | None:

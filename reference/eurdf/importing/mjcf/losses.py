@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from eurdf.importing.mesh_copies import NAMED_FILE
 from eurdf.loss import Effect, LossKind
 
 LOSSES = (
@@ -143,6 +144,7 @@ LOSSES = (
         "remove it",
     ),
     LossKind("import-mesh", "mesh", Effect.DROPPED, "is left out", "correct its file, and import again"),
+    NAMED_FILE,
     LossKind(
         "import-mesh-converted",
         "mesh",
