@@ -44,7 +44,7 @@ URDF_LOSSES = (
         "mesh",
         Effect.DROPPED,
         "its file was not found, or is refused; its name is kept",
-        "put the file beside the URDF, and import again",
+        "put the file beside the URDF, or name its folder with --within (within= in Python), and import again",
     ),
     NAMED_FILE,
     LossKind(

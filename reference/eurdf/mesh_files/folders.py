@@ -32,7 +32,8 @@ class Folders:
             self.add(folder)
 
     def __str__(self) -> str:
-        return ", ".join(f"'{folder}'" for folder in self._real)
+        first, *others = (f"'{folder}'" for folder in self._real)
+        return f"{first} (and outside {', '.join(others)})" if others else first
 
     @property
     def real(self) -> tuple[str, ...]:

@@ -121,7 +121,11 @@ LOSSES = (
         "replace it by boxes, spheres, capsules, cylinders or a mesh",
     ),
     LossKind(
-        "import-mesh", "mesh", Effect.DROPPED, "is left out: its file was not found, or is refused", "correct its uri"
+        "import-mesh",
+        "mesh",
+        Effect.DROPPED,
+        "is left out: its file was not found, or is refused",
+        "correct its uri, or name the folder of the file with --within (within= in Python)",
     ),
     NAMED_FILE,
     LossKind("import-texture", "texture", Effect.DROPPED, "is left out; the color is kept", "add it to the URDF"),
