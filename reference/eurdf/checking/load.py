@@ -103,10 +103,10 @@ def load(
         if any(found.severity is Severity.ERROR for found in of_meshes):
             found = (*description.diagnostics, *inertia_diagnostics(description), *of_meshes)
             raise InvalidRobot(description.path, found, no_geometry)
-        if any(shape.filename and shape.filename not in paths for shape in _shapes(description)):
+        if any(shape.kind == "mesh" and paths.get(shape.filename) not in meshes for shape in _shapes(description)):
             # The kinematics need no mesh, so that what `check` passes is loaded; but shapes are not left out in
             # silence.
-            without_geometry = partial(InvalidRobot, description.path, tuple(files.diagnostics), no_geometry)
+            without_geometry = partial(InvalidRobot, description.path, of_meshes, no_geometry)
     loops = strict or check_loops or "assembled" in description.mechanism.configurations
     robot = build_robot(
         description.mechanism,

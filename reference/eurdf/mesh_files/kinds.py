@@ -9,6 +9,7 @@ import html
 import json
 import re
 from collections.abc import Callable, Iterator
+from pathlib import PurePosixPath
 from typing import Any
 
 #: Bytes of the beginning that tell the format.
@@ -64,6 +65,9 @@ KINDS: dict[str, tuple[str, Callable[[bytes, int], bool]]] = {
 }
 
 
+#: Endings of the formats that the mesh loader reads.
+LOADED = tuple(suffix for suffix in KINDS if suffix not in (".vtk", ".msh"))
+
 #: By ending, of a mesh or its materials: the endings of the files that it may name.
 REFERENCES: dict[str, frozenset[str]] = {
     ".obj": frozenset({".mtl"}),
@@ -74,6 +78,11 @@ REFERENCES: dict[str, frozenset[str]] = {
     ".ply": _PICTURES,
     ".3ds": _PICTURES,
 }
+
+
+def suffix_of(path: str) -> str:
+    """The ending of the name of a file, in lower case."""
+    return PurePosixPath(path).suffix.lower()
 
 
 def references_of(suffix: str, content: bytes) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ import os
 import posixpath
 import re
 from collections.abc import Callable, Iterator, MutableMapping
-from pathlib import Path, PurePosixPath
+from pathlib import Path
 from typing import Any, BinaryIO
 from urllib.parse import unquote, unquote_to_bytes
 
@@ -24,6 +24,7 @@ from eurdf.mesh_files.kinds import (
     joined_lines,
     listed,
     references_of,
+    suffix_of,
 )
 from eurdf.regular_file import open_regular
 
@@ -123,7 +124,7 @@ class MeshReader:
         content = self._content(file)
         found: dict[str, bytes] = {}
         left_out: dict[str, str] = {}
-        self._read_references(file, _suffix(file), content, found, left_out)
+        self._read_references(file, suffix_of(file), content, found, left_out)
         return MeshFile(content, found, left_out)
 
     def alone(self, path: str, scratch: Callable[[], Path]) -> tuple[str, int]:
@@ -136,7 +137,7 @@ class MeshReader:
         Raises:
             RefusedFile: As for `read`, or the mesh loader does not know its format.
         """
-        suffix = _suffix(path)
+        suffix = suffix_of(path)
         if suffix in _ALONE:
             size = self.size(path)
             self._spend(size)
@@ -160,7 +161,7 @@ class MeshReader:
 
     def _mesh(self, path: str) -> tuple[BinaryIO, int]:
         """A mesh file, at its beginning, and its size."""
-        suffix = _suffix(path)
+        suffix = suffix_of(path)
         if suffix not in KINDS:
             ending = f"its ending '{suffix}'" if suffix else "its name"
             raise RefusedFile(f"{ending} is not that of a mesh format; convert it to STL, OBJ, COLLADA or glTF")
@@ -227,7 +228,7 @@ class MeshReader:
             except RefusedFile as reason:
                 left_out[name] = str(reason)
                 continue
-            if _suffix(path) == ".mtl":
+            if suffix_of(path) == ".mtl":
                 # The pictures of materials are named from the folder of the materials.
                 within: dict[str, bytes] = {}
                 self._read_references(path, ".mtl", other, within, left_out)
@@ -236,7 +237,7 @@ class MeshReader:
 
     def _named(self, file: str, name: str) -> tuple[str, str]:
         """What a mesh or its materials name: the path from their folder, and the path of the file."""
-        if _suffix(name) not in REFERENCES[_suffix(file)]:
+        if suffix_of(name) not in REFERENCES[suffix_of(file)]:
             raise RefusedFile("its name is not that of a material, a buffer or a picture")
         if "\0" in name or name.startswith("/") or re.match(r"[A-Za-z][A-Za-z0-9+.-]*:", name):
             raise RefusedFile("its address is not a path from the folder of the mesh")
@@ -276,10 +277,6 @@ class MeshReader:
                     yield self._all(*self._open(self._named(path, uri)[1]))
                 except RefusedFile as reason:
                     raise RefusedFile(f"its buffer '{uri}' cannot be read: {reason}") from None
-
-
-def _suffix(path: str) -> str:
-    return PurePosixPath(path).suffix.lower()
 
 
 def _without_materials(content: bytes) -> bytes:
