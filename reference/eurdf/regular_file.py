@@ -6,6 +6,11 @@ import os
 import stat
 from typing import BinaryIO
 
+#: Not every system has all of these.
+_READ_NOW = os.O_RDONLY
+for _name in ("O_NONBLOCK", "O_CLOEXEC", "O_NOCTTY", "O_BINARY"):
+    _READ_NOW |= getattr(os, _name, 0)
+
 
 def open_now(path: str | os.PathLike[str]) -> int:
     """A descriptor of a file, to read from, without waiting: to open a pipe would wait for someone to write into it.
@@ -14,7 +19,7 @@ def open_now(path: str | os.PathLike[str]) -> int:
         OSError: It cannot be opened.
         ValueError: The path has a NUL.
     """
-    return os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC | os.O_NOCTTY)
+    return os.open(path, _READ_NOW)
 
 
 def open_regular(path: str | os.PathLike[str]) -> BinaryIO:

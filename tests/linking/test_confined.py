@@ -174,6 +174,19 @@ def test_meshes_beside_the_file_that_a_urdf_links_to_are_inside(folder: Path) ->
     assert codes(eurdf.check(folder / "robot.urdf")) == []
 
 
+def test_folder_of_robot_may_be_a_link(folder: Path) -> None:
+    package = folder.parent / "other"
+    (package / "package.xml").write_text("<package><name>arm</name></package>", encoding="utf-8")
+    (package / "a.stl").write_bytes(TETRAHEDRON)
+    (package / "urdf").mkdir()
+    meshes = "".join(
+        f'<visual><geometry><mesh filename="{uri}"/></geometry></visual>' for uri in ("../a.stl", "package://arm/a.stl")
+    )
+    (package / "urdf" / "robot.urdf").write_text(f'<robot name="r"><link name="a">{meshes}</link></robot>')
+    (folder / "linked").symlink_to(package / "urdf")
+    assert codes(eurdf.check(folder / "linked" / "robot.urdf", confined=True)) == []
+
+
 def test_mesh_of_another_format_is_a_warning(folder: Path) -> None:
     (folder / "a.fbx").write_bytes(b"Kaydara FBX Binary")
     mesh = '<visual><geometry><mesh filename="a.fbx"/></geometry></visual>'

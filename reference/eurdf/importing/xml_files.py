@@ -71,7 +71,7 @@ def included_files(path: Path, folders: Folders) -> tuple[Path, ...]:
         for element in root.iter("include", "model"):
             if name := element.get("file"):
                 places = [folder / name for folder in dict.fromkeys((main, given.parent, path.parent))]
-                for each in [each for each in places if each.exists()] or places[:1]:
+                for each in [each for each in places if os.path.exists(each)] or places[:1]:
                     visit(each, each.parent if element.tag == "model" else main, (*chain, file))
 
     visit(path, path.parent, ())
@@ -112,7 +112,7 @@ def _check_flexible_bodies(
             for start in sorted(starts):
                 file = _resolved(path, folder / start / name)
                 inside(path, file, folders)
-                if file.exists() and not file.is_file():
+                if os.path.exists(file) and not os.path.isfile(file):
                     raise CannotImport(path, f"it uses '{file}', which is not a file")
 
 

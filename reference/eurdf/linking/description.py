@@ -420,7 +420,7 @@ def find_meshes(
         The files, with one diagnostic for all meshes, one for all textures of a kind.
     """
     source = urdf.document.source
-    real = Path(os.path.realpath(source.file)).parent if source.is_file and not confined else None
+    real = Path(os.path.realpath(source.file)).parent if source.is_file and not confined else source.folder
     finder = FileFinder(source.folder, package_dirs, real_folder=real, allow_outside=allow_outside)
     shapes = [shape for link_ in urdf.links.values() for shape in (*link_.visuals, *link_.collisions)]
     paths: dict[str, str] = {}

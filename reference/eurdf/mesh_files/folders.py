@@ -32,7 +32,7 @@ class Folders:
             self.add(folder)
 
     def __str__(self) -> str:
-        first, *others = (f"'{folder}'" for folder in self._real)
+        first, *others = (f"'{folder}'" for folder in self._real or ("",))
         return f"{first} (and outside {', '.join(others)})" if others else first
 
     @property
@@ -72,7 +72,7 @@ def folders_of_robot(folder: str | os.PathLike[str]) -> tuple[Path, ...]:
     start = Path(os.path.abspath(folder))
     found = (start, *start.parents)
     for number, each in enumerate(found):
-        if (each / MANIFEST).is_file():
+        if os.path.isfile(each / MANIFEST):
             return found[: number + 1]
     return found[:1]
 

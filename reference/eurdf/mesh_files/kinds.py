@@ -19,6 +19,9 @@ _PICTURES = frozenset(
     (".png", ".jpg", ".jpeg", ".bmp", ".tga", ".gif", ".tif", ".tiff", ".dds", ".ktx", ".ktx2", ".webp", ".hdr", ".exr")
 )
 
+#: Bytes that the JSON of a glTF file may have: in memory, it takes many times that.
+JSON_LIMIT = 64 << 20
+
 _BOM = b"\xef\xbb\xbf"
 
 
@@ -109,6 +112,8 @@ def gltf_document(suffix: str, content: bytes) -> tuple[dict[str, Any], bytes]:
         ValueError: It has none.
     """
     text, data = (content, b"") if suffix == ".gltf" else _chunks(content)
+    if len(text) > JSON_LIMIT:
+        raise ValueError(f"its JSON has more than {JSON_LIMIT:,} bytes; keep buffers out of it")
     try:
         document = json.loads(text)
     except RecursionError:

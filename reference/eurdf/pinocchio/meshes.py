@@ -136,6 +136,8 @@ def _read_files(paths: Iterable[str], reader: MeshReader) -> dict[str, Mesh | st
                     files.append(_File(path, *reader.alone(path, lambda: scratch() / str(len(files)))))
             except RefusedFile as reason:
                 read[path] = str(reason)
+            except OSError as error:  # it was there a moment ago
+                read[path] = (error.strerror or str(error)).lower()
         read |= _read(files)
     return read | {path: read[first] for first, *others in same.values() for path in others}
 

@@ -44,15 +44,16 @@ class FileFinder:
         Args:
             folder: Folder of the URDF.
             package_dirs: Folders that hold packages, or are one.
-            real_folder: Folder of the file that the URDF is a symbolic link to: an installer that makes links of all
-                files of a robot makes them into one other folder.
+            real_folder: Folder of the file that the URDF is a symbolic link to, where that may be a robot's folder: an
+                installer that makes links of all files of a robot makes them into one other folder.
             allow_outside: Whether files may be anywhere; see `Folders`.
         """
         self._folder = folder
         self._given, self._installed = _given_homes(package_dirs), _installed_homes()
-        self._around = folders_of_robot(folder)
-        real = () if real_folder is None else folders_of_robot(real_folder)[-1:]
-        self.folders = Folders((self._around[-1], *real, *self._given, *self._installed), allow_outside=allow_outside)
+        named = folders_of_robot(folder)
+        real = folders_of_robot(os.path.realpath(folder if real_folder is None else real_folder))
+        self._around = dict.fromkeys((*named, *real))
+        self.folders = Folders((named[-1], real[-1], *self._given, *self._installed), allow_outside=allow_outside)
         self._packages: dict[str, list[Path]] = {}
 
     def find(self, uri: str) -> str | None:
