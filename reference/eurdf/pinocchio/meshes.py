@@ -129,17 +129,18 @@ def _read_files(paths: Iterable[str], reader: MeshReader) -> dict[str, Mesh | st
 
         for path in paths:
             try:
-                reader.size(path)
                 one = same.setdefault(_identity(path), [])
-                one.append(path)
-                if len(one) == 1:
+                if one:
+                    reader.size(path)  # by this name, it may be outside the folders
+                else:
                     files.append(_File(path, *reader.alone(path, lambda: scratch() / str(len(files)))))
+                one.append(path)
             except RefusedFile as reason:
                 read[path] = str(reason)
             except OSError as error:  # it was there a moment ago
                 read[path] = (error.strerror or str(error)).lower()
         read |= _read(files)
-    return read | {path: read[first] for first, *others in same.values() for path in others}
+    return read | {path: read[one[0]] for one in same.values() for path in one[1:]}
 
 
 def _identity(path: str) -> tuple[object, ...]:
