@@ -138,6 +138,35 @@ COMMON = (
         sayable=True,
         only="files not found",
     ),
+    LossKind(
+        "export-mesh-refused",
+        "mesh",
+        Effect.DROPPED,
+        "is left out: it is outside the robot's folder, or is no mesh",
+        "copy it into the robot's folder, give the folder of its package with --package-dir or package_dirs=, or use "
+        "--allow-outside or allow_outside=True",
+        sayable=True,
+        only="files that are refused",
+    ),
+    LossKind(
+        "export-file-outside",
+        "mesh",
+        Effect.EXACT,
+        "is outside the robot's folder, and was read because of --allow-outside",
+        "copy it into the robot's folder",
+        only="--allow-outside",
+    ),
+)
+
+#: Of a file that a mesh names, where meshes are copied.
+NAMED_FILE = LossKind(
+    "export-mesh-names",
+    "mesh",
+    Effect.DROPPED,
+    "a material, a buffer or a picture that it names is left out",
+    "copy it into the robot's folder, and name it by its path from the mesh",
+    sayable=True,
+    only="files that it names",
 )
 
 #: Of a mesh that is converted though it should have been referenced.

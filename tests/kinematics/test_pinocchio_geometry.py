@@ -232,7 +232,7 @@ def test_repeated_mesh_is_read_once(parts: Path) -> None:
     [
         ("rubbish.stl", b"rubbish\n" * 5, "STL"),
         ("cut.dae", b"<COLLADA", "XML"),
-        ("empty.obj", b"", "small"),
+        ("empty.obj", b"", "empty"),
     ],
 )
 def test_invalid_mesh_is_named_with_reason(

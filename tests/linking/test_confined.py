@@ -10,6 +10,7 @@ import pytest
 import eurdf
 from eurdf.commands.main import main
 from eurdf.diagnostics.text import report_lines
+from support.stl import TETRAHEDRON
 
 YAML = 'extended_urdf: "2.0"\nurdf: {}\n'
 URDF = '<robot name="r"><link name="a"/></robot>'
@@ -133,3 +134,64 @@ def test_pipe_that_becomes_a_file_is_an_error(folder: Path, monkeypatch: pytest.
     (folder / "robot.urdf").write_text(URDF, encoding="utf-8")
     monkeypatch.setattr("eurdf.reading.given._is_pipe", lambda path: True)
     assert codes(eurdf.check("robot.urdf")) == ["file-unreadable"]
+
+
+def test_mesh_outside_folder_is_warned_refused_or_read(folder: Path) -> None:
+    (folder.parent / "other" / "a.stl").write_bytes(TETRAHEDRON)
+    (folder / "inside.stl").write_bytes(TETRAHEDRON)
+    (folder / "linked.stl").symlink_to("../other/a.stl")
+    meshes = "".join(
+        f'<visual><geometry><mesh filename="{name}"/></geometry></visual>'
+        for name in ("inside.stl", "linked.stl", "../other/a.stl")
+    )
+    (folder / "robot.urdf").write_text(f'<robot name="r"><link name="a">{meshes}</link></robot>', encoding="utf-8")
+    urdf = folder / "robot.urdf"
+    [found] = eurdf.check(urdf).diagnostics
+    assert found.code == "x-file-outside-folder"
+    assert "'linked.stl', '../other/a.stl'" in found.message
+    robot = eurdf.load(urdf)
+    assert robot.model.nv == 0
+    with pytest.raises(eurdf.InvalidRobot, match="outside the folder"):
+        _ = robot.visual_model
+    assert codes(eurdf.check(urdf, confined=True)) == ["urdf-mesh-unreadable"] * 2
+    with pytest.raises(eurdf.InvalidRobot):
+        eurdf.load(urdf, confined=True)
+    assert eurdf.load(urdf, allow_outside=True).visual_model.ngeoms == 3
+    [found] = eurdf.check(urdf, allow_outside=True).diagnostics
+    assert "are read all the same" in found.message
+    assert codes(eurdf.check(urdf, package_dirs=["../other"])) == []
+    with pytest.raises(ValueError, match="exclude each other"):
+        eurdf.check(urdf, confined=True, allow_outside=True)
+
+
+def test_meshes_beside_the_file_that_a_urdf_links_to_are_inside(folder: Path) -> None:
+    (folder.parent / "other" / "a.stl").write_bytes(TETRAHEDRON)
+    mesh = '<visual><geometry><mesh filename="a.stl"/></geometry></visual>'
+    real = folder.parent / "other" / "real.urdf"
+    real.write_text(f'<robot name="r"><link name="a">{mesh}</link></robot>', encoding="utf-8")
+    (folder / "robot.urdf").symlink_to(real)
+    (folder / "a.stl").symlink_to("../other/a.stl")
+    assert codes(eurdf.check(folder / "robot.urdf")) == []
+
+
+def test_folder_of_robot_may_be_a_link(folder: Path) -> None:
+    package = folder.parent / "other"
+    (package / "package.xml").write_text("<package><name>arm</name></package>", encoding="utf-8")
+    (package / "a.stl").write_bytes(TETRAHEDRON)
+    (package / "urdf").mkdir()
+    meshes = "".join(
+        f'<visual><geometry><mesh filename="{uri}"/></geometry></visual>' for uri in ("../a.stl", "package://arm/a.stl")
+    )
+    (package / "urdf" / "robot.urdf").write_text(f'<robot name="r"><link name="a">{meshes}</link></robot>')
+    (folder / "linked").symlink_to(package / "urdf")
+    assert codes(eurdf.check(folder / "linked" / "robot.urdf", confined=True)) == []
+
+
+def test_mesh_of_another_format_is_a_warning(folder: Path) -> None:
+    (folder / "a.fbx").write_bytes(b"Kaydara FBX Binary")
+    mesh = '<visual><geometry><mesh filename="a.fbx"/></geometry></visual>'
+    (folder / "robot.urdf").write_text(f'<robot name="r"><link name="a">{mesh}</link></robot>', encoding="utf-8")
+    assert codes(eurdf.check(folder / "robot.urdf")) == ["x-mesh-format"]
+    robot = eurdf.load(folder / "robot.urdf")
+    with pytest.raises(eurdf.InvalidRobot, match=r"a\.fbx"):
+        _ = robot.visual_model

@@ -45,13 +45,49 @@ def test_escapes_in_file_uri_are_decoded(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("scheme", ["package", "model"])
-def test_package_is_searched_beside_and_above_urdf(tmp_path: Path, scheme: str) -> None:
+def test_package_is_searched_from_urdf_up_to_manifest(tmp_path: Path, scheme: str) -> None:
     mesh = _file(tmp_path / "arm_description" / "meshes" / "a.stl")
     urdf = tmp_path / "arm_description" / "urdf"
     urdf.mkdir()
-    for folder in (urdf, urdf.parent, tmp_path):
-        assert _found(f"{scheme}://arm_description/meshes/a.stl", folder) == mesh
-    assert _found(f"{scheme}://other_description/meshes/a.stl", urdf) is None
+    uri = f"{scheme}://arm_description/meshes/a.stl"
+    assert _found(uri, urdf) is None
+    assert [_found(uri, folder) for folder in (urdf.parent, tmp_path)] == [mesh, mesh]
+    (urdf.parent / "package.xml").write_text("<package><name> arm </name></package>", encoding="utf-8")
+    for name in ("arm_description", "arm", ""):
+        assert _found(f"{scheme}://{name}/meshes/a.stl", urdf) == mesh
+    for name in ("other_description", "..", "."):
+        assert _found(f"{scheme}://{name}/meshes/a.stl", urdf) is None
+
+
+def test_files_may_be_in_package_of_urdf_or_given_ones(tmp_path: Path) -> None:
+    inside = _file(tmp_path / "arm" / "meshes" / "a.stl")
+    outside = _file(tmp_path / "other" / "a.stl")
+    urdf = tmp_path / "arm" / "urdf"
+    urdf.mkdir()
+    (urdf / "linked.stl").symlink_to(outside)
+    assert not FileFinder(urdf).folders.contains(inside)
+    (tmp_path / "arm" / "package.xml").touch()
+    folders = FileFinder(urdf).folders
+    assert folders.contains(inside)
+    assert [folders.contains(path) for path in (outside, urdf / "linked.stl", urdf / "../../other/a.stl")] == [
+        False
+    ] * 3
+    assert FileFinder(urdf, [outside.parent]).folders.contains(urdf / "linked.stl")
+
+
+def test_installed_package_may_be_links_to_its_source(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    mesh = _file(tmp_path / "src" / "arm" / "a.stl")
+    _file(tmp_path / "src" / "arm" / "package.xml")
+    installed = tmp_path / "install" / "share" / "arm"
+    installed.mkdir(parents=True)
+    for name in ("a.stl", "package.xml"):
+        (installed / name).symlink_to(tmp_path / "src" / "arm" / name)
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "install"))
+    finder = FileFinder(installed.parent.parent)
+    found = finder.find("package://arm/a.stl")
+    assert found is not None
+    assert Path(found).resolve() == mesh
+    assert finder.folders.contains(found)
 
 
 @pytest.mark.parametrize("name", ["a#1.stl", "a?b.stl", "a b.stl", "é.stl", "[x].stl", "100%.stl"])

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import importlib.util
+import json
+import struct
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree as ET
 
+import numpy as np
 import pytest
 
 import eurdf
@@ -22,18 +25,22 @@ from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.motor import Motor
 from eurdf.mechanism.pose import IDENTITY, Vector3
+from eurdf.pinocchio.meshes import read_meshes
 from eurdf.pinocchio.robot import build_robot
 from support.exported import random_robot
+from support.hostile_meshes import gltf
 
 #: Kinds of loss that need what no robot here has: their tests are with their format.
-_MESHES = {"export-mesh-path", "export-mesh-format", "export-mesh-converted", "export-mesh-not-referenced"}
+_FILES = {"export-mesh-path", "export-mesh-refused", "export-file-outside"}
+_COPIES = {*_FILES, "export-mesh-names"}
+_CONVERTED = {"export-mesh-format", "export-mesh-converted", "export-mesh-not-referenced"}
 ELSEWHERE = {
-    "mjcf": _MESHES,
-    "usd": {*_MESHES, "export-convex-hull"},
-    "drake": _MESHES,
-    "loop-joint": {"export-mesh-path"},
-    "sdf": {"export-mesh-path"},
-    "urdf": {"export-mesh-path"},
+    "mjcf": _COPIES | _CONVERTED,
+    "usd": {*_FILES, *_CONVERTED, "export-convex-hull"},
+    "drake": _COPIES | _CONVERTED,
+    "loop-joint": _COPIES,
+    "sdf": _COPIES,
+    "urdf": _COPIES,
 }
 #: Formats whose extra is not installed here.
 MISSING = {"usd"} if importlib.util.find_spec("pxr") is None else set()
@@ -197,3 +204,61 @@ def test_meshes_are_copied_converted_or_reported(tmp_path: Path, name: str) -> N
     assert list(export.files)[1:] == copied
     assert all(each.encode() in export.main for each in copied)
     assert b"package://" not in export.main
+
+
+def _package(folder: Path) -> Path:
+    """A package with a mesh of each kind that names other files, beside a folder with one more mesh."""
+    for name in ("meshes", "textures", "urdf"):
+        (folder / "arm" / name).mkdir(parents=True)
+    meshes, faces = folder / "arm" / "meshes", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+    (folder / "arm" / "package.xml").write_text("<package><name>arm</name></package>")
+    (folder / "arm" / "textures" / "red.png").write_bytes(b"red")
+    (meshes / "a.obj").write_bytes(b"mtllib a b.mtl\n" + faces)
+    (meshes / "a b.mtl").write_bytes(
+        b"newmtl a\nmap_Kd -s 1 1 1 ../textures/red.png\nbump lost.png\nrefl ../../out.png\n"
+    )
+    (meshes / "c.gltf").write_text(json.dumps(gltf("c%20.bin", "../textures/red.png")))
+    (meshes / "c .bin").write_bytes(struct.pack("<9f", 0, 0, 0, 2, 0, 0, 0, 3, 0))
+    (folder / "out.png").write_bytes(b"out")
+    (folder / "out.obj").write_bytes(faces)
+    uris = ("package://arm/meshes/a.obj", "../meshes/c.gltf", "../../out.obj")
+    shapes = "".join(f'<visual><geometry><mesh filename="{uri}"/></geometry></visual>' for uri in uris)
+    urdf = folder / "arm" / "urdf" / "robot.urdf"
+    urdf.write_text(f'<robot name="r"><link name="base">{shapes}</link></robot>')
+    return urdf
+
+
+def _losses(export: eurdf.Export) -> set[tuple[str, str]]:
+    return {(loss.code, Path(loss.name).name) for loss in export.losses if loss.concept == "mesh"}
+
+
+def test_files_that_meshes_name_are_copied_or_reported(tmp_path: Path) -> None:
+    urdf = _package(tmp_path)
+    export = eurdf.export(urdf, "urdf")
+    copied = {"meshes/a.obj", "meshes/a b.mtl", "textures/red.png", "meshes/c.gltf", "meshes/c .bin"}
+    assert set(export.files) == {"robot.urdf", *copied}
+    assert _losses(export) == {
+        ("export-mesh-path", "a.obj"),
+        ("export-mesh-refused", "out.obj"),
+        ("export-mesh-names", "a.obj: lost.png"),
+        ("export-mesh-names", "out.png"),
+    }
+    [written, *_] = export.write(tmp_path / "written")
+    copy = written.parent / "meshes"
+    for name in ("a.obj", "c.gltf"):
+        [old], [new] = (
+            read_meshes([("", (1.0, 1.0, 1.0))], {"": str(folder / name)})[0].values()
+            for folder in (urdf.parent.parent / "meshes", copy)
+        )
+        assert np.array_equal(old.vertices, new.vertices)
+
+
+def test_files_outside_are_exported_if_allowed(tmp_path: Path) -> None:
+    export = eurdf.export(_package(tmp_path), "sdf", allow_outside=True)
+    assert "meshes/out.obj" in export.files
+    assert ("export-file-outside", "out.obj") in _losses(export)
+    assert ("export-file-outside", "out.png") in _losses(export)
+    assert not any(code == "export-mesh-refused" for code, _ in _losses(export))
+    # Of a robot that was loaded, only what its meshes name can be outside.
+    robot = eurdf.load(_package(tmp_path / "again"), allow_outside=True)
+    assert "meshes/out.obj" in eurdf.export(robot, "sdf").files

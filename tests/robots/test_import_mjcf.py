@@ -350,6 +350,11 @@ def test_inertia_from_a_mesh_without_file_is_refused(tmp_path: Path) -> None:
         eurdf.import_robot(write(tmp_path, text))
 
 
+MODEL = (
+    '<asset><model name="m" file="sub/a.xml"/></asset><worldbody><attach model="m" body="arm" prefix="p"/></worldbody>'
+)
+
+
 # -- bad input --------------------------------------------------------------------------------------------------------
 
 
@@ -407,6 +412,64 @@ def test_files_within_a_named_folder_are_read(tmp_path: Path) -> None:
     main = write(tmp_path / "scene", '<mujoco><include file="../arm.xml"/></mujoco>')
     found = eurdf.import_robot(main, within=tmp_path)
     assert [path.name for path in found.sources] == ["robot.xml", "arm.xml"]
+
+
+def test_meshes_elsewhere_are_left_out_or_allowed(tmp_path: Path) -> None:
+    home = tmp_path / "home"
+    home.mkdir()
+    (tmp_path / "a.stl").write_bytes(STL)
+    (home / "linked.stl").symlink_to("../a.stl")
+    os.mkfifo(home / "pipe.stl")
+    with (home / "sparse.stl").open("wb") as file:
+        file.write(bytes(80) + (800_000_000).to_bytes(4, "little"))
+        file.truncate(84 + 50 * 800_000_000)
+    names = ("../a.stl", "linked.stl", str(tmp_path / "a.stl"), "pipe.stl", "sparse.stl")
+    assets = "".join(f'<mesh name="m{number}" file="{name}"/>' for number, name in enumerate(names))
+    geoms = "".join(f'<geom type="mesh" mesh="m{number}" mass="0"/>' for number in range(len(names)))
+    body = f'<body name="base">{LINK}{geoms}</body>'
+    main = write(home, f"<mujoco><asset>{assets}</asset><worldbody>{body}</worldbody></mujoco>")
+    found = eurdf.import_robot(main)
+    reasons = [loss.message for loss in found.losses if loss.code == "import-mesh"]
+    assert ["outside the folder" in reason for reason in reasons] == [True, True, True, False, False]
+    assert "40,000,000,084 bytes" in reasons[4]
+    assert not any(name.startswith("meshes/") for name in found.files)
+    shapes = eurdf.import_robot(main, within=tmp_path).mechanism.bodies[0].visuals
+    assert sorted(shape.filename for shape in shapes) == ["", *["meshes/a.stl"] * 2, "meshes/linked.stl"]
+    found = eurdf.import_robot(main, allow_outside=True)
+    assert [loss.name for loss in found.losses if loss.code == "import-file-outside"] == [
+        str(home.parent / "a.stl"),
+        str(home / "linked.stl"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("files", "read"),
+    [
+        # MuJoCo looks beside the main file, then beside the one that includes; for a model, beside the model.
+        ({"robot.xml": '<include file="sub/a.xml"/>', "sub/a.xml": '<include file="b.xml"/>'}, "sub/b.xml"),
+        ({"robot.xml": MODEL, "sub/a.xml": '<include file="b.xml"/>'}, "sub/b.xml"),
+    ],
+)
+def test_what_included_files_include_is_confined(tmp_path: Path, files: dict[str, str], read: str) -> None:
+    (tmp_path / "home" / "sub").mkdir(parents=True)
+    write(tmp_path, small(ARM), "secret.xml")
+    for name, text in files.items():
+        write(tmp_path / "home", f"<mujoco>{text}</mujoco>", name)
+    (tmp_path / "home" / read).symlink_to(tmp_path / "secret.xml")
+    with pytest.raises(eurdf.CannotImport, match="is outside the folder"):
+        eurdf.import_robot(tmp_path / "home" / "robot.xml")
+    assert eurdf.import_robot(tmp_path / "home" / "robot.xml", within=tmp_path).sources[1:]
+
+
+@pytest.mark.parametrize(
+    "compiler",
+    ["", '<compiler meshdir=".."/>', '<compiler assetdir="/"/>', '<compiler meshdir=".." strippath="true"/>'],
+)
+def test_flexible_body_elsewhere_is_refused(tmp_path: Path, compiler: str) -> None:
+    name = "../a.stl" if not compiler else "etc/a.stl"
+    body = f'<body name="b">{LINK}<flexcomp name="f" type="mesh" dim="2" file="{name}"/></body>'
+    with pytest.raises(eurdf.CannotImport, match="is outside the folder"):
+        eurdf.import_robot(write(tmp_path, f"<mujoco>{compiler}<worldbody>{body}</worldbody></mujoco>"))
 
 
 def test_name_of_a_mesh_leads_to_no_other_folder(tmp_path: Path) -> None:

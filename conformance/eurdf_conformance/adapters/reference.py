@@ -44,7 +44,7 @@ class Reference:
             return rejected(Issue(code=code, file=description.name, line=None, column=None, message=str(none)))
         found = list(read.diagnostics)
         if read.urdf is not None:
-            found += find_meshes(read.urdf)[1]
+            found += find_meshes(read.urdf).diagnostics
         if isinstance(read, Unlinked) or read.diagnostics.refused:
             return rejected(*self.issues(found))
         self._robot = build_robot(read.mechanism, geometry=False)

@@ -24,6 +24,7 @@ def check(
     package_dirs: Sequence[str | os.PathLike[str]] = (),
     xacro_args: Mapping[str, str] | None = None,
     confined: bool = False,
+    allow_outside: bool = False,
 ) -> Report:
     """Check a robot: EU-DIA-001, EU-DIA-003: every error that no other error hides is reported.
 
@@ -36,8 +37,11 @@ def check(
         package_dirs: Folders to look for the packages of meshes in, before ``ROS_PACKAGE_PATH`` and
             ``AMENT_PREFIX_PATH``.
         xacro_args: Values of the arguments of a xacro.
-        confined: Whether it is an error if the description names a URDF outside its own folder, symbolic links
-            followed. The URDF is then not opened. Meshes may be anywhere.
+        confined: Whether it is an error if the description names a URDF outside its own folder, or the URDF a mesh
+            outside the robot's folder and the packages, symbolic links followed. The file is then not opened.
+        allow_outside: Whether meshes, and files that they name, are read that are neither in the robot's folder nor in
+            a package. If not, they are left out, with a warning. The robot's folder is the nearest one, from that of
+            the URDF upwards, with a ``package.xml``; without one, that of the URDF.
 
     Returns:
         The findings of all phases, in the order of the phases.
@@ -46,16 +50,24 @@ def check(
         RobotNotFound: Where there are no such files.
         CannotExpand: A xacro has an error, or `xacro_args` are given for what is no xacro.
         MissingExtra: A xacro is given, and the extra ``xacro`` is not installed.
+        ValueError: `confined` and `allow_outside` are both True.
     """
-    description = describe(path, urdf, package_dirs=package_dirs, xacro_args=xacro_args, confined=confined)
+    description = describe(
+        path,
+        urdf,
+        package_dirs=package_dirs,
+        xacro_args=xacro_args,
+        confined=confined,
+        allow_outside=allow_outside,
+    )
     diagnostics = description.diagnostics
     refused = diagnostics.refused  # without meshes, which the kinematics does not need
     meshes: dict[str, Mesh] = {}
     if description.urdf is not None:
-        files, missing = find_meshes(description.urdf, package_dirs)
+        files = find_meshes(description.urdf, package_dirs, confined=confined, allow_outside=allow_outside)
         by_path, unreadable = read_mesh_files(description.urdf, files)
-        meshes = {uri: by_path[path] for uri, path in files.items() if path in by_path}
-        for found in (*missing, *unreadable):
+        meshes = {uri: by_path[path] for uri, path in files.paths.items() if path in by_path}
+        for found in (*files.diagnostics, *unreadable):
             diagnostics.add(found)
     if not isinstance(description, Unlinked) and not refused:
         if isinstance(description, Described):

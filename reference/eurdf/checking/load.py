@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 
 from eurdf.checking.loops import closure_diagnostics
@@ -11,6 +11,7 @@ from eurdf.checking.mesh_files import read_mesh_files
 from eurdf.diagnostics import Diagnostic, Severity
 from eurdf.exceptions import InvalidRobot
 from eurdf.linking.description import Linked, Unlinked, describe, find_meshes, inertia_diagnostics
+from eurdf.mechanism.body import Shape
 from eurdf.mechanism.mechanism import Root
 from eurdf.pinocchio.meshes import Mesh
 from eurdf.pinocchio.robot import Robot, build_robot
@@ -29,6 +30,7 @@ def load(
     package_dirs: Sequence[str | os.PathLike[str]] = (),
     xacro_args: Mapping[str, str] | None = None,
     confined: bool = False,
+    allow_outside: bool = False,
 ) -> Robot:
     """Load a robot.
 
@@ -43,7 +45,7 @@ def load(
             ``-``, a pipe or a text.
         root: ``fixed`` or ``floating``, in place of what the description says (fixed by default).
         geometry: Whether to load the visual and collision geometry, meshes too. Without it, bodies have no shapes, and
-            nothing wrong with shapes is looked for. Where a mesh is missing, the robot is loaded and
+            nothing wrong with shapes is looked for. Where a mesh is missing or not read, the robot is loaded and
             ``robot.diagnostics`` says so (EU-URD-028); asking it for its geometry raises `InvalidRobot`.
         mimic: Whether the mimic joints of the URDF follow the joints that drive them, as in
             ``pin.buildModelFromUrdf(path, mimic=True)``. If not, each is free, as in
@@ -56,8 +58,11 @@ def load(
         package_dirs: Folders to look for the packages of meshes in, before ``ROS_PACKAGE_PATH`` and
             ``AMENT_PREFIX_PATH``.
         xacro_args: Values of the arguments of a xacro.
-        confined: Whether it is an error if the description names a URDF outside its own folder, symbolic links
-            followed. The URDF is then not opened. Meshes may be anywhere.
+        confined: Whether it is an error if the description names a URDF outside its own folder, or the URDF a mesh
+            outside the robot's folder and the packages, symbolic links followed. The file is then not opened.
+        allow_outside: Whether meshes, and files that they name, are read that are neither in the robot's folder nor in
+            a package. If not, they are left out, with a warning. The robot's folder is the nearest one, from that of
+            the URDF upwards, with a ``package.xml``; without one, that of the URDF.
 
     Returns:
         The robot: its Pinocchio model, its constraint models in file order, its actuation, its geometry.
@@ -80,31 +85,33 @@ def load(
         package_dirs=package_dirs,
         xacro_args=xacro_args,
         confined=confined,
+        allow_outside=allow_outside,
         inertias=False,
     )
     if isinstance(description, Unlinked):
         raise InvalidRobot(description.path, tuple(description.diagnostics))
-    files: dict[str, str] = {}
+    paths: dict[str, str] = {}
     meshes: dict[str, Mesh] = {}
     of_meshes: tuple[Diagnostic, ...] = ()
     without_geometry: Callable[[], Exception] | None = None
     if geometry:
-        files, missing = find_meshes(description.urdf, package_dirs)
+        files = find_meshes(description.urdf, package_dirs, confined=confined, allow_outside=allow_outside)
+        paths = files.paths
         meshes, unreadable = read_mesh_files(description.urdf, files)
-        of_meshes = (*missing, *unreadable)
+        of_meshes = (*files.diagnostics, *unreadable)
         no_geometry = f"the geometry of {description.path} cannot be built; load it with geometry=False"
-        if unreadable.error_count:
+        if any(found.severity is Severity.ERROR for found in of_meshes):
             found = (*description.diagnostics, *inertia_diagnostics(description), *of_meshes)
             raise InvalidRobot(description.path, found, no_geometry)
-        if any(found.code == "urdf-mesh-missing" for found in missing):
+        if any(shape.kind == "mesh" and paths.get(shape.filename) not in meshes for shape in _shapes(description)):
             # The kinematics need no mesh, so that what `check` passes is loaded; but shapes are not left out in
             # silence.
-            without_geometry = partial(InvalidRobot, description.path, tuple(missing), no_geometry)
+            without_geometry = partial(InvalidRobot, description.path, of_meshes, no_geometry)
     loops = strict or check_loops or "assembled" in description.mechanism.configurations
     robot = build_robot(
         description.mechanism,
         geometry=geometry and without_geometry is None,
-        resolve=files.get,
+        resolve=paths.get,
         meshes=meshes,
         no_geometry=without_geometry,
         diagnose=partial(_diagnostics, description, of_meshes, loops),
@@ -114,6 +121,11 @@ def load(
         if strict and errors:
             raise InvalidRobot(description.path, robot.diagnostics)
     return robot
+
+
+def _shapes(description: Linked) -> Iterator[Shape]:
+    for link in description.urdf.links.values():
+        yield from (*link.visuals, *link.collisions)
 
 
 def _diagnostics(

@@ -103,7 +103,7 @@ def run(args: argparse.Namespace) -> int:
     folder = args.output or f"{_file_name(description.mechanism.name)}_{args.to}"
     try:
         choices = Choices(args.to, args.configuration, args.actuators, args.closures, args.mesh_files, args.strict)
-        exported = export_linked(description, choices, options["package_dirs"])
+        exported = export_linked(description, choices, options["package_dirs"], allow_outside=options["allow_outside"])
     except CannotExport as reason:
         losses = reason.losses
         refusal = "nothing was written: --strict refuses losses" if losses else f"nothing was written: {reason}"

@@ -58,8 +58,10 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     parser.add_argument(
         "--within",
         metavar="FOLDER",
-        help="the folder that all files must be in that FILE includes; default: the folder of FILE",
+        help="a folder that the files may be in which FILE names, besides the robot's folder: the nearest one with a "
+        "package.xml, or else that of FILE",
     )
+    parser.add_argument("--allow-outside", action="store_true", help="read files that are outside these folders")
     parser.add_argument("--strict", action="store_true", help="write nothing if a loss is not exact")
     parser.add_argument("--force", action="store_true", help="replace existing files")
     parser.add_argument("--format", choices=("text", "json"), default="text", help="format of the output")
@@ -72,7 +74,9 @@ def run(args: argparse.Namespace) -> int:
     from eurdf.importing.import_robot import import_robot
 
     try:
-        found = import_robot(args.file, format=args.format_, within=args.within, strict=args.strict)
+        found = import_robot(
+            args.file, format=args.format_, within=args.within, strict=args.strict, allow_outside=args.allow_outside
+        )
     except CannotImport as reason:
         places = _Places((Path(args.file),))
         if args.format == "json":

@@ -42,11 +42,14 @@ def add_robot_options(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="the URDF, instead of the one that the description names; - for standard input",
     )
-    parser.add_argument(
+    places = parser.add_mutually_exclusive_group()
+    places.add_argument(
         "--confined",
         action="store_true",
-        help="refuse a description that names a URDF outside its own folder",
+        help="refuse a description that names a URDF outside its own folder, and a URDF that names a mesh outside the "
+        "robot's folder",
     )
+    places.add_argument("--allow-outside", action="store_true", help="read meshes that are outside the robot's folder")
     add_urdf_options(parser)
 
 
@@ -79,7 +82,8 @@ def robot_options(args: argparse.Namespace) -> dict[str, Any]:
     """
     if args.urdf is not None:
         require_urdf(args.urdf)
-    return {"urdf": args.urdf, "confined": args.confined, **urdf_options(args)}
+    places = {"confined": args.confined, "allow_outside": args.allow_outside}
+    return {"urdf": args.urdf, **places, **urdf_options(args)}
 
 
 def urdf_options(args: argparse.Namespace) -> dict[str, Any]:

@@ -225,6 +225,8 @@ x-mimic-ignored            A joint with a <mimic> moves freely: it has no actuat
 x-massless-link            A link of a loop has no mass.
 x-xacro-warning            A xacro file was expanded with warnings.
 x-urdf-outside-folder      The URDF that a description names is outside the folder of the description.
+x-file-outside-folder      A mesh or texture is outside the folder of the robot and the packages that are given.
+x-mesh-format              A mesh has a format that this parser does not read.
 x-loops-not-checked        The loops were not checked in full: there are too many, or too many of them share joints.
 """,
     ),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from types import MappingProxyType
 from typing import get_args
@@ -18,8 +19,10 @@ from eurdf.exporting.hinges import with_hinges
 from eurdf.exporting.written import Actuators, ClosureChoice, Exportable, MeshFileChoice, Triangles
 from eurdf.kinematics.assembly import assemble
 from eurdf.linking.description import Linked, Unlinked, describe, find_meshes
-from eurdf.loss import Effect, Loss
+from eurdf.loss import COMMON, Effect, Loss, Losses
 from eurdf.mechanism.mechanism import ROOT_JOINT, Root
+from eurdf.mesh_files.folders import Folders, folders_of_files
+from eurdf.mesh_files.reader import MeshReader
 from eurdf.pinocchio.meshes import read_meshes
 from eurdf.pinocchio.robot import Robot, build_robot
 from eurdf.reading.given import Given
@@ -102,6 +105,7 @@ def export(
     package_dirs: Sequence[str | os.PathLike[str]] = (),
     xacro_args: Mapping[str, str] | None = None,
     confined: bool = False,
+    allow_outside: bool = False,
 ) -> Export:
     """Export a robot to the format of a simulator.
 
@@ -110,7 +114,7 @@ def export(
     Args:
         robot: What `eurdf.load` takes, or a robot that it returned, with the geometry that it was loaded with.
         to: Name of the format: ``mjcf``, ``usd``, ``drake``, ``loop-joint``, ``sdf`` or ``urdf``.
-        urdf: As for `eurdf.load`; only if `robot` is not loaded yet, as all below but the next five.
+        urdf: As for `eurdf.load`; only if `robot` is not loaded yet, as all below but the next five and the last.
         root: As for `eurdf.load`.
         configuration: Name of the configuration to start a simulation from. If the description has none of the name
             ``assembled``, one is searched.
@@ -124,6 +128,8 @@ def export(
         package_dirs: As for `eurdf.load`.
         xacro_args: As for `eurdf.load`.
         confined: As for `eurdf.load`.
+        allow_outside: Whether files are copied, or referenced, that are neither in the robot's folder nor in a package;
+            see `eurdf.load`. If not, they are left out, which is a loss; if so, each of them is one that is exact.
 
     Returns:
         The files, the losses and the map of coordinates.
@@ -133,29 +139,47 @@ def export(
         RobotNotFound: There are no such files.
         CannotExport: The robot cannot be written in this format, or, if `strict`, not without losses.
         MissingExtra: The format is ``usd``, and the extra ``usd`` is not installed.
-        ValueError: There is no such format, configuration or kind of actuator.
+        ValueError: There is no such format, configuration or kind of actuator; or `confined` and `allow_outside` are
+            both True.
     """
     choices = Choices(to, configuration, actuators, closures, mesh_files, strict)
     if isinstance(robot, Robot):
-        return _export(robot, files_of_meshes(robot), choices)
-    description = describe(robot, urdf, root, package_dirs=package_dirs, xacro_args=xacro_args, confined=confined)
+        meshes = files_of_meshes(robot)
+        return _export(robot, meshes, {}, folders_of_files(meshes.values(), allow_outside=allow_outside), choices)
+    description = describe(
+        robot,
+        urdf,
+        root,
+        package_dirs=package_dirs,
+        xacro_args=xacro_args,
+        confined=confined,
+        allow_outside=allow_outside,
+    )
     if isinstance(description, Unlinked) or description.diagnostics.refused:
         raise InvalidRobot(description.path, tuple(description.diagnostics))
-    return export_linked(description, choices, package_dirs)
+    return export_linked(description, choices, package_dirs, allow_outside=allow_outside)
 
 
-def export_linked(description: Linked, choices: Choices, package_dirs: Sequence[str | os.PathLike[str]]) -> Export:
+def export_linked(
+    description: Linked,
+    choices: Choices,
+    package_dirs: Sequence[str | os.PathLike[str]],
+    *,
+    allow_outside: bool = False,
+) -> Export:
     """Export a robot that was read; see `export`."""
-    found, _ = find_meshes(description.urdf, package_dirs)
+    files = find_meshes(description.urdf, package_dirs, allow_outside=allow_outside)
     bodies = description.mechanism.bodies
     uris = {shape.filename for body in bodies for shape in (*body.visuals, *body.collisions)}
-    # A pipe or a device may have no end.
-    meshes = {uri: Path(path) for uri, path in found.items() if uri in uris and Path(path).is_file()}
+    meshes = {uri: Path(path) for uri, path in files.paths.items() if uri in uris}
     robot = build_robot(description.mechanism, geometry=False)
-    return _export(robot, meshes, choices)
+    refused = dict.fromkeys(files.outside, str(files.folders))
+    return _export(robot, meshes, refused, files.folders, choices)
 
 
-def _export(robot: Robot, meshes: Mapping[str, Path], choices: Choices) -> Export:
+def _export(
+    robot: Robot, meshes: Mapping[str, Path], refused: Mapping[str, str], folders: Folders, choices: Choices
+) -> Export:
     to = choices.to
     if to not in FORMATS:
         hint = did_you_mean(to, FORMATS) or f"the formats are: {', '.join(FORMATS)}"
@@ -178,20 +202,25 @@ def _export(robot: Robot, meshes: Mapping[str, Path], choices: Choices) -> Expor
             _own_vectors(robot),
             configurations,
             meshes,
+            refused,
+            MeshReader(folders),
             choices.actuators,
             choices.mesh_files,
-            _triangles,
+            partial(_triangles, folders),
         )
     )
-    losses = replaced + written.losses
-    if choices.strict and (refused := tuple(loss for loss in losses if loss.effect is not Effect.EXACT)):
-        more = f"; and {len(refused) - 1} more" if len(refused) > 1 else ""
-        raise CannotExport(f"'{robot.mechanism.name}' has losses in the format {to}: {refused[0]}{more}", refused)
+    outside = Losses(COMMON)
+    for path in folders.let_through:
+        outside.add("export-file-outside", path)
+    losses = replaced + written.losses + outside.found
+    if choices.strict and (inexact := tuple(loss for loss in losses if loss.effect is not Effect.EXACT)):
+        more = f"; and {len(inexact) - 1} more" if len(inexact) > 1 else ""
+        raise CannotExport(f"'{robot.mechanism.name}' has losses in the format {to}: {inexact[0]}{more}", inexact)
     return Export(to, MappingProxyType(dict(written.files)), losses, written.coordinates)
 
 
-def _triangles(path: Path) -> Triangles | None:
-    meshes, _ = read_meshes([("", (1.0, 1.0, 1.0))], {"": os.fspath(path)})
+def _triangles(folders: Folders, path: Path) -> Triangles | None:
+    meshes, _ = read_meshes([("", (1.0, 1.0, 1.0))], {"": os.fspath(path)}, folders)
     return meshes.get(os.fspath(path))
 
 

@@ -8,28 +8,36 @@ from pathlib import Path
 
 from eurdf.exporting.written import Exportable, Triangles
 from eurdf.loss import Losses
+from eurdf.mesh_files.reader import RefusedFile
 from eurdf.writing.file_names import FileNames
 from eurdf.writing.xml_text import numbers
 
 
-def mesh_names(paths: Mapping[str, Path]) -> tuple[dict[str, bytes], dict[str, str]]:
-    """The content of each mesh file, and a name for it, both by URI.
-
-    The names are those of `FileNames`. Files with equal names get a number.
-    """
-    contents: dict[str, bytes] = {}
-    names: dict[str, str] = {}
+def mesh_names(paths: Mapping[str, Path]) -> dict[str, str]:
+    """A name for each mesh file, by URI: those of `FileNames`. Files with equal names get a number."""
     files = FileNames()
-    for uri, path in paths.items():
-        contents[uri], names[uri] = path.read_bytes(), files.new(path.stem, path.suffix)
-    return contents, names
+    return {uri: files.new(path.stem, path.suffix) for uri, path in paths.items()}
+
+
+def report_unread(given: Exportable, uri: str, losses: Losses) -> bool:
+    """Whether a mesh is not there to be read, which is a loss."""
+    if uri in given.refused:
+        losses.add(
+            "export-mesh-refused", uri, f"is left out: it is outside the folder of the robot, {given.refused[uri]}"
+        )
+    elif uri not in given.meshes:
+        losses.add("export-mesh-missing", uri)
+    else:
+        return False
+    return True
 
 
 class MeshFiles:
     """The mesh files of a robot while it is written: copied to ``meshes/``, or referenced where they are.
 
     Attributes:
-        files: Content of each file that was copied or converted, by its path relative to the folder.
+        files: Content of each file that was copied or converted, and of the files that copies name, by its path
+            relative to the folder.
     """
 
     def __init__(
@@ -39,12 +47,13 @@ class MeshFiles:
 
         Args:
             given: The robot.
-            losses: Where to record losses: the common ones and, with ``is_readable``, those of `CONVERSION`.
+            losses: Where to record losses: the common ones, that of `NAMED_FILE` and, with ``is_readable``, those of
+                `CONVERSION`.
             is_readable: Whether the program reads a file, of some name and content; None if it reads every file.
         """
         self.files: dict[str, bytes] = {}
         self._given, self._losses, self._is_readable = given, losses, is_readable
-        self._contents, self._names = mesh_names(given.meshes)
+        self._names = mesh_names(given.meshes)
         self._paths: dict[str, str | None] = {}
 
     def path(self, uri: str) -> str | None:
@@ -54,25 +63,31 @@ class MeshFiles:
         return self._paths[uri]
 
     def _written(self, uri: str) -> str | None:
-        if uri not in self._contents:
-            self._losses.add("export-mesh-missing", uri)
+        given, losses = self._given, self._losses
+        if report_unread(given, uri, losses):
             return None
-        name, content = self._names[uri], self._contents[uri]
-        if self._is_readable is not None and not self._is_readable(name, content):
-            triangles = self._given.read_mesh(self._given.meshes[uri])
-            if triangles is None:
-                self._losses.add("export-mesh-format", uri)
-                return None
-            name, content = f"{name}.obj", _wavefront(triangles)
-            self._losses.add("export-mesh-converted", uri)
-            if self._given.mesh_files == "reference":
-                self._losses.add("export-mesh-not-referenced", uri)
-        elif self._given.mesh_files == "reference":
-            path = Path(os.path.abspath(self._given.meshes[uri])).as_posix()
-            self._report_package(uri, path)
-            return path
+        try:
+            mesh = given.reader.read(given.meshes[uri])
+        except RefusedFile as error:
+            losses.add("export-mesh-refused", uri, f"is left out: {error}")
+            return None
+        name = self._names[uri]
         path = f"meshes/{name}"
-        self.files[path] = content
+        if self._is_readable is not None and not self._is_readable(name, mesh.content):
+            triangles = given.read_mesh(given.meshes[uri])
+            if triangles is None:
+                losses.add("export-mesh-format", uri)
+                return None
+            path += ".obj"
+            self.files[path] = _wavefront(triangles)
+            losses.add("export-mesh-converted", uri)
+            if given.mesh_files == "reference":
+                losses.add("export-mesh-not-referenced", uri)
+        elif given.mesh_files == "reference":
+            path = Path(os.path.abspath(given.meshes[uri])).as_posix()
+        else:
+            for other, reason in mesh.place(path, self.files).items():
+                losses.add("export-mesh-names", f"{uri}: {other}", f"is left out: {reason}")
         self._report_package(uri, path)
         return path
 

@@ -11,7 +11,7 @@ from eurdf.dataclass import dataclass
 from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.mesh_file import MeshFiles
 from eurdf.exporting.written import Exportable
-from eurdf.loss import COMMON, Effect, Losses, LossKind
+from eurdf.loss import COMMON, NAMED_FILE, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
@@ -56,6 +56,7 @@ URDF_LOSSES = (
         "set the compliance of the loop in the simulator",
     ),
     LossKind("export-texture", "texture", Effect.DROPPED, "is left out; the color is kept", "add it to the URDF"),
+    NAMED_FILE,
     *COMMON,
 )
 

@@ -14,6 +14,8 @@ from eurdf.dataclass import dataclass
 from eurdf.exporting.coordinates import Coordinates, OwnVectors
 from eurdf.loss import Loss, LossKind
 from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mesh_files.folders import Folders
+from eurdf.mesh_files.reader import MeshReader
 
 #: What actuators become.
 Actuators = Literal["motor", "position", "none"]
@@ -47,7 +49,9 @@ class Exportable:
         mechanism: The robot.
         own: Where the coordinates of its joints are in q and v.
         configurations: Closed configurations by name, the one to start from first; coordinates as in files.
-        meshes: Path of the file of each mesh, by URI; a mesh that was not found is left out.
+        meshes: Path of the file of each mesh, by URI; a mesh that was not found or is not read is left out.
+        refused: For each mesh that is not read, by URI: the folders that it is outside of.
+        reader: Reads the files of `meshes`.
         actuators: What actuators become.
         mesh_files: What is done with the mesh files.
         read_mesh: Reads a mesh file of any format; None where it cannot.
@@ -57,6 +61,8 @@ class Exportable:
     own: OwnVectors
     configurations: Mapping[str, Mapping[str, tuple[float, ...]]] = field(default_factory=dict)
     meshes: Mapping[str, Path] = field(default_factory=dict)
+    refused: Mapping[str, str] = field(default_factory=dict)
+    reader: MeshReader = field(default_factory=lambda: MeshReader(Folders()))
     actuators: Actuators = "motor"
     mesh_files: MeshFileChoice = "copy"
     read_mesh: Callable[[Path], Triangles | None] = _unread

@@ -25,7 +25,9 @@ from eurdf.kinematics.residual import closure_openings, residual
 from eurdf.linking.description import Unlinked, describe
 from eurdf.loss import Effect, Loss, Losses, LossKind
 from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mesh_files.folders import Folders
 from eurdf.pinocchio.robot import build_robot
+from eurdf.reading.resource import FileFinder
 from eurdf.writing.assembled import NAME as ASSEMBLED
 from eurdf.writing.assembled import beyond_limits
 from eurdf.writing.description import NotWritable, describe_mechanism, version_needed
@@ -46,6 +48,13 @@ COMMON = (
         Effect.EXACT,
         "the name is reserved for a configuration that closes the loops: this one is renamed",
         "choose another name in the file",
+    ),
+    LossKind(
+        "import-file-outside",
+        "file",
+        Effect.EXACT,
+        "is outside the robot's folder, and was read because of --allow-outside",
+        "copy it into the robot's folder",
     ),
 )
 
@@ -98,6 +107,7 @@ def import_robot(
     format: str | None = None,  # noqa: A002 - the word of the command
     within: str | os.PathLike[str] | None = None,
     strict: bool = False,
+    allow_outside: bool = False,
 ) -> Import:
     """Import a robot from a file of another format.
 
@@ -108,8 +118,11 @@ def import_robot(
         path: The file.
         format: Name of its format: ``mjcf``, ``sdf``, ``loop-joint``, ``drake`` or ``urdf-plus``. By default it is
             recognized by its content.
-        within: The folder that all files must be in that the file includes; its own by default.
+        within: A folder that files may be in which the file names, besides the robot's folder: the nearest one, from
+            its own upwards, with a ``package.xml``, or else its own.
         strict: Whether to refuse losses that are not exact.
+        allow_outside: Whether files may be anywhere; each one outside these folders is a loss that is exact. If not,
+            meshes elsewhere are left out, and other files are refused.
 
     Raises:
         CannotImport: The file is not of this format, has an error, or uses files outside the folder; or, if `strict`,
@@ -125,16 +138,19 @@ def import_robot(
         hint = did_you_mean(format, FORMATS) or f"the formats are: {', '.join(FORMATS)}"
         raise ValueError(f"there is no format '{format}'; {hint}")
     name = format or recognized(file)
-    read = FORMATS[name].read(file, Path(within) if within is not None else file.absolute().parent)
-    imported = _import(name, file, read)
+    finder = FileFinder(file.absolute().parent, [] if within is None else [within], allow_outside=allow_outside)
+    imported = _import(name, file, FORMATS[name].read(file, finder), finder.folders)
     if strict and (refused := tuple(loss for loss in imported.losses if loss.effect is not Effect.EXACT)):
         more = f"; and {len(refused) - 1} more" if len(refused) > 1 else ""
         raise CannotImport(file, f"it has losses: {refused[0]}{more}", refused)
     return imported
 
 
-def _import(format_: str, path: Path, read: RobotRead) -> Import:
+def _import(format_: str, path: Path, read: RobotRead, folders: Folders) -> Import:
     losses = Losses(COMMON)
+    licence = licence_file(path, folders)
+    for outside in folders.let_through:
+        losses.add("import-file-outside", outside)
     start, coordinates = read.start
     robot = build_robot(read.mechanism, geometry=False)
     q = robot.configuration(coordinates)
@@ -160,7 +176,7 @@ def _import(format_: str, path: Path, read: RobotRead) -> Import:
         metadata=MappingProxyType({"source": path.name, **mechanism.metadata}),
     )
     found_losses = (*read.losses, *losses.found)
-    files = _files(path, format_, mechanism, read, found_losses, opened)
+    files = _files(path, format_, mechanism, read, found_losses, opened, licence)
     return Import(format_, mechanism, found_losses, MappingProxyType(files), start, opened, closes, read.sources)
 
 
@@ -187,6 +203,7 @@ def _files(
     read: RobotRead,
     losses: tuple[Loss, ...],
     opened: tuple[Opening, ...],
+    licence: Path | None,
 ) -> dict[str, bytes]:
     schema: SchemaVersion = "2" if version_needed(mechanism) == "2.0" else "2.1"
     comment = f"Imported from {path.name} ({format_}) by eurdf."
@@ -195,7 +212,6 @@ def _files(
     except NotWritable as reason:
         raise CannotImport(path, str(reason)) from None
     _must_be_valid(path, written.yaml, written.urdf.decode())
-    licence = licence_file(path)
     files = {
         "robot.urdf": written.urdf,
         "robot.yaml": written.yaml.encode(),

@@ -10,6 +10,7 @@ from eurdf.importing.robot_read import ImportFormat, RobotRead
 from eurdf.kinematics.opening import Opening
 from eurdf.loss import Loss
 from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mesh_files.folders import Folders
 
 _LICENCES = ("LICENSE", "LICENCE", "COPYING")
 
@@ -20,14 +21,14 @@ _ABOVE = 2
 _LONGEST = 200_000
 
 
-def licence_file(path: Path) -> Path | None:
-    """The licence beside a file, or in a folder near above it."""
+def licence_file(path: Path, folders: Folders) -> Path | None:
+    """The licence beside a file, or in a folder near above it, if it is where files of the robot may be."""
     folder = path.absolute().parent
     for place in (folder, *folder.parents[:_ABOVE]):
         for name in _LICENCES:
             for ending in ("", ".txt", ".md"):
                 found = place / f"{name}{ending}"
-                if found.is_file() and found.stat().st_size <= _LONGEST:
+                if found.is_file() and found.stat().st_size <= _LONGEST and folders.admit(found):
                     return found
     return None
 

@@ -10,6 +10,7 @@ from types import MappingProxyType
 from eurdf.dataclass import dataclass
 from eurdf.loss import Loss, LossKind
 from eurdf.mechanism.mechanism import Mechanism
+from eurdf.reading.resource import FileFinder
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,7 +20,8 @@ class RobotRead:
     Attributes:
         mechanism: The robot. The meshes of its shapes are named as in ``meshes``.
         losses: What is not as in the file.
-        meshes: Content of each mesh file, by its path relative to the folder that is written, with ``/``.
+        meshes: Content of each mesh file, and of the files that meshes name, by its path relative to the folder that is
+            written, with ``/``.
         start: Name of the configuration to assemble from, and its coordinates as files have them.
         sources: Every file that was read, the main one first.
     """
@@ -38,11 +40,11 @@ class ImportFormat:
     Attributes:
         name: As the user gives it.
         title: What it is.
-        read: Reads a file, whose own files must be in a folder.
+        read: Reads a file, whose own files must be where a finder allows them.
         losses: Every kind of loss that `read` can record.
     """
 
     name: str
     title: str
-    read: Callable[[Path, Path], RobotRead]
+    read: Callable[[Path, FileFinder], RobotRead]
     losses: tuple[LossKind, ...]

@@ -15,9 +15,8 @@ from eurdf.diagnostics import Diagnostics, FileError
 from eurdf.format.urdf.read import read_urdf
 from eurdf.importing.elements import Elements, local
 from eurdf.importing.exceptions import CannotImport
-from eurdf.importing.mesh_copies import MeshCopies
+from eurdf.importing.mesh_copies import NAMED_FILE, MeshCopies
 from eurdf.importing.xml_files import inside, read_root
-from eurdf.linking.description import find_meshes
 from eurdf.linking.link import link
 from eurdf.loss import Effect, Losses, LossKind
 from eurdf.mechanism.body import Shape
@@ -25,6 +24,8 @@ from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.motor import Motor
+from eurdf.mesh_files.reader import RefusedFile
+from eurdf.reading.resource import FileFinder
 from eurdf.reading.source import Source, read_source
 from eurdf.reading.xml_reader import read_xml
 from eurdf.writing.urdf_elements import LARGEST
@@ -42,9 +43,10 @@ URDF_LOSSES = (
         "import-mesh",
         "mesh",
         Effect.DROPPED,
-        "its file was not found, or is no mesh file; its name is kept",
-        "put the file beside the URDF, and import again",
+        "its file was not found, or is refused; its name is kept",
+        "put the file beside the URDF, or name its folder with --within (within= in Python), and import again",
     ),
+    NAMED_FILE,
     LossKind(
         "import-texture",
         "texture",
@@ -99,7 +101,7 @@ class UrdfTree:
 
 def read_tree(
     path: Path,
-    within: Path,
+    finder: FileFinder,
     losses: Losses,
     known: tuple[str, ...],
     plain: Callable[[etree._Element], None] | None = None,
@@ -109,7 +111,7 @@ def read_tree(
 
     Args:
         path: The file.
-        within: The folder that it must be in.
+        finder: Finds its meshes, and says where files may be.
         losses: Where to record losses, of `URDF_LOSSES`.
         known: Local tags of the elements of the robot that the dialect reads itself.
         plain: Makes the elements of a copy those of plain URDF.
@@ -118,7 +120,7 @@ def read_tree(
     Raises:
         CannotImport: The file has an error.
     """
-    inside(path, path.resolve(), within)
+    inside(path, path.resolve(), finder.folders)
     root = read_root(path)
     diagnostics = Diagnostics()
     try:
@@ -136,19 +138,22 @@ def read_tree(
         first = diagnostics.errors[0]
         where = f"{path.name}:{first.line}: " if first.line and plain is None else ""
         raise CannotImport(path, where + first.message)
-    copies = MeshCopies()
-    found, _ = find_meshes(urdf)
+    copies = MeshCopies(finder.folders, losses)
 
     def copied(shape: Shape) -> Shape:
         if shape.texture:
             losses.add("import-texture", shape.texture)
         if shape.kind != "mesh":
             return shape
-        file = found.get(shape.filename)
-        if file is None or Path(file).suffix.lower() not in MeshCopies.SUFFIXES:
+        file = finder.find(shape.filename)
+        if file is None:
             losses.add("import-mesh", shape.filename)
             return shape
-        return replace(shape, filename=copies.file(Path(file)))
+        try:
+            return replace(shape, filename=copies.file(Path(file)))
+        except RefusedFile as reason:
+            losses.add("import-mesh", shape.filename, f"is not copied, and its name is kept: {reason}")
+            return shape
 
     bodies = tuple(
         replace(body, visuals=tuple(map(copied, body.visuals)), collisions=tuple(map(copied, body.collisions)))

@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from eurdf.collection import find_robot
 from eurdf.dataclass import dataclass
@@ -19,6 +19,7 @@ from eurdf.format.urdf.read import read_urdf
 from eurdf.linking.inertia import check_inertias, check_leaves
 from eurdf.linking.link import link
 from eurdf.mechanism.mechanism import Mechanism, Root
+from eurdf.mesh_files.folders import Folders
 from eurdf.reading.given import Given, shown, source_of
 from eurdf.reading.resource import HINT, FileFinder
 from eurdf.reading.source import Source, read_source
@@ -94,6 +95,7 @@ def describe(
     package_dirs: Sequence[str | os.PathLike[str]] = (),
     xacro_args: Mapping[str, str] | None = None,
     confined: bool = False,
+    allow_outside: bool = False,
     inertias: bool = True,
 ) -> Unlinked | Linked:
     """Read and link the files of a robot, and check its inertias.
@@ -110,13 +112,17 @@ def describe(
         package_dirs: Folders to look for packages in, which a xacro finds files in.
         xacro_args: Values of the arguments of a xacro.
         confined: Whether a URDF that the description names must be in the folder of the description.
+        allow_outside: Whether meshes may be anywhere, for `find_meshes`: no mesh is looked for here.
         inertias: Whether to check the inertias of a robot that can be linked. If not, `inertia_diagnostics` does.
 
     Raises:
         RobotNotFound: Where there are no such files.
         CannotExpand: A xacro has an error, or arguments are given for what is no xacro.
         MissingExtra: A xacro is given, and the extra ``xacro`` is not installed.
+        ValueError: Files are confined to their folder, and allowed outside it.
     """
+    if confined and allow_outside:
+        raise ValueError("confined and allow_outside exclude each other; choose one of them")
     diagnostics = Diagnostics()
     name = shown(path)
     try:
@@ -379,36 +385,97 @@ def _files_near(path: Path, home: Path, suffix: str) -> list[str]:
     return []
 
 
-def find_meshes(urdf: Urdf, package_dirs: Sequence[str | os.PathLike[str]] = ()) -> tuple[dict[str, str], Diagnostics]:
+class FoundFiles(NamedTuple):
+    """The mesh and texture files of a URDF.
+
+    Attributes:
+        paths: Path of each file that may be read, by URI.
+        diagnostics: About files that are missing, or outside the robot's folder.
+        folders: Where the files may be, and those that they name.
+        outside: URIs of files that exist and are outside, so that they are not read.
+    """
+
+    paths: dict[str, str]
+    diagnostics: Diagnostics
+    folders: Folders
+    outside: tuple[str, ...]
+
+
+def find_meshes(
+    urdf: Urdf,
+    package_dirs: Sequence[str | os.PathLike[str]] = (),
+    *,
+    confined: bool = False,
+    allow_outside: bool = False,
+) -> FoundFiles:
     """EU-URD-028, EU-URD-033: look every mesh and every texture up.
 
+    Args:
+        urdf: The URDF.
+        package_dirs: Folders to look for packages in.
+        confined: Whether a mesh outside the robot's folder and the packages is an error.
+        allow_outside: Whether such a mesh is read.
+
     Returns:
-        The path of each file found, by URI; and one diagnostic for all meshes, one for all textures that were not.
+        The files, with one diagnostic for all meshes, one for all textures of a kind.
     """
+    source = urdf.document.source
+    real = Path(os.path.realpath(source.file)).parent if source.is_file and not confined else source.folder
+    finder = FileFinder(source.folder, package_dirs, real_folder=real, allow_outside=allow_outside)
     shapes = [shape for link_ in urdf.links.values() for shape in (*link_.visuals, *link_.collisions)]
-    finder = FileFinder(urdf.document.source.folder, package_dirs)
-    found: dict[str, str] = {}
+    paths: dict[str, str] = {}
     diagnostics = Diagnostics()
+    refused: list[str] = []
     for tag, uris in (
         ("mesh", dict.fromkeys(shape.filename for shape in shapes if shape.filename)),
         ("texture", dict.fromkeys(shape.texture for shape in shapes if shape.texture)),
     ):
-        missing = []
-        for uri in uris:
-            path = finder.find(uri)
-            if path is None:
-                missing.append(uri)
-            else:
-                found[uri] = path
-        if missing:
-            count = f"1 {tag} file is" if len(missing) == 1 else f"{len(missing)} {tag} files are"
+        found = {uri: finder.find(uri) for uri in uris}
+        outside = [uri for uri, path in found.items() if path is not None and not finder.folders.contains(path)]
+        if not allow_outside:
+            refused += outside
+        paths |= {uri: path for uri, path in found.items() if path is not None and uri not in refused}
+        if missing := [uri for uri, path in found.items() if path is None]:
             diagnostics.report(
                 f"urdf-{tag}-missing",
-                f"{count} not found: {quoted(missing)}",
+                f"{_files(tag, missing)} not found: {quoted(missing)}",
                 partial(place_of_file, urdf, tag, missing[0]),
                 HINT,
             )
-    return found, diagnostics
+        if outside:
+            _report_outside(urdf, tag, outside, finder.folders, confined, diagnostics)
+    return FoundFiles(paths, diagnostics, finder.folders, tuple(refused))
+
+
+def _report_outside(
+    urdf: Urdf, tag: str, uris: list[str], folders: Folders, confined: bool, diagnostics: Diagnostics
+) -> None:
+    """Report the files of a kind that are outside the robot's folder."""
+    hint = (
+        "copy them there, or give the folder of their package with --package-dir (package_dirs= in Python); "
+        "--allow-outside (allow_outside=True) reads files from anywhere"
+    )
+    if confined and tag == "mesh":
+        for uri in uris:
+            diagnostics.report(
+                "urdf-mesh-unreadable",
+                f"mesh '{uri}' cannot be read: it is outside the folder of the robot, {folders}, and files are "
+                "confined to it",
+                partial(place_of_file, urdf, tag, uri),
+                "copy it there, or give the folder of its package with --package-dir (package_dirs= in Python)",
+            )
+        return
+    is_read = "are read all the same" if folders.allow_outside else "are not read"
+    diagnostics.report(
+        "x-file-outside-folder",
+        f"{_files(tag, uris)} outside the folder of the robot, {folders}, and {is_read}: {quoted(uris)}",
+        partial(place_of_file, urdf, tag, uris[0]),
+        "copy them there" if folders.allow_outside else hint,
+    )
+
+
+def _files(tag: str, uris: Sequence[str]) -> str:
+    return f"1 {tag} file is" if len(uris) == 1 else f"{len(uris)} {tag} files are"
 
 
 def place_of_file(urdf: Urdf, tag: str, uri: str) -> Place:

@@ -21,7 +21,6 @@ import coal
 import numpy as np
 
 _FULL_SIZE = np.ones(3)
-_GIT_LFS = b"version https://git-lfs"
 
 
 def main() -> None:
@@ -46,8 +45,6 @@ def main() -> None:
 def _read(path: str) -> tuple[dict[str, Any], tuple[Any, ...]]:
     """The number of vertices and triangles, and the arrays; or the reason why there are none."""
     try:
-        if _begins(path, _GIT_LFS):
-            return {"error": "it is a pointer of Git LFS; fetch the file with `git lfs pull`"}, ()
         # The smallest bounding volumes: these are thrown away.
         mesh = coal.MeshLoader(coal.BV_AABB).load(path, _FULL_SIZE)
         vertices = np.array(mesh.vertices(), np.float64).reshape(-1, 3)
@@ -60,15 +57,6 @@ def _read(path: str) -> tuple[dict[str, Any], tuple[Any, ...]]:
     except Exception as error:
         return {"error": "memory" if "bad_alloc" in str(error) else _reason(error)}, ()
     return {"vertices": len(vertices), "triangles": len(triangles)}, (vertices, triangles)
-
-
-def _begins(path: str, data: bytes) -> bool:
-    """Whether a file begins with some bytes. It does not wait where the file is a pipe by now."""
-    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
-    try:
-        return os.read(descriptor, len(data)) == data
-    finally:
-        os.close(descriptor)
 
 
 def _reason(error: Exception) -> str:

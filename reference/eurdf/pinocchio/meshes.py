@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 import os
 import signal
-import stat
+import tempfile
 from collections.abc import Iterable, Iterator, Mapping
+from contextlib import ExitStack
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -14,10 +16,9 @@ import numpy as np
 import numpy.typing as npt
 
 from eurdf.dataclass import dataclass
+from eurdf.mesh_files.folders import Folders, folders_of_files
+from eurdf.mesh_files.reader import MeshReader, RefusedFile
 from eurdf.program import command_of
-
-#: Bytes that the mesh files of a robot may have together.
-BYTES_LIMIT = 1 << 30
 
 #: Triangles that the meshes of a robot may have together, where those of each scale of a mesh count.
 TRIANGLES_LIMIT = 10_000_000
@@ -64,9 +65,10 @@ class Mesh:
 
 
 class _File(NamedTuple):
-    """A file to read: its path, and its size in bytes."""
+    """A file to read: its path, the path of what the mesh loader is given in its place, and the size of that."""
 
     path: str
+    alone: str
     size: int
 
     @property
@@ -79,21 +81,24 @@ class _File(NamedTuple):
 
 
 def read_meshes(
-    shapes: Iterable[tuple[str, tuple[float, ...]]], paths: Mapping[str, str]
+    shapes: Iterable[tuple[str, tuple[float, ...]]], paths: Mapping[str, str], folders: Folders | None = None
 ) -> tuple[dict[str, Mesh], dict[str, str]]:
-    """Read mesh files as Pinocchio does, each file once: STL, OBJ, COLLADA and whatever else assimp reads.
+    """Read mesh files as Pinocchio does, each file once: STL, OBJ, COLLADA, glTF, PLY, OFF and 3DS.
 
-    Whatever is in the files, it takes bounded time and memory.
+    Whatever is in the files, it takes bounded time and memory, and opens no file that is outside the folders.
 
     Args:
         shapes: URI and scale of each mesh of the robot.
         paths: Path of each URI.
+        folders: Where the files may be, and those that they name; by default, in the robots' folders that the files
+            are in.
 
     Returns:
         The meshes, by path; and by URI the reason why there is no mesh, or why it cannot be scaled.
     """
     shapes = dict.fromkeys(shapes)
-    read = _read_files(dict.fromkeys(paths[uri] for uri, _ in shapes))
+    files = dict.fromkeys(paths[uri] for uri, _ in shapes)
+    read = _read_files(files, MeshReader(folders_of_files(files) if folders is None else folders))
     meshes: dict[str, Mesh] = {}
     reasons: dict[str, str] = {}
     triangles = 0
@@ -112,31 +117,37 @@ def read_meshes(
     return meshes, reasons
 
 
-def _read_files(paths: Iterable[str]) -> dict[str, Mesh | str]:
+def _read_files(paths: Iterable[str], reader: MeshReader) -> dict[str, Mesh | str]:
     read: dict[str, Mesh | str] = {}
-    same: dict[tuple[int, int], list[str]] = {}
+    same: dict[tuple[object, ...], list[str]] = {}
     files: list[_File] = []
-    total = 0
-    for path in paths:
-        try:
-            status = os.stat(path)
-        except OSError as error:
-            read[path] = (error.strerror or str(error)).lower()
-            continue
-        if not stat.S_ISREG(status.st_mode):
-            read[path] = "it is not a file"
-            continue
-        one = same.setdefault((status.st_dev, status.st_ino), [])
-        one.append(path)
-        if len(one) > 1:
-            continue
-        total += status.st_size
-        if total > BYTES_LIMIT:
-            read[path] = f"with it, the mesh files of the robot have more than {BYTES_LIMIT:,} bytes"
-        else:
-            files.append(_File(path, status.st_size))
-    read |= _read(files)
-    return read | {path: read[first] for first, *others in same.values() for path in others}
+    with ExitStack() as stack:
+
+        @cache
+        def scratch() -> Path:
+            return Path(stack.enter_context(tempfile.TemporaryDirectory()))
+
+        for path in paths:
+            try:
+                one = same.setdefault(_identity(path), [])
+                if one:
+                    reader.size(path)  # by this name, it may be outside the folders
+                else:
+                    files.append(_File(path, *reader.alone(path, lambda: scratch() / str(len(files)))))
+                one.append(path)
+            except RefusedFile as reason:
+                read[path] = str(reason)
+            except OSError as error:  # it was there a moment ago
+                read[path] = (error.strerror or str(error)).lower()
+        read |= _read(files)
+    return read | {path: read[one[0]] for one in same.values() for path in one[1:]}
+
+
+def _identity(path: str) -> tuple[object, ...]:
+    """What two names of a file have in common if it is the same mesh by both."""
+    status, suffix = os.stat(path), Path(path).suffix.lower()
+    names_files = suffix in (".gltf", ".glb")  # from the folder that it is in
+    return status.st_dev, status.st_ino, suffix, os.path.dirname(path) if names_files else ""
 
 
 def _read(files: list[_File]) -> dict[str, Mesh | str]:
@@ -162,7 +173,7 @@ def _run(files: list[_File]) -> tuple[Iterator[Mesh | str], int]:
 
     request = {
         "patience": PATIENCE,
-        "files": [{"path": file.path, "seconds": file.seconds, "memory": file.memory} for file in files],
+        "files": [{"path": file.alone, "seconds": file.seconds, "memory": file.memory} for file in files],
     }
     done = subprocess.run(
         command_of(_PROGRAM),

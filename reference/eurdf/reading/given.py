@@ -14,7 +14,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from eurdf.diagnostics import FileError, Place
-from eurdf.reading.source import BOM, FILE_LIMIT, Source, decoded, open_now, too_large
+from eurdf.reading.source import BOM, FILE_LIMIT, Source, decoded, too_large
+from eurdf.regular_file import open_now
 
 #: What is given: a path, ``-`` for standard input, or the text itself.
 Given = str | bytes | os.PathLike[str]

@@ -10,6 +10,7 @@ from pathlib import Path
 from eurdf.dataclass import dataclass
 from eurdf.diagnostics import FileError, Place
 from eurdf.diagnostics.lines import Lines
+from eurdf.regular_file import open_now, open_regular
 
 BOM = b"\xef\xbb\xbf"
 
@@ -155,16 +156,6 @@ def _read_bytes(file: str, limit: int) -> bytes:
     return b"".join(chunks)
 
 
-def open_now(path: str | os.PathLike[str]) -> int:
-    """A descriptor of a file, to read from, without waiting: to open a pipe would wait for someone to write into it.
-
-    Raises:
-        OSError: It cannot be opened.
-        ValueError: The path has a NUL.
-    """
-    return os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC | os.O_NOCTTY)
-
-
 def begin_of_file(path: str | os.PathLike[str], size: int) -> bytes:
     """The first bytes of a file.
 
@@ -176,9 +167,7 @@ def begin_of_file(path: str | os.PathLike[str], size: int) -> bytes:
         OSError: It cannot be read, or is not a regular file.
         ValueError: The path has a NUL.
     """
-    with open(open_now(path), "rb") as stream:
-        if not stat.S_ISREG(os.fstat(stream.fileno()).st_mode):
-            raise OSError(f"'{os.fsdecode(path)}' is not a regular file")
+    with open_regular(path) as stream:
         return stream.read(size)
 
 

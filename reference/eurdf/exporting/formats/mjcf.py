@@ -22,7 +22,7 @@ from eurdf.exporting.inertia import about_centre, physical
 from eurdf.exporting.mesh_file import MeshFiles
 from eurdf.exporting.servo import position_gain
 from eurdf.exporting.written import Exportable, Format, Written
-from eurdf.loss import COMMON, CONVERSION, Effect, Losses, LossKind
+from eurdf.loss import COMMON, CONVERSION, NAMED_FILE, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.constraint import (
     Closure,
@@ -247,6 +247,7 @@ LOSSES = (
         only="none is closed",
     ),
     *CONVERSION,
+    NAMED_FILE,
     *COMMON,
 )
 

@@ -22,7 +22,7 @@ from eurdf.exporting.exceptions import CannotExport
 from eurdf.exporting.inertia import Matrix, about_centre, physical
 from eurdf.exporting.mesh_file import MeshFiles
 from eurdf.exporting.written import Exportable, Format, Written
-from eurdf.loss import COMMON, Effect, Losses, LossKind
+from eurdf.loss import COMMON, NAMED_FILE, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.constraint import Closure, Coupling, HingeClosure, PointClosure
 from eurdf.mechanism.frame import Anchor
@@ -191,6 +191,7 @@ LOSSES = (
         only="what no body has",
     ),
     LossKind("export-texture", "texture", Effect.DROPPED, "is left out; the color is kept", "add a material"),
+    NAMED_FILE,
     *COMMON,
 )
 

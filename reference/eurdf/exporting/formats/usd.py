@@ -23,7 +23,7 @@ from eurdf.exporting.contacts import neighbours
 from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.exceptions import CannotExport
 from eurdf.exporting.inertia import about_centre, physical
-from eurdf.exporting.mesh_file import mesh_names
+from eurdf.exporting.mesh_file import mesh_names, report_unread
 from eurdf.exporting.servo import position_gain
 from eurdf.exporting.written import Exportable, Format, Written
 from eurdf.loss import COMMON, NOT_REFERENCED, Effect, Losses, LossKind
@@ -408,7 +408,7 @@ class _Writer:
                 if joint.mimic is not None and joint.type in MIMIC_TYPES
             }
         )
-        _, self.mesh_names = mesh_names(given.meshes)
+        self.mesh_names = mesh_names(given.meshes)
         self.meshes: dict[str, str | None] = {}
         self.files: dict[str, bytes] = {}
 
@@ -737,9 +737,9 @@ class _Writer:
         if uri in self.meshes:
             return self.meshes[uri]
         path = self.meshes[uri] = None
-        if uri not in self.given.meshes:
-            self.losses.add("export-mesh-missing", uri)
-        elif (triangles := self.given.read_mesh(self.given.meshes[uri])) is None:
+        if report_unread(self.given, uri, self.losses):
+            return None
+        if (triangles := self.given.read_mesh(self.given.meshes[uri])) is None:
             self.losses.add("export-mesh-format", uri)
         else:
             path = self.meshes[uri] = f"meshes/{self.mesh_names[uri]}.usdc"

@@ -26,6 +26,7 @@ from eurdf.mechanism.joint import Joint, JointProperties
 from eurdf.mechanism.joint_type import COORDINATES, JointType
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
+from eurdf.reading.resource import FileFinder
 from eurdf.writing.names import UniqueNames
 from eurdf.writing.urdf_elements import LARGEST
 
@@ -87,7 +88,7 @@ _TYPES = {
 }
 
 
-def read(path: Path, within: Path) -> RobotRead:
+def read(path: Path, finder: FileFinder) -> RobotRead:
     """Read a URDF of Drake.
 
     Raises:
@@ -96,7 +97,7 @@ def read(path: Path, within: Path) -> RobotRead:
     losses, elements, joints = Losses(LOSSES), Elements(path), _Joints()
     tree = read_tree(
         path,
-        within,
+        finder,
         losses,
         _KNOWN,
         lambda root: _make_plain(root, elements, joints),

@@ -17,6 +17,7 @@ from eurdf.importing.urdf_tree import URDF_LOSSES, UrdfTree, loop_left_out, read
 from eurdf.loss import Losses
 from eurdf.mechanism.constraint import Closure, FrameClosure, HingeClosure, PointClosure
 from eurdf.mechanism.frame import Anchor, Frame
+from eurdf.reading.resource import FileFinder
 from eurdf.writing.names import UniqueNames
 
 LOSSES = (
@@ -25,14 +26,14 @@ LOSSES = (
 )
 
 
-def read(path: Path, within: Path) -> RobotRead:
+def read(path: Path, finder: FileFinder) -> RobotRead:
     """Read a URDF with loop joints.
 
     Raises:
         CannotImport: It has an error.
     """
     losses = Losses(LOSSES)
-    tree = read_tree(path, within, losses, ("loop_joint", "fixed_frame"))
+    tree = read_tree(path, finder, losses, ("loop_joint", "fixed_frame"))
     names = UniqueNames(losses, code="import-name")
     closures = [
         closure

@@ -28,17 +28,19 @@ from eurdf.importing.robot_read import ImportFormat, RobotRead
 from eurdf.importing.xml_files import included_files
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.spanning_tree import depth_first
+from eurdf.reading.resource import FileFinder
 
 
-def read(path: Path, within: Path) -> RobotRead:
+def read(path: Path, finder: FileFinder) -> RobotRead:
     """Read an MJCF file.
 
     Raises:
-        CannotImport: It is not MJCF, or MuJoCo refuses it, or one of its files is outside the folder ``within``.
+        CannotImport: It is not MJCF, or MuJoCo refuses it, or one of the XML files is where none may be.
         MissingExtra: The extra ``mujoco`` is not installed.
     """
-    sources = included_files(path, within)
-    return replace(_robot(MjcfReading(compile_mjcf(path), path)), sources=sources)
+    folders = finder.folders
+    sources = included_files(path, folders)
+    return replace(_robot(MjcfReading(compile_mjcf(path, folders), path, folders)), sources=sources)
 
 
 def _robot(reading: MjcfReading) -> RobotRead:

@@ -21,7 +21,7 @@ from lxml import etree
 
 from eurdf.dataclass import dataclass
 from eurdf.importing.elements import Elements, named
-from eurdf.importing.mesh_copies import MeshCopies
+from eurdf.importing.mesh_copies import NAMED_FILE, MeshCopies
 from eurdf.importing.robot_read import ImportFormat, RobotRead
 from eurdf.importing.xml_files import inside, read_root
 from eurdf.loss import Effect, Losses, LossKind
@@ -34,6 +34,7 @@ from eurdf.mechanism.mechanism import ROOT_JOINT, Mechanism, Root
 from eurdf.mechanism.mimic import MIMIC_TYPES, Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3
 from eurdf.mechanism.spanning_tree import depth_first
+from eurdf.mesh_files.reader import RefusedFile
 from eurdf.reading.resource import FileFinder
 from eurdf.writing.names import UniqueNames
 
@@ -119,7 +120,14 @@ LOSSES = (
         "is left out: URDF has no such shape",
         "replace it by boxes, spheres, capsules, cylinders or a mesh",
     ),
-    LossKind("import-mesh", "mesh", Effect.DROPPED, "is left out: its file was not found", "correct its uri"),
+    LossKind(
+        "import-mesh",
+        "mesh",
+        Effect.DROPPED,
+        "is left out: its file was not found, or is refused",
+        "correct its uri, or name the folder of the file with --within (within= in Python)",
+    ),
+    NAMED_FILE,
     LossKind("import-texture", "texture", Effect.DROPPED, "is left out; the color is kept", "add it to the URDF"),
     LossKind(
         "import-simulation",
@@ -152,23 +160,23 @@ class _SdfJoint:
     in_child: Pose
 
 
-def read(path: Path, within: Path) -> RobotRead:
+def read(path: Path, finder: FileFinder) -> RobotRead:
     """Read an SDFormat file with one model.
 
     Raises:
         CannotImport: It is not such a file, has an error, or its links do not hang together.
     """
-    inside(path, path.resolve(), within)
-    return replace(_Reader(path, read_root(path), within).read(), sources=(path,))
+    inside(path, path.resolve(), finder.folders)
+    return replace(_Reader(path, read_root(path), finder).read(), sources=(path,))
 
 
 class _Reader:
     """A file while it is read."""
 
-    def __init__(self, path: Path, root: etree._Element, within: Path) -> None:
+    def __init__(self, path: Path, root: etree._Element, finder: FileFinder) -> None:
         self.path, self.elements = path, Elements(path)
-        self.losses, self.copies = Losses(LOSSES), MeshCopies()
-        self.finder = FileFinder(path.absolute().parent, (within,))
+        self.losses, self.finder = Losses(LOSSES), finder
+        self.copies = MeshCopies(finder.folders, self.losses)
         if root.tag != "sdf":
             raise self.elements.refuse(root, f"the root element is {named(root)}; it must be <sdf>")
         self.model = self._only_model(root)
@@ -531,14 +539,19 @@ class _Reader:
     def _mesh(self, mesh: etree._Element, pose: Pose, color: tuple[float, float, float, float] | None) -> Shape | None:
         uri = (mesh.findtext("uri") or "").strip()
         found = self.finder.find(uri) if uri else None
-        if found is None or Path(found).suffix.lower() not in MeshCopies.SUFFIXES:
+        if found is None:
             self.losses.add("import-mesh", uri)
+            return None
+        try:
+            copy = self.copies.file(Path(found))
+        except RefusedFile as reason:
+            self.losses.add("import-mesh", uri, f"is left out: {reason}")
             return None
         scale = (1.0, 1.0, 1.0)
         if mesh.find("scale") is not None:
             x, y, z = self.elements.numbers(mesh, mesh.findtext("scale"), 3, "<scale>")
             scale = x, y, z
-        return Shape("mesh", scale, pose, self.copies.file(Path(found)), color)
+        return Shape("mesh", scale, pose, copy, color)
 
     def _color(self, element: etree._Element) -> tuple[float, float, float, float] | None:
         material = element.find("material")

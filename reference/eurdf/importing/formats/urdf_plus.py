@@ -19,6 +19,7 @@ from eurdf.loss import Effect, Losses, LossKind
 from eurdf.mechanism.constraint import Closure, Coupling, FrameClosure, HingeClosure, PointClosure
 from eurdf.mechanism.frame import Anchor
 from eurdf.mechanism.joint_type import JointType
+from eurdf.reading.resource import FileFinder
 from eurdf.writing.names import UniqueNames
 
 LOSSES = (
@@ -36,14 +37,14 @@ LOSSES = (
 _SCALAR = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
 
 
-def read(path: Path, within: Path) -> RobotRead:
+def read(path: Path, finder: FileFinder) -> RobotRead:
     """Read a file of URDF+.
 
     Raises:
         CannotImport: It has an error.
     """
     losses = Losses(LOSSES)
-    tree = read_tree(path, within, losses, ("loop", "loop_constraint", "coupling"))
+    tree = read_tree(path, finder, losses, ("loop", "loop_constraint", "coupling"))
     names = UniqueNames(losses, code="import-name")
     closures = [
         closure

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from eurdf.importing.mesh_copies import NAMED_FILE
 from eurdf.loss import Effect, LossKind
 
 LOSSES = (
@@ -142,7 +143,14 @@ LOSSES = (
         "is left out: it is neither visible nor touches anything",
         "remove it",
     ),
-    LossKind("import-mesh", "mesh", Effect.DROPPED, "is left out", "correct its file, and import again"),
+    LossKind(
+        "import-mesh",
+        "mesh",
+        Effect.DROPPED,
+        "is left out",
+        "correct its file, or name the folder of the file with --within (within= in Python), and import again",
+    ),
+    NAMED_FILE,
     LossKind(
         "import-mesh-converted",
         "mesh",

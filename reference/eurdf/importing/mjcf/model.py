@@ -15,6 +15,8 @@ from typing import Any
 from eurdf.dataclass import dataclass
 from eurdf.exceptions import MissingExtra
 from eurdf.importing.exceptions import CannotImport
+from eurdf.mesh_files.folders import Folders
+from eurdf.mesh_files.reader import BYTES_LIMIT
 from eurdf.program import command_of
 
 #: Processor time (s) and memory (bytes) that compiling a file may take.
@@ -74,8 +76,12 @@ class MjcfModel:
         return self.arrays.get(name, ())
 
 
-def compile_mjcf(path: Path) -> MjcfModel:
+def compile_mjcf(path: Path, folders: Folders) -> MjcfModel:
     """Compile a file in a process of its own.
+
+    Args:
+        path: The file.
+        folders: Where its meshes may be; others are left out.
 
     Raises:
         CannotImport: MuJoCo refuses it, crashes on it, or takes too long.
@@ -87,7 +93,13 @@ def compile_mjcf(path: Path) -> MjcfModel:
 
         message = f"'{path}' is an MJCF file, and MuJoCo, which reads it, is not installed; install it with: "
         raise MissingExtra(message + install_command("mujoco"), "mujoco")
-    request = {"path": os.path.abspath(path), "seconds": SECONDS, "memory": MEMORY}
+    request = {
+        "path": os.path.abspath(path),
+        "folders": ["/"] if folders.allow_outside else folders.real,
+        "bytes": BYTES_LIMIT,
+        "seconds": SECONDS,
+        "memory": MEMORY,
+    }
     with tempfile.TemporaryDirectory() as scratch:
         # -P: a module of the working directory named mujoco is not the one that is meant.
         done = subprocess.run(

@@ -13,7 +13,7 @@ import os
 import resource
 import signal
 import sys
-from typing import Any
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
@@ -76,6 +76,17 @@ _NUMBERS = {
 _GIT_LFS = b"version https://git-lfs"
 
 
+class _Bounds(NamedTuple):
+    """Where the files of meshes may be: folders, as real paths; and their largest size in bytes."""
+
+    folders: tuple[str, ...]
+    bytes: int
+
+    def contain(self, path: str) -> bool:
+        real = os.path.realpath(path)
+        return any(real.startswith(folder.rstrip(os.sep) + os.sep) for folder in self.folders)
+
+
 class Refused(Exception):  # noqa: N818 - the answer to the request
     """The file cannot be compiled; the text says why."""
 
@@ -91,7 +102,7 @@ def main() -> None:
     _limit(resource.RLIMIT_CPU, request["seconds"])
     signal.alarm(2 * request["seconds"])
     try:
-        answer = _compiled(request["path"])
+        answer = _compiled(request["path"], _Bounds(tuple(request["folders"]), request["bytes"]))
     except Refused as reason:
         answer = {"error": str(reason)}
     except MemoryError:
@@ -102,19 +113,18 @@ def main() -> None:
     answers.flush()
 
 
-def _compiled(path: str) -> dict[str, Any]:
-    spec = _specification(path)
-    left_out = _without_assets(spec, {mesh.name: reason for mesh in spec.meshes if (reason := _fault(spec, mesh))})
+def _compiled(path: str, bounds: _Bounds) -> dict[str, Any]:
+    spec, faults = _specification(path, bounds)
+    left_out = _without_assets(spec, faults)
     try:
         model = spec.compile()
     except ValueError:
         # MuJoCo names one mesh at a time.
-        faults = {mesh.name: reason for mesh in spec.meshes if (reason := _compile_error(spec, mesh))}
+        faults = {mesh.name: reason for mesh in spec.meshes if (reason := _compile_error(mesh))}
         if not faults:
             raise
-        spec = _specification(path)
-        faults |= {mesh.name: reason for mesh in spec.meshes if (reason := _fault(spec, mesh))}
-        left_out = _without_assets(spec, faults)
+        spec, more = _specification(path, bounds)
+        left_out = _without_assets(spec, faults | more)
         model = spec.compile()
     return {
         "name": spec.modelname,
@@ -122,7 +132,7 @@ def _compiled(path: str) -> dict[str, Any]:
         "arrays": _arrays(model),
         "names": {kind: _names(model, kind) for kind in _NAMED},
         "counts": {name: int(getattr(model, name, 0)) for name in _COUNTS},
-        "meshes": [_mesh(spec, model, mesh) for mesh in sorted(spec.meshes, key=lambda mesh: mesh.id)],
+        "meshes": [_mesh(model, mesh) for mesh in sorted(spec.meshes, key=lambda mesh: mesh.id)],
         "fullinertia": {
             int(body.id): np.asarray(body.fullinertia).tolist()
             for body in spec.bodies
@@ -144,12 +154,24 @@ def _arrays(model: Any) -> dict[str, Any]:
     return found
 
 
-def _specification(path: str) -> Any:
+def _specification(path: str, bounds: _Bounds) -> tuple[Any, dict[str, str]]:
+    """What the file says; and by name of a mesh, why its file is not read.
+
+    Each mesh names its file by an absolute path afterwards, so that MuJoCo opens the file that was looked at here.
+    """
     spec = mujoco.MjSpec.from_file(path)
     # Both would drop bodies and shapes.
     spec.compiler.fusestatic = False
     spec.compiler.discardvisual = False
-    return spec
+    faults = {}
+    for mesh in spec.meshes:
+        if mesh.file:
+            file = _path(spec, mesh)
+            if reason := _fault(mesh.file, file, bounds):
+                faults[mesh.name] = reason
+            mesh.file = file
+    spec.strippath = False
+    return spec, faults
 
 
 def _without_assets(spec: Any, faults: dict[str, str]) -> list[dict[str, str]]:
@@ -199,44 +221,50 @@ def _weighs(spec: Any, geom: Any) -> bool:
 def _path(spec: Any, mesh: Any) -> str:
     compiler = getattr(mesh, "compiler", spec.compiler)
     name = os.path.basename(mesh.file) if spec.strippath else mesh.file
-    return os.path.normpath(os.path.join(spec.modelfiledir, compiler.meshdir or "", name))
+    return os.path.abspath(os.path.join(spec.modelfiledir, compiler.meshdir or "", name))
 
 
-def _fault(spec: Any, mesh: Any) -> str:
-    """Why the file of a mesh cannot be read; empty if it can, as far as can be seen, or if there is no file."""
-    if not mesh.file:
-        return ""
-    path = _path(spec, mesh)
+def _fault(name: str, path: str, bounds: _Bounds) -> str:
+    """Why the file of a mesh is not read; empty if it is, as far as can be seen.
+
+    Args:
+        name: As the MJCF file writes it.
+        path: Its absolute path.
+        bounds: What bounds it.
+    """
     if not os.path.isfile(path):
-        return f"its file '{mesh.file}' was not found"
+        return f"its file '{name}' was not found"
+    if not bounds.contain(path):
+        return f"its file '{name}' is outside the folder of the robot"
+    size = os.path.getsize(path)
+    if size > bounds.bytes:
+        return f"its file '{name}' has {size:,} bytes, and at most {bounds.bytes:,} are read"
     with open(path, "rb") as stream:
         head = stream.read(84)
     if head.startswith(_GIT_LFS):
-        return f"its file '{mesh.file}' is a pointer of Git LFS; fetch it with `git lfs pull`"
-    if path.lower().endswith(".stl"):
-        size = os.path.getsize(path)
-        if len(head) < 84 or size != 84 + 50 * int.from_bytes(head[80:84], "little"):
-            return f"its file '{mesh.file}' is not a binary STL"
+        return f"its file '{name}' is a pointer of Git LFS; fetch the file with `git lfs pull`"
+    if path.lower().endswith(".stl") and (len(head) < 84 or size != 84 + 50 * int.from_bytes(head[80:84], "little")):
+        return f"its file '{name}' is not a binary STL"
     return ""
 
 
-def _compile_error(spec: Any, mesh: Any) -> str:
+def _compile_error(mesh: Any) -> str:
     """Why MuJoCo refuses a mesh that is a file; empty if it does not."""
     if not mesh.file:
         return ""
     alone = mujoco.MjSpec()
-    alone.add_mesh(name="m", file=os.path.abspath(_path(spec, mesh)), scale=mesh.scale, inertia=mesh.inertia)
+    alone.add_mesh(name="m", file=mesh.file, scale=mesh.scale, inertia=mesh.inertia)
     alone.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="m")
     try:
         alone.compile()
     except ValueError as error:
-        return f"MuJoCo cannot read its file '{mesh.file}': {' '.join(str(error).split())}"
+        return f"MuJoCo cannot read its file '{os.path.basename(mesh.file)}': {' '.join(str(error).split())}"
     return ""
 
 
-def _mesh(spec: Any, model: Any, mesh: Any) -> dict[str, Any]:
+def _mesh(model: Any, mesh: Any) -> dict[str, Any]:
     """The file of a mesh, if a URDF can name it; else its content as OBJ, as it is in the model."""
-    path = _path(spec, mesh) if mesh.file else ""
+    path = mesh.file
     moved = bool(np.any(mesh.refpos)) or not np.allclose(mesh.refquat, (1.0, 0.0, 0.0, 0.0), atol=0.0)
     if path.lower().endswith((".stl", ".obj")) and not moved:
         return {"path": path, "scale": np.asarray(mesh.scale).tolist(), "obj": ""}

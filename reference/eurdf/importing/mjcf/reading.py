@@ -14,6 +14,7 @@ from eurdf.mechanism.body import Body
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.mechanism import ROOT_JOINT, Root
 from eurdf.mechanism.pose import IDENTITY, Pose
+from eurdf.mesh_files.folders import Folders
 from eurdf.writing.names import UniqueNames
 
 WORLD = "world"
@@ -41,10 +42,10 @@ class MjcfReading:
         consumed: Indices of the equalities that are read.
     """
 
-    def __init__(self, model: MjcfModel, path: Path) -> None:
+    def __init__(self, model: MjcfModel, path: Path, folders: Folders) -> None:
         self.model, self.path = model, path
         self.losses = Losses(LOSSES)
-        self.copies = MeshCopies()
+        self.copies = MeshCopies(folders, self.losses)
         self.links = UniqueNames(self.losses, "universe", code="import-name")
         self.joint_names = UniqueNames(self.losses, "universe", ROOT_JOINT, code="import-name")
         self.children: dict[int, list[int]] = {}

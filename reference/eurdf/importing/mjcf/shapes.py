@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from eurdf.importing.exceptions import CannotImport
 from eurdf.importing.mjcf.reading import MjcfReading
 from eurdf.importing.mjcf.values import flat, pose_from
 from eurdf.mechanism.body import Shape
 from eurdf.mechanism.pose import Pose
+from eurdf.mesh_files.reader import RefusedFile
 
 _DEFAULT_RGBA = (0.5, 0.5, 0.5, 1.0)
 
@@ -60,16 +60,19 @@ def _shape(reading: MjcfReading, geom: int) -> Shape | None:
     return None
 
 
-def _mesh(reading: MjcfReading, mesh: int, pose: Pose, color: tuple[float, float, float, float] | None) -> Shape:
+def _mesh(reading: MjcfReading, mesh: int, pose: Pose, color: tuple[float, float, float, float] | None) -> Shape | None:
     model = reading.model
     given, name = model.meshes[mesh], model.names["mesh"][mesh]
     if given.obj:
+        if given.path:
+            reading.copies.folders.admit(given.path)
         reading.losses.add("import-mesh-converted", name)
         return Shape("mesh", given.scale, pose, reading.copies.content(name, ".obj", given.obj.encode()), color)
     try:
         uri = reading.copies.file(Path(given.path))
-    except OSError as error:
-        raise CannotImport(reading.path, f"mesh '{given.path}': {error.strerror or error}") from None
+    except RefusedFile as reason:
+        reading.losses.add("import-mesh", name, f"is left out: {reason}")
+        return None
     own = pose_from(model["mesh_pos"][mesh], model["mesh_quat"][mesh])
     return Shape("mesh", given.scale, pose * own.inverse(), uri, color)
 

@@ -1,0 +1,1 @@
+"""Mesh files: where they may be, what they must be, and the other files that they name."""

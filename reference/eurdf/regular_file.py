@@ -1,0 +1,36 @@
+"""Opening a file whose path another file names: it may be a pipe, a device, or larger than memory."""
+
+from __future__ import annotations
+
+import os
+import stat
+from typing import BinaryIO
+
+#: Not every system has all of these.
+_READ_NOW = os.O_RDONLY
+for _name in ("O_NONBLOCK", "O_CLOEXEC", "O_NOCTTY", "O_BINARY"):
+    _READ_NOW |= getattr(os, _name, 0)
+
+
+def open_now(path: str | os.PathLike[str]) -> int:
+    """A descriptor of a file, to read from, without waiting: to open a pipe would wait for someone to write into it.
+
+    Raises:
+        OSError: It cannot be opened.
+        ValueError: The path has a NUL.
+    """
+    return os.open(path, _READ_NOW)
+
+
+def open_regular(path: str | os.PathLike[str]) -> BinaryIO:
+    """A regular file, opened to be read.
+
+    Raises:
+        OSError: It cannot be opened, or is not a regular file.
+        ValueError: The path has a NUL.
+    """
+    descriptor = open_now(path)
+    if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+        os.close(descriptor)
+        raise OSError(f"'{os.fsdecode(path)}' is not a regular file")
+    return open(descriptor, "rb")
