@@ -7,11 +7,12 @@ standard library: it calls the setters of the slots, which are known beforehand,
 
 from __future__ import annotations
 
+import copyreg
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import MISSING, Field, FrozenInstanceError, fields
 from operator import attrgetter
-from types import MemberDescriptorType
+from types import MappingProxyType, MemberDescriptorType
 from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 if TYPE_CHECKING:
@@ -38,6 +39,13 @@ else:
         parameters.frozen, parameters.init, parameters.eq, parameters.repr = True, True, has_equality, has_repr
         return _frozen(plain, has_equality, has_repr)
 
+
+def _read_only(content: dict[Any, Any]) -> MappingProxyType[Any, Any]:
+    return MappingProxyType(content)
+
+
+# The mappings of frozen classes are read-only, and Python can neither pickle nor copy these.
+copyreg.pickle(MappingProxyType, lambda mapping: (_read_only, (mapping.copy(),)))
 
 _Class = TypeVar("_Class", bound=type[Any])
 

@@ -2,12 +2,33 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from eurdf.diagnostics import Diagnostic
 from eurdf.diagnostics.registry import Severity
 from eurdf.diagnostics.visible import no_command, visible
 
 
-class EurdfError(Exception):
+class Portable(BaseException):
+    """An exception or warning that can be pickled and copied, also if its constructor takes more than its text.
+
+    By default, an exception is restored by calling its class with the text alone. If that fails in the parent of a
+    worker process, the parent waits for ever.
+    """
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (type(self), self.args, self.__dict__)
+
+
+def _restored(kind: type[BaseException], arguments: tuple[Any, ...], attributes: dict[str, Any]) -> BaseException:
+    error = kind.__new__(kind)
+    builtin = next(base for base in kind.__mro__ if base.__module__ == "builtins")
+    builtin.__init__(error, *arguments)  # type: ignore[misc] # not the constructor of the class, which takes more
+    error.__dict__.update(attributes)
+    return error
+
+
+class EurdfError(Portable, Exception):
     """Base of all errors of this package."""
 
 

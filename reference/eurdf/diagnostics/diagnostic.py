@@ -79,6 +79,10 @@ class Diagnostic:
         """The place, computed on first use: the line in an XML file needs a second pass over the file."""
         return self._place() if callable(self._place) else self._place
 
+    def __getstate__(self) -> dict[str, object]:
+        """What is pickled and copied: a place that is computed later needs the whole file."""
+        return {"code": self.code, "message": self.message, "hint": self.hint, "_place": self.place}
+
     def followed_by(self, more: int) -> Diagnostic:
         """The same diagnostic, with a hint that more like it are not listed."""
         untold = f"{more:,} more like it are not listed"

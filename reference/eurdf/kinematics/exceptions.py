@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from eurdf.exceptions import EurdfError
+from eurdf.exceptions import EurdfError, Portable
 
 if TYPE_CHECKING:
     from eurdf.kinematics.array import Vector
@@ -129,7 +129,7 @@ class UndeterminedMotion(EurdfError, ValueError):  # noqa: N818 - part of the pu
         super().__init__(f"the forces do not determine the acceleration: joints {named} move without inertia; add mass")
 
 
-class StepTooLongWarning(UserWarning):
+class StepTooLongWarning(Portable, UserWarning):
     """The time step of a simulation is too long to keep the energy.
 
     Attributes:

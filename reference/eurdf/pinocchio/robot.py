@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import field, fields
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -174,6 +174,13 @@ class Robot:
             ValueError: q does not have the shape (nq,), or is not finite.
         """
         return joint_coordinates(self.mechanism, self.model, q)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What is pickled and copied: the model and its own geometry; what is derived from them is computed anew."""
+        state = {each.name: getattr(self, each.name) for each in fields(self)}
+        geometry = self.geometry and Geometry(*(each.copy() for each in self.geometry))
+        own = {"model": self.model.copy(), "geometry": geometry, "derived": {}}
+        return state | own | {"diagnose": None, "diagnostics": self.diagnostics}
 
     def __iter__(self) -> Iterator[Any]:
         return iter((self.model, self.constraint_models, self.actuation, self.visual_model, self.collision_model))

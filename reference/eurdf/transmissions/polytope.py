@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import combinations, product
 
 import numpy as np
@@ -53,13 +53,18 @@ class Polytope:
 def image_of_box(G: Matrix, lower: Vector, upper: Vector) -> Polytope:
     """{Gᵀ x : lower ≤ x ≤ upper}, for G (m, n) of rank n: a zonotope."""
     A, b = _supporting(G, lower, upper)
-    return Polytope(A, b, lambda: np.array(list(product(*zip(lower.tolist(), upper.tolist(), strict=True)))) @ G)
+    return Polytope(A, b, partial(_images_of_corners, G, lower, upper))
 
 
 def preimage_of_box(G: Matrix, bound: Vector) -> Polytope:
     """{x : |G x| ≤ bound}, for G (m, n) of rank n."""
     A, b = np.vstack((G, -G)), np.concatenate((bound, bound))
-    return Polytope(A, b, lambda: _corners(G, bound))
+    return Polytope(A, b, partial(_corners, G, bound))
+
+
+def _images_of_corners(G: Matrix, lower: Vector, upper: Vector) -> Matrix:
+    """Gᵀ x (2ᵐ, n) of the corners x of a box."""
+    return np.array(list(product(*zip(lower.tolist(), upper.tolist(), strict=True)))) @ G
 
 
 def _corners(G: Matrix, bound: Vector) -> Matrix:
