@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 from collections.abc import Sequence
 from dataclasses import replace
@@ -20,6 +21,7 @@ from eurdf.pinocchio.robot import Robot
 from eurdf.viewing.scene import Scene
 from eurdf.viewing.session import ASSEMBLED
 from eurdf.viewing.surface import Surface
+from eurdf.writing.atomic_file import write_atomically
 
 Points = npt.NDArray[np.float64]
 Image = npt.NDArray[np.uint8]
@@ -128,7 +130,9 @@ def save_picture(image: Image, file: str | os.PathLike[str]) -> None:
     from PIL import Image as Pillow
 
     palette = Pillow.fromarray(image).quantize(_COLORS, kmeans=1, dither=Pillow.Dither.NONE)
-    palette.save(file, format="PNG", optimize=True)
+    content = io.BytesIO()
+    palette.save(content, format="PNG", optimize=True)
+    write_atomically(file, content.getvalue())
 
 
 def drawn(robot: Robot, q: Vector | None, loops: bool) -> Drawn:
