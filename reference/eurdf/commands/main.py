@@ -7,6 +7,7 @@ exit code. Only the module of the command that runs is imported, and modules tha
 from __future__ import annotations
 
 import argparse
+import errno
 import importlib
 import io
 import os
@@ -36,6 +37,9 @@ COMMANDS = {
     "schema": "schema",
     "certify": "certify",
 }
+
+# Errors of a full disk.
+_FULL = (errno.ENOSPC, errno.EFBIG)
 
 # Half of the time of a check is start-up. The matrices are too small for a thread pool, and pydantic plugins are not
 # needed.
@@ -72,7 +76,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     except (CannotRun, CannotExpand, MissingExtra, OSError) as reason:  # OSError: also RobotNotFound
         from eurdf.diagnostics.visible import visible
 
-        sys.stderr.write(f"eurdf: {visible(str(reason))}\n")
+        said = str(reason)
+        if isinstance(reason, OSError) and reason.errno in _FULL and reason.filename is None:  # no file
+            said = f"cannot write the standard output: {reason.strerror}"
+        sys.stderr.write(f"eurdf: {visible(said)}\n")
         return 2
     except Exception:
         # Uncaught, it would exit with 1, which means that the robot has errors.

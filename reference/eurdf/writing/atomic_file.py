@@ -53,8 +53,8 @@ def write_together(files: Mapping[_Path, str | bytes], *, replace: bool = True, 
             with naming(path):
                 if not replace and os.path.lexists(path):
                     raise FileExistsError(errno.EEXIST, "it already exists")
+                status = replaceable(path, follow=follow)
                 place = Path(os.path.realpath(Path(path)) if follow else path)
-                status = replaceable(place)
                 if place.parent not in folders:
                     folders[place.parent] = stack.enter_context(scratch_folder(place.parent))
                 draft = _Draft(path, place, folders[place.parent] / str(index), status is not None)
@@ -170,14 +170,18 @@ def naming(path: str | os.PathLike[str]) -> Iterator[None]:
         raise OSError(error.errno, error.strerror, os.fspath(path)) from error
 
 
-def replaceable(place: Path) -> os.stat_result | None:
-    """The status of what is at a place; None if nothing is.
+def replaceable(path: str | os.PathLike[str], *, follow: bool = False) -> os.stat_result | None:
+    """The status of what has a path; None if nothing has it.
+
+    Args:
+        path: The path.
+        follow: Whether a symbolic link is followed.
 
     Raises:
         OSError: It is no file.
     """
     try:
-        status = os.lstat(place)
+        status = os.stat(path, follow_symlinks=follow)
     except FileNotFoundError:
         return None
     if stat.S_ISDIR(status.st_mode):

@@ -92,25 +92,29 @@ def _replaced(home: Path, targets: Mapping[Path, bytes]) -> bool:
                 (new / inner).parent.mkdir(parents=True, exist_ok=True)
                 write_to_disk(new / inner, content, replaceable(place / inner))
         try:
-            _link_others(place, new, own)
+            linked = _link_others(place, new, own)
             for path, _, _ in os.walk(new):
                 sync_folder(Path(path))
             _exchange(new, place)
         except _NotPossible:
             return False
+        _keep_late(new, place, own, linked)
         sync_folder(place.parent)
-        _keep_late(new, place, own)
     return True
 
 
-def _link_others(old: Path, new: Path, own: set[Path]) -> None:
+def _link_others(old: Path, new: Path, own: set[Path]) -> dict[Path, os.stat_result]:
     """Link every file of a folder that is not ``own`` from a new folder, with the folders that contain it.
+
+    Returns:
+        The status of each file that was linked, by its path in the folder.
 
     Raises:
         _NotPossible: They cannot be linked, or are too many.
     """
     count = 0
     folders = []
+    linked = {}
     try:
         for path, names, files in os.walk(old, onerror=_refuse):
             inner = Path(path).relative_to(old)
@@ -125,10 +129,12 @@ def _link_others(old: Path, new: Path, own: set[Path]) -> None:
             for name in (*files, *links):
                 if inner / name not in own:
                     os.link(old / inner / name, new / inner / name, follow_symlinks=False)
+                    linked[inner / name] = os.lstat(new / inner / name)
         for inner in reversed(folders):  # at last, since it may forbid to write there
             shutil.copystat(old / inner, new / inner)
     except OSError:
         raise _NotPossible from None
+    return linked
 
 
 def _refuse(error: OSError) -> None:
@@ -155,13 +161,16 @@ def _exchange(one: Path, other: Path) -> None:
         raise _NotPossible
 
 
-def _keep_late(old: Path, new: Path, own: set[Path]) -> None:
+def _keep_late(old: Path, new: Path, own: set[Path], linked: Mapping[Path, os.stat_result]) -> None:
     """Move what another program has written to the old folder since its files were linked."""
     for path, names, files in os.walk(old):
         inner = Path(path).relative_to(old)
-        for name in [*files, *(name for name in names if not os.path.lexists(new / inner / name))]:
-            late, there = old / inner / name, new / inner / name
-            if inner / name not in own:
-                with contextlib.suppress(OSError):
-                    if not (os.path.lexists(there) and os.path.samestat(os.lstat(late), os.lstat(there))):
-                        late.replace(there)
+        for name in map(inner.__truediv__, (*names, *files)):
+            with contextlib.suppress(OSError):
+                if name in linked:
+                    is_late = not os.path.samestat(os.lstat(old / name), linked[name])
+                    is_latest = os.path.samestat(os.lstat(new / name), linked[name])
+                else:
+                    is_late, is_latest = name not in own, not os.path.lexists(new / name)
+                if is_late and is_latest:
+                    (old / name).replace(new / name)
