@@ -10,6 +10,7 @@ from pathlib import Path
 from eurdf.dataclass import dataclass
 from eurdf.diagnostics import FileError, Place
 from eurdf.diagnostics.lines import Lines
+from eurdf.system import READ_NOW
 
 BOM = b"\xef\xbb\xbf"
 
@@ -162,7 +163,7 @@ def open_now(path: str | os.PathLike[str]) -> int:
         OSError: It cannot be opened.
         ValueError: The path has a NUL.
     """
-    return os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC | os.O_NOCTTY)
+    return os.open(path, READ_NOW)
 
 
 def begin_of_file(path: str | os.PathLike[str], size: int) -> bytes:
