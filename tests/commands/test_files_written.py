@@ -60,7 +60,7 @@ def kills(folder: Path, count: int, seed: int) -> int:
     for name in KEPT:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text("mine")
-    write_files(folder, {name: 2000 * b"0\n" for name in NAMES})
+    write_files(folder, dict.fromkeys(NAMES, 2000 * b"0\n"))
     for _ in range(count):
         command = [sys.executable, "-c", WRITES_FOREVER, str(folder), str(max(seen) + 1), *NAMES]
         with subprocess.Popen(command, stdout=subprocess.PIPE) as process:

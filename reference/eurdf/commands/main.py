@@ -19,6 +19,7 @@ from eurdf import __version__
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.exit_code import BROKEN_PIPE, INTERRUPTED
 from eurdf.exceptions import CannotExpand, MissingExtra
+from eurdf.system import BOUNDS_MEMORY
 
 #: The commands, in the order in which the help shows them, and the module of each in `eurdf.commands`.
 COMMANDS = {
@@ -37,6 +38,8 @@ COMMANDS = {
     "schema": "schema",
     "certify": "certify",
 }
+
+_UNBOUNDED = " (this system does not bound the memory that reading a mesh, a xacro or an MJCF file takes)"
 
 # Errors of a full disk.
 _FULL = (errno.ENOSPC, errno.EFBIG)
@@ -103,7 +106,8 @@ class _Parser(argparse.ArgumentParser):
 def _parser(command: str) -> argparse.ArgumentParser:
     """The parser of one command, or of all if there is no command of this name."""
     parser = _Parser(prog="eurdf", description="Robots with closed kinematic chains, from a URDF and one YAML file.")
-    parser.add_argument("--version", action="version", version=f"eurdf {__version__}", help="show the version and exit")
+    version = f"eurdf {__version__}{'' if BOUNDS_MEMORY else _UNBOUNDED}"
+    parser.add_argument("--version", action="version", version=version, help="show the version and exit")
     subparsers = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
     for name in [command] if command in COMMANDS else COMMANDS:
         importlib.import_module(f"eurdf.commands.{COMMANDS[name]}").register(subparsers)

@@ -80,7 +80,8 @@ def _replaced(home: Path, targets: Mapping[Path, bytes]) -> bool:
     """Let a folder with the files take the place of one that exists; False if it cannot, and nothing is changed."""
     place = Path(os.path.realpath(home))
     is_working_folder = Path(os.path.realpath(os.curdir)).is_relative_to(place)
-    if sys.platform == "win32" or is_working_folder or os.path.ismount(place) or not os.access(place.parent, os.W_OK):
+    is_windows = not hasattr(os, "geteuid")
+    if is_windows or is_working_folder or os.path.ismount(place) or not os.access(place.parent, os.W_OK):
         return False
     with scratch_folder(place.parent) as scratch:
         new = scratch / place.name
