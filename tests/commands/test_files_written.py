@@ -33,6 +33,7 @@ for count in itertools.count(int(number)):
 
 FULL_DISK = """
 import contextlib, io, os, resource, sys
+sys.dont_write_bytecode = True  # Python would write half of it
 from eurdf.commands.main import main
 resource.setrlimit(resource.RLIMIT_FSIZE, (2048, 2048))
 for line in sys.stdin:
