@@ -6,10 +6,7 @@ import os
 import stat
 from typing import BinaryIO
 
-#: Not every system has all of these.
-_READ_NOW = os.O_RDONLY
-for _name in ("O_NONBLOCK", "O_CLOEXEC", "O_NOCTTY", "O_BINARY"):
-    _READ_NOW |= getattr(os, _name, 0)
+from eurdf.system import READ_NOW
 
 
 def open_now(path: str | os.PathLike[str]) -> int:
@@ -19,7 +16,7 @@ def open_now(path: str | os.PathLike[str]) -> int:
         OSError: It cannot be opened.
         ValueError: The path has a NUL.
     """
-    return os.open(path, _READ_NOW)
+    return os.open(path, READ_NOW)
 
 
 def open_regular(path: str | os.PathLike[str]) -> BinaryIO:

@@ -103,6 +103,8 @@ def certify(argv: Sequence[str]) -> int:
         CannotRun: It cannot be done.
     """
     args = _parser().parse_args(argv)
+    if not hasattr(os, "fork"):
+        raise CannotRun("the suite runs parsers on Linux and macOS; this system cannot end all that a parser started")
     try:
         if args.compare is not None:
             _refuse("--compare", args, "parser", "known_failures", "certificate", "explore", "json")

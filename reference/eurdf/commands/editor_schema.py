@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eurdf.commands.cannot_run import CannotRun
-from eurdf.commands.output_file import write_new
+from eurdf.commands.output_file import write_all_new
 from eurdf.dataclass import dataclass
 
 if TYPE_CHECKING:
@@ -89,10 +89,15 @@ def schema_beside(
     return EditorSchema(path, text, is_new)
 
 
-def write_schema(schema: EditorSchema) -> None:
-    """Write the schema if it does not exist yet."""
-    if schema.is_new:
-        write_new(schema.path, schema.text, force=True)
+def write_described(output: str, text: str, schema: EditorSchema | None, force: bool) -> None:
+    """Write a description and its schema, unless the schema exists already: both, or none.
+
+    Raises:
+        CannotRun: A file exists and ``force`` is False, or one cannot be written.
+    """
+    # The schema first: a schema without a description does no harm.
+    beside = {os.fspath(schema.path): schema.text} if schema is not None and schema.is_new else {}
+    write_all_new({**beside, output: text}, force)
 
 
 def _is_there(path: Path, text: str) -> bool:

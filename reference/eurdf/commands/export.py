@@ -12,6 +12,7 @@ from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.loss_lines import loss_lines
 from eurdf.commands.migrate import print_notes, show_refusal
 from eurdf.commands.output import write_json, write_lines
+from eurdf.commands.output_file import writing
 from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
 from eurdf.commands.selection import select_one
 
@@ -111,10 +112,8 @@ def run(args: argparse.Namespace) -> int:
         raise CannotRun(str(reason)) from None
     else:
         losses = exported.losses
-        try:
+        with writing():
             paths = [os.fspath(each) for each in exported.write(folder, force=args.force)]
-        except FileExistsError as error:
-            raise CannotRun(str(error).replace("; force replaces it", "; --force replaces it")) from None
     if as_json:
         from eurdf.commands.export_info import export_info
 

@@ -8,10 +8,10 @@ from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING, Any
 
 from eurdf.commands.cannot_run import CannotRun
-from eurdf.commands.editor_schema import NOT_BESIDE, EditorSchema, add_schema_option, schema_beside, write_schema
+from eurdf.commands.editor_schema import NOT_BESIDE, EditorSchema, add_schema_option, schema_beside, write_described
 from eurdf.commands.migrate import not_in_a_file, print_notes, report_schema, show_refusal, urdf_named, write_yaml
 from eurdf.commands.output import write_json
-from eurdf.commands.output_file import add_output_option, refuse_to_replace, write_new
+from eurdf.commands.output_file import add_output_option, refuse_to_replace
 from eurdf.commands.robot_options import add_urdf_options, add_urdf_path, ending, require_urdf, urdf_options
 from eurdf.reading.given import shown
 
@@ -114,9 +114,7 @@ def run(args: argparse.Namespace) -> int:
         print_notes(["nothing was written: the names contradict each other"])
         return 1
     if args.output is not None:
-        write_new(args.output, generation.text, args.force)
-        if schema is not None:
-            write_schema(schema)
+        write_described(args.output, generation.text, schema, args.force)
     warnings = [found.message for found in diagnostics if found.code == "x-xacro-warning"]
     warnings += generation.found.warnings
     if not source.is_file:

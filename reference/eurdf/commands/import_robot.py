@@ -8,10 +8,10 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.loss_lines import loss_lines
 from eurdf.commands.migrate import print_notes
 from eurdf.commands.output import write_json, write_lines
+from eurdf.commands.output_file import writing
 from eurdf.commands.robot_options import ending
 
 if TYPE_CHECKING:
@@ -89,10 +89,8 @@ def run(args: argparse.Namespace) -> int:
             print_notes([f"nothing was written: {reason}"])
         return 1
     places = _Places(found.sources)
-    try:
+    with writing():
         paths = [os.fspath(each) for each in found.write(args.output, force=args.force)]
-    except FileExistsError as error:
-        raise CannotRun(str(error).replace("; force replaces it", "; --force replaces it")) from None
     if args.format == "json":
         from eurdf.commands.import_info import import_info
 

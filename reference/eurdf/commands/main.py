@@ -7,6 +7,7 @@ exit code. Only the module of the command that runs is imported, and modules tha
 from __future__ import annotations
 
 import argparse
+import errno
 import importlib
 import io
 import os
@@ -18,6 +19,7 @@ from eurdf import __version__
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.exit_code import BROKEN_PIPE, INTERRUPTED
 from eurdf.exceptions import CannotExpand, MissingExtra
+from eurdf.system import BOUNDS_MEMORY
 
 #: The commands, in the order in which the help shows them, and the module of each in `eurdf.commands`.
 COMMANDS = {
@@ -36,6 +38,11 @@ COMMANDS = {
     "schema": "schema",
     "certify": "certify",
 }
+
+_UNBOUNDED = " (this system does not bound the memory that reading a mesh, a xacro or an MJCF file takes)"
+
+# Errors of a full disk.
+_FULL = (errno.ENOSPC, errno.EFBIG)
 
 # Half of the time of a check is start-up. The matrices are too small for a thread pool, and pydantic plugins are not
 # needed.
@@ -72,7 +79,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     except (CannotRun, CannotExpand, MissingExtra, OSError) as reason:  # OSError: also RobotNotFound
         from eurdf.diagnostics.visible import visible
 
-        sys.stderr.write(f"eurdf: {visible(str(reason))}\n")
+        said = str(reason)
+        if isinstance(reason, OSError) and reason.errno in _FULL and reason.filename is None:  # no file
+            said = f"cannot write the standard output: {reason.strerror}"
+        sys.stderr.write(f"eurdf: {visible(said)}\n")
         return 2
     except Exception:
         # Uncaught, it would exit with 1, which means that the robot has errors.
@@ -96,7 +106,8 @@ class _Parser(argparse.ArgumentParser):
 def _parser(command: str) -> argparse.ArgumentParser:
     """The parser of one command, or of all if there is no command of this name."""
     parser = _Parser(prog="eurdf", description="Robots with closed kinematic chains, from a URDF and one YAML file.")
-    parser.add_argument("--version", action="version", version=f"eurdf {__version__}", help="show the version and exit")
+    version = f"eurdf {__version__}{'' if BOUNDS_MEMORY else _UNBOUNDED}"
+    parser.add_argument("--version", action="version", version=version, help="show the version and exit")
     subparsers = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
     for name in [command] if command in COMMANDS else COMMANDS:
         importlib.import_module(f"eurdf.commands.{COMMANDS[name]}").register(subparsers)

@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from eurdf.commands.cannot_run import CannotRun
-from eurdf.commands.editor_schema import NOT_BESIDE, EditorSchema, add_schema_option, schema_beside, write_schema
+from eurdf.commands.editor_schema import NOT_BESIDE, EditorSchema, add_schema_option, schema_beside, write_described
 from eurdf.commands.output import write_json, write_text
-from eurdf.commands.output_file import add_output_option, refuse_to_replace, write_new
+from eurdf.commands.output_file import add_output_option, refuse_to_replace
 from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
 from eurdf.commands.selection import select_one
 
@@ -94,9 +94,7 @@ def run(args: argparse.Namespace) -> int:
         if not urdf.is_file:
             notes = (*notes, not_in_a_file(urdf, urdf_path))
         if output is not None:
-            write_new(output, text, args.force)
-            if schema is not None:
-                write_schema(schema)
+            write_described(output, text, schema, args.force)
         elif reference is None and args.schema != "none":
             notes = (*notes, NOT_BESIDE)
     if args.json:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.migrate import print_notes
-from eurdf.commands.output_file import refuse_to_replace
+from eurdf.commands.output_file import refuse_to_replace, writing
 from eurdf.commands.robot_options import add_robot_options, add_robot_path, ending, robot_options
 from eurdf.commands.selection import select_one
 
@@ -69,7 +69,8 @@ def run(args: argparse.Namespace) -> int:
     try:
         robot = eurdf.load(path, **options)
         if args.graph:
-            save_graph(robot.mechanism, args.output)
+            with writing():
+                save_graph(robot.mechanism, args.output)
             print_notes([f"wrote '{args.output}'"])
             return 0
         image = picture(robot, q=_configuration(robot, args.configuration), loops=args.loops)
@@ -81,7 +82,8 @@ def run(args: argparse.Namespace) -> int:
         return 1
     except ValueError as reason:
         raise CannotRun(f"'{path}': {reason}") from None
-    save_picture(image, args.output)
+    with writing():
+        save_picture(image, args.output)
     print_notes([f"wrote '{args.output}'"])
     return 0
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.migrate import print_notes, show_refusal
 from eurdf.commands.output import cell, new_table, write_rendered
+from eurdf.commands.output_file import writing
 from eurdf.commands.robot_options import add_robot_options, add_robot_path, add_serial_joints, ending, robot_options
 from eurdf.commands.selection import select_one
 
@@ -88,9 +89,8 @@ def run(args: argparse.Namespace) -> int:
             grid=args.grid,
             degree=args.degree,
         )
-        written = twin.write(args.output, force=args.force)
-    except FileExistsError as error:
-        raise CannotRun(str(error).replace("; force replaces it", "; --force replaces it")) from None
+        with writing():
+            written = twin.write(args.output, force=args.force)
     except (EurdfError, ValueError) as reason:
         raise CannotRun(str(reason)) from None
     _show(twin)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from eurdf.commands.cannot_run import CannotRun
 from eurdf.commands.migrate import print_notes, show_refusal
 from eurdf.commands.output import cell, new_table, write_json, write_rendered
-from eurdf.commands.output_file import refuse_to_replace, write_new
+from eurdf.commands.output_file import refuse_to_replace, write_new, writing
 from eurdf.commands.robot_options import add_robot_options, add_robot_path, add_serial_joints, ending, robot_options
 from eurdf.commands.selection import select_one
 
@@ -88,6 +88,9 @@ def run(args: argparse.Namespace) -> int:
     path = select_one(args.path)
     if args.force and not (args.csv or args.plot or args.c):
         raise CannotRun("--force has no effect without --csv, --plot or --c; add one of them")
+    for file in (args.csv, args.plot):
+        if file:
+            refuse_to_replace(file, args.force)
     from eurdf.checking.load import load
     from eurdf.transmissions.exceptions import NoTransmission
 
@@ -104,8 +107,6 @@ def run(args: argparse.Namespace) -> int:
         return 1
     except MissingExtra:
         raise
-    except FileExistsError as error:
-        raise CannotRun(str(error).replace("; force replaces it", "; --force replaces it")) from None
     except (EurdfError, ValueError) as reason:
         raise CannotRun(str(reason)) from None
     if args.csv:
@@ -146,10 +147,10 @@ def _drawn(robot: Robot, args: argparse.Namespace) -> list[str]:
     from eurdf.transmissions.plot import plot_workspace
     from eurdf.transmissions.workspace import workspace
 
-    refuse_to_replace(args.plot, args.force)
     q = None if args.grid is not None else _pose(robot, args.at)
     found = workspace(robot, args.joints, q, args.motors, grid=_FIGURE if args.grid is None else args.grid)
-    return [os.fspath(plot_workspace(found, args.plot))]
+    with writing():
+        return [os.fspath(plot_workspace(found, args.plot))]
 
 
 def _generated(robot: Robot, args: argparse.Namespace) -> list[str]:
@@ -160,7 +161,8 @@ def _generated(robot: Robot, args: argparse.Namespace) -> list[str]:
 
     q = None if args.grid is not None else _pose(robot, args.at)
     source = prepare_transmission(robot, args.joints, q, args.motors).c_source()
-    return [os.fspath(each) for each in source.write(args.c, force=args.force)]
+    with writing():
+        return [os.fspath(each) for each in source.write(args.c, force=args.force)]
 
 
 def _pose(robot: Robot, given: str | None) -> Vector:

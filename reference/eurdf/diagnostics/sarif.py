@@ -94,5 +94,5 @@ def _uri(file: str, folder: str) -> str:
     path = Path(os.path.abspath(os.path.join(folder, file)))
     base = os.path.abspath(folder)
     if path.is_relative_to(base):
-        return quote(os.fsencode(path.relative_to(base)))
+        return quote(os.fsencode(path.relative_to(base).as_posix()))
     return path.as_uri()

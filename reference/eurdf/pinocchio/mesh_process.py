@@ -1,24 +1,22 @@
 """The process that reads mesh files: the request is JSON on standard input, the meshes are on standard output.
 
-It imports nothing of this package. The mesh loader of coal, assimp, is C++ that a damaged file makes crash, or take
-minutes and gigabytes; here this ends a process, not that of a caller.
+Of this package, it imports only `eurdf.system`. The mesh loader of coal, assimp, is C++ that a damaged file makes
+crash, or take minutes and gigabytes; here this ends a process, not that of a caller.
 
 For each file, in order: a line of JSON, then, for a mesh, its vertices as doubles and its triangles as 64-bit integers.
 """
 
 from __future__ import annotations
 
-import contextlib
 import json
-import math
 import os
-import resource
-import signal
 import sys
 from typing import Any
 
 import coal
 import numpy as np
+
+from eurdf.system import bound_memory, bound_time, leave_no_core
 
 _FULL_SIZE = np.ones(3)
 
@@ -29,12 +27,10 @@ def main() -> None:
     # The mesh loader may print: its lines are no part of the answer.
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-    _limit(resource.RLIMIT_CORE, 0)
+    leave_no_core()
     for file in request["files"]:
-        _limit(resource.RLIMIT_AS, _address_space() + file["memory"])
-        used = resource.getrusage(resource.RUSAGE_SELF)
-        _limit(resource.RLIMIT_CPU, math.ceil(used.ru_utime + used.ru_stime + file["seconds"]))
-        signal.alarm(request["patience"])
+        bound_time(request["patience"], file["seconds"])
+        bound_memory(file["memory"])
         head, arrays = _read(file["path"])
         answers.write(json.dumps(head).encode() + b"\n")
         for array in arrays:
@@ -63,18 +59,6 @@ def _reason(error: Exception) -> str:
     """The message of coal's mesh loader, without places in its source code and its hint."""
     lines = str(error).rpartition("message:")[2].strip().splitlines()
     return lines[1].strip().rstrip(".") if len(lines) > 1 else "it is not a mesh"
-
-
-def _address_space() -> int:
-    """The address space that this process has, in bytes."""
-    with contextlib.suppress(OSError), open("/proc/self/statm", encoding="ascii") as stream:
-        return int(stream.read().split()[0]) * resource.getpagesize()
-    return 0
-
-
-def _limit(what: int, soft: int) -> None:
-    with contextlib.suppress(OSError, ValueError):  # where the system knows no such bound, or has a lower one
-        resource.setrlimit(what, (soft, resource.getrlimit(what)[1]))
 
 
 if __name__ == "__main__":

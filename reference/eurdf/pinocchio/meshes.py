@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack
@@ -19,6 +18,7 @@ from eurdf.dataclass import dataclass
 from eurdf.mesh_files.folders import Folders, folders_of_files
 from eurdf.mesh_files.reader import MeshReader, RefusedFile
 from eurdf.program import command_of
+from eurdf.system import exceeded
 
 #: Triangles that the meshes of a robot may have together, where those of each scale of a mesh count.
 TRIANGLES_LIMIT = 10_000_000
@@ -155,20 +155,20 @@ def _read(files: list[_File]) -> dict[str, Mesh | str]:
     deaths = 0
     while len(read) < len(files) and deaths < DEATHS_LIMIT:
         rest = files[len(read) :]
-        answers, code = _run(rest)
+        answers, bound = _run(rest)
         for file, answer in zip(rest, answers, strict=False):
             read[file.path] = answer
         if len(read) < len(files):
             deaths += 1
             dead = files[len(read)]
-            read[dead.path] = _death(code, dead)
+            read[dead.path] = _death(bound, dead)
     for file in files[len(read) :]:
         read[file.path] = f"it was not read, as {deaths} other mesh files crashed the mesh loader"
     return read
 
 
-def _run(files: list[_File]) -> tuple[Iterator[Mesh | str], int]:
-    """What a process reads of files, as far as it comes, and its exit code."""
+def _run(files: list[_File]) -> tuple[Iterator[Mesh | str], str | None]:
+    """What a process reads of files, as far as it comes, and the bound that ended it."""
     import subprocess  # only now: often no mesh is read
 
     request = {
@@ -182,7 +182,7 @@ def _run(files: list[_File]) -> tuple[Iterator[Mesh | str], int]:
         check=False,
         env={**os.environ, "OPENBLAS_NUM_THREADS": "1"},  # each thread takes time to start, and address space
     )
-    return _answers(done.stdout, files), done.returncode
+    return _answers(done.stdout, files), exceeded(done.returncode, done.stderr)
 
 
 def _answers(data: bytes, files: list[_File]) -> Iterator[Mesh | str]:
@@ -219,9 +219,9 @@ def _memory(file: _File) -> str:
     return f"reading it takes more than {file.memory >> 20:,} MiB of memory, and it has {file.size:,} bytes"
 
 
-def _death(code: int, file: _File) -> str:
-    if code == -signal.SIGALRM:
+def _death(bound: str | None, file: _File) -> str:
+    if bound == "time":
         return f"reading it does not end within {PATIENCE} s"
-    if code == -signal.SIGXCPU:
+    if bound == "processor time":
         return f"reading it takes longer than {file.seconds:.0f} s, and it has {file.size:,} bytes"
     return "the mesh loader crashed on it"

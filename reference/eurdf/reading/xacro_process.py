@@ -1,7 +1,7 @@
 """The process that expands one xacro file: the request is JSON on standard input, the answer on standard output.
 
-It imports nothing of this package. The module ``xacro`` keeps its state in globals, prints, and evaluates expressions
-of the file, none of which belongs in the process of a caller.
+Of this package, it imports only `eurdf.system`. The module ``xacro`` keeps its state in globals, prints, and evaluates
+expressions of the file, none of which belongs in the process of a caller.
 """
 
 from __future__ import annotations
@@ -10,11 +10,12 @@ import contextlib
 import io
 import json
 import os
-import resource
 import sys
 from collections.abc import Sequence
 from types import ModuleType
 from typing import Any
+
+from eurdf.system import bound_memory
 
 #: Memory that an expansion may take, bytes.
 MEMORY_LIMIT = 4 << 30
@@ -43,8 +44,7 @@ class Arguments(dict[str, str]):
 def main() -> None:
     """Answer the request."""
     request = json.load(sys.stdin.buffer)
-    with contextlib.suppress(OSError, ValueError):  # where the system knows no such bound
-        resource.setrlimit(resource.RLIMIT_AS, (MEMORY_LIMIT, MEMORY_LIMIT))
+    bound_memory(MEMORY_LIMIT)
     _find_packages_in(request["homes"])
     arguments = Arguments(request["arguments"])
     log = io.StringIO()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 from collections.abc import Mapping
 from pathlib import Path
@@ -18,6 +19,7 @@ from eurdf.transmissions.limits import CommonLimits, serial_limits, unlimited_mo
 from eurdf.transmissions.reach import Stop
 from eurdf.transmissions.transmission import at_many
 from eurdf.transmissions.workspace import Workspace
+from eurdf.writing.atomic_file import write_atomically
 
 #: Kinds of file that a figure can be.
 FORMATS = ("png", "svg", "pdf")
@@ -93,7 +95,9 @@ def plot_workspace(
         undated: dict[str, Any] = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(
             path.suffix[1:].lower(), {}
         )
-        figure.savefig(path, metadata=undated)
+        content = io.BytesIO()
+        figure.savefig(content, format=path.suffix[1:].lower(), metadata=undated)
+    write_atomically(path, content.getvalue())
     return path
 
 

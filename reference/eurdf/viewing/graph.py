@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 from itertools import pairwise
-from pathlib import Path
 
 from eurdf.diagnostics.visible import visible
 from eurdf.mechanism.constraint import Constraint
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.viewing.text import escaped
+from eurdf.writing.atomic_file import write_atomically
 
 # Pixels: height of a line, indentation of a child, width of a letter, distance between arcs.
 _LINE, _INDENT, _LETTER, _ARC = 18, 12, 7, 12
@@ -89,7 +89,7 @@ def save_graph(mechanism: Mechanism, file: str | os.PathLike[str]) -> None:
     drawn = graph_svg(mechanism, named=True)
     head, _, rest = drawn.partition(">")
     page = f'{head} color="black"><rect width="100%" height="100%" fill="white"/>{rest}\n'
-    Path(file).write_bytes(page.encode())
+    write_atomically(file, page)
 
 
 def _length(text: str) -> int:

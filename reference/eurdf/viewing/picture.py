@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 from collections.abc import Sequence
 from dataclasses import replace
@@ -21,6 +22,7 @@ from eurdf.viewing.palette import with_palette
 from eurdf.viewing.scene import Scene
 from eurdf.viewing.session import ASSEMBLED
 from eurdf.viewing.surface import Surface
+from eurdf.writing.atomic_file import write_atomically
 
 Points = npt.NDArray[np.float64]
 Image = npt.NDArray[np.uint8]
@@ -135,7 +137,9 @@ def save_picture(image: Image, file: str | os.PathLike[str]) -> None:
     colors, indices = with_palette(image)
     indexed = Pillow.fromarray(indices)
     indexed.putpalette(colors.tobytes(), "RGBA")
-    indexed.save(file, format="PNG", optimize=True)
+    content = io.BytesIO()
+    indexed.save(content, format="PNG", optimize=True)
+    write_atomically(file, content.getvalue())
 
 
 def drawn(robot: Robot, q: Vector | None, loops: bool) -> Drawn:

@@ -20,6 +20,7 @@ from eurdf.viewing.server import start_server, stop_server, url_of
 from eurdf.viewing.shown import ShownRobot
 from eurdf.viewing.trajectory import read_trajectory
 from eurdf.viewing.worker import Worker
+from eurdf.writing.atomic_file import write_atomically
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
@@ -119,7 +120,7 @@ class Viewer:
             OSError: It cannot be written.
         """
         path = Path(file)
-        path.write_text(self._worker.call(self._server.scene.as_html), encoding="utf-8")
+        write_atomically(path, self._worker.call(self._server.scene.as_html))
         return path
 
     def close(self) -> None:

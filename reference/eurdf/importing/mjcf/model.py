@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import signal
 import subprocess
 import tempfile
 from collections.abc import Mapping, Sequence
@@ -18,6 +17,7 @@ from eurdf.importing.exceptions import CannotImport
 from eurdf.mesh_files.folders import Folders
 from eurdf.mesh_files.reader import BYTES_LIMIT
 from eurdf.program import command_of
+from eurdf.system import exceeded
 
 #: Processor time (s) and memory (bytes) that compiling a file may take.
 SECONDS, MEMORY = 60, 6 << 30
@@ -101,7 +101,6 @@ def compile_mjcf(path: Path, folders: Folders) -> MjcfModel:
         "memory": MEMORY,
     }
     with tempfile.TemporaryDirectory() as scratch:
-        # -P: a module of the working directory named mujoco is not the one that is meant.
         done = subprocess.run(
             command_of(_PROGRAM),
             input=json.dumps(request).encode(),
@@ -109,7 +108,7 @@ def compile_mjcf(path: Path, folders: Folders) -> MjcfModel:
             check=False,
             cwd=scratch,
         )
-    if done.returncode in (-signal.SIGXCPU, -signal.SIGALRM):
+    if exceeded(done.returncode, done.stderr):
         raise CannotImport(path, f"MuJoCo does not compile it within {SECONDS} s")
     if done.returncode or not done.stdout:
         raise CannotImport(path, "MuJoCo crashes on it; check the file with MuJoCo's own tools")

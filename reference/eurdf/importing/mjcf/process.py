@@ -1,22 +1,22 @@
 """The process that compiles an MJCF file: the request is JSON on standard input, the model is JSON on standard output.
 
-It imports nothing of this package. MuJoCo's compiler is C++ that a hostile file can make crash, or take minutes and
-gigabytes; here this ends a process, not that of a caller. It runs in a folder of its own, as MuJoCo writes a log there.
+Of this package, it imports only `eurdf.system`. MuJoCo's compiler is C++ that a hostile file can make crash, or take
+minutes and gigabytes; here this ends a process, not that of a caller. It runs in a folder of its own, as MuJoCo writes
+a log there.
 """
 
 from __future__ import annotations
 
-import contextlib
 import json
 import math
 import os
-import resource
-import signal
 import sys
 from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
+
+from eurdf.system import bound_memory, bound_time, leave_no_core
 
 #: Arrays of the model that the importer needs, by the kind of element. Those of later releases may be missing.
 _ARRAYS = {
@@ -97,10 +97,9 @@ def main() -> None:
     # MuJoCo may print: its lines are no part of the answer.
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
-    _limit(resource.RLIMIT_CORE, 0)
-    _limit(resource.RLIMIT_AS, _address_space() + request["memory"])
-    _limit(resource.RLIMIT_CPU, request["seconds"])
-    signal.alarm(2 * request["seconds"])
+    leave_no_core()
+    bound_time(2 * request["seconds"], request["seconds"])
+    bound_memory(request["memory"])
     try:
         answer = _compiled(request["path"], _Bounds(tuple(request["folders"]), request["bytes"]))
     except Refused as reason:
@@ -279,18 +278,6 @@ def _mesh(model: Any, mesh: Any) -> dict[str, Any]:
 def _names(model: Any, kind: str) -> list[str]:
     number = len(model.actuator_trntype) if kind == "actuator" else getattr(model, _NUMBERS[kind])
     return [mujoco.mj_id2name(model, _NAMED[kind], index) or "" for index in range(number)]
-
-
-def _address_space() -> int:
-    """The address space that this process has, in bytes."""
-    with contextlib.suppress(OSError), open("/proc/self/statm", encoding="ascii") as stream:
-        return int(stream.read().split()[0]) * resource.getpagesize()
-    return 0
-
-
-def _limit(what: int, soft: int) -> None:
-    with contextlib.suppress(OSError, ValueError):  # where the system knows no such bound, or has a lower one
-        resource.setrlimit(what, (soft, resource.getrlimit(what)[1]))
 
 
 if __name__ == "__main__":
