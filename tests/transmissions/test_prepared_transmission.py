@@ -113,7 +113,7 @@ def test_an_error_keeps_the_pose(tmp_path: Path) -> None:
     prepared = eurdf.prepare_transmission(robot, ["free_slider"])
     compiled = Compiled(prepared, tmp_path)
     q, pose = prepared.q, compiled.pose.copy()
-    with pytest.raises(eurdf.NotClosable, match="cannot be closed at the given coordinates"):
+    with pytest.raises(eurdf.NotClosable, match="cannot be closed at the given positions"):
         prepared.at_joints([5.0])
     with pytest.raises(ValueError, match="not finite"):
         prepared.at_joints([np.nan])
