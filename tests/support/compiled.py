@@ -19,15 +19,15 @@ OK, NOT_CLOSED, TOO_FAR, SINGULAR, NOT_FINITE = range(5)
 
 
 class Compiled:
-    """The C of a prepared transmission, at the pose that it was generated at."""
+    """The C of a prepared transmission, at the pose that it was generated at; options are those of `c_source`."""
 
-    def __init__(self, prepared: PreparedTransmission, folder: Path) -> None:
+    def __init__(self, prepared: PreparedTransmission, folder: Path, **options: int) -> None:
         compiler = shutil.which("cc")
         if compiler is None:
             pytest.skip("no C compiler: install one as `cc`")
-        prepared.c_source("t").write(folder, force=True)
+        prepared.c_source("t", **options).write(folder, force=True)
         strict = ["-std=c99", "-O2", "-Wall", "-Wextra", "-pedantic", "-Werror"]
-        library = folder / "t.so"
+        library = folder / f"{len(list(folder.glob('*.so')))}.so"  # a library that is loaded is not replaced
         subprocess.run(
             [compiler, *strict, "-shared", "-fPIC", "-o", str(library), str(folder / "t.c"), "-lm"], check=True
         )

@@ -284,7 +284,7 @@ int {name}_at_motors({name}_pose *pose, const double motors[{nm}], double joints
  * C99, which needs libm alone.
  *
 {listed} *
- * Set a pose once, with a function whose name has `start`. Then call one that has `at` at each cycle: it starts from
+ * Call a function `start` once to set a pose, then a function `at_joints` or `at_motors` at each cycle: it starts from
  * the last pose and stays on its branch of closed loops. Unless a function returns
  * {big}_OK, it changes neither the pose nor its results. Threads may use
  * poses of their own. Position limits are not checked.
@@ -304,7 +304,7 @@ extern "C" {{
 enum {{
     {big}_OK = 0,
     {big}_NOT_CLOSED = 1,  /* only of a start: no closed pose was found at these positions */
-    {big}_TOO_FAR = 2,     /* not reached on a straight path on this branch: give positions in between */
+    {big}_TOO_FAR = 2,     /* a straight path does not lead there: give positions in between */
     {big}_SINGULAR = 3,    /* the given positions do not determine the others */
     {big}_NOT_FINITE = 4   /* a position is not a finite number */
 }};
