@@ -215,7 +215,7 @@ def test_an_error_keeps_the_pose(tmp_path: Path) -> None:
     prepared = eurdf.prepare_transmission(robot, ["free_slider"])
     compiled = Compiled(prepared, tmp_path)
     q, pose = prepared.q, compiled.pose.copy()
-    with pytest.raises(eurdf.NotClosable, match="cannot be closed at the given positions"):
+    with pytest.raises(eurdf.NotClosable, match="cannot be closed at free_slider 5: closures stay open"):
         prepared.at_joints([5.0])
     with pytest.raises(ValueError, match="not finite"):
         prepared.at_joints([np.nan])

@@ -353,7 +353,7 @@ def _source(tables: _Tables, name: str, drives: Sequence[Drive], steps: int, sub
     ]
     place = {index: number for number, index in enumerate(tables.constraints)}
     calls = [_calls(name, drive, number) for number, drive in enumerate(drives)]
-    most_rows = max(_rows_of(rows, drive) + len(drive.own) for drive in drives)  # those of damped steps
+    most_rows = max(_rows_of(rows, drive) for drive in drives)
     limits = {
         "JOINTS": len(joints) + 1,
         "COORDINATES": len(tables.start),

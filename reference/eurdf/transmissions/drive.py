@@ -206,10 +206,12 @@ class Drive:
         there = np.array(q)
         self.given.write(positions, there)
         anywhere = assemble(self._robot, there, (*self.given.of.joints, *self._held))
+        values = zip(self.given.of.names, positions.tolist(), strict=True)
+        shown = ", ".join(f"{name} {value + 0.0:.6g}" for name, value in values)
         if not anywhere.closes:
-            return NotClosable("the loops cannot be closed at the given positions", anywhere.open, anywhere.q)
+            return NotClosable(f"the loops cannot be closed at {shown}", anywhere.open, anywhere.q)
         reason = (
-            "the loops can be closed at the given positions, but a straight path does not lead there on this branch; "
+            f"the loops can be closed at {shown}, but a straight path does not lead there on this branch; "
             "give positions in between"
         )
         return TooFar(reason, all_openings(self._robot, there), there)

@@ -256,7 +256,8 @@ static void move(const drive *by, double y[VELOCITIES][SIDES], double x[]) {
 /* What is closed near a closed pose, on its branch, with the given joints at other positions. */
 static int close_near(const drive *by, const double from[], const double given[], double x[],
                       double y[VELOCITIES][SIDES]) {
-    double A[ROWS][VELOCITIES], b[ROWS][SIDES], correction[VELOCITIES] = {0}, square = 0.0, corrected = 0.0, open = 0.0, last = 0.0;
+    double A[ROWS][VELOCITIES], b[ROWS][SIDES], correction[VELOCITIES] = {0};
+    double square = 0.0, corrected = 0.0, open = 0.0, last = 0.0;
     for (int k = 0; k < COORDINATES; ++k) x[k] = from[k];
     for (int k = 0; k < by->given; ++k) {
         const int coordinate = coordinates[by->given_velocity[k]];
@@ -334,14 +335,14 @@ static double sum_of_squares(const drive *by, double b[ROWS][SIDES]) {
 
 /* Whether Levenberg-Marquardt steps from x close the loops: the descent of eurdf.assemble, with the given joints held. */
 static int descend(const drive *by, double x[]) {
-    double A[ROWS][VELOCITIES], b[ROWS][SIDES], M[ROWS][VELOCITIES], s[ROWS][SIDES], y[VELOCITIES][SIDES];
-    double trial[COORDINATES], damping = 1e-3, more = 8.0;
-    drive damped = *by; /* the rows below those of the constraints are sqrt(lambda) times the identity */
+    double A[ROWS][VELOCITIES], b[ROWS][SIDES], y[VELOCITIES][SIDES], trial[COORDINATES], damping = 1e-3, more = 8.0;
+    double M[ROWS + VELOCITIES][VELOCITIES], s[ROWS + VELOCITIES][SIDES]; /* A; sqrt(lambda) times the identity */
+    drive damped = *by;
     damped.given = 0, damped.rank = by->own, damped.rows = by->rows + by->own;
     for (int step = 0, idle = 0; step < DESCENT_STEPS && idle <= IDLE_STEPS; ++step) {
         if (constraints_at(by, x, A, b) <= STILL_CLOSED) return 1;
         const double square = sum_of_squares(by, b);
-        double trace = 0.0, largest = 1.0, expected = square, gain;
+        double trace = 0.0, largest = 1.0, expected = square;
         for (int i = 0; i < damped.rows; ++i) {
             s[i][0] = i < by->rows ? b[i][0] : 0.0;
             for (int k = 0; k < by->own; ++k) M[i][k] = i < by->rows ? A[i][k] : 0.0, trace += M[i][k] * M[i][k];
@@ -361,7 +362,7 @@ static int descend(const drive *by, double x[]) {
         move(by, y, trial);
         constraints_at(by, trial, M, s);
         const double reached = sum_of_squares(by, s);
-        gain = (square - reached) / expected;
+        const double gain = (square - reached) / expected;
         idle = reached < 0.98 * square ? 0 : idle + 1;
         if (!(gain > 0.01)) {
             damping *= more, more *= 2.0;

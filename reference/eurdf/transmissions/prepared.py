@@ -205,8 +205,8 @@ def prepare_transmission(
 
     Newton's method starts from the pose of the call before: with r(q) = 0 the constraints, x the other joints of the
     loops and g the given ones, K_x Δx = -r with g held, and dx/dg = -K_x⁺ K_g at the solution. Where the motion since
-    then is long, or the correction is not small against the tangent, `eurdf.forward_kinematics` follows the path.
-    Springs are held as in `eurdf.transmission`.
+    then is long, where it does not converge in few steps, or where these are not small against the first one, the
+    motion is divided into substeps on a straight path. Springs are held as in `eurdf.transmission`.
 
     Args:
         robot: The robot.
