@@ -333,7 +333,7 @@ static double sum_of_squares(const drive *by, double b[ROWS][SIDES]) {
     return sum;
 }
 
-/* Whether Levenberg-Marquardt steps from x close the loops: the descent of eurdf.assemble, with the given joints held. */
+/* Whether Levenberg-Marquardt steps from x close the loops, with the given joints held: a descent of eurdf.assemble. */
 static int descend(const drive *by, double x[]) {
     double A[ROWS][VELOCITIES], b[ROWS][SIDES], y[VELOCITIES][SIDES], trial[COORDINATES], damping = 1e-3, more = 8.0;
     double M[ROWS + VELOCITIES][VELOCITIES], s[ROWS + VELOCITIES][SIDES]; /* A; sqrt(lambda) times the identity */
