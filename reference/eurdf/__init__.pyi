@@ -41,6 +41,7 @@ from eurdf.kinematics.exceptions import NotClosable as NotClosable
 from eurdf.kinematics.exceptions import NumericalOverflow as NumericalOverflow
 from eurdf.kinematics.exceptions import SimulationDiverged as SimulationDiverged
 from eurdf.kinematics.exceptions import StepTooLongWarning as StepTooLongWarning
+from eurdf.kinematics.exceptions import TooFar as TooFar
 from eurdf.kinematics.exceptions import UnderactuatedMotion as UnderactuatedMotion
 from eurdf.kinematics.exceptions import UndeterminedMotion as UndeterminedMotion
 from eurdf.kinematics.forward_kinematics import forward_kinematics as forward_kinematics

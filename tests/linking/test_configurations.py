@@ -133,6 +133,12 @@ def test_coordinate_respects_limits_of_the_description(joints: str, says: str, e
     assert codes(STAR, f"joints: {joints}\nconfigurations: {{ready: {{{says}}}}}\n") == ([error] if error else [])
 
 
+def test_limit_zero_of_left_handed_screw_is_not_negative(tmp_path: Path) -> None:
+    yaml = "joints: {c: {type: helical, pitch: -1}}\nconfigurations: {ready: {c: 1}}\n"
+    (found,) = eurdf.check(written(tmp_path, STAR.replace('lower="-2"', 'lower="0"'), yaml)).diagnostics
+    assert found.message.endswith("outside its limits -12.5663706144 to 0")
+
+
 def test_caller_root_overrides_description() -> None:
     fixed, floating = "configurations: {ready: {a: 1}}\n", "root: floating\nconfigurations: {ready: {a: 1}}\n"
     assert load(STAR, fixed).model.nv + 6 == load(STAR, floating).model.nv

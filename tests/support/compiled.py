@@ -19,15 +19,15 @@ OK, NOT_CLOSED, TOO_FAR, SINGULAR, NOT_FINITE = range(5)
 
 
 class Compiled:
-    """The C of a prepared transmission, at the pose that it was generated at."""
+    """The C of a prepared transmission, at the pose that it was generated at; options are those of `c_source`."""
 
-    def __init__(self, prepared: PreparedTransmission, folder: Path) -> None:
+    def __init__(self, prepared: PreparedTransmission, folder: Path, **options: int) -> None:
         compiler = shutil.which("cc")
         if compiler is None:
             pytest.skip("no C compiler: install one as `cc`")
-        prepared.c_source("t").write(folder, force=True)
+        prepared.c_source("t", **options).write(folder, force=True)
         strict = ["-std=c99", "-O2", "-Wall", "-Wextra", "-pedantic", "-Werror"]
-        library = folder / "t.so"
+        library = folder / f"{len(list(folder.glob('*.so')))}.so"  # a library that is loaded is not replaced
         subprocess.run(
             [compiler, *strict, "-shared", "-fPIC", "-o", str(library), str(folder / "t.c"), "-lm"], check=True
         )
@@ -45,6 +45,14 @@ class Compiled:
         """Whether there is a function from motors to joints."""
         return hasattr(self._library, "t_at_motors")
 
+    def start_at_joints(self, positions: Vector) -> int:
+        """Start at positions of the joints; the status."""
+        return self._start(self._library.t_start_at_joints, positions)
+
+    def start_at_motors(self, positions: Vector) -> int:
+        """Start at positions of the motors; the status."""
+        return self._start(self._library.t_start_at_motors, positions)
+
     def at_joints(self, positions: Vector) -> tuple[int, Vector, Vector]:
         """Status, positions of the motors and G."""
         return self._call(self._library.t_at_joints, positions, self._motors)
@@ -52,6 +60,9 @@ class Compiled:
     def at_motors(self, positions: Vector) -> tuple[int, Vector, Vector]:
         """Status, positions of the joints and B."""
         return self._call(self._library.t_at_motors, positions, self._joints)
+
+    def _start(self, function: ctypes._CFuncPtr, positions: Vector) -> int:
+        return int(function(_pointer(self.pose), _pointer(np.array(positions, dtype=np.float64))))
 
     def _call(self, function: ctypes._CFuncPtr, positions: Vector, count: int) -> tuple[int, Vector, Vector]:
         given = np.array(positions, dtype=np.float64)

@@ -7,6 +7,7 @@ import io
 import os
 import re
 import shlex
+import subprocess
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -69,6 +70,9 @@ class PageReader:
                 self._write(block)
             elif isinstance(block, Code) and block.language == "console":
                 self._run(block)
+            elif isinstance(block, Code) and block.language == "sh":
+                for command in block.text.splitlines():
+                    self._succeed(command)
             elif isinstance(block, Code) and block.language == "python":
                 printed = self._execute(block) or None
         assert printed is None, "what the last code prints is not shown"
@@ -90,13 +94,26 @@ class PageReader:
     def _run(self, block: Code) -> None:
         command, _, shown = block.text.partition("\n")
         prompt, program, *arguments = shlex.split(command)
-        assert (prompt, program) == ("$", "eurdf")
+        assert (prompt, program) in {("$", "eurdf"), ("$", "cc")}
         before = {path: path.stat().st_mtime_ns for path in self.folder.iterdir()}
+        if program == "cc":
+            given = subprocess.run(command[1:], shell=True, check=True, capture_output=True, text=True).stdout
+        else:
+            _, given = self._answer(arguments)
+        self.written = [path for path in self.folder.iterdir() if before.get(path) != path.stat().st_mtime_ns]
+        self._compare(block, shown, given.replace(f"{self.folder}/", ""))
+
+    def _succeed(self, command: str) -> None:
+        program, *arguments = shlex.split(command, comments=True)
+        assert program == "eurdf"
+        code, output = self._answer(arguments)
+        assert code == 0, f"{command}: {output}"
+
+    def _answer(self, arguments: list[str]) -> tuple[int, str]:
+        """The exit code and what is written."""
         output = io.StringIO()
         with contextlib.redirect_stdout(output), contextlib.redirect_stderr(output):
-            main(arguments)
-        self.written = [path for path in self.folder.iterdir() if before.get(path) != path.stat().st_mtime_ns]
-        self._compare(block, shown, output.getvalue().replace(f"{self.folder}/", ""))
+            return main(arguments), output.getvalue()
 
     def _execute(self, block: Code) -> str:
         output = io.StringIO()

@@ -142,11 +142,28 @@ def test_wrong_limits_are_refused() -> None:
     for limits, message in (
         ({"effort": ()}, "'motor_a' has no effort limit; state one"),
         ({"velocity": ()}, "'motor_a' has no velocity limit; state one"),
-        ({"effort": (0.0,)}, "must include zero"),
-        ({"velocity": (0.0,)}, "expected a positive one"),
+        (
+            {"effort": (0.0,)},
+            "'motor_a' has the effort limit 0; state a positive one: effort in the <limit> of joint 'motor_a'",
+        ),
+        ({"effort": (-0.0,)}, "'motor_a' has the effort limit 0;"),
+        ({"effort": (np.nan,)}, "'motor_a' has the effort limit nan;"),
+        ({"velocity": (0.0,)}, "'motor_a' has the velocity limit 0; state a positive one: velocity in the <limit>"),
     ):
         with pytest.raises(ValueError, match=message):
             eurdf.serial_limits(with_limits(robot, "motor_a", **limits), joints)
+    for control, shown in (
+        ((0.0, 4.0), "0 to 4"),
+        ((-4.0, -0.0), "-4 to 0"),
+        ((1.0, 4.0), "1 to 4"),
+        ((4.0, -4.0), "4 to -4"),
+    ):
+        motors = MappingProxyType({"motor_a": Motor("a", control)})
+        pulling = build_robot(replace(robot.mechanism, version="2.1", motors=motors), geometry=False)
+        with pytest.raises(
+            ValueError, match=f"'motor_a' has the control range {shown}; state one from below to above zero"
+        ):
+            eurdf.serial_limits(pulling, joints)
     with pytest.raises(ValueError, match=r"torque_ratio is .* expected positive numbers"):
         eurdf.serial_limits(robot, joints, torque_ratio=[1.0, -1.0])
     with pytest.raises(ValueError, match="no rows"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from eurdf.mechanism.joint import JointProperties
 from eurdf.pinocchio.robot import build_robot
 from support.compiled import NOT_CLOSED, NOT_FINITE, OK, SINGULAR, TOO_FAR, Compiled
 from support.one_loop import one_loop
+from support.transmissions import DRIVEN
 
 ANKLE = ("free_pitch", "free_roll")
 
@@ -108,18 +110,122 @@ def test_long_motions_follow_the_path() -> None:
     assert far == pytest.approx(found, abs=1e-9)
 
 
+def status_in_python(call: Callable[[Any], object], positions: Any) -> int:
+    """The status of C that stands for what a call raises."""
+    try:
+        call(positions)
+    except eurdf.TooFar:
+        return TOO_FAR
+    except eurdf.NotClosable:
+        return NOT_CLOSED
+    except eurdf.NoTransmission:
+        return SINGULAR
+    return OK
+
+
+def beyond_limits(robot: eurdf.Robot, names: Sequence[str], count: int) -> Any:
+    """Random positions of joints within their limits, at most 1.5 (rad, m) to each side, and 15 % beyond."""
+    ends = []
+    for name in names:
+        properties = robot.slots[name].joint.properties
+        (lower,), (upper,) = properties.lower or (-1.5,), properties.upper or (1.5,)
+        lower, upper = max(lower, -1.5), min(upper, 1.5)
+        ends.append((lower - 0.15 * (upper - lower), upper + 0.15 * (upper - lower)))
+    return np.random.default_rng(1).uniform(*np.transpose(ends), (count, len(names)))
+
+
+@pytest.mark.parametrize(
+    ("name", "joints", "statuses"),
+    [
+        ("slider_crank", ("free_slider",), {OK, NOT_CLOSED}),
+        ("unitree_g1_ankle", ANKLE, {OK, NOT_CLOSED}),
+        ("tesla_optimus_ankle", ANKLE, {OK, NOT_CLOSED}),
+        ("talos_leg", DRIVEN["talos_leg"], {OK}),
+        ("digit_leg", DRIVEN["digit_leg"], {OK, NOT_CLOSED}),
+        pytest.param("kangaroo_leg", DRIVEN["kangaroo_leg"], {OK, NOT_CLOSED}, marks=pytest.mark.slow),
+    ],
+)
+def test_statuses_in_c_are_errors_in_python(
+    name: str, joints: tuple[str, ...], statuses: set[int], tmp_path: Path
+) -> None:
+    robot = eurdf.load(name, geometry=False)
+    prepared = eurdf.prepare_transmission(robot, joints)
+    compiled = Compiled(prepared, tmp_path)
+    found = set()
+    for side, start, at, c_start, c_at in (
+        ("joints", prepared.start_at_joints, prepared.at_joints, compiled.start_at_joints, compiled.at_joints),
+        ("motors", prepared.start_at_motors, prepared.at_motors, compiled.start_at_motors, compiled.at_motors),
+    ):
+        for positions in beyond_limits(robot, getattr(prepared, side), 40):
+            kept, c_kept = prepared.q, compiled.pose.copy()
+            status = c_start(positions)
+            assert status == status_in_python(start, positions), (side, positions.tolist())
+            found.add(status)
+            if status != OK:
+                assert np.array_equal(prepared.q, kept)
+                assert np.array_equal(compiled.pose, c_kept)
+                compiled.start()
+                assert c_at(positions)[0] == TOO_FAR
+                continue
+            assert np.abs(eurdf.residual(robot, prepared.q)).max() < 1e-9
+            status, values, derivative = c_at(positions)
+            expected = at(positions)
+            assert (status, values) == (OK, pytest.approx(expected[0], abs=1e-9))
+            assert derivative == pytest.approx(expected[1], rel=1e-6, abs=1e-6)
+            compiled.start()
+            status, values, _ = c_at(positions)
+            assert status == TOO_FAR or (status, values) == (OK, pytest.approx(expected[0], abs=1e-6))
+    assert statuses <= found
+
+
+@pytest.mark.parametrize(("name", "points"), [("unitree_g1_ankle", 21), ("tesla_optimus_ankle", 9), ("digit_leg", 9)])
+def test_start_reaches_every_pose_of_the_workspace(name: str, points: int, tmp_path: Path) -> None:
+    robot = eurdf.load(name, geometry=False)
+    prepared = eurdf.prepare_transmission(robot, DRIVEN[name])
+    compiled = Compiled(prepared, tmp_path)
+    motors = [robot.slots[motor].idx_q for motor in prepared.motors]
+    space = eurdf.workspace(robot, DRIVEN[name], grid=points)
+    assert len(space.q) > 0.8 * points**2
+    for q, positions in zip(space.q, space.positions, strict=True):
+        assert compiled.start_at_joints(positions) == OK
+        assert compiled.at_joints(positions)[1] == pytest.approx(q[motors], abs=1e-6)
+        assert compiled.start_at_motors(q[motors]) == OK
+        assert compiled.at_motors(q[motors])[1] == pytest.approx(positions, abs=1e-6)
+
+
+def test_redundant_rows_may_contradict_by_rounding(tmp_path: Path) -> None:
+    mechanism, random = eurdf.load("bennett", geometry=False).mechanism, np.random.default_rng(0)
+    joints = [
+        replace(
+            joint, placement=replace(joint.placement, xyz=tuple(joint.placement.xyz + random.uniform(-2e-8, 2e-8, 3)))
+        )
+        for joint in mechanism.joints
+    ]
+    robot = build_robot(replace(mechanism, joints=tuple(joints)), geometry=False)
+    assert eurdf.assemble(robot).reason == "rounding"
+    prepared = eurdf.prepare_transmission(robot, "free_b")
+    compiled = Compiled(prepared, tmp_path)
+    for angle in (0.1, 1.0, 2.0):
+        status, motor, _ = compiled.at_joints(np.array([angle]))
+        assert (status, motor) == (OK, pytest.approx(prepared.at_joints([angle]).positions, abs=1e-9))
+
+
 def test_an_error_keeps_the_pose(tmp_path: Path) -> None:
     robot = eurdf.load("slider_crank", geometry=False)
     prepared = eurdf.prepare_transmission(robot, ["free_slider"])
     compiled = Compiled(prepared, tmp_path)
     q, pose = prepared.q, compiled.pose.copy()
-    with pytest.raises(eurdf.NotClosable, match="cannot be closed at the given coordinates"):
+    with pytest.raises(eurdf.NotClosable, match="cannot be closed at free_slider 5: closures stay open"):
         prepared.at_joints([5.0])
     with pytest.raises(ValueError, match="not finite"):
         prepared.at_joints([np.nan])
+    with pytest.raises(ValueError, match="not finite"):
+        prepared.start_at_joints([np.nan])
     assert np.array_equal(prepared.q, q)
     assert compiled.at_joints(np.array([5.0]))[0] == TOO_FAR
     assert compiled.at_joints(np.array([np.nan]))[0] == NOT_FINITE
+    assert compiled.start_at_joints(np.array([5.0])) == NOT_CLOSED
+    assert compiled.start_at_joints(np.array([np.nan])) == NOT_FINITE
     assert np.array_equal(compiled.pose, pose)
 
 
@@ -149,6 +255,24 @@ def test_turns_of_a_motor_are_counted(tmp_path: Path) -> None:
         status, c_motor, _ = compiled.at_joints(np.array([angle]))
         assert (status, c_motor) == (OK, pytest.approx(motor, abs=1e-9))
     assert motor - start == pytest.approx(np.sign(G[0]) * 4.0 * np.pi, abs=1e-9)
+    prepared.start_at_motors([7.0])
+    assert compiled.start_at_motors(np.array([7.0])) == OK
+    joint = prepared.at_motors([7.0]).positions
+    assert compiled.at_motors(np.array([7.0]))[1] == pytest.approx(joint, abs=1e-9)
+    assert prepared.at_joints(joint).positions == pytest.approx([7.0], abs=1e-9)
+    assert compiled.at_joints(joint)[1] == pytest.approx([7.0], abs=1e-9)
+
+
+def test_one_substep_refuses_long_motions(tmp_path: Path) -> None:
+    prepared = eurdf.prepare_transmission(eurdf.load("unitree_g1_ankle", geometry=False), ANKLE)
+    goal = np.array([-0.3, 0.05])
+    assert Compiled(prepared, tmp_path).at_joints(goal)[0] == OK
+    compiled = Compiled(prepared, tmp_path, substeps=1)
+    assert compiled.at_joints(goal)[0] == TOO_FAR
+    assert compiled.at_joints(0.02 * goal)[0] == OK
+    assert compiled.start_at_joints(goal) == OK
+    with pytest.raises(ValueError, match="substeps is 0; it must be a positive integer"):
+        prepared.c_source(substeps=0)
 
 
 @pytest.mark.parametrize(

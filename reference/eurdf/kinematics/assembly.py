@@ -33,7 +33,11 @@ if TYPE_CHECKING:
 # Above this many velocities, closing all loops at once takes longer than one by one.
 _MOST_VELOCITIES_AT_ONCE = 60
 
-_MOST_STEPS = 60
+#: Bound of the steps of one descent.
+MOST_STEPS = 60
+
+#: Restarts of a group of loops that stays open, unless a caller gives their number.
+RESTARTS = 20
 
 # Bound of the multiplications in the steps of one assembly, about five seconds. Groups with hundreds of shared joints
 # end before all restarts; a group with a single step above this bound is not tried.
@@ -46,8 +50,8 @@ _WELL_CLOSED = 0.1 * CLOSED
 # A quaternion whose length differs from 1 by no more is normalized.
 _ROUNDING = 1e-15
 
-# Distance of the restarts from the first start (rad, or characteristic lengths); the last one is repeated.
-_SPREADS = (0.1, 0.3, 1.0, 2.0, 3.0)
+#: Distance of the restarts from the first start (rad, or characteristic lengths); the last one is repeated.
+SPREADS = (0.1, 0.3, 1.0, 2.0, 3.0)
 
 
 #: Why an assembly did not converge: joints at their limits keep the loops open; the loops stay open though no limit
@@ -102,7 +106,7 @@ def assemble(
     *,
     tolerance: float = 1e-10,
     limits: Limits = False,
-    restarts: int = 20,
+    restarts: int = RESTARTS,
 ) -> Assembly:
     """Find a closed configuration, r(q) = 0, near the given one.
 
@@ -199,7 +203,7 @@ class Assembler:
         self.tolerance = checked_tolerance(tolerance)
         self.limits = chosen_limits(robot, limits)
 
-    def assemble(self, q: Vector, restarts: int = 20) -> Assembly:
+    def assemble(self, q: Vector, restarts: int = RESTARTS) -> Assembly:
         """Close the loops from q (nq,), then at most ``restarts`` times from configurations around it."""
         before = self.iterations
         with np.errstate(over="ignore", invalid="ignore"):  # lengths such as 1e200 m overflow and never close
@@ -239,7 +243,7 @@ class Assembler:
         return "joint limits" if at_limits else "not closed"
 
     @np.errstate(over="ignore", invalid="ignore")  # lengths such as 1e200 m overflow and never close
-    def close(self, q: Vector, restarts: int = 20) -> tuple[Vector, list[float]]:
+    def close(self, q: Vector, restarts: int = RESTARTS) -> tuple[Vector, list[float]]:
         """The final configuration (nq,), and the norm of the residual of each group there, m and rad.
 
         Args:
@@ -264,7 +268,7 @@ class Assembler:
             going, place = [self.evaluations[index] for index in still_open], q
             if attempt > 0:
                 random = random or np.random.default_rng(0)
-                spread = _SPREADS[min(attempt, len(_SPREADS)) - 1]
+                spread = SPREADS[min(attempt, len(SPREADS)) - 1]
                 away = [random.uniform(-spread, spread, len(evaluation.unit)) for evaluation in going]
                 place = self._within_limits(self.moved(q, going, away), going)
             end, descents, ended_by_group = self._descend(place, going)
@@ -293,7 +297,7 @@ class Assembler:
         self.iterations += 1
         descents = [Descent(evaluation, q) for evaluation in going]
         moving: list[Descent] = []
-        for _ in range(_MOST_STEPS):
+        for _ in range(MOST_STEPS):
             moving = [descent for descent in descents if descent.error > self.tolerance and not descent.stuck]
             feasible = [descent for descent in moving if _feasible(descent.evaluation)]
             self._work += sum(descent.evaluation.work for descent in feasible)

@@ -9,8 +9,8 @@ import numpy as np
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.kinematics.evaluation import Evaluation
 
-# A descent gives up after this many consecutive steps that each reduce the squared residual by less than 2%.
-_MOST_IDLE_STEPS = 6
+#: A descent gives up after this many consecutive steps that each reduce the squared residual by less than 2%.
+MOST_IDLE_STEPS = 6
 
 
 class Descent:
@@ -41,7 +41,7 @@ class Descent:
     @property
     def stuck(self) -> bool:
         """Whether further steps are not worthwhile."""
-        return self._idle > _MOST_IDLE_STEPS or not self._expected > 1e-12 * self._square
+        return self._idle > MOST_IDLE_STEPS or not self._expected > 1e-12 * self._square
 
     @property
     def scaled_error(self) -> float:

@@ -61,6 +61,15 @@ class NotClosable(EurdfError, ValueError):  # noqa: N818 - part of the public in
         super().__init__(f"{reason}: closures stay open, {apart}" if apart else reason)
 
 
+class TooFar(NotClosable):
+    """The loops can be closed at given coordinates, but a straight path does not lead there.
+
+    Attributes:
+        openings: How far each closure is open at ``q``.
+        q: The last configuration (nq,) on the path, with the given coordinates.
+    """
+
+
 class DependentActuators(EurdfError, ValueError):  # noqa: N818 - part of the public interface
     """The closures do not let the actuated joints move independently.
 

@@ -14,7 +14,7 @@ from eurdf.kinematics.array import Indices, Vector
 from eurdf.kinematics.assembly import Assembler, start
 from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.driven_motion import DrivenMotion
-from eurdf.kinematics.exceptions import NotClosable
+from eurdf.kinematics.exceptions import NotClosable, TooFar
 from eurdf.kinematics.residual import all_openings, residual_and_jacobian
 from eurdf.kinematics.spring_equilibrium import joints_at_rest, spring_equilibrium
 from eurdf.kinematics.tangent_space import TangentSpaces
@@ -24,15 +24,16 @@ from eurdf.pinocchio.arguments import checked_array, checked_tolerance
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
-# A step along the path is accepted if closing the loops after it moves the joints by at most this fraction of the step,
-_MOST_CORRECTION = 0.25
-# or by this much (rad, or characteristic lengths). If not, the step is halved, down to this fraction of the path.
-_LEAST_CORRECTION = 1e-6
-_SHORTEST_STEP = 2.0**-10
+#: A step along the path is accepted if closing the loops after it moves the joints by this fraction of it at most,
+MOST_CORRECTION = 0.25
+#: or by this much (rad, or characteristic lengths).
+LEAST_CORRECTION = 1e-6
+#: If not, the step is halved, down to this fraction of the path.
+SHORTEST_STEP = 2.0**-10
 # The same where the springs are kept at rest: if that takes many steps, they are brought into equilibrium afterwards.
 SHORTEST_STEP_AT_REST = 2.0**-3
-# Bound of the motion of each joint in one step (rad, or characteristic lengths).
-_LONGEST_MOTION = 0.5
+#: Bound of the motion of each joint in one step (rad, or characteristic lengths).
+LONGEST_MOTION = 0.5
 # A direction counts as blocked if the other joints would have to move this many times faster than the given ones.
 _FASTEST = 1e6
 
@@ -72,8 +73,9 @@ def forward_kinematics(
         q (nq,), in which the given joints have exactly the given coordinates.
 
     Raises:
-        NotClosable: The loops cannot be closed at q0, at the given coordinates, or somewhere on the straight path
-            between them. In the last case, call the function for intermediate configurations one after the other.
+        NotClosable: The loops cannot be closed at q0, or at the given coordinates.
+        TooFar: They can, but not everywhere on the straight path from q0 to the given coordinates. Call the function
+            for intermediate configurations one after the other.
         ValueError: ``actuated`` or ``q0`` does not fit this robot.
     """
     tolerance = checked_tolerance(tolerance)
@@ -89,14 +91,14 @@ def forward_kinematics(
     velocities = tuple(given.velocities.tolist())
     with borrowed(robot, Assembler, tuple(given.joints)) as assembler, borrowed(robot, DrivenMotion, velocities) as by:
         assembler.tolerance, assembler.limits = tolerance, None
-        q, part = _follow(robot, given, first, goal, assembler, by, _SHORTEST_STEP)
+        q, part = _follow(robot, given, first, goal, assembler, by, SHORTEST_STEP)
         if part < 1.0:
             raise _stopped(robot, assembler, q, goal, given.coordinates)
         return _in_equilibrium(robot, q, given, assembler)
 
 
 def farthest(
-    robot: Robot, values: Mapping[str, float | Sequence[float]], first: Vector, shortest: float = _SHORTEST_STEP
+    robot: Robot, values: Mapping[str, float | Sequence[float]], first: Vector, shortest: float = SHORTEST_STEP
 ) -> tuple[Vector, float]:
     """As `forward_kinematics`, but it returns how far the straight path leads if it ends early.
 
@@ -194,7 +196,7 @@ def _follow(
                 return q, done
             v = _blocked_velocity(robot, q, given, step * path[given.velocities])
         motion = v / scale
-        if np.abs(motion).max(initial=0.0) > _LONGEST_MOTION and step > shortest:
+        if np.abs(motion).max(initial=0.0) > LONGEST_MOTION and step > shortest:
             step *= 0.5
             continue
         at = goal if done + step >= 1.0 else tree.integrate(first, (done + step) * path)
@@ -206,7 +208,7 @@ def _follow(
             closed = assembly.q if assembly.closes else None
         if closed is not None:
             corrected = float(np.linalg.norm(tree.difference(expected, closed) / scale))
-            if corrected <= max(_MOST_CORRECTION * float(np.linalg.norm(motion)), _LEAST_CORRECTION):
+            if corrected <= max(MOST_CORRECTION * float(np.linalg.norm(motion)), LEAST_CORRECTION):
                 q, done, step = closed, done + step, 2.0 * step
                 continue
         step *= 0.5
@@ -289,4 +291,4 @@ def _stopped(robot: Robot, assembler: Assembler, q: Vector, goal: Vector, coordi
         "the loops can be closed at the given coordinates, but not on a straight path to them; "
         "give intermediate configurations, or call assemble with hold"
     )
-    return NotClosable(reason, all_openings(robot, there), there)
+    return TooFar(reason, all_openings(robot, there), there)

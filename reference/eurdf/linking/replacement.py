@@ -391,7 +391,8 @@ class _Replacement:
                 message = f"a limit of helical joint '{joint.name}', rad, is not finite: its pitch is {pitch:g} m"
                 self.report("derived-not-finite", message, "pitch", hint="write the advance per revolution, in m")
                 return None
-            lower, upper = sorted((properties.lower[0] / lead, properties.upper[0] / lead))
+            # No negative zero, where the pitch is negative.
+            lower, upper = sorted((properties.lower[0] / lead + 0.0, properties.upper[0] / lead + 0.0))
             turning = {
                 "effort limit": (properties.effort[0], properties.effort[0] * abs(lead)),
                 "damping": (properties.damping[0], properties.damping[0] * lead * lead),

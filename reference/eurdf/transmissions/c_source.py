@@ -12,9 +12,13 @@ from typing import TYPE_CHECKING
 
 from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Vector
+from eurdf.kinematics.assembly import MOST_STEPS, RESTARTS, SPREADS
 from eurdf.kinematics.constraint_stack import all_constraints
 from eurdf.kinematics.derived import derived
+from eurdf.kinematics.descent import MOST_IDLE_STEPS
+from eurdf.kinematics.forward_kinematics import LEAST_CORRECTION, LONGEST_MOTION, MOST_CORRECTION, SHORTEST_STEP
 from eurdf.kinematics.loop import find_loops
+from eurdf.kinematics.opening import CLOSED as STILL_CLOSED
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.mechanism.constraint import (
     Constraint,
@@ -29,7 +33,7 @@ from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mimic import Mimic
 from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.pinocchio.mimic import following
-from eurdf.transmissions.drive import LEAST_CORRECTION, LONGEST_MOTION, MOST_CORRECTION, Drive
+from eurdf.transmissions.drive import CLOSED, MOST_SUBSTEPS, SINGULAR, Drive
 from eurdf.writing.output_folder import write_files
 
 if TYPE_CHECKING:
@@ -46,12 +50,10 @@ _KINDS: Mapping[type[Constraint], str] = {
 _X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 _HERE = (0.0, 0.0, 0.0)
 
-# Bound of each row of the residual, m or rad, at the last of the steps, whose correction then leaves rounding.
-_CLOSED = 1e-11
-# A pivot below this fraction of the first one means a singular pose.
-_SINGULAR = 1e-6
 # Given velocities are independent if none of them opens the loops by more, dimensionless.
 _DETERMINED = 1e-6
+# Of the damping of a descent, relative to the squares of the derivative: its root is above SINGULAR.
+_LEAST_DAMPING = 1e-10
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,18 +77,19 @@ class CSource:
 
 
 def c_source(
-    robot: Robot, by_joints: Drive, by_motors: Drive | None, q: Vector, prefix: str | None, steps: int
+    robot: Robot, by_joints: Drive, by_motors: Drive | None, q: Vector, prefix: str | None, steps: int, substeps: int
 ) -> CSource:
     """The source; see `eurdf.transmissions.prepared.PreparedTransmission.c_source`."""
     name = _identifier(f"{robot.mechanism.name}_transmission") if prefix is None else prefix
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name):
         raise ValueError(f"prefix is {name!r}; it must be an identifier of C: letters, digits and _")
-    if not isinstance(steps, int) or steps < 1:
-        raise ValueError(f"steps is {steps!r}; it must be a positive integer")
+    for argument, count in (("steps", steps), ("substeps", substeps)):
+        if not isinstance(count, int) or count < 1:
+            raise ValueError(f"{argument} is {count!r}; it must be a positive integer")
     drives = [by_joints] if by_motors is None else [by_joints, by_motors]
     tables = _Tables(robot, drives, q)
-    header = _header(tables, name, by_joints, by_motors is not None)
-    source = _source(tables, name, drives, steps)
+    header = _header(tables, name, by_joints, by_motors is not None, steps, substeps)
+    source = _source(tables, name, drives, steps, substeps)
     return CSource({f"{name}.h": header.encode(), f"{name}.c": source.encode()})
 
 
@@ -263,7 +266,7 @@ def _screws(
     ]
 
 
-def _header(tables: _Tables, name: str, by_joints: Drive, both: bool) -> str:
+def _header(tables: _Tables, name: str, by_joints: Drive, both: bool, steps: int, substeps: int) -> str:
     joints, motors = by_joints.given, by_joints.asked
     guard = f"{name.upper()}_H"
     listed = "".join(
@@ -272,6 +275,7 @@ def _header(tables: _Tables, name: str, by_joints: Drive, both: bool) -> str:
         for index, (label, unit) in enumerate(zip(side.of.names, side.units, strict=True))
     )
     nj, nm, big = len(joints), len(motors), name.upper()
+    start_inverse = f"int {name}_start_at_motors({name}_pose *pose, const double motors[{nm}]);\n"
     inverse = f"""
 /* The joints at positions of the motors, and B (row by row): the velocities are v_J = B v_m. */
 int {name}_at_motors({name}_pose *pose, const double motors[{nm}], double joints[{nj}], double B[{nj * nm}]);
@@ -280,9 +284,15 @@ int {name}_at_motors({name}_pose *pose, const double motors[{nm}], double joints
  * C99, which needs libm alone.
  *
 {listed} *
- * Set a pose with {name}_start, then call a function at each cycle: it starts from the last pose and stays on
- * its branch of closed loops. Unless it returns {big}_OK it changes neither the pose nor its results. Threads
- * may use poses of their own. Position limits are not checked.
+ * Call a function `start` once to set a pose, then a function `at_joints` or `at_motors` at each cycle: it starts from
+ * the last pose and stays on its branch of closed loops. Unless a function returns
+ * {big}_OK, it changes neither the pose nor its results. Threads may use
+ * poses of their own. Position limits are not checked.
+ *
+ * Nothing is allocated, and the work is bounded. The positions move on a straight path: a short one in one substep,
+ * which solves linear equations {1 + steps} times, others in at most {substeps} substeps. A start at positions takes
+ * at most {MOST_SUBSTEPS} substeps; if they do not lead there, at most {1 + RESTARTS} descents of {MOST_STEPS} steps
+ * look for any closed pose at the positions. So call it before the control loop, not in it.
  */
 #ifndef {guard}
 #define {guard}
@@ -293,8 +303,8 @@ extern "C" {{
 
 enum {{
     {big}_OK = 0,
-    {big}_NOT_CLOSED = 1,  /* the loops do not close at these positions */
-    {big}_TOO_FAR = 2,     /* too far from the last pose to be sure of the branch: give positions in between */
+    {big}_NOT_CLOSED = 1,  /* only of a start: no closed pose was found at these positions */
+    {big}_TOO_FAR = 2,     /* a straight path does not lead there: give positions in between */
     {big}_SINGULAR = 3,    /* the given positions do not determine the others */
     {big}_NOT_FINITE = 4   /* a position is not a finite number */
 }};
@@ -306,6 +316,9 @@ typedef struct {{
 /* The pose that the files were generated at. */
 void {name}_start({name}_pose *pose);
 
+/* A pose at given positions, such as measured ones, on the branch of that pose: it is reached on a straight path. */
+int {name}_start_at_joints({name}_pose *pose, const double joints[{nj}]);
+{start_inverse if both else ""}
 /* The motors at positions of the joints, and G (row by row): v_m = G v_J, and the torques are tau_J = G' tau_m. */
 int {name}_at_joints({name}_pose *pose, const double joints[{nj}], double motors[{nm}], double G[{nm * nj}]);
 {inverse if both else ""}
@@ -317,7 +330,7 @@ int {name}_at_joints({name}_pose *pose, const double joints[{nj}], double motors
 """
 
 
-def _source(tables: _Tables, name: str, drives: Sequence[Drive], steps: int) -> str:
+def _source(tables: _Tables, name: str, drives: Sequence[Drive], steps: int, substeps: int) -> str:
     robot = tables.robot
     scale = all_constraints(robot).scale(derived(robot, TangentSpaces).length)
     rows = {index: loop.rows for index, loop in enumerate(find_loops(robot))}
@@ -339,7 +352,7 @@ def _source(tables: _Tables, name: str, drives: Sequence[Drive], steps: int) -> 
         for j in tables.joints
     ]
     place = {index: number for number, index in enumerate(tables.constraints)}
-    calls = [_call(name, drive, number) for number, drive in enumerate(drives)]
+    calls = [_calls(name, drive, number) for number, drive in enumerate(drives)]
     most_rows = max(_rows_of(rows, drive) for drive in drives)
     limits = {
         "JOINTS": len(joints) + 1,
@@ -348,19 +361,29 @@ def _source(tables: _Tables, name: str, drives: Sequence[Drive], steps: int) -> 
         "ROWS": max(1, most_rows),
         "SIDES": 1 + max(len(drive.given) for drive in drives),
         "STEPS": steps,
+        "SUBSTEPS": substeps,
+        "MOST_SUBSTEPS": MOST_SUBSTEPS,
+        "RESTARTS": RESTARTS,
+        "SPREADS": len(SPREADS),
+        "DESCENT_STEPS": MOST_STEPS,
+        "IDLE_STEPS": MOST_IDLE_STEPS,
         "BALLS": int(-1 in tables.coordinates),
     }
     bounds = {
-        "CLOSED": _CLOSED,
-        "SINGULAR": _SINGULAR,
+        "CLOSED": CLOSED,
+        "SINGULAR": SINGULAR,
         "DETERMINED": _DETERMINED,
+        "STILL_CLOSED": STILL_CLOSED,
+        "LEAST_DAMPING": _LEAST_DAMPING,
+        "SHORTEST_STEP": SHORTEST_STEP,
+        "TURN": 2.0 * math.pi,
         "LONGEST_MOTION": LONGEST_MOTION,
         "MOST_CORRECTION": MOST_CORRECTION,
         "LEAST_CORRECTION": LEAST_CORRECTION,
     }
     big = name.upper()
     parts = [
-        f'/* See {name}.h. */\n#include "{name}.h"\n\n#include <math.h>\n',
+        f'/* See {name}.h. */\n#include "{name}.h"\n\n#include <math.h>\n#include <stdint.h>\n',
         "\n".join(f"#define {key} {value}" for key, value in limits.items()),
         "\n".join(f"#define {key} {_number(value)}" for key, value in bounds.items()),
         "#define BALL (-1)",
@@ -369,6 +392,7 @@ def _source(tables: _Tables, name: str, drives: Sequence[Drive], steps: int) -> 
         _TYPES,
         "static const double start[] = {" + ", ".join(map(_number, tables.start)) + "};",
         "static const double units[] = {" + ", ".join(map(_number, tables.units)) + "};",
+        "static const double spreads[] = {" + ", ".join(map(_number, SPREADS)) + "};",
         "static const int coordinates[] = {" + ", ".join(map(str, tables.coordinates)) + "};",
         "static const int ball_coordinates[] = {" + ", ".join(map(str, tables.balls)) + "};",
         _table("joint", "joints", ["{0, 0, 0, 0, 0, 0, 0, {0}, {0}, {0}, {0}}", *joints]),
@@ -406,7 +430,8 @@ typedef struct {
 
 typedef struct {
     int given, asked, own, rows, rank, constraints;
-    const int *given_velocity, *given_circular, *asked_velocity, *asked_own, *own_velocity, *constraint;
+    const int *given_velocity, *given_circular, *asked_velocity, *asked_circular, *asked_own,
+        *own_velocity, *constraint;
 } drive;"""
 
 
@@ -445,6 +470,7 @@ def _drive(number: int, drive: Drive, tables: _Tables, place: Mapping[int, int],
         "given_velocity": [tables.velocity[v] for v in drive.given.of.velocities.tolist()],
         "given_circular": [int(circular) for circular in drive.given.circular],
         "asked_velocity": asked,
+        "asked_circular": [int(circular) for circular in drive.asked.circular],
         "asked_own": [position.get(velocity, -1) for velocity in asked],
         "own_velocity": own or [0],
         "constraint": [place[index] for index in drive.closures] or [0],
@@ -457,13 +483,16 @@ def _drive(number: int, drive: Drive, tables: _Tables, place: Mapping[int, int],
     return f"{arrays}\nstatic const drive drive_{number} = {{{', '.join(map(str, counts))}, {names}}};"
 
 
-def _call(name: str, drive: Drive, number: int) -> str:
+def _calls(name: str, drive: Drive, number: int) -> str:
     given, asked = ("joints", "motors") if number == 0 else ("motors", "joints")
     matrix = "G" if number == 0 else "B"
     n, m = len(drive.given), len(drive.asked)
     return (
         f"int {name}_at_{given}({name}_pose *pose, const double {given}[{n}], double {asked}[{m}], "
-        f"double {matrix}[{m * n}]) {{\n    return follow(&drive_{number}, pose->x, {given}, {asked}, {matrix});\n}}"
+        f"double {matrix}[{m * n}]) {{\n"
+        f"    return at_positions(&drive_{number}, pose->x, {given}, {asked}, {matrix});\n}}"
+        f"\n\nint {name}_start_at_{given}({name}_pose *pose, const double {given}[{n}]) {{\n"
+        f"    return start_at(&drive_{number}, pose->x, {given});\n}}"
     )
 
 

@@ -9,35 +9,38 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eurdf.kinematics.array import Indices, Matrix, Vector
-from eurdf.kinematics.assembly import Assembler, start
+from eurdf.kinematics.assembly import Assembler, assemble, start
 from eurdf.kinematics.derived import borrowed, derived
 from eurdf.kinematics.evaluation import Evaluation
-from eurdf.kinematics.exceptions import NotClosable
-from eurdf.kinematics.forward_kinematics import forward_kinematics
+from eurdf.kinematics.exceptions import NotClosable, TooFar
+from eurdf.kinematics.forward_kinematics import LEAST_CORRECTION, LONGEST_MOTION, MOST_CORRECTION, SHORTEST_STEP
 from eurdf.kinematics.least_solution import least_solution
 from eurdf.kinematics.loop import LoopGroup, find_loops, independent_groups, joints_of_loops, merged
+from eurdf.kinematics.opening import CLOSED as STILL_CLOSED
 from eurdf.kinematics.rank import numerical_rank
+from eurdf.kinematics.residual import all_openings
 from eurdf.kinematics.tangent_space import TangentSpaces
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.transmissions.exceptions import NoTransmission
-from eurdf.transmissions.joint_coordinates import JointCoordinates, coordinates_of
-from eurdf.transmissions.selection import selection
+from eurdf.transmissions.joint_coordinates import JointCoordinates
 from eurdf.transmissions.transmission import Transmission, at_one
 
 if TYPE_CHECKING:
     from eurdf.pinocchio.robot import Robot
 
 #: Bound of each row of the residual before the last correction, which leaves rounding, m or rad.
-CLOSED = 1e-13
+CLOSED = 1e-11
 
-# As in `eurdf.kinematics.forward_kinematics`: a solution is on the branch of the pose before if it is nearer to the
-# tangent there than this fraction of the motion, or this near (rad, or characteristic lengths).
-MOST_CORRECTION = 0.25
-LEAST_CORRECTION = 1e-6
-#: Bound of the motion of each joint in one step (rad, or characteristic lengths); beyond it the path is divided.
-LONGEST_MOTION = 0.5
+#: Bound of the substeps of a motion, with those that fail.
+MOST_SUBSTEPS = 256
+#: A singular value of K_x (or a pivot) below this fraction of the first one means a singular pose.
+SINGULAR = 1e-6
 
-_MOST_STEPS = 8
+#: Newton steps of a substep after the first one.
+STEPS = 4
+
+# The same at the first pose, m or rad.
+_AT_FIRST = 1e-13
 
 # A velocity is determined by the given ones if its entry in each unit vector of the motions that remain is below this,
 # and given velocities are independent if no combination of them opens the loops by more.
@@ -69,7 +72,7 @@ class Drive:
         self.given, self.asked, self._by_joints = given, asked, given.of.names == at.joints
         robot = self._robot = at.robot
         self._tree = robot.tree
-        self._held = _held(robot, at.held)
+        self._held = tuple(dict.fromkeys(at.held))
         spaces = derived(robot, TangentSpaces)
         self.closures: tuple[int, ...] = ()
         self.own: Indices = np.zeros(0, np.intp)
@@ -88,8 +91,6 @@ class Drive:
         #: Of each velocity asked for its place among those that follow and those given.
         self._asked = np.array([place[velocity] for velocity in asked.of.velocities.tolist()], np.intp)
         self._asked_unit = spaces.scale[asked.of.velocities]
-        # The pose at which the derivative (k, n), dimensionless, was computed last.
-        self._tangent: tuple[Vector, Matrix] | None = None
         self.rank = 0
         self.rank = self._decomposed(at.q)[1]
 
@@ -104,60 +105,93 @@ class Drive:
             The closed pose (nq,) there, and the derivative (m, n) of the joints asked for by the given ones.
 
         Raises:
-            NotClosable: The given joints cannot reach the positions on the straight path.
+            NotClosable: The loops cannot be closed at the positions.
+            TooFar: They can, but not everywhere on the straight path.
             NoTransmission: The given joints do not determine the others there.
             ValueError: ``positions`` does not fit.
         """
         positions = checked_array("positions", positions, (len(self.given),))
-        there, D = self._newton(q, positions) or self._followed(q, positions)
-        self._tangent = there, D
+        there, D = self._followed(q, positions)
+        if D is None:
+            D, _ = self._decomposed(there)
         every = np.concatenate((D, np.eye(len(self.given))))
         return there, self._asked_unit[:, None] * every[self._asked] / self._given_unit
 
-    def _newton(self, q: Vector, positions: Vector) -> tuple[Vector, Matrix] | None:
-        """The pose and the derivative (k, n), dimensionless; None where the path has to be divided."""
+    def _followed(self, q: Vector, positions: Vector) -> tuple[Vector, Matrix | None]:
+        """As `_newton`, along the straight path from q (nq,).
+
+        A substep that fails is halved; after two that do not, the next one is twice as long.
+        """
+        first = self.given.read(q)
+        path = self.given.nearest(positions, first) - first
+        done, part, again = 0.0, 1.0, False
+        for _ in range(MOST_SUBSTEPS):
+            last = done + part >= 1.0
+            reached = self._newton(q, positions if last else first + (done + part) * path)
+            if reached is None:
+                part, again = 0.5 * part, False
+                if part < SHORTEST_STEP:
+                    break
+                continue
+            if last:
+                return reached
+            q, done = reached[0], done + part
+            part, again = min(2.0 * part if again else part, 1.0 - done), not again
+        raise self._unreached(q, positions)
+
+    def _newton(self, q: Vector, positions: Vector) -> tuple[Vector, Matrix | None] | None:
+        """The closed pose (nq,) at the positions, and the derivative (k, n) there, dimensionless.
+
+        None where the path has to be divided. The derivative is None where the rank of K_x is in doubt.
+        """
+        there, correction = self._moved(q, np.zeros(len(self.own)), positions), np.zeros(len(self.own))
+        if self._evaluation is None:
+            return there, np.zeros((0, len(self.given)))
         before = self.given.read(q)
         step = (self.given.nearest(positions, before) - before) / self._given_unit
         if np.abs(step).max() > LONGEST_MOTION:
             return None
-        if self._evaluation is None:
-            return self._moved(q, np.zeros(0), positions), np.zeros((0, len(step)))
-        tangent = self._tangent_at(q)
-        if tangent is None:
-            return None
-        motion = tangent @ step
-        if np.abs(motion).max(initial=0.0) > LONGEST_MOTION:
-            return None
-        there, correction = self._moved(q, motion, positions), np.zeros(len(motion))
-        for _ in range(_MOST_STEPS):
+        length = math.inf
+        for _ in range(1 + STEPS):
             r = self._evaluation.residual(there)
-            solution = self._solved(r)
+            solution, certain = self._solved(r)
             if solution is None:
                 return None
-            correction += solution[:, 0]
-            there = self._moved(there, solution[:, 0], positions)
-            if np.abs(r).max() <= CLOSED:
+            motion = solution[:, 0]
+            there = self._moved(there, motion, positions)
+            if math.isinf(length):
+                if np.abs(motion).max() > LONGEST_MOTION:
+                    return None
                 length = math.hypot(*motion.tolist(), *step.tolist())
-                allowed = max(MOST_CORRECTION * length, LEAST_CORRECTION)
-                return (there, solution[:, 1:]) if math.hypot(*correction.tolist()) <= allowed else None
+            else:
+                correction += motion
+            largest = np.abs(r).max()
+            # Rounded numbers in files can make redundant rows contradict each other.
+            if largest <= CLOSED or (largest <= STILL_CLOSED and np.abs(motion).max() <= CLOSED):
+                if math.hypot(*correction.tolist()) > max(MOST_CORRECTION * length, LEAST_CORRECTION):
+                    return None
+                return there, solution[:, 1:] if certain else None
         return None
 
-    def _tangent_at(self, q: Vector) -> Matrix | None:
-        """The derivative (k, n) at a pose, dimensionless; None if in doubt."""
-        if self._tangent is not None and self._tangent[0] is q:
-            return self._tangent[1]
-        assert self._evaluation is not None
-        solution = self._solved(self._evaluation.residual(q))
-        return None if solution is None else solution[:, 1:]
+    def _solved(self, r: Vector) -> tuple[Matrix | None, bool]:
+        """K_x⁺ (-r, -K_g), dimensionless (k, 1 + n), where the residual is r, and whether its rank is certain.
 
-    def _solved(self, r: Vector) -> Matrix | None:
-        """K_x⁺ (-r, -K_g), dimensionless (k, 1 + n), where the residual is r; None if the rank is in doubt."""
+        None at a singular pose.
+        """
         assert self._evaluation is not None
-        A, count = self._evaluation.jacobian(), len(self.own)
-        right = np.empty((len(r), 1 + len(self.given)))
-        right[:, 0] = self._evaluation.row_scale * r
-        right[:, 1:] = A[:, count:]
-        return least_solution(A[:, :count], -right, math.sqrt(float(np.vdot(A, A))))
+        K, count = self._evaluation.jacobian(), len(self.own)
+        b = np.empty((len(r), 1 + len(self.given)))
+        b[:, 0] = -self._evaluation.row_scale * r
+        b[:, 1:] = -K[:, count:]
+        A = K[:, :count]
+        solution = least_solution(A, b, math.sqrt(float(np.vdot(K, K))))
+        if solution is not None or not np.isfinite(K).all():
+            return solution, True
+        left, values, right = np.linalg.svd(A, full_matrices=False)
+        rank = self.rank
+        if (values[:rank] <= SINGULAR * values.max(initial=0.0)).any():
+            return None, False
+        return right[:rank].T @ (left[:, :rank].T @ b / values[:rank, None]), False
 
     def _moved(self, q: Vector, motion: Vector, positions: Vector) -> Vector:
         """The pose (nq,) after a motion (k,), dimensionless, with the given joints at their positions."""
@@ -167,14 +201,20 @@ class Drive:
         self.given.write(positions, moved)
         return moved
 
-    def _followed(self, q: Vector, positions: Vector) -> tuple[Vector, Matrix]:
-        """As `_newton`, along the path and at any pose."""
-        held = self._held
-        by_name = self.given.by_joint(positions)
-        if held is not None:
-            by_name |= held.by_joint(held.read(q))
-        there = forward_kinematics(self._robot, by_name, q, tolerance=CLOSED)
-        return there, self._decomposed(there)[0]
+    def _unreached(self, q: Vector, positions: Vector) -> NotClosable:
+        """Why the given joints do not get from q (nq,) to the positions."""
+        there = np.array(q)
+        self.given.write(positions, there)
+        anywhere = assemble(self._robot, there, (*self.given.of.joints, *self._held))
+        values = zip(self.given.of.names, positions.tolist(), strict=True)
+        shown = ", ".join(f"{name} {value + 0.0:.6g}" for name, value in values)
+        if not anywhere.closes:
+            return NotClosable(f"the loops cannot be closed at {shown}", anywhere.open, anywhere.q)
+        reason = (
+            f"the loops can be closed at {shown}, but a straight path does not lead there on this branch; "
+            "give positions in between"
+        )
+        return TooFar(reason, all_openings(self._robot, there), there)
 
     def _decomposed(self, q: Vector) -> tuple[Matrix, int]:
         """The derivative (k, n), dimensionless, and the rank of K_x at a pose.
@@ -205,11 +245,6 @@ class Drive:
         return NoTransmission("G" if self._by_joints else "B_J", reason or f"{named} cannot move independently")
 
 
-def _held(robot: Robot, names: Sequence[str]) -> JointCoordinates | None:
-    """The joints that their springs hold; None if there are none."""
-    return coordinates_of(robot, selection(robot, dict.fromkeys(names))) if names else None
-
-
 def _moved_groups(robot: Robot, driven: Sequence[int], held: Sequence[int]) -> list[LoopGroup]:
     """The groups of loops that driven velocities move, while others are held."""
     tree, loops, found = robot.tree, find_loops(robot), []
@@ -229,7 +264,7 @@ def closed_pose(robot: Robot, q: Vector | None) -> Vector:
     """
     first = start(robot, q, "q")
     with borrowed(robot, Assembler) as assembler:
-        assembler.tolerance, assembler.limits = CLOSED, None
+        assembler.tolerance, assembler.limits = _AT_FIRST, None
         closed = assembler.closed(first)
         if closed is not None:
             return closed

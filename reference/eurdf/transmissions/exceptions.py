@@ -40,7 +40,7 @@ class DependentVelocities(EurdfError, ValueError):  # noqa: N818 - part of the p
         self.names = names
         self.given = given
         self.nearest = nearest
-        numbers = ", ".join(f"{name} {value:.6g}" for name, value in zip(names, nearest.tolist(), strict=True))
+        numbers = ", ".join(f"{name} {value + 0.0:.6g}" for name, value in zip(names, nearest.tolist(), strict=True))
         super().__init__(f"the loops do not allow these velocities together; the nearest that they allow: {numbers}")
 
 
@@ -67,7 +67,7 @@ class OutOfReach(NotClosable):
         self.reached = dict(reached)
         self.part = part
         asked, farthest = (
-            ", ".join(f"{name} {value:.6g}" for name, value in each.items()) for each in (wanted, reached)
+            ", ".join(f"{name} {value + 0.0:.6g}" for name, value in each.items()) for each in (wanted, reached)
         )
         reason = (
             f"{asked} cannot be reached on a straight path from the start, which leads to {farthest} "

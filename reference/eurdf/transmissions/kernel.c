@@ -1,4 +1,4 @@
-/* Newton's method on the constraints of the loops, from the last pose. Tables above describe the mechanism. */
+/* Newton's method on the constraints of the loops. Tables above describe the mechanism. */
 
 typedef struct {
     double R[9], p[3];
@@ -253,23 +253,22 @@ static void move(const drive *by, double y[VELOCITIES][SIDES], double x[]) {
     }
 }
 
-static int follow(const drive *by, double pose_kept[], const double given[], double asked[], double derivative[]) {
-    double x[COORDINATES], A[ROWS][VELOCITIES], b[ROWS][SIDES], y[VELOCITIES][SIDES];
-    double correction[VELOCITIES] = {0}, square = 0.0, corrected = 0.0, open;
-    for (int k = 0; k < COORDINATES; ++k) x[k] = pose_kept[k];
+/* What is closed near a closed pose, on its branch, with the given joints at other positions. */
+static int close_near(const drive *by, const double from[], const double given[], double x[],
+                      double y[VELOCITIES][SIDES]) {
+    double A[ROWS][VELOCITIES], b[ROWS][SIDES], correction[VELOCITIES] = {0};
+    double square = 0.0, corrected = 0.0, open = 0.0, last = 0.0;
+    for (int k = 0; k < COORDINATES; ++k) x[k] = from[k];
     for (int k = 0; k < by->given; ++k) {
-        const int velocity = by->given_velocity[k];
-        if (!isfinite(given[k])) return NOT_FINITE;
-        double step = given[k] - x[coordinates[velocity]];
-        if (by->given_circular[k]) step = remainder(step, 6.283185307179586);
-        x[coordinates[velocity]] += step;
-        step /= units[velocity];
-        if (fabs(step) > LONGEST_MOTION) return TOO_FAR;
+        const int coordinate = coordinates[by->given_velocity[k]];
+        const double step = (given[k] - x[coordinate]) / units[by->given_velocity[k]];
+        if (by->constraints > 0 && fabs(step) > LONGEST_MOTION) return TOO_FAR;
+        x[coordinate] = given[k];
         square += step * step;
     }
     for (int step = 0; step <= STEPS; ++step) {
         open = constraints_at(by, x, A, b);
-        if (!solve(by, A, b, y)) return isfinite(open) ? AT_SINGULARITY : NOT_FINITE;
+        if (!solve(by, A, b, y)) return open <= CLOSED ? AT_SINGULARITY : TOO_FAR;
         for (int k = 0; k < by->own; ++k) {
             if (step > 0) correction[k] += y[k][0];
             else square += y[k][0] * y[k][0];
@@ -277,10 +276,46 @@ static int follow(const drive *by, double pose_kept[], const double given[], dou
         }
         move(by, y, x);
     }
-    if (!(open <= CLOSED)) return NOT_CLOSED;
+    for (int k = 0; k < by->own; ++k) last = fmax(last, fabs(y[k][0]));
+    /* Rounded numbers can make redundant rows contradict each other. */
+    if (!(open <= CLOSED || (open <= STILL_CLOSED && last <= CLOSED))) return TOO_FAR;
     if (!consistent(by, b)) return AT_SINGULARITY;
     for (int k = 0; k < by->own; ++k) corrected += correction[k] * correction[k];
-    if (sqrt(corrected) > fmax(MOST_CORRECTION * sqrt(square), LEAST_CORRECTION)) return TOO_FAR;
+    return sqrt(corrected) <= fmax(MOST_CORRECTION * sqrt(square), LEAST_CORRECTION) ? CLOSED_POSE : TOO_FAR;
+}
+
+/* Moves the given joints from a closed pose on a straight path. A substep that fails is halved; after two that do not,
+ * the next one is twice as long. */
+static int follow(const drive *by, const double given[], int substeps, double x[], double y[VELOCITIES][SIDES]) {
+    double first[SIDES], motion[SIDES], there[SIDES], next[COORDINATES], done = 0.0, part = 1.0;
+    int status = TOO_FAR, again = 0;
+    for (int k = 0; k < by->given; ++k) {
+        if (!isfinite(given[k])) return NOT_FINITE;
+        first[k] = x[coordinates[by->given_velocity[k]]];
+        motion[k] = given[k] - first[k];
+        if (by->given_circular[k]) motion[k] = remainder(motion[k], TURN);
+    }
+    for (int tried = 0; tried < substeps && part >= SHORTEST_STEP; ++tried) {
+        for (int k = 0; k < by->given; ++k) there[k] = first[k] + (done + part) * motion[k];
+        const int last = done + part >= 1.0, reached = close_near(by, x, there, next, y);
+        status = last ? reached : TOO_FAR;
+        if (reached != CLOSED_POSE) {
+            part *= 0.5, again = 0;
+            continue;
+        }
+        for (int k = 0; k < COORDINATES; ++k) x[k] = next[k];
+        if (last) return CLOSED_POSE;
+        done += part;
+        part = fmin(again ? 2.0 * part : part, 1.0 - done), again = !again;
+    }
+    return status;
+}
+
+static int at_positions(const drive *by, double kept[], const double given[], double asked[], double derivative[]) {
+    double x[COORDINATES], y[VELOCITIES][SIDES];
+    for (int k = 0; k < COORDINATES; ++k) x[k] = kept[k];
+    const int status = follow(by, given, SUBSTEPS, x, y);
+    if (status != CLOSED_POSE) return status;
     for (int i = 0; i < by->asked; ++i) {
         const int velocity = by->asked_velocity[i], own = by->asked_own[i];
         for (int k = 0; k < by->given; ++k)
@@ -288,6 +323,86 @@ static int follow(const drive *by, double pose_kept[], const double given[], dou
                                                     : units[velocity] * y[own][1 + k] / units[by->given_velocity[k]];
         asked[i] = x[coordinates[velocity]];
     }
-    for (int k = 0; k < COORDINATES; ++k) pose_kept[k] = x[k];
+    for (int k = 0; k < COORDINATES; ++k) kept[k] = x[k];
+    return CLOSED_POSE;
+}
+
+static double sum_of_squares(const drive *by, double b[ROWS][SIDES]) {
+    double sum = 0.0;
+    for (int i = 0; i < by->rows; ++i) sum += b[i][0] * b[i][0];
+    return sum;
+}
+
+/* Whether Levenberg-Marquardt steps from x close the loops, with the given joints held: a descent of eurdf.assemble. */
+static int descend(const drive *by, double x[]) {
+    double A[ROWS][VELOCITIES], b[ROWS][SIDES], y[VELOCITIES][SIDES], trial[COORDINATES], damping = 1e-3, more = 8.0;
+    double M[ROWS + VELOCITIES][VELOCITIES], s[ROWS + VELOCITIES][SIDES]; /* A; sqrt(lambda) times the identity */
+    drive damped = *by;
+    damped.given = 0, damped.rank = by->own, damped.rows = by->rows + by->own;
+    for (int step = 0, idle = 0; step < DESCENT_STEPS && idle <= IDLE_STEPS; ++step) {
+        if (constraints_at(by, x, A, b) <= STILL_CLOSED) return 1;
+        const double square = sum_of_squares(by, b);
+        double trace = 0.0, largest = 1.0, expected = square;
+        for (int i = 0; i < damped.rows; ++i) {
+            s[i][0] = i < by->rows ? b[i][0] : 0.0;
+            for (int k = 0; k < by->own; ++k) M[i][k] = i < by->rows ? A[i][k] : 0.0, trace += M[i][k] * M[i][k];
+        }
+        const double lambda = sqrt(fmax(damping * square, LEAST_DAMPING * trace));
+        for (int k = 0; k < by->own; ++k) M[by->rows + k][k] = lambda;
+        if (!solve(&damped, M, s, y)) return 0;
+        for (int k = 0; k < by->own; ++k) largest = fmax(largest, fabs(y[k][0]));
+        for (int k = 0; k < by->own; ++k) y[k][0] /= largest;
+        for (int i = 0; i < by->rows; ++i) {
+            double left = b[i][0];
+            for (int k = 0; k < by->own; ++k) left -= A[i][k] * y[k][0];
+            expected -= left * left;
+        }
+        if (!(expected > 1e-12 * square)) return 0;
+        for (int k = 0; k < COORDINATES; ++k) trial[k] = x[k];
+        move(by, y, trial);
+        constraints_at(by, trial, M, s);
+        const double reached = sum_of_squares(by, s);
+        const double gain = (square - reached) / expected;
+        idle = reached < 0.98 * square ? 0 : idle + 1;
+        if (!(gain > 0.01)) {
+            damping *= more, more *= 2.0;
+            continue;
+        }
+        more = 8.0;
+        damping = fmax(damping * (gain > 0.75 ? 0.1 : gain > 0.25 ? 1.0 : 4.0), 1e-8);
+        for (int k = 0; k < COORDINATES; ++k) x[k] = trial[k];
+    }
+    return constraints_at(by, x, A, b) <= STILL_CLOSED;
+}
+
+/* Whether a closed pose was found at the given positions, on any branch: from a pose and from random ones around it. */
+static int closable(const drive *by, const double from[], const double given[]) {
+    double x[COORDINATES], y[VELOCITIES][SIDES];
+    uint32_t random = 1;
+    for (int attempt = 0; attempt <= RESTARTS; ++attempt) {
+        for (int k = 0; k < COORDINATES; ++k) x[k] = from[k];
+        for (int k = 0; k < by->given; ++k) x[coordinates[by->given_velocity[k]]] = given[k];
+        for (int k = 0; k < by->own && attempt > 0; ++k) {
+            random = 1664525u * random + 1013904223u;
+            y[k][0] = spreads[(attempt < SPREADS ? attempt : SPREADS) - 1] * (random / 2147483648.0 - 1.0);
+        }
+        if (attempt > 0) move(by, y, x);
+        if (descend(by, x)) return 1;
+    }
+    return 0;
+}
+
+static int start_at(const drive *by, double kept[], const double given[]) {
+    double x[COORDINATES], y[VELOCITIES][SIDES];
+    for (int k = 0; k < COORDINATES; ++k) x[k] = start[k];
+    const int status = follow(by, given, MOST_SUBSTEPS, x, y);
+    if (status == TOO_FAR && !closable(by, x, given)) return NOT_CLOSED;
+    if (status != CLOSED_POSE) return status;
+    for (int i = 0; i < by->asked; ++i) { /* turns are counted from here: those given as given, others from the start */
+        const int k = coordinates[by->asked_velocity[i]];
+        if (by->asked_circular[i]) x[k] = start[k] + remainder(x[k] - start[k], TURN);
+    }
+    for (int k = 0; k < by->given; ++k) x[coordinates[by->given_velocity[k]]] = given[k];
+    for (int k = 0; k < COORDINATES; ++k) kept[k] = x[k];
     return CLOSED_POSE;
 }

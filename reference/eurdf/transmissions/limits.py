@@ -298,24 +298,32 @@ def motor_ranges(robot: Robot, motors: tuple[str, ...]) -> tuple[Vector, Vector,
     """Smallest and largest torque, and largest velocity, of each motor velocity; infinite if there is no limit.
 
     Raises:
-        ValueError: A torque range does not include zero, or a velocity limit is not positive.
+        ValueError: The effort or velocity limit of a motor is not positive, or its control range is not from below to
+            above zero.
     """
     control = dict(zip(robot.actuation.idx_v.tolist(), robot.actuation.control.tolist(), strict=True))
     of: dict[str, tuple[float, float, float]] = {}
     for name, slot in robot.slots.items():
         for k in range(slot.nv):
             properties = slot.joint.properties
+            label = name if slot.nv == 1 else f"{name}[{k}]"
+            if label not in motors:
+                continue
             effort = properties.effort[k] if properties.effort else np.inf
             velocity = properties.velocity[k] if properties.velocity else np.inf
             lower, upper = control.get(slot.idx_v + k, (-np.inf, np.inf))
-            label = name if slot.nv == 1 else f"{name}[{k}]"
+            for word, limit in (("effort", effort), ("velocity", velocity)):
+                if not limit > 0.0:
+                    raise ValueError(
+                        f"motor '{label}' has the {word} limit {limit + 0.0:g}; state a positive one: {word} in the "
+                        f"<limit> of joint '{name}', or in its limits in the description"
+                    )
+            if not lower < 0.0 < upper:
+                raise ValueError(
+                    f"motor '{label}' has the control range {lower + 0.0:g} to {upper + 0.0:g}; state one from below "
+                    "to above zero, so that it drives both ways: control of the actuator in the description"
+                )
             of[label] = max(lower, -effort), min(upper, effort), velocity
-    for motor in motors:
-        lower, upper, velocity = of[motor]
-        if not lower < 0.0 < upper:
-            raise ValueError(f"motor '{motor}' has the torque range {lower:g} to {upper:g}; it must include zero")
-        if not velocity > 0.0:
-            raise ValueError(f"motor '{motor}' has the velocity limit {velocity:g}; expected a positive one")
     lowers, uppers, fastest = np.array([of[motor] for motor in motors]).T
     return lowers, uppers, fastest
 
@@ -326,7 +334,11 @@ def _finite_ranges(robot: Robot, motors: tuple[str, ...]) -> tuple[Vector, Vecto
     for values, word in ((np.maximum(uppers, -lowers), "effort"), (fastest, "velocity")):
         if not np.isfinite(values).all():
             motor = motors[int(np.argmin(np.isfinite(values)))]
-            raise ValueError(f"motor '{motor}' has no {word} limit; state one in the description")
+            joint = motor.partition("[")[0]
+            raise ValueError(
+                f"motor '{motor}' has no {word} limit; state one: {word} in the <limit> of joint '{joint}', or in its "
+                "limits in the description"
+            )
     return lowers, uppers, fastest
 
 

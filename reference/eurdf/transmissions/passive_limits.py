@@ -54,8 +54,8 @@ def passive_limits(robot: Robot, q: Vector) -> tuple[PassiveLimit, ...]:
     Raises:
         NoTransmission: The actuators depend on each other, or are at a dead point.
         NotClosable: The loops are open at q.
-        ValueError: An actuator is planar, spherical or floating, has a torque range without zero, or a velocity limit
-            that is not positive; or springs block actuators.
+        ValueError: An actuator is planar, spherical or floating, has an effort or velocity limit that is not positive,
+            or a control range that is not from below to above zero; or springs block actuators.
     """
     actuated = set(robot.actuation.joints)
     joints = [name for name, _ in selectable(robot) if name not in actuated]

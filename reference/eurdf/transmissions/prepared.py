@@ -9,7 +9,7 @@ import numpy as np
 
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.transmissions.c_source import CSource, c_source
-from eurdf.transmissions.drive import Drive, closed_pose
+from eurdf.transmissions.drive import STEPS, Drive, closed_pose
 from eurdf.transmissions.exceptions import NoTransmission
 from eurdf.transmissions.joint_coordinates import JointCoordinates, coordinates_of
 from eurdf.transmissions.motors import motors_of
@@ -58,11 +58,11 @@ class PreparedTransmission:
     def __init__(self, at: Transmission, joints: JointCoordinates, motors: JointCoordinates) -> None:
         self._at, self._joints, self._motors = at, joints, motors
         self.joints, self.motors = at.joints, at.motors
-        self._q = at.q
+        self._first = self._q = at.q
         self._by_joints = Drive(at, joints, motors)
         self._by_motors: Drive | None = None
         # Last positions of joints without limits, whose turns are counted from call to call.
-        self._angles: dict[Drive, Vector] = {}
+        self._angles: dict[JointCoordinates, Vector] = {}
 
     @property
     def q(self) -> Vector:
@@ -70,14 +70,42 @@ class PreparedTransmission:
         return np.array(self._q)
 
     def reset(self, q: Vector) -> None:
-        """Start from another closed pose (nq,), which can be on another branch.
+        """Start from another closed pose (nq,), which can be on another branch. It is the first pose from here on.
 
         Raises:
             NotClosable: The loops cannot be closed near q.
             ValueError: ``q`` is not a configuration.
         """
-        self._q = closed_pose(self._at.robot, q)
+        self._first = self._q = closed_pose(self._at.robot, q)
         self._angles.clear()
+
+    def start_at_joints(self, positions: Vector) -> None:
+        """Start at positions of the serial joints, reached from the first pose instead of the last one.
+
+        Args:
+            positions: Positions (nJ,) of the serial joints, rad or m. Turns are counted from here.
+
+        Raises:
+            NotClosable: The loops cannot be closed at the positions.
+            TooFar: They can, but not everywhere on the straight path from the first pose.
+            NoTransmission: The joints do not determine the motors there.
+            ValueError: ``positions`` does not fit.
+        """
+        self._start_at(self._by_joints, positions)
+
+    def start_at_motors(self, positions: Vector) -> None:
+        """Start at positions of the motors, reached from the first pose instead of the last one.
+
+        Args:
+            positions: Positions (nm,) of the motors, rad or m. Turns are counted from here.
+
+        Raises:
+            NotClosable: The loops cannot be closed at the positions.
+            TooFar: They can, but not everywhere on the straight path from the first pose.
+            NoTransmission: The motors do not determine the joints there.
+            ValueError: ``positions`` does not fit.
+        """
+        self._start_at(self._drive_of_motors, positions)
 
     def at_joints(self, positions: Vector) -> MotorSide:
         """The motors at positions of the serial joints.
@@ -90,7 +118,8 @@ class PreparedTransmission:
             call before.
 
         Raises:
-            NotClosable: The serial joints cannot reach the positions, on the straight path from the last pose.
+            NotClosable: The loops cannot be closed at the positions.
+            TooFar: They can, but not everywhere on the straight path from the last pose.
             NoTransmission: The joints do not determine the motors there.
             ValueError: ``positions`` does not fit.
         """
@@ -106,30 +135,35 @@ class PreparedTransmission:
             Positions of the serial joints and B; as to angles without limits, see `at_joints`.
 
         Raises:
-            NotClosable: The motors cannot reach the positions, on the straight path from the last pose.
+            NotClosable: The loops cannot be closed at the positions.
+            TooFar: They can, but not everywhere on the straight path from the last pose.
             NoTransmission: The motors do not determine the joints there.
             ValueError: ``positions`` does not fit.
         """
         return SerialSide(*self._move(self._drive_of_motors, positions))
 
-    def c_source(self, prefix: str | None = None, *, steps: int = 4) -> CSource:
+    def c_source(self, prefix: str | None = None, *, steps: int = STEPS, substeps: int = 16) -> CSource:
         """The same as dependency-free C99: a header and a source file.
 
-        Each call takes a fixed number of Newton steps from the last pose, allocates nothing, and returns a status. The
-        function from motors to joints is left out where the motors cannot be given, since they depend on each other.
-        There is no division of long motions: call it often enough, or for positions in between.
+        Each function allocates nothing, takes a bounded number of steps, and returns a status: ``NOT_CLOSED`` where
+        Python raises `NotClosable`, ``TOO_FAR`` for `TooFar`, ``SINGULAR`` for `NoTransmission`, ``NOT_FINITE`` for
+        `ValueError`. The functions from motors to joints are left out where the motors depend on each other.
+
+        A call at a cycle takes fewer substeps than in Python and does not search for closed poses. It
+        returns ``TOO_FAR`` where it does not reach the positions.
 
         Args:
             prefix: Of the names in C, and name of the files. By default the robot's name and ``_transmission``.
-            steps: Number of Newton steps.
+            steps: Number of Newton steps in a substep.
+            substeps: Maximum number of substeps of a call at a cycle. With 1, each call takes the same time.
 
         Returns:
-            The files; they start at the last pose.
+            The files. Their first pose is the last one here.
 
         Raises:
             ValueError: An argument does not fit; or a joint or constraint is of a type that C does not support.
         """
-        return c_source(self._at.robot, self._by_joints, self._inverse(), self._q, prefix, steps)
+        return c_source(self._at.robot, self._by_joints, self._inverse(), self._q, prefix, steps, substeps)
 
     def _inverse(self) -> Drive | None:
         """What moves the motors; None if that is not possible."""
@@ -145,13 +179,23 @@ class PreparedTransmission:
         return self._by_motors
 
     def _move(self, drive: Drive, positions: Vector) -> tuple[Vector, Matrix]:
+        asked = drive.asked
         q, derivative = drive.move(self._q, positions)
-        found = drive.asked.read(q)
-        if drive.asked.circular.any():
-            before = self._angles.get(drive, drive.asked.read(self._q))
-            found = self._angles[drive] = drive.asked.nearest(found, before)
+        found = asked.read(q)
+        if asked.circular.any():
+            before = self._angles.get(asked, asked.read(self._q))
+            found = self._angles[asked] = asked.nearest(found, before)
         self._q = q
         return found, derivative
+
+    def _start_at(self, drive: Drive, positions: Vector) -> None:
+        given, asked = drive.given, drive.asked
+        q, _ = drive.move(self._first, positions)
+        self._angles = {
+            given: np.array(positions, dtype=np.float64),
+            asked: asked.nearest(asked.read(q), asked.read(self._first)),
+        }
+        self._q = q
 
 
 def prepare_transmission(
@@ -161,8 +205,8 @@ def prepare_transmission(
 
     Newton's method starts from the pose of the call before: with r(q) = 0 the constraints, x the other joints of the
     loops and g the given ones, K_x Δx = -r with g held, and dx/dg = -K_x⁺ K_g at the solution. Where the motion since
-    then is long, or the correction is not small against the tangent, `eurdf.forward_kinematics` follows the path.
-    Springs are held as in `eurdf.transmission`.
+    then is long, where it does not converge in few steps, or where these are not small against the first one, the
+    motion is divided into substeps on a straight path. Springs are held as in `eurdf.transmission`.
 
     Args:
         robot: The robot.
