@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 import eurdf
 from eurdf.exceptions import EurdfError
 from eurdf.kinematics.assembly import assemble
-from eurdf.kinematics.exceptions import DependentActuators, NotClosable
+from eurdf.kinematics.exceptions import DependentActuators, NotClosable, TooFar
 from eurdf.kinematics.forward_kinematics import forward_kinematics
 from eurdf.kinematics.residual import residual, residual_and_jacobian
 from eurdf.kinematics.sensitivity import actuated_jacobian, dq_dq_actuated
@@ -155,7 +155,7 @@ def test_blocked_path_differs_from_open_goal() -> None:
     robot = crank_and_rocker(4.5)
     q0 = assemble(robot, np.array([0.3, 0.6, -1.0])).q
     # The path passes the angle at which the crank points away; the goal is one full turn from a reachable angle.
-    with pytest.raises(NotClosable, match="not on a straight path"):
+    with pytest.raises(TooFar, match="not on a straight path"):
         forward_kinematics(robot, np.array([2.0 * np.pi + 0.3]), q0)
     assert forward_kinematics(robot, np.array([-0.3]), q0)[0] == -0.3
 
