@@ -5,11 +5,14 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-# A module in the folder of the program or in the working directory is not one that it means. The package may be where
-# only this process looks for it.
+# A module in the working directory is not one that the program means. This package may be in a folder that only the
+# process of the caller has added to those that it searches.
 _RUN = """\
 import sys
-sys.path = [*filter(None, sys.path), sys.argv.pop()]
+package = sys.argv.pop()
+sys.path = [folder for folder in sys.path if folder]
+if package not in sys.path:
+    sys.path.insert(0, package)
 import runpy
 runpy.run_path(sys.argv[1], run_name="__main__")
 """

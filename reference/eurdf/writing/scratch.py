@@ -32,8 +32,8 @@ def scratch_folder(beside: Path) -> Iterator[Path]:
     Raises:
         OSError: It cannot be made.
     """
-    for entry in os.listdir(beside):
-        if _NAME.fullmatch(entry):
+    with contextlib.suppress(OSError):
+        for entry in filter(_NAME.fullmatch, os.listdir(beside)):
             with contextlib.suppress(OSError), _locked(beside / entry) as is_abandoned:
                 if is_abandoned:
                     shutil.rmtree(beside / entry, ignore_errors=True)
