@@ -317,7 +317,7 @@ def test_dragged_handle_moves_its_frame_and_returns_to_it(viewer: eurdf.Viewer) 
     viewer._worker.call(lambda: session.move(0, 0.3))
     frame = next(each.child for each in viewer.robot.mechanism.joints if each.parent == joint.child)
     body = viewer._first.figure.scene.bodies.index(frame)
-    there = viewer._first.figure.scene.at(session.q).poses[body].translation.copy()
+    there = viewer._first.figure.scene.at(session.q).origins[body]
     viewer._worker.call(session.reset)
     gizmo._choice.value = frame
     viewer._worker.call(gizmo._put)

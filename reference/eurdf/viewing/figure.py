@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pinocchio as pin
 
 from eurdf.kinematics.array import Matrix, Vector
 from eurdf.viewing.scene import Placed, Scene
@@ -43,7 +44,7 @@ class Figure:
     """
 
     def __init__(self, server: viser.ViserServer, scene: Scene, root: str, origin: Vector) -> None:
-        """Add the nodes.
+        """Add the nodes, hidden: pages show what is sent bit by bit, and no body has its place yet.
 
         Args:
             server: The server of the page.
@@ -53,7 +54,7 @@ class Figure:
         """
         self.scene = scene
         self._api = server.scene
-        self._root = self._api.add_frame(root, show_axes=False, position=origin)
+        self._root = self._api.add_frame(root, show_axes=False, position=origin, visible=False)
         self._placed: Placed | None = None
         self.shown = {**LAYERS, "skeleton": not scene.has_visuals}
         self._texts: list[str] = []
@@ -128,9 +129,13 @@ class Figure:
     def place(self, placed: Placed) -> None:
         """Move everything to where it is now."""
         before, self._placed = self._placed, placed
-        for number, (node, pose) in enumerate(zip(self._bodies, placed.poses, strict=True)):
-            if before is None or before.poses[number] != pose:
-                node.position, node.wxyz = pose.translation, _wxyz(pose)
+        moved = np.ones(len(self._bodies), dtype=bool) if before is None else (before.poses != placed.poses).any(axis=1)
+        origins, wxyzs = placed.origins, placed.wxyzs
+        for number in np.flatnonzero(moved):
+            node = self._bodies[number]
+            # viser sends no change of less than 1e-5 of a value; nothing is that close to what is no number.
+            node.position[:], node.wxyz[:] = np.nan, np.nan
+            node.position, node.wxyz = origins[number], wxyzs[number]
         self._place_shared()
         self._place_labels()
 
@@ -152,6 +157,10 @@ class Figure:
             _DEPENDENT if axis.joint in joints else _ACTUATED if axis.actuated else _PASSIVE for axis in self.scene.axes
         ]
         self._lines["joint axes"][0].colors = _line_colors(colors)
+
+    def show(self) -> None:
+        """Show the nodes, which have their place."""
+        self._root.visible = True
 
     def remove(self) -> None:
         """Remove all of its nodes."""
@@ -196,8 +205,7 @@ class Figure:
             self._dots.points = self.scene.closure_lines(placed)[:, 1].reshape(-1, 3)
             self._color_closures(placed)
         if self.shown["link frames"]:
-            self._axes.batched_positions = np.array([pose.translation for pose in placed.poses])
-            self._axes.batched_wxyzs = np.array([_wxyz(pose) for pose in placed.poses])
+            self._axes.batched_positions, self._axes.batched_wxyzs = placed.origins, placed.wxyzs
 
     def _color_closures(self, placed: Placed) -> None:
         """Show the line from A to B of an open closure in its own colour; a closed distance closure has a line too."""
@@ -221,20 +229,14 @@ class Figure:
             if visible:
                 label.text = str(opening)
                 body, pose = link.bodies[0], link.poses[0]
-                label.position = placed.poses[body].act(pose.translation)
+                label.position = placed.pose(body).act(pose.translation)
             if label.visible != visible:
                 label.visible = visible
 
 
 def _wxyz(pose: Any) -> Vector:
-    x, y, z, w = np.asarray(_quaternion(pose))
+    x, y, z, w = pin.SE3ToXYZQUAT(pose)[3:]
     return np.array((w, x, y, z))
-
-
-def _quaternion(pose: Any) -> Vector:
-    import pinocchio as pin
-
-    return np.asarray(pin.SE3ToXYZQUAT(pose)[3:])
 
 
 def _line_colors(colors: list[tuple[int, int, int]]) -> Any:

@@ -98,12 +98,7 @@ class Viewer:
         """
         origin = checked_array("xyz", xyz, (3,))
 
-        def added() -> ShownRobot:
-            shown = self._shown(robot, q, origin)
-            shown.place()
-            return shown
-
-        shown: ShownRobot = self._worker.call(added)
+        shown: ShownRobot = self._worker.call(lambda: self._shown(robot, q, origin))
         return shown
 
     def save(self, file: str | os.PathLike[str]) -> Path:
