@@ -231,3 +231,18 @@ def test_pause_is_served_while_a_step_is_computed(monkeypatch: pytest.MonkeyPatc
         page.set(f"{slider.label} ({slider.unit})", 0.2)
         page.wait_for(lambda: viewer._first.session.value(0) == pytest.approx(0.2))
         ends.set()
+
+
+def test_gravity_that_diverges_ends_with_a_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+    def diverges(*_: Any, **options: Any) -> Any:
+        raise eurdf.SimulationDiverged(0.0, options["step"])
+
+    with eurdf.view("four_bar", port=0) as viewer, ViewerClient(viewer.url) as page:
+        page.click("gravity")
+        page.wait_for(lambda: page.says("gravity: 0."))
+        monkeypatch.setattr(playback, "simulate", diverges)
+        page.wait_for(lambda: page.says("gravity ends after"))
+        pause = page.control("pause")
+        assert pause is not None
+        page.wait_for(lambda: page.controls[pause]["disabled"])
+        assert not viewer._worker.is_playing

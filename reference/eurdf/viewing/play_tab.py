@@ -103,10 +103,20 @@ class PlayTab:
 
     def _start(self, kind: Kind, frames: Callable[[], Iterator[float]]) -> None:
         def begin() -> None:
-            self._frames, self._plays = frames(), kind
+            self._frames, self._plays = self._to_the_end(frames()), kind
             self._page.worker.play(self._frames)
 
         self._page.worker.ask("play", begin)
+
+    def _to_the_end(self, frames: Iterator[float]) -> Iterator[float]:
+        """The frames; after the last one, or an error, there is nothing to pause."""
+        try:
+            yield from frames
+        except Exception:
+            self._frames = None
+            raise
+        self._frames = None
+        self._page.shown.place()
 
     def _toggle(self) -> None:
         self._page.worker.play(None if self._page.worker.is_playing else self._frames)

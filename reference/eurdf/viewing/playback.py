@@ -13,7 +13,7 @@ import numpy as np
 import pinocchio as pin
 
 from eurdf.kinematics.array import Vector
-from eurdf.kinematics.exceptions import NotClosable
+from eurdf.kinematics.exceptions import NotClosable, SimulationDiverged
 from eurdf.kinematics.forward_kinematics import forward_kinematics
 from eurdf.kinematics.simulation import simulate
 from eurdf.pinocchio.robot import build_robot
@@ -94,6 +94,7 @@ def gravity_frames(session: Session, show: Show, *, dissipation: bool, held: boo
 
     Raises:
         EurdfError: The motion cannot be computed, such as that of a joint without inertia.
+        ValueError: The motion is too fast for the time step.
     """
     budget = StepBudget()
     q: Vector = np.full(session.robot.tree.nq, np.nan)
@@ -109,9 +110,15 @@ def gravity_frames(session: Session, show: Show, *, dissipation: bool, held: boo
             running = thread.submit(fall.advance, count, dissipation)
             while not running.done():
                 yield _POLL
-            reached, seconds = running.result()
             if not np.array_equal(q, session.q):
                 continue  # the user moved it meanwhile
+            try:
+                reached, seconds = running.result()
+            except SimulationDiverged:
+                raise ValueError(
+                    f"gravity ends after {elapsed:.2f} s: the motion is too fast for time steps of {1e3 * _STEP:.1f} ms, "
+                    "as near a singularity; 'reset' returns to the start"
+                ) from None
             budget.took(seconds)
             begin = time.monotonic()
             session.show(reached)

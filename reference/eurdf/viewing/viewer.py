@@ -142,7 +142,8 @@ class Viewer:
 
     def _report(self, error: Exception) -> None:
         """Show an error of what the user did."""
-        self._page.say(str(error) if isinstance(error, EurdfError) else f"{type(error).__name__}: {error}")
+        known = isinstance(error, (EurdfError, ValueError))
+        self._page.say(str(error) if known else f"{type(error).__name__}: {error}")
 
     def _look_at_first(self) -> None:
         scene = self._first.figure.scene
