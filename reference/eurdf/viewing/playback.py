@@ -116,7 +116,7 @@ def gravity_frames(session: Session, show: Show, *, dissipation: bool, held: boo
                 reached, seconds = running.result()
             except SimulationDiverged:
                 raise ValueError(
-                    f"gravity ends after {elapsed:.2f} s: the motion is too fast for time steps of {1e3 * _STEP:.1f} ms, "
+                    f"gravity ends after {elapsed:.2f} s: the motion is too fast for steps of {1e3 * _STEP:.1f} ms, "
                     "as near a singularity; 'reset' returns to the start"
                 ) from None
             budget.took(seconds)
