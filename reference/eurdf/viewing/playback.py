@@ -126,7 +126,7 @@ def gravity_frames(session: Session, show: Show, *, dissipation: bool, held: boo
             simulated = count * _STEP
             elapsed += simulated
             pace = simulated / (spent + seconds)
-            slow = "" if pace >= 1.0 else f", slow motion: {100.0 * pace:.0f} % of real time"
+            slow = "" if pace >= 1.0 else f", slow motion: {100.0 * pace:.2g} % of real time"
             show(f"gravity: {elapsed:.2f} s{slow}")
             spent = time.monotonic() - begin
             yield max(0.0, simulated - seconds - spent)
