@@ -92,6 +92,11 @@ class ViewerClient:
         placed = [self.nodes[f"{root}/body{number}"] for number in range(count)]
         return [(*node["position"], *node["wxyz"]) for node in placed]
 
+    def without_place(self, robot: int) -> bool:
+        """Whether a body of a robot has something to show before it was told where it is."""
+        new = {name for name, node in self.nodes.items() if "new" in node and name.startswith(f"/robot{robot}/version")}
+        return any(name.rpartition("/")[0] in new for name in self.nodes if name.count("/") == 4)
+
     def control(self, label: str) -> str | None:
         """The identifier of the control with this label, if there is one."""
         return next((key for key, each in self.controls.items() if each.get("label") == label), None)
@@ -149,6 +154,7 @@ class ViewerClient:
         kind, name = message["type"], message.get("name", "")
         if kind == "SetPositionMessage":
             self.nodes[name]["position"] = message["position"]
+            self.nodes[name].pop("new", None)
         elif kind == "SetOrientationMessage":
             self.nodes[name]["wxyz"] = message["wxyz"]
         elif kind == "SetSceneNodeVisibilityMessage":
@@ -169,6 +175,8 @@ class ViewerClient:
             self.controls[message["uuid"]] = {**message["props"], "value": message.get("value")}
         elif "props" in message and name:
             self.nodes[name] = {"position": (0.0, 0.0, 0.0), "wxyz": (1.0, 0.0, 0.0, 0.0)}
+            if message["type"] == "FrameMessage":
+                self.nodes[name]["new"] = ()
 
 
 def differ(found: list[tuple[float, ...]], expected: list[tuple[float, ...]]) -> float:

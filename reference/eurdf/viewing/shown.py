@@ -104,8 +104,7 @@ class ShownRobot:
         """Nodes of their own, at the state of the session."""
         scene = Scene(self.robot, self.session.q)
         self._versions += 1
-        figure = Figure(self._server, scene, f"{self._node}/version{self._versions}", self._origin)
+        placed = scene.at(self.session.q)
+        figure = Figure(self._server, scene, placed, f"{self._node}/version{self._versions}", self._origin)
         figure.highlight(frozenset(name for each in self.session.analysis.dependent_actuators for name in each))
-        figure.place(scene.at(self.session.q))
-        figure.show()
         return figure
