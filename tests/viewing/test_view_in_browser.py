@@ -135,9 +135,9 @@ def test_slider_moves_what_is_drawn(chromium: Any) -> None:
         viewer._worker.call(lambda: viewer._first.figure.toggle("closures", False))
         before = still_picture(page)
         drag_slider(page, 0, 0.2)
-        until(lambda: changed(before, picture(page)) > 0.01, page)
+        until(lambda: changed(before, picture(page)) > 0.015, page)
         page.get_by_role("button", name="reset").click()
-        until(lambda: changed(before, picture(page)) < 1e-3, page)
+        until(lambda: changed(before, picture(page)) < 0.006, page)  # but for the shadow, which viser draws once
         assert errors == []
         page.close()
 
