@@ -8,9 +8,7 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Any
 
-import msgspec
 import numpy as np
-import zstandard
 
 #: Time within which the server has to do what it is asked for, s.
 PATIENCE = 60.0
@@ -131,9 +129,13 @@ class ViewerClient:
         self._send(type="TransformControlsDragEndMessage", name=name)
 
     def _send(self, **message: Any) -> None:
+        import msgspec
+
         self._socket.send(msgspec.msgpack.encode(message))
 
     def _receive(self) -> None:
+        import msgspec
+        import zstandard
         from websockets.exceptions import ConnectionClosed
 
         try:
