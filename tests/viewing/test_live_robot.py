@@ -49,7 +49,9 @@ def configuration(robot: eurdf.Robot, data: dict[str, Any], q: Sequence[Sequence
 
 def poses(robot: eurdf.Robot, q: Any) -> Any:
     """Rotation and origin of each body in the world (n, 12)."""
-    return np.array([np.r_[pose.rotation.ravel(), pose.translation] for pose in Scene(robot, q).at(q).poses])
+    scene = Scene(robot, q)
+    placed = [scene.at(q).pose(body) for body in range(len(scene.bodies))]
+    return np.array([np.r_[pose.rotation.ravel(), pose.translation] for pose in placed])
 
 
 def assert_same_kinematics(robot: eurdf.Robot, data: dict[str, Any], state: dict[str, Any]) -> None:

@@ -59,12 +59,36 @@ def drag_slider(page: Any, number: int, part: float) -> None:
     page.mouse.up()
 
 
-def colors(page: Any) -> int:
-    """How many colours the picture of a page has: one or few if nothing is drawn."""
+def picture(page: Any) -> Any:
+    """What a page has drawn."""
     from PIL import Image
 
-    picture = Image.open(io.BytesIO(page.locator("canvas").first.screenshot(timeout=60_000)))
-    return len(picture.convert("RGB").getcolors(1 << 24))
+    return Image.open(io.BytesIO(page.locator("canvas").first.screenshot(timeout=60_000))).convert("RGB")
+
+
+def colors(page: Any) -> int:
+    """How many colours the picture of a page has: one or few if nothing is drawn."""
+    return len(picture(page).getcolors(1 << 24))
+
+
+def changed(before: Any, after: Any) -> float:
+    """The part of a picture whose pixels differ visibly, beside the panel."""
+    beside = (slice(None), slice(0, before.width - 420))
+    a, b = (np.asarray(each, dtype=int)[beside] for each in (before, after))
+    return float((np.abs(a - b).max(axis=2) > 30).mean())
+
+
+def still_picture(page: Any) -> Any:
+    """What a page has drawn once it draws the same twice."""
+    found = [picture(page)]
+
+    def is_still() -> bool:
+        page.wait_for_timeout(500)
+        found.append(picture(page))
+        return changed(*found[-2:]) < 1e-4
+
+    until(is_still, page)
+    return found[-1]
 
 
 def test_slider_moves_the_robot_with_loops_closed(chromium: Any) -> None:
@@ -100,6 +124,37 @@ def test_slider_moves_the_robot_with_loops_closed(chromium: Any) -> None:
         page.get_by_text("no errors, no warnings").wait_for()
         assert errors == []
         page.close()
+
+
+def test_slider_moves_what_is_drawn(chromium: Any) -> None:
+    """The bodies themselves, without dots and lines, and back again."""
+    with eurdf.view("digit_leg", port=0) as viewer:
+        page, errors = opened(chromium, viewer.url)
+        page.set_viewport_size({"width": 1200, "height": 800})
+        page.get_by_text("loops are closed").wait_for()
+        viewer._worker.call(lambda: viewer._first.figure.toggle("closures", False))
+        before = still_picture(page)
+        drag_slider(page, 0, 0.2)
+        until(lambda: changed(before, picture(page)) > 0.015, page)
+        page.get_by_role("button", name="reset").click()
+        until(lambda: changed(before, picture(page)) < 0.006, page)  # but for the shadow, which viser draws once
+        assert errors == []
+        page.close()
+
+
+def test_page_says_when_the_server_has_ended(chromium: Any) -> None:
+    with eurdf.view("four_bar", port=0) as viewer:
+        page, errors = opened(chromium, viewer.url)
+        page.get_by_text("loops are closed").wait_for()
+        ended = page.get_by_text("the viewer has ended; run `eurdf view …` again")
+        page.wait_for_timeout(3000)
+        assert not ended.is_visible()
+        port = int(viewer.url.rpartition(":")[2])
+    ended.wait_for(timeout=30_000)
+    with eurdf.view("four_bar", port=port):
+        ended.wait_for(state="hidden", timeout=30_000)
+    assert errors == []
+    page.close()
 
 
 def test_dragged_frame_moves_the_robot_with_loops_closed(chromium: Any) -> None:

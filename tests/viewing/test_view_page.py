@@ -27,7 +27,7 @@ from eurdf.viewing.graph import graph_svg
 from eurdf.viewing.server import is_allowed
 from eurdf.viewing.session import Session
 from eurdf.viewing.worker import Worker
-from eurdf.writing.saved_configuration import CannotSave
+from eurdf.writing.saved_configuration import CannotSave, ConfigurationExists
 
 COLLECTION = Path(__file__).parents[2] / "robots"
 MISSING = "viser is not installed: pip install -e '.[view]'"
@@ -68,6 +68,38 @@ def test_pages_of_other_sites_are_refused(viewer: eurdf.Viewer) -> None:
     assert closed.value.rcvd.code == 1008
 
 
+def test_name_that_leads_here_from_elsewhere_is_refused() -> None:
+    """A site can let its name lead to any address: then the origin of its page is the host that the page asks for."""
+    pytest.importorskip("viser", reason=MISSING)
+    import viser
+    from websockets.exceptions import ConnectionClosed
+    from websockets.sync.client import connect
+
+    with eurdf.view("four_bar", host="0.0.0.0", port=0) as viewer:
+        port = int(viewer.url.rpartition(":")[2])
+
+        def answer(name: str) -> bytes | str:
+            with (
+                socket.create_connection(("127.0.0.1", port)) as route,
+                connect(
+                    f"ws://{name}:{port}",
+                    sock=route,
+                    subprotocols=[f"viser-v{viser.__version__}"],
+                    origin=f"http://{name}:{port}",
+                    max_size=None,
+                ) as page,
+            ):
+                return page.recv(timeout=10)
+
+        for own in ("localhost", "127.0.0.1", "192.0.2.7", "[::1]", socket.gethostname()):
+            assert answer(own)
+        for other in ("evil.example", "localhost.evil.example", f"{socket.gethostname()}.evil.example"):
+            with pytest.raises(ConnectionClosed) as closed:
+                answer(other)
+            assert closed.value.rcvd is not None
+            assert closed.value.rcvd.code == 1008
+
+
 @pytest.mark.parametrize(
     ("origin", "host", "listens", "allowed"),
     [
@@ -79,11 +111,16 @@ def test_pages_of_other_sites_are_refused(viewer: eurdf.Viewer) -> None:
         ("http://example.com:8080", "example.com:8080", "127.0.0.1", False),  # a name that leads to this machine
         ("null", "127.0.0.1:8080", "127.0.0.1", False),
         ("http://robot.lab:8080", "robot.lab:8080", "0.0.0.0", True),
+        ("http://alias.lab:8080", "alias.lab:8080", "0.0.0.0", False),
+        ("http://alias.lab:8080", "alias.lab:8080", "Alias.lab", True),  # the host of the command line
+        ("http://10.0.0.5:8080", "10.0.0.5:8080", "0.0.0.0", True),
+        ("http://10.0.0.6", "10.0.0.5:8080", "0.0.0.0", False),
+        ("http://[::1", "[::1", "0.0.0.0", False),
         ("https://example.com", "robot.lab:8080", "0.0.0.0", False),
     ],
 )
-def test_origin_of_a_page_decides(origin: str | None, host: str, listens: str, allowed: bool) -> None:
-    assert is_allowed(origin, host, listens) is allowed
+def test_origin_and_host_of_a_page_decide(origin: str | None, host: str, listens: str, allowed: bool) -> None:
+    assert is_allowed(origin, host, listens, {"robot.lab"}) is allowed
 
 
 def test_port_in_use_is_an_error_and_default_is_the_next(capsys: pytest.CaptureFixture[str]) -> None:
@@ -223,9 +260,15 @@ def test_pose_is_saved_to_the_description_and_comments_stay(tmp_path: Path) -> N
     robot = eurdf.load(tmp_path, strict=True)
     assert robot.coordinates(robot.configurations["bent knee"])["motor_crank"] == pytest.approx((0.4,))
     assert np.abs(eurdf.residual(robot, robot.configurations["bent knee"])).max() < 1e-12
-    assert files.has_changed
+    assert not files.has_changed
     assert files.save("bent knee", session).endswith("already has this configuration")
     assert (tmp_path / "robot.yaml").read_text() == text_
+    session.reset()
+    with pytest.raises(ConfigurationExists, match="already has a different configuration 'bent knee'"):
+        files.save("bent knee", session)
+    (tmp_path / "robot.yaml").write_text(text_ + "# by hand\n")
+    files.save("another", session)
+    assert files.has_changed  # by hand, which is still to be shown
     session.show(session.robot.tree.integrate(session.q, np.full(session.robot.tree.nv, 0.3)))
     with pytest.raises(CannotSave, match="the loops are open"):
         files.save("open", session)
@@ -317,7 +360,7 @@ def test_dragged_handle_moves_its_frame_and_returns_to_it(viewer: eurdf.Viewer) 
     viewer._worker.call(lambda: session.move(0, 0.3))
     frame = next(each.child for each in viewer.robot.mechanism.joints if each.parent == joint.child)
     body = viewer._first.figure.scene.bodies.index(frame)
-    there = viewer._first.figure.scene.at(session.q).poses[body].translation.copy()
+    there = viewer._first.figure.scene.at(session.q).origins[body]
     viewer._worker.call(session.reset)
     gizmo._choice.value = frame
     viewer._worker.call(gizmo._put)

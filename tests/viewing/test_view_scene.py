@@ -51,15 +51,26 @@ def test_bodies_are_where_the_model_has_them() -> None:
     scene = Scene(robot, q)
     placed = scene.at(q)
     pin.framesForwardKinematics(robot.model, robot.data, q)
-    for name, pose in zip(scene.bodies, placed.poses, strict=True):
+    for number, name in enumerate(scene.bodies):
         frame = robot.model.getFrameId(name, pin.FrameType.BODY)
-        assert pose.isApprox(robot.data.oMf[frame], 1e-12), name
+        assert placed.pose(number).isApprox(robot.data.oMf[frame], 1e-12), name
     # The same for each shape, with Pinocchio's placements.
     data = robot.visual_model.createData()
     pin.updateGeometryPlacements(robot.model, robot.data, robot.visual_model, data, q)
     visuals = [part for part in scene.parts if part.kind == "visual"]
     for part, oMg in zip(visuals, data.oMg, strict=True):
-        assert (placed.poses[part.body] * part.pose).isApprox(oMg, 1e-12)
+        assert (placed.pose(part.body) * part.pose).isApprox(oMg, 1e-12)
+
+
+def test_what_is_placed_stays_when_the_robot_moves_on() -> None:
+    robot = eurdf.load("digit_leg")
+    closed = robot.configurations["assembled"]
+    scene = Scene(robot, closed)
+    placed = scene.at(closed)
+    before = placed.poses.copy()
+    elsewhere = scene.at(pin.integrate(robot.model, closed, np.full(robot.model.nv, 0.1)))
+    assert (placed.poses == before).all()
+    assert np.abs(elsewhere.poses - before).max() > 0.1
 
 
 def test_closure_lines_meet_where_loops_are_closed() -> None:

@@ -6,8 +6,9 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pinocchio as pin
 
-from eurdf.kinematics.array import Matrix, Vector
+from eurdf.kinematics.array import Indices, Matrix, Vector
 from eurdf.viewing.scene import Placed, Scene
 
 if TYPE_CHECKING:
@@ -42,19 +43,20 @@ class Figure:
         shown: Whether each layer is shown.
     """
 
-    def __init__(self, server: viser.ViserServer, scene: Scene, root: str, origin: Vector) -> None:
-        """Add the nodes.
+    def __init__(self, server: viser.ViserServer, scene: Scene, placed: Placed, root: str, origin: Vector) -> None:
+        """Add the nodes where they are: pages show what is sent bit by bit.
 
         Args:
             server: The server of the page.
             scene: What there is to draw.
+            placed: Where it is.
             root: Name of the node above all of its nodes.
             origin: Where the world of the robot has its origin (3,), m.
         """
         self.scene = scene
         self._api = server.scene
         self._root = self._api.add_frame(root, show_axes=False, position=origin)
-        self._placed: Placed | None = None
+        self._placed = placed
         self.shown = {**LAYERS, "skeleton": not scene.has_visuals}
         self._texts: list[str] = []
         self._bodies = [
@@ -62,6 +64,7 @@ class Figure:
             self._api.add_frame(f"{root}/body{number}", show_axes=False)
             for number in range(len(scene.bodies))
         ]
+        self._place_bodies(np.arange(len(self._bodies)))  # before they have anything to show
         self._nodes: dict[str, list[Any]] = {layer: [] for layer in LAYERS}
         self._lines: dict[str, tuple[Any, Callable[[Placed], Matrix]]] = {}
         for number, part in enumerate(scene.parts):
@@ -87,11 +90,10 @@ class Figure:
             node = f"{root}/body{body}/frame{number}"
             self._add("frames", self._api.add_frame(node, axes_length=length, axes_radius=0.03 * length, **place))
             self._add("frames", self._api.add_label(f"{node}/name", name))
-        count = len(scene.bodies)
         self._axes = self._api.add_batched_axes(
             f"{root}/link_frames",
-            np.tile((1.0, 0.0, 0.0, 0.0), (count, 1)),
-            np.zeros((count, 3)),
+            placed.wxyzs,
+            placed.origins,
             axes_length=length,
             axes_radius=0.03 * length,
         )
@@ -106,7 +108,7 @@ class Figure:
         if scene.links:
             self._dots = self._api.add_point_cloud(
                 f"{root}/closure_frames",
-                np.zeros((2 * len(scene.links), 3)),
+                self._closure_dots(),
                 colors=_CLOSURE,
                 point_size=0.012 * scene.size,
                 point_shape="circle",
@@ -127,10 +129,9 @@ class Figure:
 
     def place(self, placed: Placed) -> None:
         """Move everything to where it is now."""
-        before, self._placed = self._placed, placed
-        for number, (node, pose) in enumerate(zip(self._bodies, placed.poses, strict=True)):
-            if before is None or before.poses[number] != pose:
-                node.position, node.wxyz = pose.translation, _wxyz(pose)
+        moved = (self._placed.poses != placed.poses).any(axis=1)
+        self._placed = placed
+        self._place_bodies(np.flatnonzero(moved))
         self._place_shared()
         self._place_labels()
 
@@ -173,7 +174,7 @@ class Figure:
             return
         node = self._api.add_line_segments(
             name,
-            np.zeros((count, 2, 3)),
+            at(self._placed),
             colors=_line_colors(colors) if isinstance(colors, list) else colors,
             thickness=pixels,
             thickness_units="screen",
@@ -181,23 +182,31 @@ class Figure:
         self._add(layer, node)
         self._lines[layer] = node, at
 
+    def _place_bodies(self, bodies: Indices) -> None:
+        origins, wxyzs = self._placed.origins, self._placed.wxyzs
+        for number in bodies:
+            node = self._bodies[number]
+            # viser sends no change of less than 1e-5 of a value; nothing is that close to what is no number.
+            node.position[:], node.wxyz[:] = np.nan, np.nan
+            node.position, node.wxyz = origins[number], wxyzs[number]
+
+    def _closure_dots(self) -> Matrix:
+        return self.scene.closure_lines(self._placed)[:, 1].reshape(-1, 3)
+
     def _closure_lines(self, placed: Placed) -> Matrix:
         return self.scene.closure_lines(placed).reshape(-1, 2, 3)
 
     def _place_shared(self) -> None:
         """Move what is one node for the whole robot, as far as it is shown."""
         placed = self._placed
-        if placed is None:
-            return
         for layer, (node, at) in self._lines.items():
             if self.shown[layer]:
                 node.points = at(placed)
         if self._dots is not None and self.shown["closures"]:
-            self._dots.points = self.scene.closure_lines(placed)[:, 1].reshape(-1, 3)
+            self._dots.points = self._closure_dots()
             self._color_closures(placed)
         if self.shown["link frames"]:
-            self._axes.batched_positions = np.array([pose.translation for pose in placed.poses])
-            self._axes.batched_wxyzs = np.array([_wxyz(pose) for pose in placed.poses])
+            self._axes.batched_positions, self._axes.batched_wxyzs = placed.origins, placed.wxyzs
 
     def _color_closures(self, placed: Placed) -> None:
         """Show the line from A to B of an open closure in its own colour; a closed distance closure has a line too."""
@@ -212,7 +221,7 @@ class Figure:
     def _place_labels(self) -> None:
         """Label each open closure with how far it is open."""
         placed = self._placed
-        if placed is None or not self._labels:
+        if not self._labels:
             return
         openings = {opening.name: opening for opening in placed.openings}
         for label, link in zip(self._labels, self.scene.links, strict=True):
@@ -221,20 +230,14 @@ class Figure:
             if visible:
                 label.text = str(opening)
                 body, pose = link.bodies[0], link.poses[0]
-                label.position = placed.poses[body].act(pose.translation)
+                label.position = placed.pose(body).act(pose.translation)
             if label.visible != visible:
                 label.visible = visible
 
 
 def _wxyz(pose: Any) -> Vector:
-    x, y, z, w = np.asarray(_quaternion(pose))
+    x, y, z, w = pin.SE3ToXYZQUAT(pose)[3:]
     return np.array((w, x, y, z))
-
-
-def _quaternion(pose: Any) -> Vector:
-    import pinocchio as pin
-
-    return np.asarray(pin.SE3ToXYZQUAT(pose)[3:])
 
 
 def _line_colors(colors: list[tuple[int, int, int]]) -> Any:

@@ -63,13 +63,21 @@ class RobotOnDisk:
         except CannotSave:
             return False
 
-    def save(self, name: str, session: Session) -> str:
-        """Save the configuration of a session under a name; a different one of this name is replaced.
+    def save(self, name: str, session: Session, *, replace: bool = False) -> str:
+        """Save the configuration of a session under a name, and add it to those of the session.
+
+        The change of the file does not count as one that another program makes.
+
+        Args:
+            name: The name.
+            session: The robot, and where it is.
+            replace: Whether to replace a different configuration of this name.
 
         Returns:
             What was done.
 
         Raises:
+            ConfigurationExists: There is a different configuration of this name, and `replace` is False.
             CannotSave: The loops are open, or the file cannot be changed.
         """
         # The root may have been chosen for the page alone.
@@ -84,7 +92,11 @@ class RobotOnDisk:
         if any(opening.is_open for opening in closure_openings(robot, q)):
             raise CannotSave("the loops are open; assemble first")
         file = file_to_save_to(self.path, description)
-        changed = save_configuration(description, robot, q, name, force=True)
+        is_foreign = self.has_changed
+        changed = save_configuration(description, robot, q, name, force=replace)
+        if not is_foreign and file in self._stamps:
+            self._stamps[file] = _stamp(file)
+        session.configurations[name] = session.q
         return f"saved configuration '{name}' to '{file}'" if changed else f"'{file}' already has this configuration"
 
     @property

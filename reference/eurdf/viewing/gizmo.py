@@ -16,25 +16,44 @@ _NONE = "(none)"
 class Gizmo:
     """The choice of a frame, and the handle on it."""
 
-    def __init__(self, page: Page) -> None:
-        """Add the choice to the container that is open."""
+    def __init__(self, page: Page, before: Gizmo | None = None) -> None:
+        """Add the choice to the container that is open.
+
+        Args:
+            page: The page.
+            before: The one whose choice to keep, removed already.
+        """
         self._page = page
         self._handle: Any = None
         self._held = False
         gui, scene = page.server.gui, page.shown.figure.scene
         self._places = {name: (body, pin.SE3.Identity()) for body, name in enumerate(scene.bodies)}
         self._places |= {name: (body, pose) for name, body, pose in scene.frames}
-        self._choice = gui.add_dropdown("drag frame", (_NONE, *self._places), initial_value=_NONE)
+        kept = None if before is None else before.choice
+        chosen = kept if kept in self._places else _NONE
+        self._choice = gui.add_dropdown("drag frame", (_NONE, *self._places), initial_value=chosen)
         self._choice.on_update(lambda _: page.worker.ask("gizmo", self._put))
-        self._turn = gui.add_checkbox("drag its orientation too", False)
+        self._turn = gui.add_checkbox("drag its orientation too", before is not None and before.turns)
         self._turn.on_update(lambda _: page.worker.ask("gizmo", self._put))
+        if chosen != _NONE:
+            self._put()
+
+    @property
+    def choice(self) -> str:
+        """The chosen frame."""
+        return str(self._choice.value)
+
+    @property
+    def turns(self) -> bool:
+        """Whether the orientation is dragged too."""
+        return bool(self._turn.value)
 
     def refresh(self, placed: Placed) -> None:
         """Bring the handle to its frame, unless the user holds it."""
         if self._handle is None or self._held:
             return
         body, in_body = self._places[str(self._choice.value)]
-        pose = placed.poses[body] * in_body
+        pose = placed.pose(body) * in_body
         x, y, z, w = pin.SE3ToXYZQUAT(pose)[3:]
         self._handle.position, self._handle.wxyz = pose.translation, np.array((w, x, y, z))
 

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from functools import partial
+from itertools import count
 from typing import Any
 
+from eurdf.diagnostics.visible import visible
 from eurdf.kinematics.assembly import Assembly
 from eurdf.viewing.gizmo import Gizmo
 from eurdf.viewing.page import Page
 from eurdf.viewing.scene import Placed
-from eurdf.viewing.session import ASSEMBLED
-from eurdf.writing.saved_configuration import CannotSave
+from eurdf.writing.saved_configuration import CannotSave, ConfigurationExists
 
 # Steps of a slider over its range, and decimals of its number.
 _STEPS = 1000
@@ -20,25 +21,34 @@ _DECIMALS = 4
 class MoveTab:
     """Sliders of the actuators, and buttons that bring all joints elsewhere."""
 
-    def __init__(self, page: Page) -> None:
-        """Add the controls to the container that is open."""
+    def __init__(self, page: Page, before: MoveTab | None = None) -> None:
+        """Add the controls to the container that is open.
+
+        Args:
+            page: The page.
+            before: The one whose choices to keep, removed already.
+        """
         self._page = page
-        gui, robot = page.server.gui, page.shown.robot
-        self._sliders = [self._slider(index) for index in range(len(page.shown.session.sliders))]
+        gui, session = page.server.gui, page.shown.session
+        self._sliders = [self._slider(index) for index in range(len(session.sliders))]
         reset = gui.add_button("reset", hint="the configuration at the start")
         reset.on_click(lambda _: page.ask("go", lambda: page.shown.session.reset()))
         assemble = gui.add_button("assemble", hint="close the loops near this configuration")
         assemble.on_click(lambda _: page.ask("go", self._assemble))
-        if robot.configurations:
-            names = tuple(robot.configurations)
-            choice = gui.add_dropdown("configuration", names, initial_value=names[0])
-            go = gui.add_button("go to configuration")
-            go.on_click(lambda _: page.ask("go", partial(self._go_to, choice)))
+        self._choice = gui.add_dropdown("configuration", ("",))
+        self._go = gui.add_button("go to configuration")
+        self._go.on_click(lambda _: page.ask("go", self._go_to))
+        self._list_configurations(None if before is None else str(before._choice.value))
+        self._name: Any = None
         if page.files is not None and page.files.can_save:
-            name = gui.add_text("name", initial_value=ASSEMBLED)
+            name = self._new_name() if before is None or before._name is None else str(before._name.value)
+            self._name = gui.add_text("name", initial_value=name)
+            self._name.on_update(lambda _: self._offer_to_replace(False))
             save = gui.add_button("save as configuration", hint="write the pose to the description")
-            save.on_click(lambda _: page.ask("save", partial(self._save, name)))
-        self._gizmo = Gizmo(page)
+            save.on_click(lambda _: page.ask("save", partial(self._save, replace=False)))
+            self._replace = gui.add_button("replace", color="red", visible=False)
+            self._replace.on_click(lambda _: page.ask("save", partial(self._save, replace=True)))
+        self._gizmo: Gizmo = Gizmo(page, None if before is None else before._gizmo)
 
     def remove(self) -> None:
         """Remove what is not in the container."""
@@ -81,13 +91,38 @@ class MoveTab:
         found: Assembly = self._page.shown.session.assemble()
         return None if found.closes else "no configuration was found that closes the loops; this is the least open one"
 
-    def _save(self, name: Any) -> str:
-        files, session = self._page.files, self._page.shown.session
+    def _save(self, *, replace: bool) -> str:
+        files, session, name = self._page.files, self._page.shown.session, str(self._name.value)
         assert files is not None
+        self._offer_to_replace(False)
         try:
-            return files.save(str(name.value), session)
+            said = files.save(name, session, replace=replace)
+        except ConfigurationExists as reason:
+            self._offer_to_replace(True)
+            return f"{reason}; 'replace' replaces it, or choose another name"
         except CannotSave as reason:
             return str(reason)
+        self._list_configurations(name)
+        self._name.value = self._new_name()
+        return said
 
-    def _go_to(self, choice: Any) -> None:
-        self._page.shown.session.go_to(str(choice.value))
+    def _offer_to_replace(self, offered: bool) -> None:
+        self._replace.label = f"replace '{visible(str(self._name.value))}'"
+        self._replace.visible = offered
+
+    def _new_name(self) -> str:
+        """A name that no configuration has."""
+        return next(
+            name for name in map("pose_{}".format, count(1)) if name not in self._page.shown.session.configurations
+        )
+
+    def _list_configurations(self, chosen: str | None) -> None:
+        """List the named configurations, with one chosen if it is among them."""
+        names = tuple(self._page.shown.session.configurations)
+        self._choice.visible = self._go.visible = bool(names)
+        if names:
+            self._choice.options = names
+            self._choice.value = chosen if chosen in names else names[0]
+
+    def _go_to(self) -> None:
+        self._page.shown.session.go_to(str(self._choice.value))

@@ -39,6 +39,8 @@ class Panel:
             name: tabs.add_tab(name) for name in ("Move", "Play", "Show", "Robot", "Limits", "Graph")
         }
         self._folders: dict[str, Any] = {}
+        self._move: Any = None
+        self._play: Any = None
         with self._tabs["Robot"]:
             self._gauge = gui.add_html("")
             self._bar = gui.add_progress_bar(0.0)
@@ -64,10 +66,12 @@ class Panel:
             self._later.cancel()
 
     def _fill(self) -> None:
-        """Make the controls and texts that depend on the robot."""
+        """Make the controls and texts that depend on the robot; what the user chose is kept."""
         session, robot = self._page.shown.session, self._page.shown.robot
-        self._move = self._in_tab("Move", lambda: MoveTab(self._page))
-        self._play = self._in_tab("Play", lambda: PlayTab(self._page))
+        if self._move is not None:
+            self._move.remove()
+        self._move = self._in_tab("Move", lambda: MoveTab(self._page, self._move))
+        self._play = self._in_tab("Play", lambda: PlayTab(self._page, self._play))
         self._in_tab("Show", self._checkboxes)
         self._dimensions.content = text.dimensions(session.analysis)
         self._diagnostics.content = text.diagnostics(robot.diagnostics)
@@ -76,8 +80,6 @@ class Panel:
 
     def _in_tab(self, name: str, make: Callable[[], Any]) -> Any:
         """Make controls in a tab, in place of those that are there."""
-        if name == "Move" and name in self._folders:
-            self._move.remove()
         if name in self._folders:
             self._folders[name].remove()
         with self._tabs[name]:
@@ -151,7 +153,10 @@ class Panel:
         except (EurdfError, OSError) as error:
             self._page.say(f"the files changed and cannot be loaded; this is the robot before. {error}")
         else:
+            plays = self._play.plays
             self._page.worker.play(None)
-            self._page.shown.replace(robot)
-            self._fill()
-            self._page.say("the files changed: this is the robot now")
+            with self._page.server.atomic():
+                self._page.shown.replace(robot)
+                self._fill()
+                self._page.say("the files changed: this is the robot now")
+            self._play.go_on(plays)

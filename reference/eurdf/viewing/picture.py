@@ -159,7 +159,7 @@ def drawn(robot: Robot, q: Vector | None, loops: bool) -> Drawn:
     lines: list[tuple[Points, Color]] = []
     for part in scene.parts:
         if part.kind == "visual":
-            oMp = placed.poses[part.body] * part.pose
+            oMp = placed.pose(part.body) * part.pose
             vertices = part.surface.vertices @ oMp.rotation.T + oMp.translation
             alpha = part.color[3] * (_TRANSLUCENT if loops else 1.0)
             solids.append((replace(part.surface, vertices=vertices), (*_lightened(part.color[:3]), alpha)))

@@ -5,23 +5,38 @@ from __future__ import annotations
 import time
 import warnings
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
+import pinocchio as pin
 
 from eurdf.kinematics.array import Vector
-from eurdf.kinematics.exceptions import NotClosable
+from eurdf.kinematics.exceptions import NotClosable, SimulationDiverged
 from eurdf.kinematics.forward_kinematics import forward_kinematics
 from eurdf.kinematics.simulation import simulate
+from eurdf.pinocchio.robot import build_robot
 from eurdf.viewing.session import Session
 from eurdf.viewing.trajectory import Trajectory, frames_between
+
+if TYPE_CHECKING:
+    from eurdf.pinocchio.robot import Robot
 
 #: Shows the session as it is, with a message below.
 Show = Callable[[str], None]
 
 # Time between frames, s.
 _FRAME = 1.0 / 30.0
-# Time step of a simulation, s.
-_STEP = _FRAME / 30.0
+# Most steps of a simulation in a frame, and the time step, s.
+_STEPS = 30
+_STEP = _FRAME / _STEPS
+# Time for the steps of a frame, s.
+_BUDGET = 0.025
+# Time between looks at whether a frame is computed, s.
+_POLL = 0.002
+# A floating root has the first coordinates of q: position and quaternion.
+_ROOT_COORDINATES = 7
 
 
 def sweep_frames(session: Session, index: int, show: Show) -> Iterator[float]:
@@ -62,37 +77,109 @@ def trajectory_frames(session: Session, trajectory: Trajectory, show: Show) -> I
         yield max(0.0, left - (time.monotonic() - begin))
 
 
-def gravity_frames(session: Session, show: Show, *, dissipation: bool) -> Iterator[float]:
+def gravity_frames(session: Session, show: Show, *, dissipation: bool, held: bool = False) -> Iterator[float]:
     """The motion under gravity with motors that exert no torque, without end.
 
-    It starts at rest, and again at rest where the user moves the robot meanwhile.
+    It starts at rest, and again at rest where the user moves the robot meanwhile. Another thread computes it, so that
+    whoever takes the frames never waits for a step.
 
     Args:
         session: The robot.
         show: Shows it.
         dissipation: Whether damping and friction act.
+        held: Whether a floating root stays where it is.
 
     Yields:
-        How long to show each frame, s.
+        How long to show each frame, s; or how long to wait for the next one.
 
     Raises:
         EurdfError: The motion cannot be computed, such as that of a joint without inertia.
+        ValueError: The motion is too fast for the time step.
     """
+    budget = StepBudget()
     q: Vector = np.full(session.robot.tree.nq, np.nan)
-    v = np.zeros(session.robot.tree.nv)
-    elapsed = 0.0
-    while True:
+    fall = _Fall(session.robot, held)
+    thread = ThreadPoolExecutor(1, "eurdf viewer gravity")
+    try:
+        while True:
+            if not np.array_equal(q, session.q):
+                q = session.q
+                fall.begin(q)
+                elapsed = spent = 0.0
+            count = budget.steps
+            running = thread.submit(fall.advance, count, dissipation)
+            while not running.done():
+                yield _POLL
+            if not np.array_equal(q, session.q):
+                continue  # the user moved it meanwhile
+            try:
+                reached, seconds = running.result()
+            except SimulationDiverged:
+                raise ValueError(
+                    f"gravity ends after {elapsed:.2f} s: the motion is too fast for steps of {1e3 * _STEP:.1f} ms, "
+                    "as near a singularity; 'reset' returns to the start"
+                ) from None
+            budget.took(seconds)
+            begin = time.monotonic()
+            session.show(reached)
+            q = session.q
+            simulated = count * _STEP
+            elapsed += simulated
+            pace = simulated / (spent + seconds)
+            slow = "" if pace >= 1.0 else f", slow motion: {100.0 * pace:.2g} % of real time"
+            show(f"gravity: {elapsed:.2f} s{slow}")
+            spent = time.monotonic() - begin
+            yield max(0.0, simulated - seconds - spent)
+    finally:
+        thread.shutdown(wait=False, cancel_futures=True)
+
+
+class StepBudget:
+    """How many steps of a simulation a frame gets: as many as its time has room for, and at least one.
+
+    Attributes:
+        steps: The number.
+    """
+
+    def __init__(self) -> None:
+        """Start with one, as the time of a step is not known."""
+        self.steps = 1
+
+    def took(self, seconds: float) -> None:
+        """Learn how long the steps of a frame took, s."""
+        room = _BUDGET * self.steps / max(seconds, 1e-9)
+        self.steps = int(min(max(room, 1.0), 2.0 * self.steps, _STEPS))
+
+
+class _Fall:
+    """A motion under gravity, computed part by part.
+
+    A robot with its root held is simulated with a root fixed to the world, in which gravity has another direction.
+    """
+
+    def __init__(self, robot: Robot, held: bool) -> None:
+        self._robot = robot
+        self._held = held and robot.mechanism.root == "floating"
+        if self._held:
+            self._robot = build_robot(replace(robot.mechanism, root="fixed", configurations={}), geometry=False)
+        self._gravity: Vector = np.array(robot.model.gravity.linear)
+        self._root: Vector = np.empty(0)
+
+    def begin(self, q: Vector) -> None:
+        """Start at rest at a configuration (nq,) of the robot."""
+        size = _ROOT_COORDINATES if self._held else 0
+        self._root, self._q = q[:size], q[size:]
+        self._v: Vector = np.zeros(self._robot.tree.nv)
+        if self._held:
+            self._robot.model.gravity.linear = pin.XYZQUATToSE3(self._root).rotation.T @ self._gravity
+
+    def advance(self, steps: int, dissipation: bool) -> tuple[Vector, float]:
+        """The configuration (nq,) of the robot after some steps, and how long they took, s."""
         begin = time.monotonic()
-        if not np.array_equal(q, session.q):
-            v, elapsed = np.zeros(session.robot.tree.nv), 0.0
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # a time step that is too long for the energy
-            motion = simulate(session.robot, session.q, v, duration=_FRAME, step=_STEP, dissipation=dissipation)
-        v = motion.v[-1]
-        session.show(motion.q[-1])
-        q = session.q
-        elapsed += _FRAME
-        spent = time.monotonic() - begin
-        speed = "" if spent <= _FRAME else f", {100.0 * _FRAME / spent:.0f} % of real time"
-        show(f"gravity: {elapsed:.2f} s{speed}")
-        yield max(0.0, _FRAME - (time.monotonic() - begin))
+            motion = simulate(
+                self._robot, self._q, self._v, duration=steps * _STEP, step=_STEP, dissipation=dissipation
+            )
+        self._q, self._v = motion.q[-1], motion.v[-1]
+        return np.concatenate((self._root, self._q)), time.monotonic() - begin

@@ -97,12 +97,26 @@ class Placed:
     """A robot at a configuration.
 
     Attributes:
-        poses: Pose of each body in the world, `pin.SE3`.
+        poses: Pose of each body in the world (n, 7): position, m, and quaternion x, y, z, w.
         openings: How far each constraint is open, in file order.
     """
 
-    poses: list[Any]
+    poses: Matrix
     openings: tuple[Opening, ...]
+
+    @property
+    def origins(self) -> Matrix:
+        """Origin of each body in the world (n, 3), m."""
+        return self.poses[:, :3]
+
+    @property
+    def wxyzs(self) -> Matrix:
+        """Orientation of each body in the world (n, 4): quaternion w, x, y, z."""
+        return self.poses[:, (6, 3, 4, 5)]
+
+    def pose(self, body: int) -> Any:
+        """Pose of a body in the world, `pin.SE3`."""
+        return pin.XYZQUATToSE3(self.poses[body])
 
 
 class Scene:
@@ -151,7 +165,7 @@ class Scene:
             )
             for closure in mechanism.closures
         )
-        points = self._points(self.at(q).poses)
+        points = self._points(self.at(q))
         low, high = points.min(axis=0), points.max(axis=0)
         self.size = float(np.linalg.norm(high - low)) or 1.0
         self.center: Vector = (low + high) / 2.0
@@ -165,19 +179,20 @@ class Scene:
     def at(self, q: Vector) -> Placed:
         """Where everything is at a configuration (nq,)."""
         with borrowed(self.robot, _memory) as memory:
-            return Placed(list(memory.placements(q)), all_openings(self.robot, q))
+            # The placements are Pinocchio's own and change with the next q.
+            poses = np.array([pin.SE3ToXYZQUAT(pose) for pose in memory.placements(q)])
+            return Placed(poses, all_openings(self.robot, q))
 
     def skeleton(self, placed: Placed) -> Matrix:
         """Lines (n, 2, 3) from the origin of each body to that of its parent, in the world, m."""
-        origins = _origins(placed.poses)
         pairs = [(parent, child) for child, parent in enumerate(self.parents) if parent >= 0]
-        return origins[np.array(pairs, dtype=np.intp).reshape(-1, 2)]
+        return placed.origins[np.array(pairs, dtype=np.intp).reshape(-1, 2)]
 
     def axis_lines(self, placed: Placed) -> Matrix:
         """The axes (n, 2, 3) as lines in the world, m."""
         half = 0.05 * self.size
         lines = [
-            [placed.poses[axis.body].act(axis.origin + side * half * axis.direction) for side in (-1.0, 1.0)]
+            [placed.pose(axis.body).act(axis.origin + side * half * axis.direction) for side in (-1.0, 1.0)]
             for axis in self.axes
         ]
         return np.array(lines).reshape(-1, 2, 3)
@@ -189,16 +204,16 @@ class Scene:
         """
         lines = []
         for link in self.links:
-            (a, b), (in_a, in_b) = (placed.poses[body] for body in link.bodies), link.poses
+            (a, b), (in_a, in_b) = (placed.pose(body) for body in link.bodies), link.poses
             points = (a.translation, a.act(in_a.translation), b.act(in_b.translation), b.translation)
             lines.append([points[:2], points[1:3], points[2:]])
         return np.array(lines).reshape(-1, 3, 2, 3)
 
-    def _points(self, poses: list[Any]) -> Matrix:
-        clouds = [_origins(poses)]
+    def _points(self, placed: Placed) -> Matrix:
+        clouds = [placed.origins]
         for part in self.parts:
             if part.kind != "inertia" and len(part.surface.vertices):
-                oMp = poses[part.body] * part.pose
+                oMp = placed.pose(part.body) * part.pose
                 clouds.append(part.surface.vertices @ oMp.rotation.T + oMp.translation)
         return np.concatenate(clouds)
 
@@ -213,10 +228,6 @@ def _body_frames(robot: Robot) -> FramePairs:
     world = Site(0, pin.SE3.Identity())
     pairs = [(world, Site(frame.parentJoint, pin.SE3(frame.placement))) for frame in frames]
     return FramePairs(robot.model, robot.tree.parents, pairs, None)
-
-
-def _origins(poses: list[Any]) -> Matrix:
-    return np.array([pose.translation for pose in poses])
 
 
 def _shapes(robot: Robot, kind: Literal["visual", "collision"]) -> list[Part]:

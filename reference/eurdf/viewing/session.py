@@ -112,6 +112,7 @@ class Session:
         robot: The robot.
         q: The configuration (nq,).
         first: The configuration (nq,) that `reset` returns to.
+        configurations: The named configurations (nq,): those of the description, and those saved since.
         analysis: Its dimensions, at the first configuration.
         sliders: What the user can move: the coordinates of the actuators; of all joints if there are no actuators.
     """
@@ -126,6 +127,7 @@ class Session:
         assembly = assemble(robot, start(robot, q, "q"), tolerance=_TOLERANCE)
         self.q: Vector = assembly.q
         self.first: Vector = assembly.q
+        self.configurations: dict[str, Vector] = dict(robot.configurations)
         self.analysis: Analysis = analyze(robot, assembly.q)
         self._limits = position_limits(robot)
         self.sliders = tuple(_sliders(robot, self.first, self.analysis))
@@ -214,7 +216,7 @@ class Session:
         Raises:
             KeyError: There is none of this name.
         """
-        self.q = self.robot.configurations[name]
+        self.q = self.configurations[name]
 
     def drag(self, frame: str, target: Any) -> str | None:
         """Bring a frame as near to a target as the closed loops and the position limits allow.

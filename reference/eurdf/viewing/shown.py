@@ -33,7 +33,7 @@ class ShownRobot:
         self, server: viser.ViserServer, worker: Worker, robot: Robot, q: Vector | None, node: str, origin: Vector
     ) -> None:
         self._server, self._worker = server, worker
-        self._node, self._origin = node, origin
+        self._node, self._origin, self._versions = node, origin, 0
         self.on_place: Callable[[Placed], None] = lambda placed: None
         self.session = Session(robot, q)
         self.figure = self._drawn()
@@ -92,15 +92,19 @@ class ShownRobot:
 
     def replace(self, robot: Robot) -> None:
         """Show another version of the robot, where the old one is; for the thread of the worker."""
-        before, shown = self.session, self.figure.shown
-        self.session = Session(robot, before.carried_to(robot))
-        self.figure.remove()
-        self.figure = self._drawn()
-        for layer, visible in shown.items():
-            self.figure.toggle(layer, visible)
+        before, shown = self.figure, self.figure.shown
+        self.session = Session(robot, self.session.carried_to(robot))
+        with self._server.atomic():
+            self.figure = self._drawn()
+            for layer, visible in shown.items():
+                self.figure.toggle(layer, visible)
+            before.remove()
 
     def _drawn(self) -> Figure:
+        """Nodes of their own, at the state of the session."""
         scene = Scene(self.robot, self.session.q)
-        figure = Figure(self._server, scene, self._node, self._origin)
+        self._versions += 1
+        placed = scene.at(self.session.q)
+        figure = Figure(self._server, scene, placed, f"{self._node}/version{self._versions}", self._origin)
         figure.highlight(frozenset(name for each in self.session.analysis.dependent_actuators for name in each))
         return figure

@@ -33,7 +33,8 @@ def view(
         q: Where to start (nq,); the loops are closed first if they are open. The default is the ``assembled``
             configuration, or a closed one that is found.
         host: The address to listen on. By default only programs on this machine can connect; with another one,
-            programs on other machines can move the robot, and write configurations if `robot` is a path.
+            programs on other machines can move the robot, and write configurations if `robot` is a path. The page
+            opens under an IP address, ``localhost``, the host name of this machine, or this name.
         port: The port to listen on, 0 for any; by default 8080 or the next free one.
         browser: Whether to open the page.
         options: Keyword arguments of `eurdf.load`, if `robot` is not loaded yet.

@@ -99,12 +99,7 @@ class Viewer:
         """
         origin = checked_array("xyz", xyz, (3,))
 
-        def added() -> ShownRobot:
-            shown = self._shown(robot, q, origin)
-            shown.place()
-            return shown
-
-        shown: ShownRobot = self._worker.call(added)
+        shown: ShownRobot = self._worker.call(lambda: self._shown(robot, q, origin))
         return shown
 
     def save(self, file: str | os.PathLike[str]) -> Path:
@@ -148,7 +143,8 @@ class Viewer:
 
     def _report(self, error: Exception) -> None:
         """Show an error of what the user did."""
-        self._page.say(str(error) if isinstance(error, EurdfError) else f"{type(error).__name__}: {error}")
+        known = isinstance(error, (EurdfError, ValueError))
+        self._page.say(str(error) if known else f"{type(error).__name__}: {error}")
 
     def _look_at_first(self) -> None:
         scene = self._first.figure.scene

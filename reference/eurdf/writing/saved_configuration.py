@@ -20,6 +20,10 @@ class CannotSave(EurdfError, ValueError):  # noqa: N818 - shown to the user as i
     """A configuration cannot be saved; the text says why."""
 
 
+class ConfigurationExists(CannotSave):
+    """There is a different configuration of this name, which may be replaced if the user agrees."""
+
+
 def file_to_save_to(path: Given, description: Described) -> str:
     """The file of a description that configurations can be saved to.
 
@@ -59,15 +63,15 @@ def save_configuration(description: Described, robot: Robot, q: Vector, name: st
         Whether the file changed; it does not if it has this configuration.
 
     Raises:
-        CannotSave: There is a different one and `force` is False, the file cannot be changed without changing more, or
-            it cannot be written.
+        ConfigurationExists: There is a different one and `force` is False.
+        CannotSave: The file cannot be changed without changing more, or it cannot be written.
     """
     source = description.extension.document.source
     file = source.file
     if is_stated(robot, q, name):
         return False
     if name in robot.configurations and not force:
-        raise CannotSave(f"'{file}' already has a different configuration '{name}'")
+        raise ConfigurationExists(f"'{file}' already has a different configuration '{name}'")
     try:
         text, diagnostics = with_closed_configuration(description, robot, q, name)
     except NotEditable as reason:
