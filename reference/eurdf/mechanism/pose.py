@@ -22,6 +22,10 @@ class Pose:
     xyz: Vector3 = (0.0, 0.0, 0.0)
     quaternion: Quaternion = (0.0, 0.0, 0.0, 1.0)
 
+    def __reduce__(self) -> str | tuple[type[Pose], tuple[Vector3, Quaternion]]:
+        """What is pickled and copied: `IDENTITY` stays one object, as others ask whether a pose is this object."""
+        return "IDENTITY" if self is IDENTITY else (Pose, (self.xyz, self.quaternion))
+
     @classmethod
     def from_xyz_rpy(cls, xyz: Vector3, rpy: Vector3) -> Pose:
         """EU-FRM-006: pose of a URDF ``origin``: roll, pitch, yaw (rad) about the fixed axes x, y, z.

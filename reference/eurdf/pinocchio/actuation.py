@@ -22,7 +22,8 @@ _UNLIMITED = (-math.inf, math.inf)
 class Actuation:
     """The actuated joints, in file order, and their indices in a model, one for each velocity (EU-ACT-007).
 
-    Names and control ranges are those of the description (EU-ACT-010).
+    Names and control ranges are those of the description (EU-ACT-010). The arrays are read-only, as the robot and its
+    functions share them.
 
     Attributes:
         joints: Their names.
@@ -49,7 +50,12 @@ class Actuation:
         """
         selection = np.zeros((self.nv, len(self.idx_v)))
         selection[self.idx_v, np.arange(len(self.idx_v))] = 1.0
+        selection.flags.writeable = False
         return selection
+
+    def __post_init__(self) -> None:
+        for array in (self.idx_q, self.idx_v, self.control):
+            array.flags.writeable = False
 
 
 def build_actuation(mechanism: Mechanism, model: pin.Model, at: Mapping[str, Slot] | None = None) -> Actuation:

@@ -80,24 +80,32 @@ class Robot:
         """The actuated joints, in file order."""
         return build_actuation(self.mechanism, self.model, self.slots)
 
-    @cached_property
+    @property
     def configurations(self) -> Mapping[str, Vector]:
-        """For each named configuration its q (nq,)."""
+        """For each named configuration its q (nq,), a copy that is the caller's."""
+        return MappingProxyType({name: q.copy() for name, q in self._configurations.items()})
+
+    @cached_property
+    def _configurations(self) -> Mapping[str, Vector]:
         named = self.mechanism.configurations
-        return MappingProxyType({name: self.configuration(coordinates) for name, coordinates in named.items()})
+        return {name: self.configuration(coordinates) for name, coordinates in named.items()}
 
     @property
     def constraints(self) -> tuple[Constraint, ...]:
         """Every closure and coupling, in file order."""
         return self.mechanism.constraints
 
-    @cached_property
+    @property
     def constraint_models(self) -> list[pin.RigidConstraintModel]:
-        """One constraint model per constraint, in file order.
+        """One constraint model per constraint, in file order: a new list of the robot's own, whose gains can be set.
 
         Raises:
             NoConstraintModel: A constraint has a kind for which Pinocchio has no constraint model.
         """
+        return list(self._constraint_models)
+
+    @cached_property
+    def _constraint_models(self) -> list[pin.RigidConstraintModel]:
         return build_constraint_models(self.constraints, self.tree)
 
     @cached_property
@@ -179,8 +187,17 @@ class Robot:
         """What is pickled and copied: the model and its own geometry; what is derived from them is computed anew."""
         state = {each.name: getattr(self, each.name) for each in fields(self)}
         geometry = self.geometry and Geometry(*(each.copy() for each in self.geometry))
-        own = {"model": self.model.copy(), "geometry": geometry, "derived": {}}
+        models = self.__dict__.get("_constraint_models", ())
+        gains = [(each.m_baumgarte_parameters.Kp, each.m_baumgarte_parameters.Kd) for each in models]
+        own = {"gains": gains, "model": self.model.copy(), "geometry": geometry, "derived": {}}
         return state | own | {"diagnose": None, "diagnostics": self.diagnostics}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        gains = state.pop("gains")
+        self.__dict__.update(state)
+        if gains:  # the models of constraints were used, and gains can be set in them
+            for each, (kp, kd) in zip(self.constraint_models, gains, strict=True):
+                each.m_baumgarte_parameters.Kp, each.m_baumgarte_parameters.Kd = kp, kd
 
     def __iter__(self) -> Iterator[Any]:
         return iter((self.model, self.constraint_models, self.actuation, self.visual_model, self.collision_model))

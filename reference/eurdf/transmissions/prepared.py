@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -63,6 +63,16 @@ class PreparedTransmission:
         self._by_motors: Drive | None = None
         # Last positions of joints without limits, whose turns are counted from call to call.
         self._angles: dict[JointCoordinates, Vector] = {}
+
+    def __getstate__(self) -> Any:
+        """What is pickled and copied: what makes it, and where it is. The working memory is made anew."""
+        position = {"_first": self._first, "_q": self._q, "_angles": dict(self._angles)}
+        return (self._at, self._joints, self._motors), position
+
+    def __setstate__(self, state: Any) -> None:
+        made_of, position = state
+        self.__init__(*made_of)  # type: ignore[misc]
+        self.__dict__.update(position)
 
     @property
     def q(self) -> Vector:

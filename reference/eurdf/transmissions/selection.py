@@ -37,11 +37,16 @@ class Selection:
         joints: Their names.
         velocities: Indices (n,) in v of their velocities, joint by joint.
         names: A name for each velocity: that of the joint; with several velocities ``joint[0]``, ``joint[1]``.
+
+    The indices are read-only, as a selection is kept with the robot.
     """
 
     joints: tuple[str, ...]
     velocities: Indices
     names: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        self.velocities.flags.writeable = False
 
     def __len__(self) -> int:
         return len(self.names)

@@ -330,8 +330,8 @@ def at_one(robot: Robot, joints: Selection, q: Vector, motors: Selection) -> Tra
         why.undetermined,
         why.missing,
         held,
-        motors.velocities,
-        joints.velocities,
+        np.array(motors.velocities),
+        np.array(joints.velocities),
         task.springs[at.held[0]],
         task.problem.scale[:, None] * Q,
     )

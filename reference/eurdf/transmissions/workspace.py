@@ -12,6 +12,7 @@ import numpy as np
 
 from eurdf.dataclass import dataclass
 from eurdf.kinematics.array import Indices, Matrix, Vector
+from eurdf.kinematics.batch.arguments import checked_configurations, checked_rows
 from eurdf.kinematics.position_limit import position_limits
 from eurdf.pinocchio.arguments import checked_array
 from eurdf.transmissions.drive import closed_pose
@@ -110,8 +111,12 @@ class Workspace:
         return self.transmissions_at(self.q)
 
     def transmissions_at(self, q: Matrix) -> Transmissions:
-        """The transmissions at other closed configurations (B, nq)."""
-        return at_many(self.robot, self._joints, q, self._motors)
+        """The transmissions at other closed configurations (B, nq).
+
+        Raises:
+            ValueError: ``q`` has another shape, or is not finite.
+        """
+        return at_many(self.robot, self._joints, checked_configurations(self.robot, "q", q), self._motors)
 
     def moved(self, q: Matrix, positions: Matrix) -> Matrix:
         """Configurations (B, nq) after straight motions to positions (B, nJ) of the joints; NaN where they stop before.
@@ -119,8 +124,12 @@ class Workspace:
         Args:
             q: Where to start (B, nq): configurations in the workspace.
             positions: Positions (B, nJ).
+
+        Raises:
+            ValueError: An argument has another shape, or is not finite.
         """
-        found = self._search.moved(q, positions)
+        q = checked_configurations(self.robot, "q", q)
+        found = self._search.moved(q, checked_rows("positions", positions, len(self.joints)))
         return np.where(found.reached[:, None], found.q, np.nan)
 
     @property
