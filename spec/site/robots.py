@@ -64,7 +64,8 @@ def _write_page(pages: Path, name: str) -> str:
         shutil.copy(file, own)
     (own / "live.html").write_text(_scripts() + live_view(robot), encoding="utf-8")
     (own / "graph.html").write_text(
-        f'<div style="overflow-x: auto; padding: 2px 8px">{graph_svg(robot.mechanism)}</div>', encoding="utf-8"
+        f'<div class="eu-graph" style="overflow-x: auto; padding: 2px 8px">{graph_svg(robot.mechanism)}</div>',
+        encoding="utf-8",
     )
     (own / "info.txt").write_text(_info(source), encoding="utf-8")
     title, _, text = (source / "README.md").read_text(encoding="utf-8").partition("\n")

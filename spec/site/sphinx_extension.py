@@ -6,7 +6,7 @@ from typing import Any
 
 from sphinx.application import Sphinx
 
-from spec.site import api, figures, math, pages, robots
+from spec.site import accessible, api, figures, math, pages, robots
 from spec.site.directives import DIRECTIVES
 from spec.site.domain import NameRole, SpecificationDomain
 
@@ -18,6 +18,7 @@ def setup(app: Sphinx) -> dict[str, Any]:
         app.add_directive(name, directive)
     for what in ("clause", "code"):
         app.add_role(what, NameRole(what), override=True)
+    accessible.setup(app)
     math.setup(app)
     figures.setup(app)
     pages.setup(app)
