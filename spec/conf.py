@@ -37,6 +37,7 @@ html_favicon = "site/static/favicon.svg"
 html_static_path = ["site/static"]
 html_css_files = ["specification.css"]
 html_js_files = ["specification.js"]
+html_search_scorer = str(Path(__file__).parent / "site" / "static" / "scorer.js")
 html_extra_path = ["../schema", "clauses.json", "clauses.schema.json"]
 html_copy_source = False
 html_show_sourcelink = False
