@@ -18,12 +18,13 @@ from support.shared_runs import SharedRun, certify_once
 from support.warm import SESSION
 
 #: Files whose tests are run by one worker, since they share something that takes long to make.
-TOGETHER = ("test_site.py", "test_editor.py", "test_explore.py", "test_examples.py")
+TOGETHER = ("test_site.py", "test_site_in_browser.py", "test_editor.py", "test_explore.py", "test_examples.py")
 
 #: Files with the longest tests. They are started first, so that no worker is left with one at the end.
 FIRST = (
     "test_certify.py",
     "test_site.py",
+    "test_site_in_browser.py",
     "test_editor.py",
     "test_write_an_adapter.py",
     "test_explore.py",

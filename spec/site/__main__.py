@@ -13,6 +13,7 @@ from sphinx.cmd.build import main as sphinx_build
 
 from eurdf.collection import collection_names
 from spec.site.clause import SPEC
+from spec.site.diagnostics import write_diagnostic_pages
 from spec.site.links import site_errors
 from spec.site.pages import gather
 from spec.site.robots import write_robot_pages
@@ -37,6 +38,7 @@ def build(output: Path, builder: str = "html", source: Path = SPEC, robots: Sequ
     doctrees = str(output.parent / f"{output.name}.doctrees")
     with TemporaryDirectory() as pages:
         gather(Path(pages), source.resolve())
+        write_diagnostic_pages(Path(pages))
         write_robot_pages(Path(pages), collection_names() if robots is None else robots)
         options = ["-q", "-E", "-a", "-n", "-W", "-d", doctrees, "-c", str(source)]
         failed = sphinx_build(["-b", builder, *options, pages, str(output)])

@@ -70,10 +70,10 @@ class SpecificationDirective(SphinxDirective):
         """A link to a clause or a diagnostic."""
         return reference_to(what, name, self.page)
 
-    def anchored(self, what: str, name: str, title: str, *children: Node) -> nodes.container:
-        """A named block with an anchor."""
-        self.domain.note(what, name, title)
-        block = nodes.container("", *children, ids=[name], classes=[f"eu-{what}"])
+    def anchored(self, name: str, title: str, *children: Node) -> nodes.container:
+        """A clause, with its anchor."""
+        self.domain.note("clause", name, title)
+        block = nodes.container("", *children, ids=[name], classes=["eu-clause"])
         self.set_source_info(block)
         return block
 
@@ -101,7 +101,7 @@ class ClauseDirective(SpecificationDirective):
         body = nodes.container("", *self.parse_content_to_nodes(), classes=["eu-body"])
         _embolden(body)
         foot = nodes.container("", *self._facts(entry), classes=["eu-foot"])
-        return [self.anchored("clause", name, _plain(entry["text"]), head, body, foot)]
+        return [self.anchored(name, _plain(entry["text"]), head, body, foot)]
 
     def _facts(self, entry: dict[str, Any]) -> Iterator[Node]:
         if entry["codes"]:
@@ -125,7 +125,7 @@ class WithdrawnDirective(SpecificationDirective):
         """The rendered id."""
         name = self.arguments[0]
         head = _line("eu-head", _permalink(name), *_badge("withdrawn"))
-        block = self.anchored("clause", name, "Withdrawn", head, *self.parse_content_to_nodes())
+        block = self.anchored(name, "Withdrawn", head, *self.parse_content_to_nodes())
         block["classes"].append("eu-withdrawn")
         return [block]
 
@@ -167,11 +167,12 @@ class DiagnosticDirective(SpecificationDirective):
         if shown.code not in REGISTRY:
             raise self.error(f"there is no diagnostic '{shown.code}'")
         rule = REGISTRY[shown.code]
-        head = _line("eu-head", _permalink(shown.code), *_badge(rule.severity, f"eu-severity-{rule.severity}"))
+        head = _line("eu-head", *_badge(rule.severity, f"eu-severity-{rule.severity}"))
         head += _badge(f"phase {rule.phase}")
         if rule.clause is not None:
             head += [nodes.Text(" "), self.reference("clause", rule.clause)]
-        block = self.anchored("code", shown.code, rule.title, head, _line("eu-title", nodes.Text(rule.title)))
+        self.domain.note("code", shown.code, rule.title)
+        block = nodes.container("", _line("eu-title", nodes.Text(rule.title)), head, classes=["eu-code"])
         block += _fact("Points at", self.parse_inline(shown.place)[0])
         if shown.unshown is not None:
             block += _fact("Not shown", [nodes.Text(shown.unshown)])
@@ -226,23 +227,30 @@ class AllClausesDirective(SpecificationDirective):
         return [_table("Clause", "Level", "Requirement", "Diagnostics", rows=rows)]
 
 
-class AllDiagnosticsDirective(SpecificationDirective):
-    """``{all-diagnostics}``: a table of all diagnostics."""
+class DiagnosticsDirective(SpecificationDirective):
+    """``{diagnostics}``: a table of diagnostics, one code per line; each row leads to the page of its code.
+
+    A row has its code as anchor: the address that a diagnostic had when this page showed it.
+    """
 
     required_arguments = 0
 
     def run(self) -> list[Node]:
         """The table."""
-        rows = [
-            [
-                nodes.paragraph("", "", self.reference("code", rule.code)),
-                nodes.paragraph("", f"{rule.severity}, {rule.phase}"),
-                nodes.paragraph("", rule.title),
-                nodes.paragraph("", "", *([] if rule.clause is None else [self.reference("clause", rule.clause)])),
-            ]
-            for rule in sorted(REGISTRY.values(), key=lambda rule: rule.code)
+        table = _table("Diagnostic", "Severity, phase", "What is wrong", "Clause", rows=map(self._row, self.content))
+        (body,) = table.findall(nodes.tbody)
+        for code, row in zip(self.content, body.findall(nodes.row), strict=True):
+            row["ids"] = [code]
+        return [table]
+
+    def _row(self, code: str) -> list[Node]:
+        rule = REGISTRY[code]
+        return [
+            nodes.paragraph("", "", self.reference("code", code)),
+            nodes.paragraph("", f"{rule.severity}, {rule.phase}"),
+            nodes.paragraph("", rule.title),
+            nodes.paragraph("", "", *([] if rule.clause is None else [self.reference("clause", rule.clause)])),
         ]
-        return [_table("Diagnostic", "Severity, phase", "What is wrong", "Clause", rows=rows)]
 
 
 class SchemaDirective(SpecificationDirective):
@@ -389,8 +397,8 @@ DIRECTIVES: dict[str, type[SpecificationDirective]] = {
     "withdrawn": WithdrawnDirective,
     "example": ExampleDirective,
     "diagnostic": DiagnosticDirective,
+    "diagnostics": DiagnosticsDirective,
     "transcript": TranscriptDirective,
     "all-clauses": AllClausesDirective,
-    "all-diagnostics": AllDiagnosticsDirective,
     "schema": SchemaDirective,
 }

@@ -18,7 +18,7 @@ NAME = "eurdf"
 
 
 class Target(NamedTuple):
-    """The place of a named item, and the tooltip of links to it."""
+    """The place of a named item, and the tooltip of links to it; a diagnostic is a page, and its anchor is empty."""
 
     page: str
     anchor: str
@@ -45,8 +45,11 @@ class SpecificationDomain(Domain):
         return targets
 
     def note(self, what: str, name: str, title: str) -> None:
-        """Record an item on the current page; its anchor is its name."""
+        """Record an item on the current page; its anchor is its name, but the page of a diagnostic is all about it."""
         page = self.env.current_document.docname
+        if what == "code":
+            self.targets[what, name] = Target(page, "", title)
+            return
         self.targets[what, f"{page}#{name}" if what == "property" else name] = Target(page, name, title)
         # So that a Markdown link to the anchor is valid.
         self.env.domains.standard_domain.anonlabels[f"{page}#{name}"] = (page, name)
@@ -89,9 +92,10 @@ class SpecificationDomain(Domain):
         return []
 
     def get_objects(self) -> Iterator[tuple[str, str, str, str, str, int]]:
-        """The items that the search finds by name."""
-        for (what, _), target in self.targets.items():
-            yield target.anchor, target.anchor, what, target.page, target.anchor, 1
+        """The items, by name: the search finds them, except diagnostics, which it finds as pages."""
+        for (what, key), target in self.targets.items():
+            name = target.anchor or key
+            yield name, name, what, target.page, target.anchor, 1 if target.anchor else -1
 
 
 class NameRole(SphinxRole):

@@ -27,6 +27,10 @@ _LOGGER = logging.getLogger(__name__)
 #: Folders of pages, relative to the root of the repository.
 FOLDERS = ("spec", "docs")
 
+#: Pages that are below another one in the table of contents, as a pattern. The page itself has no toctree, which the
+#: code host would show as code.
+BELOW = {"export.md": "export_*.md"}
+
 # The target of a link or picture out of the folder of the page, without its anchor.
 _OUTSIDE = re.compile(r"(?<=\]\()\.\./(?P<path>[^)#\s]+)")
 
@@ -55,6 +59,10 @@ def gather(folder: Path, source: Path) -> None:
     """Copy all pages, and the files that they show or offer, into one folder, from which Sphinx reads them."""
     for name, path in page_files(source).items():
         shutil.copyfile(path, folder / name)
+    for name, below in BELOW.items():
+        if pages := sorted(path.stem for path in folder.glob(below)):
+            with (folder / name).open("a", encoding="utf-8") as page:
+                page.write("\n".join(("", "```{toctree}", ":hidden:", "", *pages, "```", "")))
     docs, schemas = source.parent / "docs", source.parent / "schema"
     for path in (*source.glob("*.svg"), *source.glob("clauses*.json"), *schemas.glob("*.schema.json")):
         shutil.copyfile(path, folder / path.name)

@@ -70,7 +70,8 @@ def _write_page(pages: Path, name: str) -> str:
     for file in (*files, *source.glob("*.png"), *source.glob("*.svg")):
         shutil.copy(file, own)
     (own / "graph.html").write_text(
-        f'<div style="overflow-x: auto; padding: 2px 8px">{graph_svg(robot.mechanism)}</div>', encoding="utf-8"
+        f'<div class="eu-graph" style="overflow-x: auto; padding: 2px 8px">{graph_svg(robot.mechanism)}</div>',
+        encoding="utf-8",
     )
     (own / "info.txt").write_text(_info(source), encoding="utf-8")
     title, _, text = (source / "README.md").read_text(encoding="utf-8").partition("\n")

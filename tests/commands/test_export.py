@@ -16,7 +16,7 @@ from eurdf.commands.main import main
 from eurdf.commands.output_schema import output_schemas
 from eurdf.exporting.export import ACTUATORS, CLOSURES, MESH_FILES
 from eurdf.exporting.formats import FORMATS
-from eurdf.exporting.table import with_table
+from eurdf.exporting.table import page_of, written
 from eurdf.loss import CONCEPTS, Effect
 from eurdf.writing.output_folder import write_files
 
@@ -157,9 +157,10 @@ def test_nothing_is_written_outside_the_folder(here: Path, name: str) -> None:
     assert sorted(os.listdir(here)) == ["away", "out"]
 
 
-def test_table_of_losses_is_current() -> None:
-    page = (Path(eurdf.__file__).parents[2] / "docs" / "export.md").read_text(encoding="utf-8")
-    assert with_table(page) == page
-    for each in FORMATS.values():
-        for kind in each.losses:
-            assert f"`{kind.code}`" in page
+def test_tables_of_losses_are_current() -> None:
+    docs = Path(eurdf.__file__).parents[2] / "docs"
+    for page, text in written(docs).items():
+        assert page.read_text(encoding="utf-8") == text
+    for name, each in FORMATS.items():
+        page = (docs / page_of(name)).read_text(encoding="utf-8")
+        assert [kind.code for kind in each.losses if f"`{kind.code}`" not in page] == []

@@ -1,4 +1,4 @@
-"""The npm packages that the adapters in JavaScript import, in the tests."""
+"""The npm packages that tests use: those that the adapters in JavaScript import, and axe-core."""
 
 from __future__ import annotations
 

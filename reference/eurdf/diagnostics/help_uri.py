@@ -5,9 +5,6 @@ from __future__ import annotations
 from functools import cache
 from importlib.metadata import PackageNotFoundError, metadata
 
-# The page of the specification's site that lists all codes, each at the anchor of its name.
-_PAGE = "diagnostics.html"
-
 
 def help_uri(code: str) -> str:
     """The page of a code on the documentation site of the package, or else the code's URN.
@@ -16,7 +13,7 @@ def help_uri(code: str) -> str:
     the result is ``urn:extended-urdf:…``, as for schemas.
     """
     site = _site()
-    return f"{site}/{_PAGE}#{code}" if site else f"urn:extended-urdf:diagnostic:{code}"
+    return f"{site}/diagnostics/{code}.html" if site else f"urn:extended-urdf:diagnostic:{code}"
 
 
 @cache

@@ -1,6 +1,7 @@
-"""The table of losses in the documentation and on the site: what each format can say of each concept.
+"""The tables of losses in the documentation and on the site: what each format can say of each concept.
 
-Run as ``python -m eurdf.exporting.table docs/export.md`` to write it to a page.
+Run as ``python -m eurdf.exporting.table docs`` to write them to the pages of a folder: the overview to ``export.md``,
+the losses of a format to the page of the format.
 """
 
 from __future__ import annotations
@@ -18,7 +19,8 @@ _PLACE = re.compile(r"(<!-- table: [^\n]*-->\n).*?(<!-- end of table -->)", re.D
 
 def overview() -> str:
     """A table in Markdown: a row for each concept, a column for each format; a cell says what is exact and what not."""
-    lines = [f"| concept | {' | '.join(FORMATS)} |", "| --- |" + " --- |" * len(FORMATS)]
+    names = [f"[{name}]({page_of(name)})" for name in FORMATS]
+    lines = [f"| concept | {' | '.join(names)} |", "| --- |" + " --- |" * len(FORMATS)]
     for concept in CONCEPTS:
         cells = [_cell([kind for kind in each.losses if kind.concept == concept]) for each in FORMATS.values()]
         lines.append(f"| {concept} | {' | '.join(cells)} |")
@@ -41,25 +43,37 @@ def details(name: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-def table() -> str:
-    """The overview, then the losses of each format."""
-    sections = [f"### Losses in {name}\n\n{details(name)}" for name in FORMATS]
-    return "\n".join(["", overview(), *sections, ""])
-
-
 def _effect(kind: LossKind) -> str:
     return "impossible" if kind.effect is Effect.DROPPED and not kind.sayable else str(kind.effect)
 
 
-def with_table(page: str) -> str:
-    """The page with the table of today."""
-    return _PLACE.sub(lambda found: found[1] + table() + found[2], page)
+def page_of(name: str) -> str:
+    """The file of the page of a format."""
+    return f"export_{name.replace('-', '_')}.md"
 
 
-def main(path: str) -> None:
-    """Write the table to a page."""
-    page = Path(path)
-    page.write_text(with_table(page.read_text(encoding="utf-8")), encoding="utf-8")
+def written(folder: Path) -> dict[Path, str]:
+    """The pages in a folder with the tables of today, by file.
+
+    Raises:
+        FileNotFoundError: A format has no page.
+        ValueError: A page has no place for its table.
+    """
+    tables = {"export.md": overview()} | {page_of(name): details(name) for name in FORMATS}
+    return {folder / page: _with_table(folder / page, table) for page, table in tables.items()}
+
+
+def _with_table(page: Path, table: str) -> str:
+    text, places = _PLACE.subn(lambda found: f"{found[1]}\n{table}\n{found[2]}", page.read_text(encoding="utf-8"))
+    if places != 1:
+        raise ValueError(f"{page} has {places} places for a table, not one")
+    return text
+
+
+def main(folder: str) -> None:
+    """Write the tables to the pages of a folder."""
+    for page, text in written(Path(folder)).items():
+        page.write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":
