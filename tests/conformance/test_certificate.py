@@ -46,6 +46,7 @@ from eurdf_conformance.level import Level
 from eurdf_conformance.suite.item import case_items
 from eurdf_conformance.suite.options import Options
 from eurdf_conformance.suite.reproduce import PACKAGE
+from eurdf_conformance.write_together import write_together
 from support.suite_runs import INVALID, PLANNED, VALID, result, run, started
 
 ALL = {version: list(Level) for version in ("1", "2")}
@@ -172,6 +173,15 @@ def test_a_certificate_is_written_as_three_files_and_read_again(failed: Certific
     write_certificate(folder, failed)
     assert sorted(path.name for path in folder.iterdir()) == ["badge.svg", "certificate.json", "report.html"]
     assert read_certificate(folder) == read_certificate(folder / "certificate.json") == failed
+
+
+def test_files_are_written_all_or_none(tmp_path: Path) -> None:
+    (tmp_path / "a").write_text("before", encoding="utf-8")
+    (tmp_path / "b").mkdir()
+    with pytest.raises(IsADirectoryError):
+        write_together({tmp_path / "a": b"after", tmp_path / "b": b"after"})
+    assert (tmp_path / "a").read_text(encoding="utf-8") == "before"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a", "b"]
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{", '{"certificate": "2.0"}', '{"certificate": NaN}'])

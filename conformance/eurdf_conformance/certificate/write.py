@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from eurdf.writing.output_folder import write_files
 from eurdf_conformance.certificate.badge import badge
 from eurdf_conformance.certificate.certificate import FILE, Certificate
 from eurdf_conformance.certificate.report import report
+from eurdf_conformance.write_together import write_together
 
 #: The files that show a certificate to people.
 _SHOWING = ("report.html", "badge.svg")
@@ -45,8 +45,10 @@ def write_certificate(folder: Path, certificate: Certificate) -> None:
     Raises:
         OSError: It cannot be written; what was there before is still there.
     """
+    # The certificate last: where it is, the others are.
     files = {**certificate_files(certificate), FILE: certificate.to_text()}
-    write_files(folder, {name: text.encode() for name, text in files.items()}, force=True)
+    folder.mkdir(parents=True, exist_ok=True)
+    write_together({folder / name: text.encode() for name, text in files.items()})
 
 
 def certificate_files(certificate: Certificate) -> dict[str, str]:

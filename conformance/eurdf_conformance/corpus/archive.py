@@ -21,7 +21,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from eurdf.writing.output_folder import write_files
 from eurdf_conformance.carried import carried
 from eurdf_conformance.corpus.archive_schema import MAKING, expected_schema, index_schema
 from eurdf_conformance.corpus.case import SCHEMA_FILE, ValidCase
@@ -29,6 +28,7 @@ from eurdf_conformance.corpus.clause import read_clauses, read_registry
 from eurdf_conformance.corpus.read import CorpusCase, NotACase, read_cases
 from eurdf_conformance.corpus.release import case_files, corpus_hash, suite_version
 from eurdf_conformance.protocol.message import PROTOCOL
+from eurdf_conformance.write_together import write_together
 
 #: Name of the archive and of the packages made of it.
 NAME = "eurdf-corpus"
@@ -56,7 +56,9 @@ def write_archive(folder: Path, cases: Iterable[CorpusCase]) -> None:
     """
     cases = list(cases)
     archive, plain = archive_paths(folder)
-    write_files(folder, {archive.name: _zipped(cases), plain.name: _json(manifest(cases))}, force=True)
+    files = {archive: _zipped(cases), plain: _json(manifest(cases))}
+    folder.mkdir(parents=True, exist_ok=True)
+    write_together(files)
 
 
 def archive_paths(folder: Path) -> tuple[Path, Path]:

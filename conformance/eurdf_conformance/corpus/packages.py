@@ -13,7 +13,6 @@ import zipfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from eurdf.writing.output_folder import write_files
 from eurdf_conformance.corpus.archive import NAME
 
 _PACKAGE = Path(__file__).with_name("package")
@@ -77,7 +76,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if options.out.exists() and any(options.out.iterdir()):
             raise FileExistsError(17, "it is not empty", str(options.out))
         for name, files in (("npm", npm_package(archive)), ("python", python_package(archive))):
-            write_files(options.out / name, files)
+            _write(options.out / name, files)
             sys.stdout.write(f"{options.out / name}: {len(files)} files\n")
     except NotAnArchive as error:
         sys.stderr.write(f"{parser.prog}: {error}\n")
@@ -86,6 +85,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stderr.write(f"{parser.prog}: '{error.filename}': {error.strerror}\n")
         return 2
     return 0
+
+
+def _write(folder: Path, files: Mapping[str, bytes]) -> None:
+    for name, content in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
 
 
 if __name__ == "__main__":
