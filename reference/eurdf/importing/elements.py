@@ -51,6 +51,13 @@ class Elements:
         x, y, z = self.numbers(element, text, 3, f"'{name}'")
         return x, y, z
 
+    def axis(self, element: etree._Element) -> Vector3:
+        """The axis in the attribute ``xyz``, of any length but zero."""
+        axis = self.vector(element, "xyz")
+        if not any(axis):
+            raise self.refuse(element, f"'xyz' of {named(element)} is '{element.get('xyz')}'; an axis must not be zero")
+        return axis
+
     def pose(self, element: etree._Element | None) -> Pose:
         """The pose in the attributes ``xyz`` and ``rpy`` of an element; the identity without it."""
         if element is None:
