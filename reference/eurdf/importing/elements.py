@@ -33,7 +33,8 @@ class Elements:
             values = ()
         if len(values) != count or not all(map(math.isfinite, values)):
             wanted = "one finite number" if count == 1 else f"{count} finite numbers separated by spaces"
-            raise self.refuse(element, f"{what} of {named(element)} is '{text or ''}'; it must be {wanted}")
+            of = "" if what == f"<{element.tag}>" else f" of {named(element)}"
+            raise self.refuse(element, f"{what}{of} is '{text or ''}'; it must be {wanted}")
         return values
 
     def attribute(self, element: etree._Element, name: str, default: float | None = None) -> float:
