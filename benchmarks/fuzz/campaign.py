@@ -1,4 +1,4 @@
-"""Damaged robots and meshes, and wrong arguments, for as long as you like: what breaks a promise is kept."""
+"""Damaged robots, meshes and foreign files, and wrong arguments, for as long as you like; it keeps what goes wrong."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
-from benchmarks.fuzz.case import OUTCOME, case_of
+from benchmarks.fuzz.case import KINDS, OUTCOME, case_of
 from benchmarks.fuzz.finding import Finding, minimized
 from benchmarks.fuzz.watched import Watched
 
@@ -36,6 +36,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--seed", type=int, help="what cases are drawn from (default: a new one)")
     parser.add_argument("--first", type=int, default=0, metavar="N", help="number of the first case (default: 0)")
     parser.add_argument("--count", type=int, metavar="N", help="at most so many cases")
+    parser.add_argument("--kind", choices=list(KINDS), help="only cases of this kind (default: all)")
     parser.add_argument(
         "--findings", type=Path, default=Path("findings"), metavar="DIR", help="where findings are kept (findings/)"
     )
@@ -49,7 +50,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
         return run(options.minutes, options.findings)
     seed = secrets.randbelow(10**9) if options.seed is None else options.seed
-    return campaign(seed, options.first, options.count, options.minutes * 60.0, options.findings)
+    return campaign(seed, options.first, options.count, options.minutes * 60.0, options.findings, options.kind)
 
 
 def reproduce(folders: Sequence[Path]) -> int:
@@ -63,7 +64,7 @@ def reproduce(folders: Sequence[Path]) -> int:
     return int(broken > 0)
 
 
-def campaign(seed: int, first: int, count: int | None, seconds: float, folder: Path) -> int:
+def campaign(seed: int, first: int, count: int | None, seconds: float, folder: Path, kind: str | None = None) -> int:
     """Try cases of a seed until the time is over.
 
     Args:
@@ -72,14 +73,15 @@ def campaign(seed: int, first: int, count: int | None, seconds: float, folder: P
         count: At most so many; None for any number.
         seconds: How long.
         folder: Where findings are kept.
+        kind: Of the cases; None for all kinds.
     """
     print(f"seed {seed}, from case {first}")
     outcomes, causes, begin = Counter[tuple[str, str]](), Counter[str](), time.monotonic()
     told, number = begin, first
     with Watched() as worker:
         while time.monotonic() - begin < seconds and (count is None or number < first + count):
-            outcome = worker.try_number(seed, number)
-            case = case_of(seed, number) if outcome.trouble else None
+            outcome = worker.try_number(seed, number, kind)
+            case = case_of(seed, number, kind) if outcome.trouble else None
             outcomes[case.kind if case else outcome.kind, outcome.word] += 1
             if case is not None:
                 finding = Finding(case, outcome)

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.fuzz.calls import call_of
+from benchmarks.fuzz.imports import FORMATS, import_of
 from benchmarks.fuzz.mutators import mutate_mesh
 from benchmarks.fuzz.robots import Seed, seeds
 from benchmarks.fuzz.robots import case_of as robot_case
@@ -35,10 +36,10 @@ class Case:
     """What is tried.
 
     Attributes:
-        kind: ``robot``, ``mesh`` or ``call``.
+        kind: ``robot``, ``mesh``, ``call``, or ``import-`` and the format of a file.
         title: What was damaged, and how.
         files: Contents by name.
-        path: Of a robot or mesh, the file to check and load.
+        path: The file to check and load, or to import; empty for a call.
         call: Of a call, the robot, the function and its arguments as plain data.
     """
 
@@ -69,20 +70,29 @@ def read_case(folder: Path) -> Case:
     return Case(said["kind"], said["title"], files, said["path"], said["call"])
 
 
-def case_of(seed: int, number: int) -> Case:
-    """A case of a seed."""
+#: Kinds of cases, each with its share of ten.
+KINDS = {"robot": 5, "mesh": 2, "call": 2, "import": 1}
+
+
+def case_of(seed: int, number: int, kind: str | None = None) -> Case:
+    """A case of a seed, of one of `KINDS`; by default the case draws its kind."""
     chance = random.Random(f"{seed}:{number}")
-    match chance.randrange(10):
-        case 0 | 1 | 2 | 3 | 4 | 5:
+    drawn = chance.choices(list(KINDS), list(KINDS.values()))[0]
+    match kind or drawn:
+        case "robot":
             found = robot_case(seed, number, _robots())
             files = {"robot.urdf": found.urdf, "workbench.urdf": found.urdf}  # what the descriptions name
             if found.description is None:
                 return Case("robot", found.title, files, "robot.urdf")
             return Case("robot", found.title, {**files, "robot.yaml": found.description}, "robot.yaml")
-        case 6 | 7:
+        case "mesh":
             name, content = chance.choice(list(_meshes().items()))
             urdf = _URDF.replace("NAME", name).encode()
             return Case("mesh", name, {"robot.urdf": urdf, name: mutate_mesh(content, chance)}, "robot.urdf")
+        case "import":
+            format_ = chance.choice(FORMATS)
+            title, content = import_of(format_, chance)
+            return Case(f"import-{format_}", title, {"robot.xml": content}, "robot.xml")
         case _:
             call = call_of(chance)
             return Case("call", f"{call['function']} of {call['robot']}", call=call)

@@ -215,13 +215,27 @@ def _settable(text: str) -> str:
     return "".join(c for c in text if c in "\t\n\r" or c >= " ")
 
 
-def mutate_xml(data: bytes, chance: random.Random, names: Sequence[str]) -> bytes:
-    """The URDF with one to three places of its tree changed."""
+def mutate_xml(
+    data: bytes,
+    chance: random.Random,
+    names: Sequence[str],
+    tags: Sequence[str] = TAGS,
+    attributes: Sequence[str] = ATTRIBUTES,
+) -> bytes:
+    """The file with one to three places of its tree changed.
+
+    Args:
+        data: A URDF, or a file of another format.
+        chance: Where it draws from.
+        names: Names of elements.
+        tags: Tags of the format.
+        attributes: Attributes of the format.
+    """
     root: Any = etree.fromstring(data)
     for _ in range(chance.choice((1, 1, 2, 3))):
         elements: list[Any] = list(root.iter("*"))
         element, other = chance.choice(elements), chance.choice(elements)
-        numeric = [found for found in elements if any(_is_numbers(value) for value in found.attrib.values())]
+        numeric = [found for found in elements if _numeric(found)]
         match chance.randrange(13):
             case 0 if element is not root:
                 element.getparent().remove(element)
@@ -230,19 +244,22 @@ def mutate_xml(data: bytes, chance: random.Random, names: Sequence[str]) -> byte
             case 2 if element is not root and element not in other.iterancestors() and other is not element:
                 other.append(element)
             case 3:
-                element.tag = chance.choice(TAGS)
+                element.tag = chance.choice(tags)
             case 4 if element.attrib:
                 del element.attrib[chance.choice(list(element.attrib))]
             case 5:
                 element.set(
-                    chance.choice(ATTRIBUTES), _settable(chance.choice((*NUMBERS, *NOT_NUMBERS, *NAMES, *names)))
+                    chance.choice(attributes), _settable(chance.choice((*NUMBERS, *NOT_NUMBERS, *NAMES, *names)))
                 )
             case 6 | 7 | 8 if numeric:
                 element = chance.choice(numeric)
-                key = chance.choice([key for key, value in element.attrib.items() if _is_numbers(value)])
-                values = element.get(key, "").split()
+                key = chance.choice(_numeric(element))
+                values = (element.text or "" if key is None else element.get(key, "")).split()
                 values[chance.randrange(len(values))] = chance.choice(NUMBERS if chance.random() < 0.8 else NOT_NUMBERS)
-                element.set(key, " ".join(values))
+                if key is None:
+                    element.text = " ".join(values)
+                else:
+                    element.set(key, " ".join(values))
             case 9:
                 named = [found for found in elements if found.get("link") or found.get("name") or found.get("joint")]
                 element = chance.choice(named or elements)
@@ -267,6 +284,12 @@ def mutate_xml(data: bytes, chance: random.Random, names: Sequence[str]) -> byte
 
 def _copy(element: Any) -> Any:
     return etree.fromstring(etree.tostring(element, with_tail=False))
+
+
+def _numeric(element: Any) -> list[str | None]:
+    """The attributes of an element that are numbers, and None if its text is."""
+    found: list[str | None] = [key for key, value in element.attrib.items() if _is_numbers(value)]
+    return [*found, None] if _is_numbers(element.text or "") else found
 
 
 def _is_numbers(text: str) -> bool:

@@ -28,8 +28,8 @@ class Outcome:
     """What became of a case.
 
     Attributes:
-        word: ``refused``, ``no geometry``, ``robot`` or ``answered``; else ``raised``, ``noise``, ``memory``,
-            ``crashed`` or ``hangs``.
+        word: ``refused``, ``robot``, ``answered``, ``imported`` or ``with errors``; else ``raised``, ``noise``,
+            ``memory``, ``crashed`` or ``hangs``.
         trouble: What went wrong; empty if nothing did.
         kind: Of the case, where it is known.
     """
@@ -63,9 +63,9 @@ class Watched:
         self._end()
         self._log.close()
 
-    def try_number(self, seed: int, number: int) -> Outcome:
-        """What becomes of a case of a seed."""
-        return self._ask({"seed": seed, "number": number})
+    def try_number(self, seed: int, number: int, kind: str | None = None) -> Outcome:
+        """What becomes of a case of a seed, of a kind."""
+        return self._ask({"seed": seed, "number": number, "of": kind})
 
     def try_folder(self, folder: Path) -> Outcome:
         """What becomes of a case that was written into a folder."""

@@ -1,6 +1,7 @@
 """A process that tries cases: ``python -m benchmarks.fuzz.worker`` reads JSON lines and answers each with one.
 
-A request is ``{"seed": …, "number": …}`` or ``{"folder": …}``, a case that was written there. The answer is
+A request is ``{"seed": …, "number": …, "of": …}``, where ``of`` is a kind of case or null, or ``{"folder": …}``, a case
+that was written there. The answer is
 ``{"outcome": …, "trouble": …}``; trouble is empty if no promise was broken. A case that takes more than `CPU_SECONDS`
 of processor time ends the process by SIGPROF, also where it is in C++. The process may have `MEMORY` bytes.
 """
@@ -20,6 +21,7 @@ from typing import IO, Any
 
 from benchmarks.fuzz.calls import try_call
 from benchmarks.fuzz.case import Case, case_of, read_case
+from benchmarks.fuzz.imports import try_import
 from benchmarks.fuzz.robots import try_robot
 
 #: Processor time after which a step of a case is taken not to end, s.
@@ -53,6 +55,8 @@ def try_case(case: Case, folder: Path, number: int = 0) -> str:
         return try_call(case.call)
     for name, content in case.files.items():
         (folder / name).write_bytes(content)
+    if case.kind.startswith("import-"):
+        return try_import(folder / case.path, case.kind.removeprefix("import-"), clock=restart_clock)
     return try_robot(folder / case.path, analyse=number % 4 == 0, clock=restart_clock)
 
 
@@ -68,7 +72,10 @@ def serve(requests: IO[str], answers: IO[str], noise: int) -> None:
     for line in requests:
         request = json.loads(line)
         number = request.get("number", 0)
-        case = read_case(Path(request["folder"])) if "folder" in request else case_of(request["seed"], number)
+        if "folder" in request:
+            case = read_case(Path(request["folder"]))
+        else:
+            case = case_of(request["seed"], number, request["of"])
         with tempfile.TemporaryDirectory() as folder:
             try:
                 outcome, trouble = try_case(case, Path(folder), number), ""

@@ -11,6 +11,7 @@ import jsonschema
 import pytest
 
 import eurdf
+from benchmarks.fuzz.watched import Watched
 from eurdf.commands import import_robot as command
 from eurdf.commands.main import main
 from eurdf.commands.output_schema import output_schemas
@@ -162,3 +163,88 @@ def test_mujoco_is_not_imported_by_the_caller(here: Path) -> None:
 def test_tables_of_losses_are_current() -> None:
     page = (Path(eurdf.__file__).parents[2] / "docs" / "import.md").read_text(encoding="utf-8")
     assert with_tables(page) == page
+
+
+WITH_ERRORS = """<sdf version="1.11"><model name="r">
+<link name="a"><inertial><mass>-1</mass></inertial></link>
+<link name="b"><inertial><mass>1</mass><inertia><ixx>-3</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial></link>
+<joint name="j" type="revolute"><parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz></axis></joint>
+</model></sdf>"""
+
+
+def test_robot_with_errors_is_written_and_they_are_shown(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (here / "r.sdf").write_text(WITH_ERRORS)
+    assert main(["import", "r.sdf", "-o", "out"]) == 1
+    out = capsys.readouterr().out
+    assert "link 'a' has the negative mass -1 kg [negative-mass EU-INR-001]" in out
+    assert "out: 2 errors" in out
+    checked = eurdf.check("out").diagnostics
+    found = eurdf.import_robot("r.sdf")
+    assert [(each.code, each.line) for each in found.errors] == [(each.code, each.line) for each in checked]
+    assert {each.file for each in found.errors} == {"robot.urdf"}
+
+    assert main(["import", "r.sdf", "-o", "other", "--format", "json"]) == 1
+    info = json.loads(capsys.readouterr().out)
+    jsonschema.Draft202012Validator(output_schemas()["import.schema.json"]).validate(info)
+    assert [each["file"] for each in info["diagnostics"]] == ["other/robot.urdf"] * 2
+
+    assert main(["import", "r.sdf", "-o", "strict", "--strict"]) == 1
+    out, err = capsys.readouterr()
+    assert "negative-mass" in out
+    assert "nothing was written: cannot import 'r.sdf': the robot has errors" in err
+    assert not (here / "strict").exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "message"),
+    [
+        (
+            "zero_axis.urdf",
+            '<robot name="r"><link name="a"/><link name="b"/>\n<joint name="j" type="fixed"><parent link="a"/><child '
+            'link="b"/></joint>\n<loop_joint name="l" type="revolute"><link1 link="a" xyz="0 0 0" rpy="0 0 0"/><link2 '
+            'link="b" xyz="0 0 0" rpy="0 0 0"/>\n<axis xyz="0 0 0"/></loop_joint></robot>',
+            "zero_axis.urdf:4: 'xyz' of <axis> is '0 0 0'; an axis must not be zero",
+        ),
+        ("inf.sdf", WITH_ERRORS.replace("-3", "inf"), "inf.sdf:3: <ixx> is 'inf'; it must be one finite number"),
+        (
+            "keyframe.xml",
+            '<mujoco><worldbody><body><joint name="j"/><geom size=".1"/></body></worldbody>\n'
+            '<keyframe><key qpos="nan"/></keyframe></mujoco>',
+            "the coordinates of 'j' are nan; they must be finite",
+        ),
+        (
+            "site.xml",
+            '<mujoco><worldbody><body><joint/><geom size=".1"/>\n<site name="s" quat="1 1e308 0 0"/></body></worldbody>'
+            "</mujoco>",
+            "site.xml:2: site 's' has the quaternion 0 0 0 0; its length must be finite, and not zero",
+        ),
+    ],
+)
+def test_number_that_no_description_has_is_refused(
+    name: str, content: str, message: str, here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (here / name).write_text(content)
+    assert main(["import", name, "-o", "out"]) == 1
+    err = capsys.readouterr().err
+    assert message in err
+    assert err.count("\n") == 1
+    assert not (here / "out").exists()
+
+
+def test_name_of_a_file_writes_no_line(here: Path) -> None:
+    name = "a\nroot: floating #--.sdf"
+    (here / name).write_text(WITH_ERRORS.replace("-1", "1").replace("-3", "1"))
+    assert main(["import", name, "-o", "out"]) == 0
+    assert eurdf.load("out", geometry=False).mechanism.root == "floating"  # as SDFormat has it, stated once
+    yaml = (here / "out" / "robot.yaml").read_text()
+    assert [line for line in yaml.splitlines() if line.startswith("root:")] == ["root: floating"]
+    for file in ("robot.yaml", "robot.urdf", "README.md"):
+        assert "\nroot: floating #" not in (here / "out" / file).read_text()
+
+
+def test_damaged_files_are_refused_or_imported_as_they_are(tmp_path: Path) -> None:
+    with Watched() as worker:
+        outcomes = [worker.try_number(7, number, "import") for number in range(60)]
+    assert not [outcome for outcome in outcomes if outcome.trouble]
+    assert {outcome.kind for outcome in outcomes} == {f"import-{format_}" for format_ in FORMATS}
+    assert {"refused", "imported"} <= {outcome.word for outcome in outcomes}

@@ -20,7 +20,7 @@ def test_seed_and_number_decide_a_case() -> None:
     again = [case_of(3, number) for number in range(40)]
     # As text, since NaN is not equal to itself.
     assert list(map(repr, again)) == list(map(repr, cases))
-    assert {case.kind for case in cases} == {"robot", "mesh", "call"}
+    assert {case.kind for case in cases} >= {"robot", "mesh", "call"}
     assert list(map(repr, cases)) != [repr(case_of(4, number)) for number in range(40)]
 
 

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 from pydantic import BaseModel, ConfigDict, Field
 
 from eurdf.commands.loss_info import LossInfo, loss_info
-from eurdf.diagnostics.report import encodable
+from eurdf.diagnostics.report import Report, encodable
 
 if TYPE_CHECKING:
     from eurdf.diagnostics import Place
+    from eurdf.importing.exceptions import CannotImport
     from eurdf.importing.import_robot import Import
     from eurdf.loss import Loss
 
@@ -50,31 +51,37 @@ class ImportInfo(_Entry):
     """Whether there is a configuration at which every loop is closed; null if nothing was imported."""
     losses: tuple[LossInfo, ...]
     """Every loss, in the order found."""
+    diagnostics: tuple[dict[str, Any], ...]
+    """What 'eurdf check --format json' reports of the robot, also where --strict refuses to write it."""
 
 
 def refused_import(
-    path: str, format_: str | None, reason: str, losses: Sequence[Loss], place_of: Callable[[Loss], Place | None]
+    path: str, format_: str | None, reason: CannotImport, place_of: Callable[[Loss], Place | None]
 ) -> ImportInfo:
-    """An import that wrote nothing; the arguments are those of `import_info`."""
+    """An import that wrote nothing; the arguments are those of `import_info`, and why."""
     return ImportInfo(
         path=encodable(path),
         format=format_,
         files=(),
-        refused=encodable(reason),
+        refused=encodable(str(reason)),
         start=None,
         opened=(),
         closes=None,
-        losses=tuple(loss_info(loss, place_of(loss)) for loss in losses),
+        losses=tuple(loss_info(loss, place_of(loss)) for loss in reason.losses),
+        diagnostics=_diagnostics(Report(path, reason.diagnostics)),
     )
 
 
-def import_info(path: str, found: Import, files: Sequence[str], place_of: Callable[[Loss], Place | None]) -> ImportInfo:
+def import_info(
+    path: str, found: Import, files: Sequence[str], report: Report, place_of: Callable[[Loss], Place | None]
+) -> ImportInfo:
     """An import as ``eurdf import`` shows it.
 
     Args:
         path: The file, as given.
         found: What was imported.
         files: Paths of the files that were written.
+        report: What `eurdf.check` reports of them.
         place_of: Where the element of a loss is stated.
     """
     return ImportInfo(
@@ -88,7 +95,12 @@ def import_info(path: str, found: Import, files: Sequence[str], place_of: Callab
         ),
         closes=found.closes,
         losses=tuple(loss_info(loss, place_of(loss)) for loss in found.losses),
+        diagnostics=_diagnostics(report),
     )
+
+
+def _diagnostics(report: Report) -> tuple[dict[str, Any], ...]:
+    return tuple(report.to_json()["diagnostics"])
 
 
 def import_schema() -> dict[str, Any]:

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from eurdf.commands.check import write_reports
 from eurdf.commands.loss_lines import loss_lines
 from eurdf.commands.migrate import print_notes
 from eurdf.commands.output import write_json, write_lines
@@ -25,9 +26,10 @@ say, or only approximately.
 
 The files are written to a folder, all of them or none: robot.urdf, robot.yaml, its schema, meshes, a README.
 If the loops are open at the keyframe or reference pose of the file, a configuration is searched that closes them.
+What was written is checked, as by `eurdf check`.
 """
 _EPILOG = ending(
-    "0 imported, 1 the file has errors, or losses with --strict, 2 the command cannot run.",
+    "0 imported, 1 the file or the robot has errors, or losses with --strict, 2 the command cannot run.",
     "eurdf import cassie.xml -o cassie",
     "eurdf import scene/arm.xml -o arm --within .",
 )
@@ -62,7 +64,9 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "package.xml, or else that of FILE",
     )
     parser.add_argument("--allow-outside", action="store_true", help="read files that are outside these folders")
-    parser.add_argument("--strict", action="store_true", help="write nothing if a loss is not exact")
+    parser.add_argument(
+        "--strict", action="store_true", help="write nothing if a loss is not exact, or the robot has errors"
+    )
     parser.add_argument("--force", action="store_true", help="replace existing files")
     parser.add_argument("--format", choices=("text", "json"), default="text", help="format of the output")
     parser.set_defaults(run=run)
@@ -70,6 +74,8 @@ def register(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 def run(args: argparse.Namespace) -> int:
     """Import, show the losses, and return the exit code."""
+    from eurdf.checking.check import check
+    from eurdf.diagnostics.report import Report
     from eurdf.importing.exceptions import CannotImport
     from eurdf.importing.import_robot import import_robot
 
@@ -82,23 +88,28 @@ def run(args: argparse.Namespace) -> int:
         if args.format == "json":
             from eurdf.commands.import_info import refused_import
 
-            info = refused_import(args.file, args.format_, str(reason), reason.losses, places.of)
+            info = refused_import(args.file, args.format_, reason, places.of)
             write_json(info.model_dump(mode="json"))
         else:
             write_lines(loss_lines(reason.losses, places.of), sys.stdout)
+            if reason.diagnostics:
+                write_reports([Report(args.output, reason.diagnostics)])
             print_notes([f"nothing was written: {reason}"])
         return 1
     places = _Places(found.sources)
     with writing():
         paths = [os.fspath(each) for each in found.write(args.output, force=args.force)]
+    report = check(args.output)
     if args.format == "json":
         from eurdf.commands.import_info import import_info
 
-        write_json(import_info(args.file, found, paths, places.of).model_dump(mode="json"))
+        write_json(import_info(args.file, found, paths, report, places.of).model_dump(mode="json"))
     else:
         write_lines(loss_lines(found.losses, places.of), sys.stdout)
         print_notes([*_loops(found), *(f"wrote '{each}'" for each in paths)])
-    return 0
+        if not report.ok:
+            write_reports([report])
+    return 0 if report.ok else 1
 
 
 def _loops(found: Import) -> list[str]:
@@ -124,22 +135,7 @@ class _Places:
     def of(self, loss: Loss) -> Place | None:
         """Where the element of a loss is, if it has a name there."""
         if self._of is None:
-            self._of = self._found()
+            from eurdf.importing.places import places_of_names
+
+            self._of = places_of_names(self._sources)
         return self._of.get(loss.name)
-
-    def _found(self) -> dict[str, Place]:
-        from eurdf.diagnostics import Place
-        from eurdf.importing.exceptions import CannotImport
-        from eurdf.importing.xml_files import read_root
-
-        found: dict[str, Place] = {}
-        for path in self._sources:
-            try:
-                root = read_root(path)
-            except CannotImport:
-                continue
-            for element in root.iter("*"):
-                name, line = element.get("name"), element.sourceline
-                if name and isinstance(line, int):
-                    found.setdefault(name, Place(os.fspath(path), line))
-        return found

@@ -33,7 +33,8 @@ class Elements:
             values = ()
         if len(values) != count or not all(map(math.isfinite, values)):
             wanted = "one finite number" if count == 1 else f"{count} finite numbers separated by spaces"
-            raise self.refuse(element, f"{what} of {named(element)} is '{text or ''}'; it must be {wanted}")
+            of = "" if what == f"<{element.tag}>" else f" of {named(element)}"
+            raise self.refuse(element, f"{what}{of} is '{text or ''}'; it must be {wanted}")
         return values
 
     def attribute(self, element: etree._Element, name: str, default: float | None = None) -> float:
@@ -50,6 +51,13 @@ class Elements:
             return default
         x, y, z = self.numbers(element, text, 3, f"'{name}'")
         return x, y, z
+
+    def axis(self, element: etree._Element) -> Vector3:
+        """The axis in the attribute ``xyz``, of any length but zero."""
+        axis = self.vector(element, "xyz")
+        if not any(axis):
+            raise self.refuse(element, f"'xyz' of {named(element)} is '{element.get('xyz')}'; an axis must not be zero")
+        return axis
 
     def pose(self, element: etree._Element | None) -> Pose:
         """The pose in the attributes ``xyz`` and ``rpy`` of an element; the identity without it."""

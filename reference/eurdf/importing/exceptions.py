@@ -9,6 +9,7 @@ from eurdf.diagnostics.visible import visible
 from eurdf.exceptions import EurdfError
 
 if TYPE_CHECKING:
+    from eurdf.diagnostics import Diagnostic
     from eurdf.loss import Loss
 
 
@@ -19,8 +20,15 @@ class CannotImport(EurdfError, ValueError):  # noqa: N818 - part of the public i
         path: The file.
         reason: What is wrong, and what would be right.
         losses: What was refused, where the caller refuses losses.
+        diagnostics: The errors that were refused, where the caller refuses the robot's errors.
     """
 
-    def __init__(self, path: str | os.PathLike[str], reason: str, losses: tuple[Loss, ...] = ()) -> None:
-        self.path, self.reason, self.losses = os.fspath(path), reason, losses
+    def __init__(
+        self,
+        path: str | os.PathLike[str],
+        reason: str,
+        losses: tuple[Loss, ...] = (),
+        diagnostics: tuple[Diagnostic, ...] = (),
+    ) -> None:
+        self.path, self.reason, self.losses, self.diagnostics = os.fspath(path), reason, losses, diagnostics
         super().__init__(visible(f"cannot import '{self.path}': {reason}"))

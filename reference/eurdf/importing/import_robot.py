@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
+import math
 import os
+import re
+import tempfile
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 
 import numpy as np
 
+from eurdf.checking.check import check
 from eurdf.dataclass import dataclass
-from eurdf.diagnostics import did_you_mean
+from eurdf.diagnostics import Diagnostic, Severity, did_you_mean
+from eurdf.diagnostics.visible import visible
 from eurdf.exceptions import RobotNotFound
 from eurdf.format.schema import FILES, SchemaVersion, json_schema, schema_text
 from eurdf.importing.exceptions import CannotImport
 from eurdf.importing.formats import FORMATS
+from eurdf.importing.places import places_of_names
 from eurdf.importing.readme import licence_file, readme
 from eurdf.importing.recognition import recognized
 from eurdf.importing.robot_read import RobotRead
@@ -30,7 +37,7 @@ from eurdf.pinocchio.robot import build_robot
 from eurdf.reading.resource import FileFinder
 from eurdf.writing.assembled import NAME as ASSEMBLED
 from eurdf.writing.assembled import beyond_limits
-from eurdf.writing.description import NotWritable, describe_mechanism, version_needed
+from eurdf.writing.description import DescriptionFiles, NotWritable, describe_mechanism, version_needed
 from eurdf.writing.output_folder import write_files
 
 #: Losses of every format.
@@ -84,6 +91,22 @@ class Import:
     closes: bool
     sources: tuple[Path, ...]
 
+    @cached_property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """What `eurdf.check` finds in the files, with places in them; it is looked for when it is first used.
+
+        The files have no error with which `eurdf.load` refuses kinematics. They can have others, as the file had: an
+        unphysical inertia, loops that do not close, a mesh that cannot be read.
+        """
+        with tempfile.TemporaryDirectory() as scratch:
+            self.write(scratch)
+            return tuple(_relative(found, scratch) for found in check(scratch).diagnostics)
+
+    @property
+    def errors(self) -> tuple[Diagnostic, ...]:
+        """The errors in `diagnostics`: without them, the robot passes `eurdf.check`."""
+        return tuple(found for found in self.diagnostics if found.severity is Severity.ERROR)
+
     def write(self, folder: str | os.PathLike[str], *, force: bool = False) -> tuple[Path, ...]:
         """Write the files to a folder: all of them or none.
 
@@ -120,13 +143,13 @@ def import_robot(
             recognized by its content.
         within: A folder that files may be in which the file names, besides the robot's folder: the nearest one, from
             its own upwards, with a ``package.xml``, or else its own.
-        strict: Whether to refuse losses that are not exact.
+        strict: Whether to refuse losses that are not exact, and robots with errors.
         allow_outside: Whether files may be anywhere; each one outside these folders is a loss that is exact. If not,
             meshes elsewhere are left out, and other files are refused.
 
     Raises:
         CannotImport: The file is not of this format, has an error, or uses files outside the folder; or, if `strict`,
-            it cannot be imported without losses.
+            it cannot be imported without losses, or the robot does not pass `eurdf.check`.
         MissingExtra: What reads the format is not installed.
         RobotNotFound: There is no such file.
         ValueError: There is no such format.
@@ -143,7 +166,18 @@ def import_robot(
     if strict and (refused := tuple(loss for loss in imported.losses if loss.effect is not Effect.EXACT)):
         more = f"; and {len(refused) - 1} more" if len(refused) > 1 else ""
         raise CannotImport(file, f"it has losses: {refused[0]}{more}", refused)
+    if strict and (errors := imported.errors):
+        more = f"; and {len(errors) - 1} more" if len(errors) > 1 else ""
+        raise CannotImport(file, f"the robot has errors: {errors[0]}{more}", diagnostics=errors)
     return imported
+
+
+def _relative(found: Diagnostic, folder: str) -> Diagnostic:
+    """A diagnostic of a file in a folder, with its place and words relative to the folder."""
+    here = f"{folder}{os.sep}"
+    place = replace(found.place, file=found.file.removeprefix(here))
+    hint = None if found.hint is None else found.hint.replace(here, "")
+    return Diagnostic(found.code, found.message.replace(here, ""), place, hint)
 
 
 def _import(format_: str, path: Path, read: RobotRead, folders: Folders) -> Import:
@@ -152,6 +186,9 @@ def _import(format_: str, path: Path, read: RobotRead, folders: Folders) -> Impo
     for outside in folders.let_through:
         losses.add("import-file-outside", outside)
     start, coordinates = read.start
+    # First: no number that the format refuses, such as an infinite one, may reach the kinematics.
+    _description(path, format_, read.mechanism, read)
+    _must_be_coordinates(path, start, coordinates)
     robot = build_robot(read.mechanism, geometry=False)
     q = robot.configuration(coordinates)
     opened = closure_openings(robot, q)
@@ -173,7 +210,7 @@ def _import(format_: str, path: Path, read: RobotRead, folders: Folders) -> Impo
     mechanism = replace(
         mechanism,
         version=version_needed(mechanism),
-        metadata=MappingProxyType({"source": path.name, **mechanism.metadata}),
+        metadata=MappingProxyType({"source": visible(path.name), **mechanism.metadata}),
     )
     found_losses = (*read.losses, *losses.found)
     files = _files(path, format_, mechanism, read, found_losses, opened, licence)
@@ -205,13 +242,7 @@ def _files(
     opened: tuple[Opening, ...],
     licence: Path | None,
 ) -> dict[str, bytes]:
-    schema: SchemaVersion = "2" if version_needed(mechanism) == "2.0" else "2.1"
-    comment = f"Imported from {path.name} ({format_}) by eurdf."
-    try:
-        written = describe_mechanism(mechanism, schema=f"./{FILES[schema]}", comments=(comment,))
-    except NotWritable as reason:
-        raise CannotImport(path, str(reason)) from None
-    _must_be_valid(path, written.yaml, written.urdf.decode())
+    written, schema = _description(path, format_, mechanism, read)
     files = {
         "robot.urdf": written.urdf,
         "robot.yaml": written.yaml.encode(),
@@ -224,8 +255,33 @@ def _files(
     return files
 
 
-def _must_be_valid(path: Path, yaml: str, urdf: str) -> None:
-    """Refuse what could only be written as a description with errors."""
-    found = describe(yaml, urdf=urdf)
+def _description(
+    path: Path, format_: str, mechanism: Mechanism, read: RobotRead
+) -> tuple[DescriptionFiles, SchemaVersion]:
+    """The two files of the mechanism, and the version of their schema.
+
+    Raises:
+        CannotImport: It could only be written as a description with errors.
+    """
+    schema: SchemaVersion = "2" if version_needed(mechanism) == "2.0" else "2.1"
+    comment = f"Imported from {path.name} ({format_}) by eurdf."
+    try:
+        written = describe_mechanism(mechanism, schema=f"./{FILES[schema]}", comments=(comment,))
+    except NotWritable as reason:
+        raise CannotImport(path, str(reason)) from None
+    found = describe(written.yaml, urdf=written.urdf.decode())
     if isinstance(found, Unlinked):
-        raise CannotImport(path, f"it has no valid description: {found.diagnostics.errors[0].message}")
+        message = found.diagnostics.errors[0].message
+        places = places_of_names(read.sources)
+        place = next((places[name] for name in re.findall("'([^']*)'", message) if name in places), None)
+        where = "" if place is None else f"{Path(place.file).name}:{place.line}: "
+        raise CannotImport(path, f"{where}it has no valid description: {message}")
+    return written, schema
+
+
+def _must_be_coordinates(path: Path, start: str, coordinates: Mapping[str, tuple[float, ...]]) -> None:
+    """Refuse a configuration to assemble from that is none, as the pose of a floating root that overflows."""
+    for name, values in coordinates.items():
+        if not all(map(math.isfinite, values)):
+            shown = ", ".join(f"{value:g}" for value in values)
+            raise CannotImport(path, f"{start}: the coordinates of '{name}' are {shown}; they must be finite")

@@ -7,12 +7,14 @@ YAML file has the rest.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Literal, cast
 
 from lxml import etree
 
 from eurdf.dataclass import dataclass
+from eurdf.diagnostics.visible import visible
 from eurdf.format.own_key import is_own_key
 from eurdf.format.yaml_text import Entry, Value, item_of_mapping, lines_of, lines_of_item, modeline, section, text_of
 from eurdf.mechanism.body import Body
@@ -36,6 +38,9 @@ from eurdf.writing.urdf_elements import (
     add_shape,
 )
 from eurdf.writing.xml_text import file_content, representable
+
+#: Between two hyphens, which an XML comment must not contain.
+_TWO_HYPHENS = re.compile("-(?=-)")
 
 _Z: Vector3 = (0.0, 0.0, 1.0)
 _LETTERS = {(1.0, 0.0, 0.0): "x", (0.0, 1.0, 0.0): "y", _Z: "z"}
@@ -99,7 +104,7 @@ def describe_mechanism(
         mechanism: The robot.
         urdf_path: Path of the URDF from the folder of the YAML file.
         schema: Path of the schema from there, for the first line; None for no such line.
-        comments: Lines of text to put at the head of both files.
+        comments: Lines of text to put at the head of both files; what is not printable in them is escaped.
         materials: Colors by name, red, green, blue, alpha from 0 to 1: the URDF declares each once, and the shapes of
             that color use it by name. Any other color is stated at each shape.
 
@@ -127,7 +132,7 @@ def describe_mechanism(
     }
     _place_own_data(content, mechanism)
     head = [modeline(schema)] if schema is not None else []
-    head += [f"# {line}".rstrip() for line in comments]
+    head += [f"# {visible(line)}".rstrip() for line in comments]
     text = "".join(f"{line}\n" for line in head) + text_of(_entries(content))
     return DescriptionFiles(urdf.content(comments), text, version)
 
@@ -150,7 +155,7 @@ class _Urdf:
     def content(self, comments: Sequence[str]) -> bytes:
         """The bytes of the file."""
         for line in reversed(comments):
-            self.robot.insert(0, etree.Comment(f" {representable(line).replace('--', '- -')} "))
+            self.robot.insert(0, etree.Comment(f" {_TWO_HYPHENS.sub('- ', visible(line))} "))
         return file_content(self.robot)
 
     def _link(self, body: Body) -> None:

@@ -61,7 +61,7 @@ def _closure(element: etree._Element, tree: UrdfTree, names: UniqueNames, losses
             return FrameClosure(name, a, b)
         case "revolute" | "continuous":
             axis = element.find("axis")
-            xyz = (1.0, 0.0, 0.0) if axis is None else elements.vector(axis, "xyz")
+            xyz = (1.0, 0.0, 0.0) if axis is None else elements.axis(axis)
             return HingeClosure(name, a, b, (xyz, xyz))
     losses.add("import-loop", name, f"is left out: it has the type '{element.get('type')}'")
     return None

@@ -9,10 +9,12 @@ orientation of body 2 in body 1; the pose of a compiled mesh shape is that of th
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 
+from eurdf.importing.exceptions import CannotImport
 from eurdf.importing.mjcf.actuators import read_actuators
 from eurdf.importing.mjcf.bodies import read_body
 from eurdf.importing.mjcf.closures import movable, read_closures
@@ -21,14 +23,25 @@ from eurdf.importing.mjcf.couplings import read_couplings
 from eurdf.importing.mjcf.frames import read_frames
 from eurdf.importing.mjcf.joints import read_joints
 from eurdf.importing.mjcf.losses import LOSSES
-from eurdf.importing.mjcf.model import compile_mjcf
+from eurdf.importing.mjcf.model import MjcfModel, compile_mjcf
 from eurdf.importing.mjcf.reading import MjcfReading
 from eurdf.importing.mjcf.remainder import leave_out_rest, leave_out_scenery
+from eurdf.importing.mjcf.values import NoOrientation, xyzw
+from eurdf.importing.places import places_of_names
 from eurdf.importing.robot_read import ImportFormat, RobotRead
 from eurdf.importing.xml_files import included_files
 from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.spanning_tree import depth_first
 from eurdf.reading.resource import FileFinder
+
+#: What has an orientation: the kind of element, and its array.
+_ORIENTATIONS = (
+    ("body", "body_quat"),
+    ("body", "body_iquat"),
+    ("geom", "geom_quat"),
+    ("site", "site_quat"),
+    ("mesh", "mesh_quat"),
+)
 
 
 def read(path: Path, finder: FileFinder) -> RobotRead:
@@ -40,7 +53,23 @@ def read(path: Path, finder: FileFinder) -> RobotRead:
     """
     folders = finder.folders
     sources = included_files(path, folders)
-    return replace(_robot(MjcfReading(compile_mjcf(path, folders), path, folders)), sources=sources)
+    model = compile_mjcf(path, folders)
+    _must_have_orientations(path, model, sources)
+    try:
+        return replace(_robot(MjcfReading(model, path, folders)), sources=sources)
+    except NoOrientation as reason:
+        raise CannotImport(path, f"a keyframe or an equality has {reason}") from None
+
+
+def _must_have_orientations(path: Path, model: MjcfModel, sources: Sequence[Path]) -> None:
+    for kind, array in _ORIENTATIONS:
+        for name, quaternion in zip(model.names[kind], model[array], strict=False):
+            try:
+                xyzw(quaternion)
+            except NoOrientation as reason:
+                places = places_of_names(sources)
+                line = f":{places[name].line}" if name in places else ""
+                raise CannotImport(path, f"{path.name}{line}: {kind} '{name}' has {reason}") from None
 
 
 def _robot(reading: MjcfReading) -> RobotRead:

@@ -409,12 +409,13 @@ class _Reader:
             raise self.elements.refuse(joint.element, f"the pitch of screw joint '{joint.name}' is 0")
         return pitch
 
-    def _number(self, element: etree._Element | None, path: str, default: float) -> float:
+    def _number(self, element: etree._Element | None, path: str, default: float, *, infinite: bool = False) -> float:
+        """The number of an element; infinite ones only where they mean no limit."""
         found = None if element is None else element.find(path)
         if found is None or not (found.text or "").strip():
             return default
         text = (found.text or "").strip()
-        if text.lstrip("+-").lower() in ("inf", "infinity"):
+        if infinite and text.lstrip("+-").lower() in ("inf", "infinity"):
             return -math.inf if text.startswith("-") else math.inf
         return self.elements.numbers(found, text, 1, f"<{found.tag}>")[0]
 
@@ -430,7 +431,8 @@ class _Reader:
             return free
 
         def each(path: str, default: float) -> tuple[float, ...]:
-            return tuple(self._number(axis, path, default) for axis in axes)
+            infinite = path.startswith("limit/")
+            return tuple(self._number(axis, path, default, infinite=infinite) for axis in axes)
 
         lower = tuple(value if value > -UNLIMITED else -math.inf for value in each("limit/lower", -math.inf))
         upper = tuple(value if value < UNLIMITED else math.inf for value in each("limit/upper", math.inf))

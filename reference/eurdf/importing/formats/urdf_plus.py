@@ -75,7 +75,7 @@ def _closure(element: etree._Element, tree: UrdfTree, names: UniqueNames, losses
         case "fixed":
             return FrameClosure(name, a, b)
         case "revolute" | "continuous":
-            axis = elements.vector(elements.child(element, "axis"), "xyz")
+            axis = elements.axis(elements.child(element, "axis"))
             return HingeClosure(name, a, b, (axis, axis))
     losses.add("import-loop", name, f"is left out: it has the type '{element.get('type')}'")
     return None
