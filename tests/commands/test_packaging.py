@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
 from pathlib import Path
 from typing import Any
@@ -65,3 +66,13 @@ def test_recipe_for_conda_has_the_dependencies() -> None:
     split = [each.lower().partition(">=") for each in READER["dependencies"]]
     wanted = {f"{names.get(name, name)}>={version}" for name, _, version in split}
     assert {each.replace(" ", "") for each in run} == wanted
+
+
+def test_actions_are_pinned_by_commit() -> None:
+    files = [ROOT / "action.yml", *(ROOT / ".github" / "workflows").glob("*.yml")]
+    used = [
+        line.split("uses:")[1].strip() for file in files for line in file.read_text().splitlines() if "uses:" in line
+    ]
+    elsewhere = [action for action in used if not action.startswith("./")]
+    assert len(elsewhere) > 20
+    assert not [action for action in elsewhere if not re.fullmatch(r"[\w./-]+@[0-9a-f]{40} # v[\d.]+", action)]
