@@ -55,7 +55,8 @@ def _urdf_plus(content: bytes) -> bytes:
             for key in ("xyz", "rpy"):
                 if key in end.attrib:
                     origin.set(key, end.attrib.pop(key))
-    moved = [joint.find("child") for joint in root.findall("joint") if joint.get("type") in ("revolute", "continuous")]
+    turning = [joint for joint in root.findall("joint") if joint.get("type") in ("revolute", "continuous")]
+    moved = [joint.find("child") for joint in turning if joint.find("mimic") is None]
     coupling = etree.SubElement(root, "coupling", name="coupled")
     for tag, child in (("predecessor", moved[0]), ("successor", moved[-1])):
         assert child is not None
