@@ -138,6 +138,6 @@ def _turns_about_one_line(twists: list[Vector], length: float) -> bool:
     sliding = linear + angular @ pin.skew(point)
     tilting = angular @ pin.skew(axis)
     bound = (_SAME_LINE * turning) ** 2
-    return bool(
-        (sliding * sliding).sum(axis=1).max() <= bound * length**2 and (tilting * tilting).sum(axis=1).max() <= bound
-    )
+    with np.errstate(over="ignore"):  # then it is above the bound
+        slides, tilts = ((each * each).sum(axis=1).max() for each in (sliding, tilting))
+    return bool(slides <= bound * length * length and tilts <= bound)
