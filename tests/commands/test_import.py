@@ -218,6 +218,12 @@ def test_robot_with_errors_is_written_and_they_are_shown(here: Path, capsys: pyt
             "</mujoco>",
             "site.xml:2: site 's' has the quaternion 0 0 0 0; its length must be finite, and not zero",
         ),
+        (
+            "axis.xml",
+            '<mujoco><worldbody><body><joint name="j" axis="1e308 1e308 0"/><geom size=".1"/></body></worldbody>'
+            "</mujoco>",
+            "joint 'j' has the axis 0 0 0; its length must be finite, and not zero",
+        ),
     ],
 )
 def test_number_that_no_description_has_is_refused(

@@ -26,7 +26,7 @@ from eurdf.importing.mjcf.losses import LOSSES
 from eurdf.importing.mjcf.model import MjcfModel, compile_mjcf
 from eurdf.importing.mjcf.reading import MjcfReading
 from eurdf.importing.mjcf.remainder import leave_out_rest, leave_out_scenery
-from eurdf.importing.mjcf.values import NoOrientation, xyzw
+from eurdf.importing.mjcf.values import NoDirection, must_have_direction
 from eurdf.importing.places import places_of_names
 from eurdf.importing.robot_read import ImportFormat, RobotRead
 from eurdf.importing.xml_files import included_files
@@ -34,13 +34,14 @@ from eurdf.mechanism.mechanism import Mechanism
 from eurdf.mechanism.spanning_tree import depth_first
 from eurdf.reading.resource import FileFinder
 
-#: What has an orientation: the kind of element, and its array.
-_ORIENTATIONS = (
-    ("body", "body_quat"),
-    ("body", "body_iquat"),
-    ("geom", "geom_quat"),
-    ("site", "site_quat"),
-    ("mesh", "mesh_quat"),
+#: What has a direction: the kind of element, its array, and what it is.
+_DIRECTIONS = (
+    ("body", "body_quat", "quaternion"),
+    ("body", "body_iquat", "quaternion"),
+    ("geom", "geom_quat", "quaternion"),
+    ("site", "site_quat", "quaternion"),
+    ("mesh", "mesh_quat", "quaternion"),
+    ("joint", "jnt_axis", "axis"),
 )
 
 
@@ -54,19 +55,19 @@ def read(path: Path, finder: FileFinder) -> RobotRead:
     folders = finder.folders
     sources = included_files(path, folders)
     model = compile_mjcf(path, folders)
-    _must_have_orientations(path, model, sources)
+    _must_have_directions(path, model, sources)
     try:
         return replace(_robot(MjcfReading(model, path, folders)), sources=sources)
-    except NoOrientation as reason:
+    except NoDirection as reason:
         raise CannotImport(path, f"a keyframe or an equality has {reason}") from None
 
 
-def _must_have_orientations(path: Path, model: MjcfModel, sources: Sequence[Path]) -> None:
-    for kind, array in _ORIENTATIONS:
-        for name, quaternion in zip(model.names[kind], model[array], strict=False):
+def _must_have_directions(path: Path, model: MjcfModel, sources: Sequence[Path]) -> None:
+    for kind, array, what in _DIRECTIONS:
+        for name, values in zip(model.names[kind], model[array], strict=False):
             try:
-                xyzw(quaternion)
-            except NoOrientation as reason:
+                must_have_direction(what, values)
+            except NoDirection as reason:
                 places = places_of_names(sources)
                 line = f":{places[name].line}" if name in places else ""
                 raise CannotImport(path, f"{path.name}{line}: {kind} '{name}' has {reason}") from None

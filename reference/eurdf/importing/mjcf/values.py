@@ -23,23 +23,30 @@ def vector(values: Sequence[float]) -> Vector3:
     return x, y, z
 
 
-class NoOrientation(ValueError):  # noqa: N818 - named as the other refusals are
-    """A quaternion has no direction, as MuJoCo makes of numbers that overflow."""
+class NoDirection(ValueError):  # noqa: N818 - named as the other refusals are
+    """A quaternion or an axis has no direction, as MuJoCo makes of numbers that overflow."""
 
-    def __init__(self, wxyz: Sequence[float]) -> None:
-        shown = " ".join(f"{value:g}" for value in wxyz)
-        super().__init__(f"the quaternion {shown}; its length must be finite, and not zero")
+
+def must_have_direction(what: str, values: Sequence[float]) -> float:
+    """The length of a quaternion or an axis.
+
+    Raises:
+        NoDirection: It is zero, or not finite.
+    """
+    length = math.hypot(*values)
+    if not 0.0 < length < math.inf:
+        shown = " ".join(f"{value:g}" for value in values)
+        raise NoDirection(f"the {what} {shown}; its length must be finite, and not zero")
+    return length
 
 
 def xyzw(wxyz: Sequence[float]) -> Quaternion:
     """The unit quaternion x y z w along one of MuJoCo, w x y z.
 
     Raises:
-        NoOrientation: Its length is zero, or not finite.
+        NoDirection: Its length is zero, or not finite.
     """
-    norm = math.hypot(*wxyz)
-    if not 0.0 < norm < math.inf:
-        raise NoOrientation(wxyz)
+    norm = must_have_direction("quaternion", wxyz)
     w, x, y, z = (float(value) / norm for value in wxyz)
     return x, y, z, w
 
