@@ -92,6 +92,7 @@ def test_search_finds_the_page_of_a_concept_first(site: tuple[Path, str]) -> Non
         for words, expected in FOUND.items():
             page.goto(f"{address}/search.html?q={words.replace(' ', '+')}")
             page.get_by_text("Search finished").wait_for()
+            page.wait_for_load_state("networkidle")  # the page still fetches what it shows of each result
             links = page.locator("ul.search > li > a")
             first = [links.nth(n).get_attribute("href") for n in range(min(3, links.count()))]
             if expected not in [link.replace(".html", "") for link in first]:
