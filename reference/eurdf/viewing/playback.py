@@ -15,7 +15,9 @@ import pinocchio as pin
 from eurdf.kinematics.array import Vector
 from eurdf.kinematics.exceptions import NotClosable, SimulationDiverged
 from eurdf.kinematics.forward_kinematics import forward_kinematics
-from eurdf.kinematics.simulation import simulate
+from eurdf.kinematics.opening import CLOSED
+from eurdf.kinematics.residual import residual
+from eurdf.kinematics.simulation import Simulation, simulate
 from eurdf.pinocchio.robot import build_robot
 from eurdf.viewing.session import Session
 from eurdf.viewing.trajectory import Trajectory, frames_between
@@ -31,6 +33,8 @@ _FRAME = 1.0 / 30.0
 # Most steps of a simulation in a frame, and the time step, s.
 _STEPS = 30
 _STEP = _FRAME / _STEPS
+# The shortest time step, s.
+_SHORTEST_STEP = _STEP / 32.0
 # Time for the steps of a frame, s.
 _BUDGET = 0.025
 # Time between looks at whether a frame is computed, s.
@@ -116,8 +120,8 @@ def gravity_frames(session: Session, show: Show, *, dissipation: bool, held: boo
                 reached, seconds = running.result()
             except SimulationDiverged:
                 raise ValueError(
-                    f"gravity ends after {elapsed:.2f} s: the motion is too fast for steps of {1e3 * _STEP:.1f} ms, "
-                    "as near a singularity; 'reset' returns to the start"
+                    f"gravity ends after {elapsed:.2f} s: the motion is too fast, as near a singularity, even for "
+                    f"steps of {1e3 * _SHORTEST_STEP:.2g} ms; 'reset' returns to the start"
                 ) from None
             budget.took(seconds)
             begin = time.monotonic()
@@ -154,6 +158,8 @@ class StepBudget:
 class _Fall:
     """A motion under gravity, computed part by part.
 
+    Where the motion is fast, as near a singularity, the time step gets shorter, so that the loops stay closed.
+
     A robot with its root held is simulated with a root fixed to the world, in which gravity has another direction.
     """
 
@@ -168,7 +174,7 @@ class _Fall:
     def begin(self, q: Vector) -> None:
         """Start at rest at a configuration (nq,) of the robot."""
         size = _ROOT_COORDINATES if self._held else 0
-        self._root, self._q = q[:size], q[size:]
+        self._root, self._q, self._step = q[:size], q[size:], _STEP
         self._v: Vector = np.zeros(self._robot.tree.nv)
         if self._held:
             self._robot.model.gravity.linear = pin.XYZQUATToSE3(self._root).rotation.T @ self._gravity
@@ -176,10 +182,25 @@ class _Fall:
     def advance(self, steps: int, dissipation: bool) -> tuple[Vector, float]:
         """The configuration (nq,) of the robot after some steps, and how long they took, s."""
         begin = time.monotonic()
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # a time step that is too long for the energy
-            motion = simulate(
-                self._robot, self._q, self._v, duration=steps * _STEP, step=_STEP, dissipation=dissipation
-            )
+        motion = self._simulated(steps * _STEP, dissipation)
+        while motion is None:
+            self._step /= 2.0
+            motion = self._simulated(steps * _STEP, dissipation)
         self._q, self._v = motion.q[-1], motion.v[-1]
         return np.concatenate((self._root, self._q)), time.monotonic() - begin
+
+    def _simulated(self, duration: float, dissipation: bool) -> Simulation | None:
+        """A part of the motion; None if the time step is too long for it, and can be shorter."""
+        may_be_shorter = self._step > _SHORTEST_STEP
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")  # a time step that is too long for the energy
+                motion = simulate(
+                    self._robot, self._q, self._v, duration=duration, step=self._step, dissipation=dissipation
+                )
+        except SimulationDiverged:
+            if may_be_shorter:
+                return None
+            raise
+        opened = np.abs(residual(self._robot, motion.q[-1])).max(initial=0.0) > CLOSED
+        return None if opened and may_be_shorter else motion
