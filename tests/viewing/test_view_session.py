@@ -11,6 +11,7 @@ import pinocchio as pin
 import pytest
 
 import eurdf
+from eurdf.kinematics.position_limit import position_limits
 from eurdf.viewing.session import Session, Stop
 from support.described import load
 from support.plain_urdf import joint_element, link_element, robot
@@ -83,6 +84,19 @@ def without_limits(robot: str, folder: Path) -> eurdf.Robot:
     )
     (folder / "robot.yaml").write_text((mechanism / "robot.yaml").read_text())
     return eurdf.load(folder)
+
+
+def test_pose_at_a_passive_limit_is_within_the_tolerance_of_files() -> None:
+    session = Session(eurdf.load("kangaroo_leg", geometry=False))
+    limits = position_limits(session.robot)
+    stops = []
+    for index, slider in enumerate(session.sliders):
+        stops.append(session.move(index, slider.upper))
+        values = session.q[limits.coordinates]
+        beyond = np.maximum(values - limits.upper, limits.lower - values)
+        assert beyond.max() < 1e-9  # which `eurdf check` allows
+        session.show(session.first)
+    assert sum(stop is not None and stop.reason == "passive limit" for stop in stops) >= 3
 
 
 def test_passive_joint_is_at_its_limit_where_the_slider_stops() -> None:

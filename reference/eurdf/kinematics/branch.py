@@ -144,14 +144,17 @@ class Branch:
             values[self.passive] for values in (self._limits.coordinates, self._limits.lower, self._limits.upper)
         )
         before, after = here.q[coordinates], there.q[coordinates]
-        over = np.maximum(after - np.maximum(upper, before), np.minimum(lower, before) - after)
+        # Within the tolerance it is at its limit, so that the steps of a motion do not add their tolerances up.
+        highest = np.where(before > upper + BEYOND, before, upper)
+        lowest = np.where(before < lower - BEYOND, before, lower)
+        over = np.maximum(after - highest, lowest - after)
         if not over.max(initial=0.0) > BEYOND:
             return None
         part = np.full(len(over), -np.inf)
         # A joint that goes beyond has moved. Half the tolerance is left, so that a search for the limit ends within it.
         np.divide(over - 0.5 * BEYOND, np.abs(after - before), out=part, where=over > BEYOND)
         first = int(np.argmax(part))
-        return self._limits.joints[self.passive[first]], 1.0 - float(part[first])
+        return self._limits.joints[self.passive[first]], max(0.0, 1.0 - float(part[first]))
 
     def same(self, one: Point, other: Point) -> bool:
         """Whether two points at the same actuator position are equal, except for motions that no actuator controls.

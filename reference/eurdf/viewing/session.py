@@ -355,7 +355,7 @@ class Session:
         """The last point before a passive joint exceeds its limit, on a step that does."""
         joint = ""
         for _ in range(_TO_LIMIT):
-            there = branch.step(here, part)
+            there = branch.step(here, part) if part else None  # it is at its limit already
             met = branch.passive_limit(here, there) if there else None
             if met is None:
                 break
