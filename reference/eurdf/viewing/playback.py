@@ -85,7 +85,7 @@ def gravity_frames(session: Session, show: Show, *, dissipation: bool, held: boo
     """The motion under gravity with motors that exert no torque, without end.
 
     It starts at rest, and again at rest where the user moves the robot meanwhile. Another thread computes it, so that
-    whoever takes the frames never waits for a step.
+    the caller never waits for a step.
 
     Args:
         session: The robot.
