@@ -1,4 +1,4 @@
-"""Several files, written all or none."""
+"""Several files, written all or none: the suite is installed without the reference, which has its own way."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """The process that compiles an MJCF file: the request is JSON on standard input, the model is JSON on standard output.
 
-Of this package, it imports only `eurdf.system`. MuJoCo's compiler is C++ that a hostile file can make crash, or take
-minutes and gigabytes; here this ends a process, not that of a caller. It runs in a folder of its own, as MuJoCo writes
-a log there.
+Of this package, it imports only modules that need nothing but the standard library. MuJoCo's compiler is C++ that a
+hostile file can make crash, or take minutes and gigabytes; here this ends a process, not that of a caller. It runs in a
+folder of its own, as MuJoCo writes a log there.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import mujoco
 import numpy as np
 
+from eurdf.mesh_files.folders import Folders
 from eurdf.system import bound_memory, bound_time, leave_no_core
 
 #: Arrays of the model that the importer needs, by the kind of element. Those of later releases may be missing.
@@ -77,14 +78,10 @@ _GIT_LFS = b"version https://git-lfs"
 
 
 class _Bounds(NamedTuple):
-    """Where the files of meshes may be: folders, as real paths; and their largest size in bytes."""
+    """Where the files of meshes may be, and their largest size in bytes."""
 
-    folders: tuple[str, ...]
+    folders: Folders
     bytes: int
-
-    def contain(self, path: str) -> bool:
-        real = os.path.realpath(path)
-        return any(real.startswith(folder.rstrip(os.sep) + os.sep) for folder in self.folders)
 
 
 class Refused(Exception):  # noqa: N818 - the answer to the request
@@ -101,7 +98,7 @@ def main() -> None:
     bound_time(2 * request["seconds"], request["seconds"])
     bound_memory(request["memory"])
     try:
-        answer = _compiled(request["path"], _Bounds(tuple(request["folders"]), request["bytes"]))
+        answer = _compiled(request["path"], _Bounds(Folders(request["folders"]), request["bytes"]))
     except Refused as reason:
         answer = {"error": str(reason)}
     except MemoryError:
@@ -233,7 +230,7 @@ def _fault(name: str, path: str, bounds: _Bounds) -> str:
     """
     if not os.path.isfile(path):
         return f"its file '{name}' was not found"
-    if not bounds.contain(path):
+    if not bounds.folders.contains(path):
         return f"its file '{name}' is outside the folder of the robot"
     size = os.path.getsize(path)
     if size > bounds.bytes:
