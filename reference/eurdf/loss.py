@@ -91,6 +91,14 @@ class LossKind:
 #: Losses that all formats to export to share.
 COMMON = (
     LossKind(
+        "export-no-range",
+        "position limit",
+        Effect.EXACT,
+        "its limits are 0 and 0, which is no range: it has no limit in the file",
+        "state 'lower' and 'upper', or make the joint 'fixed' to lock it",
+        only="limits that are both 0",
+    ),
+    LossKind(
         "export-name",
         "name",
         Effect.EXACT,

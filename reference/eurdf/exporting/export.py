@@ -209,10 +209,13 @@ def _export(
             partial(_triangles, folders),
         )
     )
-    outside = Losses(COMMON)
+    shared = Losses(COMMON)
+    for joint in robot.mechanism.joints:
+        if joint.lacks_range:
+            shared.add("export-no-range", joint.name)
     for path in folders.let_through:
-        outside.add("export-file-outside", path)
-    losses = replaced + written.losses + outside.found
+        shared.add("export-file-outside", path)
+    losses = replaced + written.losses + shared.found
     if choices.strict and (inexact := tuple(loss for loss in losses if loss.effect is not Effect.EXACT)):
         more = f"; and {len(inexact) - 1} more" if len(inexact) > 1 else ""
         raise CannotExport(f"'{robot.mechanism.name}' has losses in the format {to}: {inexact[0]}{more}", inexact)

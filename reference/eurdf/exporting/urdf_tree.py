@@ -308,9 +308,7 @@ class UrdfTree:
             at = 0
         position = None
         if step.type in (JointType.REVOLUTE, JointType.PRISMATIC):
-            lower = properties.lower[at] if properties.lower else -math.inf
-            upper = properties.upper[at] if properties.upper else math.inf
-            position = lower, upper
+            position = joint.ranges[at]
         velocity = properties.velocity[at] if properties.velocity else math.inf
         effort = properties.effort[at] if properties.effort else math.inf
         if position or math.isfinite(velocity) or math.isfinite(effort):
@@ -354,7 +352,7 @@ class PlainTree(UrdfTree):
         properties = joint.properties
         if joint.type not in (JointType.SPHERICAL, JointType.PLANAR, JointType.FLOATING):
             return
-        if any(map(math.isfinite, (*properties.lower, *properties.upper))):
+        if any(math.isfinite(limit) for limits in joint.ranges for limit in limits):
             self.losses.add("export-position-limit", joint.name)
         for word, values, none in (
             ("velocity", properties.velocity, math.inf),
@@ -376,11 +374,9 @@ class PlainTree(UrdfTree):
 
 def plain_steps(joint: Joint) -> Sequence[Step]:
     """The joints of plain URDF, from the parent outwards, that a joint is."""
-    properties = joint.properties
 
     def turning(index: int) -> JointType:
-        limits = (*properties.lower[index : index + 1], *properties.upper[index : index + 1])
-        return JointType.REVOLUTE if any(map(math.isfinite, limits)) else JointType.CONTINUOUS
+        return JointType.REVOLUTE if any(map(math.isfinite, joint.ranges[index])) else JointType.CONTINUOUS
 
     match joint.type:
         case JointType.FIXED:
@@ -400,4 +396,6 @@ def plain_steps(joint: Joint) -> Sequence[Step]:
             advance = Mimic(joint.name, joint.pitch / (2.0 * math.pi))
             slide = Step("_slide", JointType.PRISMATIC, joint.axes[0], mimic=advance)
             return [Step("", turning(0), joint.axes[0], 0), slide]
+        case JointType.REVOLUTE:
+            return [Step("", turning(0), joint.axes[0], 0)]
     return [Step("", joint.type, joint.axes[0], 0)]

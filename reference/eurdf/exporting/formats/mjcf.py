@@ -155,7 +155,7 @@ LOSSES = (
         "both limits are equal, which MuJoCo refuses: becomes a soft equality",
         "make the joint 'fixed' in the description",
         error=_OPENING,
-        only="equal limits",
+        only="equal limits that are not 0",
     ),
     *(
         LossKind(
@@ -510,7 +510,7 @@ class _Writer:
         if properties.stiffness and properties.stiffness[piece.coordinate]:
             found["stiffness"] = numbers((properties.stiffness[piece.coordinate],))
             found["springref"] = numbers((properties.rest[piece.coordinate],))
-        lower, upper = _range(joint, piece.coordinate)
+        lower, upper = joint.ranges[piece.coordinate]
         if (math.isfinite(lower) or math.isfinite(upper)) and lower < upper:
             found["range"] = numbers((max(lower, -_UNLIMITED), min(upper, _UNLIMITED)))
         return found
@@ -658,7 +658,7 @@ class _Writer:
         for piece in pieces:
             if piece.coordinate is None:
                 continue
-            lower, upper = _range(joint, piece.coordinate)
+            lower, upper = joint.ranges[piece.coordinate]
             if lower == upper:
                 polycoef = numbers((lower, 0, 0, 0, 0))
                 name = self.equalities.new(f"{piece.name}/locked")
@@ -732,14 +732,6 @@ def _scaled(length: float, unit: Vector3) -> Vector3:
 def _advance(joint: Joint) -> float:
     """Of a helical joint, m/rad."""
     return joint.pitch / (2.0 * math.pi)
-
-
-def _range(joint: Joint, coordinate: int) -> tuple[float, float]:
-    properties = joint.properties
-    return (
-        properties.lower[coordinate] if properties.lower else -math.inf,
-        properties.upper[coordinate] if properties.upper else math.inf,
-    )
 
 
 def _sharing(joint: Joint, piece: _Piece) -> Iterable[int]:

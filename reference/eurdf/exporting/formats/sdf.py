@@ -424,15 +424,16 @@ class _Writer:
     def _axis(self, joint: Joint, element: etree._Element, axis: _Axis, at: float) -> None:
         properties, i = joint.properties, axis.index
         _add(element, "xyz").text = _text(direction(axis.xyz))
+        lower, upper = joint.ranges[i]
         limit = {
-            name: values[i] - shift
-            for name, values, shift in (
-                ("lower", properties.lower, at),
-                ("upper", properties.upper, at),
-                ("effort", properties.effort, 0.0),
-                ("velocity", properties.velocity, 0.0),
+            name: value
+            for name, value in (
+                ("lower", lower - at),
+                ("upper", upper - at),
+                ("effort", properties.effort[i] if properties.effort else math.inf),
+                ("velocity", properties.velocity[i] if properties.velocity else math.inf),
             )
-            if values and math.isfinite(values[i])
+            if math.isfinite(value)
         }
         if limit:
             limits = _add(element, "limit")
@@ -537,11 +538,9 @@ _CLOSURES = {"3d": "ball", "6d": "fixed", "hinge": "continuous"}
 
 def _steps(joint: Joint, at: tuple[float, ...]) -> Sequence[_Step]:
     """The joints of the file, from the parent outwards, that a joint at some coordinates is."""
-    properties = joint.properties
 
     def turn(suffix: str, axis: Vector3, index: int) -> _Step:
-        limits = (*properties.lower[index : index + 1], *properties.upper[index : index + 1])
-        kind = "revolute" if any(map(math.isfinite, limits)) else "continuous"
+        kind = "revolute" if any(map(math.isfinite, joint.ranges[index])) else "continuous"
         return _Step(suffix, kind, _moved(JointType.REVOLUTE, axis, at[index]), (_Axis(axis, index),))
 
     def slide(suffix: str, axis: Vector3, index: int) -> _Step:

@@ -559,7 +559,10 @@ class _Writer:
             else:
                 position = own[freedom.index if len(own) > 1 else 0] * (freedom.advance or 1.0)
                 self.stage.state(path, freedom.axis, position)
-            lower, upper = (-math.inf, math.inf) if freedom.advance is not None else _range(joint, freedom.index)
+            # The rotation of a floating joint has no coordinate for each axis.
+            turns = joint.type is JointType.FLOATING and freedom.index >= 3
+            unlimited = turns or freedom.advance is not None
+            lower, upper = (-math.inf, math.inf) if unlimited else joint.ranges[freedom.index]
             self.stage.limits(path, freedom.axis, lower, upper)
             if freedom.advance is None:
                 self._drive(joint, path, freedom, position or 0.0)
@@ -841,13 +844,6 @@ def _identifier(name: str) -> str:
     """The name, with ``_`` for what the name of a prim cannot contain; it begins with a letter or ``_``."""
     found = re.sub(r"[^A-Za-z0-9_]", "_", name)
     return found if re.match(r"[A-Za-z_]", found) else f"_{found}"
-
-
-def _range(joint: Joint, index: int) -> tuple[float, float]:
-    properties = joint.properties
-    if not properties.lower or (joint.type is JointType.FLOATING and index >= 3):
-        return -math.inf, math.inf
-    return properties.lower[index], properties.upper[index]
 
 
 FORMAT = Format("usd", "USD with UsdPhysics, for Isaac Sim, Newton and others", write, LOSSES)
