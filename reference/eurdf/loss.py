@@ -177,6 +177,17 @@ NAMED_FILE = LossKind(
     only="files that it names",
 )
 
+#: Of the configuration to start from, where it is written.
+BEYOND_LIMITS = LossKind(
+    "export-beyond-limits",
+    "configuration",
+    Effect.APPROXIMATE,
+    "has joints beyond their limits: no other one was found that closes the loops",
+    "widen the limits, or state a configuration 'assembled' within them",
+    error="a simulation that starts there pushes the joints back",
+    only="loops that close beyond the limits only",
+)
+
 #: Of a mesh that is converted though it should have been referenced.
 NOT_REFERENCED = LossKind(
     "export-mesh-not-referenced",

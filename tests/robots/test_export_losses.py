@@ -112,6 +112,8 @@ def robots() -> Iterator[tuple[Mechanism, dict[str, Any]]]:
     )
     yield replace(mechanism, closures=far, couplings=(), configurations={}), {}
     yield with_limits(mechanism, 0.0, 0.0).mechanism, {}
+    four_bar = eurdf.load("four_bar", geometry=False).mechanism
+    yield replace(with_limits(four_bar, 0.5, 0.6).mechanism, configurations={"other": {}}), {}
 
 
 def _couplings(mechanism: Mechanism) -> Iterator[Coupling]:

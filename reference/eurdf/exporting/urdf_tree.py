@@ -347,6 +347,17 @@ class PlainTree(UrdfTree):
             # The coordinates are those of the URDF once it is loaded as the hint says.
             self.parts.insert(0, Part((ROOT_JOINT,), ROOT_JOINT, JointType.FLOATING))
 
+    def steps(self, joint: Joint) -> Sequence[Step]:
+        """The joints, from the parent outwards, that a joint is: without limits, a revolute one is continuous.
+
+        Not where joints mimic: Pinocchio lets no revolute or prismatic joint mimic a continuous one.
+        """
+        if joint.type is not JointType.REVOLUTE or any(map(math.isfinite, joint.ranges[0])):
+            return super().steps(joint)
+        leaders = [other.mimic.joint for other in self.mechanism.joints if other.mimic is not None]
+        kind = joint.type if joint.mimic is not None or joint.name in leaders else JointType.CONTINUOUS
+        return [Step("", kind, joint.axes[0], 0)]
+
     def _report_axes(self, joint: Joint) -> None:
         """Record what the axes of a joint with several of them lose."""
         properties = joint.properties
@@ -396,6 +407,4 @@ def plain_steps(joint: Joint) -> Sequence[Step]:
             advance = Mimic(joint.name, joint.pitch / (2.0 * math.pi))
             slide = Step("_slide", JointType.PRISMATIC, joint.axes[0], mimic=advance)
             return [Step("", turning(0), joint.axes[0], 0), slide]
-        case JointType.REVOLUTE:
-            return [Step("", turning(0), joint.axes[0], 0)]
     return [Step("", joint.type, joint.axes[0], 0)]

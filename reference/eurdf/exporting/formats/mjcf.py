@@ -22,7 +22,7 @@ from eurdf.exporting.inertia import about_centre, physical
 from eurdf.exporting.mesh_file import MeshFiles
 from eurdf.exporting.servo import position_gain
 from eurdf.exporting.written import Exportable, Format, Written
-from eurdf.loss import COMMON, CONVERSION, NAMED_FILE, Effect, Losses, LossKind
+from eurdf.loss import BEYOND_LIMITS, COMMON, CONVERSION, NAMED_FILE, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.constraint import (
     Closure,
@@ -237,6 +237,7 @@ LOSSES = (
         "is left out; the color is kept",
         "add a texture and a material to the file",
     ),
+    BEYOND_LIMITS,
     LossKind(
         "export-no-configuration",
         "configuration",

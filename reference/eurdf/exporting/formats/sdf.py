@@ -22,7 +22,7 @@ from eurdf.exporting.exceptions import CannotExport
 from eurdf.exporting.inertia import Matrix, about_centre, physical
 from eurdf.exporting.mesh_file import MeshFiles
 from eurdf.exporting.written import Exportable, Format, Written
-from eurdf.loss import COMMON, NAMED_FILE, Effect, Losses, LossKind
+from eurdf.loss import BEYOND_LIMITS, COMMON, NAMED_FILE, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.constraint import Closure, Coupling, HingeClosure, PointClosure
 from eurdf.mechanism.frame import Anchor
@@ -191,6 +191,7 @@ LOSSES = (
         only="what no body has",
     ),
     LossKind("export-texture", "texture", Effect.DROPPED, "is left out; the color is kept", "add a material"),
+    BEYOND_LIMITS,
     NAMED_FILE,
     *COMMON,
 )
@@ -282,9 +283,13 @@ class _Writer:
         return Written(files, self.losses.found, Coordinates(tuple(self.parts), self.given.own, "wxyz"))
 
     def _zero(self) -> Mapping[str, tuple[float, ...]]:
-        """The configuration at which the links are placed: the first one given, where there are loops."""
+        """The configuration at which the links are placed.
+
+        Zero, or the first one given if there are loops, or limits that exclude zero.
+        """
         name = next(iter(self.given.configurations), "")
-        chosen = bool(self.mechanism.closures)
+        ranges = (limits for joint in self.mechanism.joints for limits in joint.ranges)
+        chosen = bool(self.mechanism.closures) or not all(lower <= 0.0 <= upper for lower, upper in ranges)
         for other in self.mechanism.configurations:
             if not (chosen and other == name):
                 self.losses.add("export-configurations", other)

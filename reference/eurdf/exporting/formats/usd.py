@@ -26,7 +26,7 @@ from eurdf.exporting.inertia import about_centre, physical
 from eurdf.exporting.mesh_file import mesh_names, report_unread
 from eurdf.exporting.servo import position_gain
 from eurdf.exporting.written import Exportable, Format, Written
-from eurdf.loss import COMMON, NOT_REFERENCED, Effect, Losses, LossKind
+from eurdf.loss import BEYOND_LIMITS, COMMON, NOT_REFERENCED, Effect, Losses, LossKind
 from eurdf.mechanism.body import Body, Shape
 from eurdf.mechanism.constraint import (
     Closure,
@@ -310,6 +310,7 @@ LOSSES = (
         sayable=True,
         only="all but one",
     ),
+    BEYOND_LIMITS,
     LossKind(
         "export-no-configuration",
         "configuration",
