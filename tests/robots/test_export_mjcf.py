@@ -454,6 +454,16 @@ def test_mesh_is_copied_under_a_plain_name(tmp_path: Path, loaded: bool) -> None
     assert np.ptp(model.mesh_vert, axis=0).max() == pytest.approx(2.0 * np.sqrt(2.0), rel=0.5)
 
 
+def test_mesh_without_volume_is_compiled(tmp_path: Path) -> None:
+    path = with_mesh(tmp_path, "thin.stl", TETRAHEDRON)
+    path.write_text(
+        path.read_text(encoding="utf-8").replace('scale="2 2 2"', 'scale="1e-3 1e-3 1e-12"'), encoding="utf-8"
+    )
+    export = eurdf.export(path, "mjcf")
+    model = mujoco.MjModel.from_xml_string(export.main.decode(), {"thin.stl": export.files["meshes/thin.stl"]})
+    assert model.nmesh == 1
+
+
 def ascii_stl() -> bytes:
     """The solid of `TETRAHEDRON` as text."""
     triangles = np.frombuffer(TETRAHEDRON[84:], [("normal", "<f4", 3), ("vertices", "<f4", (3, 3)), ("end", "<u2")])[

@@ -549,7 +549,8 @@ class _Writer:
         name = f"{representable(PurePosixPath(file).stem)}_{len(self.used_meshes)}"
         self.used_meshes[key] = name
         file = representable(file.removeprefix("meshes/"))
-        etree.SubElement(self.asset, "mesh", name=name, file=file, scale=numbers(shape.size))
+        # Links have inertias of their own. MuJoCo computes that of each mesh, too: only a shell needs no volume.
+        etree.SubElement(self.asset, "mesh", name=name, file=file, scale=numbers(shape.size), inertia="shell")
         return name
 
     def _site(self, link: str, pose: Pose, name: str) -> str:
