@@ -137,7 +137,7 @@ urdf-unknown-element       EU-URD-026 warning An unknown element or attribute ha
 urdf-closure-ignored       EU-URD-027 warning The URDF contains a closure of another dialect, which has no effect.
 urdf-mesh-missing          EU-URD-028 warning A mesh file is not found.
 urdf-unknown-material      EU-URD-029 warning A material is used but not defined.
-urdf-texture-missing       EU-URD-033 warning A texture file is not found.
+urdf-texture-missing       EU-URD-033 warning A texture names no file, or one that is not found.
 urdf-mesh-unreadable       EU-URD-034 error   A mesh file cannot be read as a mesh.
 urdf-planar-axis           EU-URD-030 warning The axis of a planar joint is not z, and is read as z.
 """,

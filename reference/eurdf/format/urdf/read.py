@@ -74,6 +74,8 @@ def _read_robot(reader: UrdfReader, root: Element, materials: Materials | None) 
                 links.append(link)
         elif joint := read_joint(reader, element):
             joints.append(joint)
+    if materials is not None:
+        materials.report_textures()
     if name is None or len(links) + len(joints) < len(elements):
         return None
     return build_tree(reader, name, links, joints)
