@@ -223,6 +223,7 @@ x-uncontrolled-motion      A motion other than the spin of a rod remains when ev
 x-closes-beyond-limits     The loops close only with joints beyond their limits.
 x-mimic-ignored            A joint with a <mimic> moves freely: it has no actuator, and version 1 ignores <mimic>.
 x-massless-link            A link of a loop has no mass.
+x-other-format             A YAML file states closures for another program.
 x-xacro-warning            A xacro file was expanded with warnings.
 x-urdf-outside-folder      The URDF that a description names is outside the folder of the description.
 x-file-outside-folder      A mesh or texture is outside the folder of the robot and the packages that are given.

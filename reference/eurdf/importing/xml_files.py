@@ -8,7 +8,7 @@ from pathlib import Path
 
 from lxml import etree
 
-from eurdf.diagnostics import FileError
+from eurdf.diagnostics import Diagnostic, FileError
 from eurdf.importing.exceptions import CannotImport
 from eurdf.mesh_files.folders import Folders
 from eurdf.reading.source import read_source
@@ -31,8 +31,13 @@ def read_root(path: Path) -> etree._Element:
         return read_xml(read_source(path)).root
     except FileError as error:
         found = error.diagnostic
-        where = f"{found.file}:{found.line}: " if found.line else ""
-        raise CannotImport(path, where + found.message) from None
+        raise unreadable(path, found) from None
+
+
+def unreadable(path: Path, found: Diagnostic) -> CannotImport:
+    """The exception for an error that leaves nothing to import."""
+    where = f"{found.file}:{found.line}: " if found.line else ""
+    return CannotImport(path, "; ".join((where + found.message, *([found.hint] if found.hint else []))))
 
 
 def included_files(path: Path, folders: Folders) -> tuple[Path, ...]:
