@@ -86,7 +86,7 @@ ERRORS = [
     ("xml-syntax", URDF, "</robot>", "</robo>", None, ""),
     ("xml-doctype", URDF, '<robot name="workbench">', '<!DOCTYPE robot><robot name="workbench">', None, ""),
     ("urdf-not-found", YAML, "urdf: workbench.urdf", "urdf: workbnech.urdf", "workbnech.urdf", "workbench.urdf"),
-    ("urdf-root-element", URDF, None, "<sdf/>", "<sdf", "another format"),
+    ("urdf-root-element", URDF, None, "<sdf/>", "<sdf", "this is SDFormat"),
     ("urdf-missing-element", URDF, '<mass value="2"/>', "", "<inertial", "<mass>"),
     ("urdf-missing-element", URDF, '<parent link="wrist_1"/>', "", '<joint name="wrist_y"', "<parent>"),
     (
@@ -133,6 +133,8 @@ ERRORS = [
     ("urdf-closure-ignored", URDF, "</robot>", '<loop name="l"/></robot>', "<loop", "'closures'"),
     ("urdf-mesh-missing", URDF, '<box size="0.2 0.04 0.04"/>', '<mesh filename="package://a/b.stl"/>', "package://a/b.stl", "ROS_PACKAGE_PATH"),
     ("urdf-texture-missing", URDF, '<material name="grey"/>', '<material name="wood"><texture filename="wood.png"/></material>', "wood.png", "ROS_PACKAGE_PATH"),
+    ("urdf-texture-missing", URDF, '<material name="grey"/>', '<material name="wood"><texture/></material>', "<texture/>", "link 'crank' names no file (add filename"),
+    ("urdf-unknown-element", URDF, '<material name="grey"/>', '<material name="wood"><texture filenam="a"/></material>', "<texture", "did you mean 'filename'?"),
     ("urdf-unknown-material", URDF, '<material name="grey"/>', '<material name="gray"/>', "gray", "did you mean 'grey'?"),
     # names
     ("unknown-frame", YAML, "[rod_tip, rocker_top]", "[rod_tip, rocker_tpo]", "rocker_tpo", "did you mean 'rocker_top'?"),

@@ -390,6 +390,19 @@ def test_bad_file_is_refused_with_one_error(
     assert sorted(os.listdir(home)) == ["link.xml", "robot.xml"]
 
 
+def test_fragment_names_the_scene_that_includes_it(tmp_path: Path) -> None:
+    fragment = '<mujoco><worldbody><body><joint class="leg"/><geom size="1"/></body></worldbody></mujoco>'
+    path = write(tmp_path, fragment)
+    write(tmp_path, '<mujoco><include file="other.xml"/></mujoco>', "another.xml")
+    with pytest.raises(eurdf.CannotImport, match=r"line 1$"):
+        eurdf.import_robot(path)
+    defaults = '<default><default class="leg"/></default>'
+    scene = write(tmp_path, f'<mujoco>{defaults}<include file="./robot.xml"/></mujoco>', "scene.xml")
+    with pytest.raises(eurdf.CannotImport, match=r"it is included by 'scene\.xml': import that file instead"):
+        eurdf.import_robot(path)
+    assert eurdf.import_robot(scene).mechanism.joints
+
+
 def test_long_chain_of_includes_is_refused(tmp_path: Path) -> None:
     for index in range(60):
         write(tmp_path, f'<mujoco><include file="f{index + 1}.xml"/></mujoco>', f"f{index}.xml")

@@ -137,7 +137,7 @@ urdf-unknown-element       EU-URD-026 warning An unknown element or attribute ha
 urdf-closure-ignored       EU-URD-027 warning The URDF contains a closure of another dialect, which has no effect.
 urdf-mesh-missing          EU-URD-028 warning A mesh file is not found.
 urdf-unknown-material      EU-URD-029 warning A material is used but not defined.
-urdf-texture-missing       EU-URD-033 warning A texture file is not found.
+urdf-texture-missing       EU-URD-033 warning A texture names no file, or one that is not found.
 urdf-mesh-unreadable       EU-URD-034 error   A mesh file cannot be read as a mesh.
 urdf-planar-axis           EU-URD-030 warning The axis of a planar joint is not z, and is read as z.
 """,
@@ -223,6 +223,7 @@ x-uncontrolled-motion      A motion other than the spin of a rod remains when ev
 x-closes-beyond-limits     The loops close only with joints beyond their limits.
 x-mimic-ignored            A joint with a <mimic> moves freely: it has no actuator, and version 1 ignores <mimic>.
 x-massless-link            A link of a loop has no mass.
+x-other-format             A YAML file states closures for another program.
 x-xacro-warning            A xacro file was expanded with warnings.
 x-urdf-outside-folder      The URDF that a description names is outside the folder of the description.
 x-file-outside-folder      A mesh or texture is outside the folder of the robot and the packages that are given.

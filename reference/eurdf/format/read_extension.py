@@ -12,6 +12,7 @@ from eurdf.format.near import near
 from eurdf.format.normal_form import from_version1, from_version2
 from eurdf.format.own_key import is_own_key
 from eurdf.format.version import VERSION2_0, VERSION2_1, VERSION_KEY, Version
+from eurdf.reading.other_formats import of_mapping
 from eurdf.reading.reporter import YamlReporter
 
 if TYPE_CHECKING:
@@ -34,6 +35,7 @@ def read_extension(document: YamlDocument, diagnostics: Diagnostics) -> Extensio
     if version is None:
         return None
     if version == "1":
+        _warn_of_other_format(reporter)
         _warn_of_near_misses(reporter)
     elif data[VERSION_KEY] != version:  # already reported; report other errors too
         data = {**data, VERSION_KEY: version}
@@ -75,13 +77,11 @@ def _version(reporter: YamlReporter) -> Version | None:
     version2_key = next((key for key in data if key in keys_of(VERSION2_1)), None)
     if version2_key is not None:
         version = _first_version_with(version2_key)
-        reporter.report(
-            "missing-key",
-            f"the file has '{version2_key}', a key of version {version}, but lacks '{VERSION_KEY}'",
-            (version2_key,),
-            f'begin the file with {VERSION_KEY}: "{version}"',
-            key=True,
-        )
+        message = f"the file has '{version2_key}', a key of version {version}, but lacks '{VERSION_KEY}'"
+        hint = f'begin the file with {VERSION_KEY}: "{version}"'
+        if found := of_mapping(data):
+            message, hint = f"the file lacks '{VERSION_KEY}': it is {found.title}", found.hint
+        reporter.report("missing-key", message, (version2_key,), hint, key=True)
         return None
     return "1"
 
@@ -117,6 +117,15 @@ def _written_version(reporter: YamlReporter) -> Literal["2.0", "2.1"] | None:
         quoted = f"leave '{VERSION_KEY}' out: a file of version 1 does not state its version"
     reporter.report("wrong-type", message, pointer, quoted)
     return meant
+
+
+def _warn_of_other_format(reporter: YamlReporter) -> None:
+    """Warn of a file without any key of version 1 that another program reads: all of it is the user's own data."""
+    data = reporter.document.data
+    found = of_mapping(data)
+    if found is not None and not any(key in data for key in keys_of("1")):
+        message = f"the file is {found.title}; as a description of version 1, it has no closure"
+        reporter.report("x-other-format", message, (next(iter(data)),), found.hint, key=True)
 
 
 def _warn_of_near_misses(reporter: YamlReporter) -> None:

@@ -10,6 +10,7 @@ from types import MappingProxyType
 from eurdf.dataclass import dataclass
 from eurdf.loss import Loss, LossKind
 from eurdf.mechanism.mechanism import Mechanism
+from eurdf.reading.other_formats import IMPORTED
 from eurdf.reading.resource import FileFinder
 
 
@@ -38,13 +39,16 @@ class ImportFormat:
     """A format to import from.
 
     Attributes:
-        name: As the user gives it.
-        title: What it is.
+        name: As the user gives it, in `eurdf.reading.other_formats.IMPORTED`.
         read: Reads a file, whose own files must be where a finder allows them.
         losses: Every kind of loss that `read` can record.
     """
 
     name: str
-    title: str
     read: Callable[[Path, FileFinder], RobotRead]
     losses: tuple[LossKind, ...]
+
+    @property
+    def title(self) -> str:
+        """What it is."""
+        return IMPORTED[self.name].title

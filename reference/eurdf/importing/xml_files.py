@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
+import itertools
 import os
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
 from lxml import etree
 
-from eurdf.diagnostics import FileError
+from eurdf.diagnostics import Diagnostic, FileError
 from eurdf.importing.exceptions import CannotImport
 from eurdf.mesh_files.folders import Folders
-from eurdf.reading.source import read_source
+from eurdf.reading.source import FILE_LIMIT, begin_of_file, read_source
 from eurdf.reading.xml_reader import read_xml
 
 #: Files that may include each other in turn.
 DEPTH_LIMIT = 50
+
+#: Files in the folder of another one that are read to find the one that includes it.
+OTHERS_LIMIT = 50
+
+_INCLUDE = re.compile(rb"""<include\s+file\s*=\s*["']([^"']+)["']""")
 
 #: Flexible bodies that may be in files of their own, and elements that state options of MuJoCo's compiler.
 FLEXIBLE_LIMIT = 50
@@ -31,8 +38,13 @@ def read_root(path: Path) -> etree._Element:
         return read_xml(read_source(path)).root
     except FileError as error:
         found = error.diagnostic
-        where = f"{found.file}:{found.line}: " if found.line else ""
-        raise CannotImport(path, where + found.message) from None
+        raise unreadable(path, found) from None
+
+
+def unreadable(path: Path, found: Diagnostic) -> CannotImport:
+    """The exception for an error that leaves nothing to import."""
+    where = f"{found.file}:{found.line}: " if found.line else ""
+    return CannotImport(path, "; ".join((where + found.message, *([found.hint] if found.hint else []))))
 
 
 def included_files(path: Path, folders: Folders) -> tuple[Path, ...]:
@@ -78,6 +90,25 @@ def included_files(path: Path, folders: Folders) -> tuple[Path, ...]:
     files = tuple(found.values())
     _check_flexible_bodies(path, files, roots, folders)
     return files
+
+
+def included_by(path: Path) -> Path | None:
+    """The file beside an MJCF file that includes it, such as its scene; None if there is none.
+
+    Args:
+        path: The file.
+    """
+    others = (other for other in sorted(path.parent.glob("*.xml")) if other.name != path.name)
+    for other in itertools.islice(others, OTHERS_LIMIT):
+        if other.is_symlink():  # which may lead out of the folder
+            continue
+        try:
+            names = _INCLUDE.findall(begin_of_file(other, FILE_LIMIT))
+        except OSError:
+            continue
+        if any(os.path.normpath(name) == os.fsencode(path.name) for name in names):
+            return other
+    return None
 
 
 def inside(path: Path, file: Path, folders: Folders) -> None:

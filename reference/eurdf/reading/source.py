@@ -10,6 +10,7 @@ from pathlib import Path
 from eurdf.dataclass import dataclass
 from eurdf.diagnostics import FileError, Place
 from eurdf.diagnostics.lines import Lines
+from eurdf.reading.other_formats import of_binary, other_format
 from eurdf.regular_file import open_now, open_regular
 
 BOM = b"\xef\xbb\xbf"
@@ -107,6 +108,8 @@ def decoded(data: bytes, file: str, base: Path | None = None, *, is_quoted: bool
     Raises:
         FileError: ``file-not-utf8``.
     """
+    if found := of_binary(data):
+        raise other_format("file-not-utf8", found, Place(file, 1, 1))
     # The first bytes distinguish UTF-16 and UTF-32 from UTF-8, with or without a byte order mark (YAML 1.2.2, 5.2).
     if data[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\0" in data[:2]:
         message = "the file begins as UTF-16, UTF-32 or binary data; it must be UTF-8 text"

@@ -8,6 +8,7 @@ from xml.parsers import expat
 from xml.parsers.expat import errors
 
 from eurdf.diagnostics import FileError
+from eurdf.reading.other_formats import of_text
 from eurdf.reading.source import Source, short
 
 #: Maximum depth of nested elements; the default of libxml2.
@@ -99,6 +100,8 @@ def _explain(text: str, problem: str, at: int) -> tuple[int, int, str, str | Non
     if problem == errors.XML_ERROR_NO_ELEMENTS:
         return at, at, "the file has no element" if text.strip() else "the file is empty", None
     if problem == errors.XML_ERROR_SYNTAX:
+        if found := of_text(text):
+            return at, end, f"the file is {found.title}", found.hint
         return at, end, "the file does not begin with an element", 'a URDF begins with <robot name="...">'
     if problem == errors.XML_ERROR_UNCLOSED_CDATA_SECTION:
         at = text.rfind("<![CDATA[")

@@ -25,6 +25,7 @@ from yaml.events import (
 
 from eurdf.diagnostics import FileError, Place
 from eurdf.reading.core_schema import TAG_PREFIX, resolve, resolve_tagged
+from eurdf.reading.other_formats import of_text, other_format
 from eurdf.reading.source import FILE_LIMIT, Source, short, too_large
 from eurdf.reading.yaml_node import Alias, Collection, Node, Span, json_pointer
 from eurdf.reading.yaml_syntax import stray_mark, syntax_error, unusual_name
@@ -98,7 +99,12 @@ def read_yaml(source: Source) -> YamlDocument:
     values = usual_values(source)
     if values is not None:
         return YamlDocument(source, values)
-    root = _read_nodes(source)
+    try:
+        root = _read_nodes(source)
+    except FileError as error:
+        if found := of_text(source.text):
+            raise other_format(error.diagnostic.code, found, source.place(0)) from None
+        raise
     document = YamlDocument(source, root.data)
     document.root = root
     return document

@@ -4,8 +4,7 @@ import { fail } from "./invalid.mjs";
 import { fromOrigin } from "./spatial.mjs";
 
 const POSE = { origin: { numbers: { xyz: 3, rpy: 3 } } };
-const FILE = { needs: ["filename"], names: ["filename"] };
-const MATERIAL = { elements: { color: { needs: ["rgba"], numbers: { rgba: 4 } }, texture: FILE } };
+const MATERIAL = { elements: { color: { needs: ["rgba"], numbers: { rgba: 4 } }, texture: {} } };
 const SHAPES = {
   box: { needs: ["size"], numbers: { size: 3 } },
   cylinder: { needs: ["radius", "length"], numbers: { radius: 1, length: 1 } },

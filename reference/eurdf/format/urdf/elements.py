@@ -51,6 +51,7 @@ _KNOWN_CHILDREN: dict[str, frozenset[str]] = {
 _OPTIONAL_ATTRIBUTES: dict[str, tuple[str, ...]] = {
     "origin": ("xyz", "rpy"),
     "mesh": ("scale",),
+    "texture": ("filename",),
     "limit": ("lower", "upper"),
     "dynamics": ("damping", "friction"),
     "mimic": ("multiplier", "offset"),
@@ -76,7 +77,7 @@ RESERVED = "universe"
 _ZERO: Vector3 = (0.0, 0.0, 0.0)
 
 #: White space of XML. A name can consist of other blanks, such as no-break spaces.
-_WHITE = " \t\r\n"
+WHITE = " \t\r\n"
 
 #: Size of the cache of unknown names and whether they are misspelt.
 _MOST_STRANGE = 200
@@ -228,12 +229,12 @@ class UrdfReader:
     def name(self, element: Element, attribute: str = "name") -> str | None:
         """EU-URD-005, EU-URD-008: the name of an element that requires one; it is not empty."""
         name = element.get(attribute)
-        if name and name[0] not in _WHITE:
+        if name and name[0] not in WHITE:
             return name
         if name is None:
             self.missing_attribute(element, attribute)
             return None
-        if not name.strip(_WHITE):
+        if not name.strip(WHITE):
             self.report("urdf-empty-name", f"'{attribute}' of <{element.tag}> is empty", element, attribute)
             return None
         return name
@@ -268,14 +269,21 @@ class UrdfReader:
         if hint := self.near_miss(tag, optional):
             self.report("urdf-unknown-element", f"<{parent.tag}> has an unknown element <{tag}>", child, hint=hint)
 
-    def attributes(self, element: Element) -> None:
-        """EU-URD-026: warn of an unknown attribute whose name is near that of an optional one."""
+    def attributes(self, element: Element) -> bool:
+        """EU-URD-026: warn of an unknown attribute whose name is near that of an optional one.
+
+        Returns:
+            Whether there is one.
+        """
         tag = str(element.tag)
         known = _KNOWN_ATTRIBUTES[tag]
+        is_misspelt = False
         for attribute in map(str, element.keys()):
             if attribute not in known and (hint := self.near_miss(attribute, _OPTIONAL_ATTRIBUTES[tag])):
                 message = f"{named(element)} has an unknown attribute '{attribute}'"
                 self.report("urdf-unknown-element", message, element, hint=hint)
+                is_misspelt = True
+        return is_misspelt
 
     def near_miss(self, name: str, optional: tuple[str, ...]) -> str | None:
         """The hint for an unknown name without a prefix. Cached, since the same few are in every joint of a file."""

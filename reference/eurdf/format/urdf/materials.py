@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 from eurdf.diagnostics import did_you_mean
-from eurdf.format.urdf.elements import UrdfReader, named
+from eurdf.format.urdf.elements import WHITE, UrdfReader, named
 from eurdf.reading.reporter import Element
 
 #: Red, green, blue, alpha, or None; and the file name of a texture, or an empty text.
@@ -19,15 +19,16 @@ class Materials:
         self._reader = reader
         self._known: dict[str, Look] = {}
         self._nameless = False  # whether a material of the robot has no name
+        self._fileless: list[Element] = []  # textures that name no file
 
     def define(self, element: Element) -> None:
         """Add a material of the robot."""
         name = self._reader.name(element)
-        color = _color(self._reader, element)
+        look = self._look(element)
         if name is None:
             self._nameless = True
         else:
-            self._known.setdefault(name, color)
+            self._known.setdefault(name, look)
 
     def of(self, element: Element) -> Look:
         """EU-URD-029: a material is defined where it is used, in the robot, or at an earlier use."""
@@ -46,18 +47,41 @@ class Materials:
                 )
                 return None, ""
             return self._known[name]
-        own = _color(self._reader, element)
+        own = self._look(element)
         return self._known.setdefault(name, own) if name else own
 
+    def report_textures(self) -> None:
+        """EU-URD-033: warn of the textures that name no file, once for all: exporters write one in each material."""
+        if not self._fileless:
+            return
+        first, *others = self._fileless
+        more = f", and {len(others)} more" if others else ""
+        self._reader.report(
+            "urdf-texture-missing",
+            f"{named(first)} names no file{more}",
+            first,
+            "filename",
+            "add filename=…, or remove the element",
+        )
 
-def _color(reader: UrdfReader, element: Element) -> Look:
-    found = reader.children(element)
-    rgba: tuple[float, ...] | None = None
-    if "color" in found:
-        text = found["color"].get("rgba")
-        if text is None:
-            reader.missing_attribute(found["color"], "rgba")
-        else:
-            rgba = reader.numbers(found["color"], "rgba", text, 4)
-    texture = reader.name(found["texture"], "filename") or "" if "texture" in found else ""
-    return rgba, texture  # type: ignore[return-value]
+    def _look(self, element: Element) -> Look:
+        reader = self._reader
+        found = reader.children(element)
+        rgba: tuple[float, ...] | None = None
+        if "color" in found:
+            text = found["color"].get("rgba")
+            if text is None:
+                reader.missing_attribute(found["color"], "rgba")
+            else:
+                rgba = reader.numbers(found["color"], "rgba", text, 4)
+        texture = self._file(found["texture"]) if "texture" in found else ""
+        return rgba, texture  # type: ignore[return-value]
+
+    def _file(self, texture: Element) -> str:
+        """The file name of a texture; empty if it names none."""
+        name = texture.get("filename", "")
+        if name.strip(WHITE):
+            return name
+        if not self._reader.attributes(texture):  # a misspelt attribute is the same error
+            self._fileless.append(texture)
+        return ""

@@ -11,6 +11,7 @@ from eurdf.format.urdf.joints import read_joint
 from eurdf.format.urdf.links import read_link
 from eurdf.format.urdf.materials import Materials
 from eurdf.format.urdf.tree import build_tree
+from eurdf.reading.other_formats import of_element, of_root
 from eurdf.reading.reporter import Element, XmlReporter
 from eurdf.reading.xml_reader import XmlDocument
 
@@ -74,6 +75,8 @@ def _read_robot(reader: UrdfReader, root: Element, materials: Materials | None) 
                 links.append(link)
         elif joint := read_joint(reader, element):
             joints.append(joint)
+    if materials is not None:
+        materials.report_textures()
     if name is None or len(links) + len(joints) < len(elements):
         return None
     return build_tree(reader, name, links, joints)
@@ -83,9 +86,9 @@ def _is_robot(reader: UrdfReader, root: Element) -> bool:
     """EU-URD-003: the root element is ``robot``."""
     if root.tag == "robot":
         return True
-    hint = "this is another format; give the URDF of the robot" if root.tag in ("sdf", "mujoco") else None
+    found = of_root(str(root.tag))
     message = f"the root element is <{root.tag}>; it must be <robot>"
-    reader.report("urdf-root-element", message, root, hint=hint)
+    reader.report("urdf-root-element", message, root, hint=found and found.hint)
     return False
 
 
@@ -94,10 +97,13 @@ def _is_of_other_dialect(reader: UrdfReader, element: Element) -> bool:
     local = re.split("[}:]", str(element.tag))[-1]
     if local not in _CLOSURE_DIALECTS and not local.endswith("_constraint"):
         return False
+    found, hint = of_element(str(element.tag)), "describe it under 'closures' in the description"
+    if found is not None:
+        hint = f"{found.hint}, or {hint}" if found.importer else found.hint
     reader.report(
         "urdf-closure-ignored",
         f"<{local}> is a constraint of another dialect of URDF and has no effect here",
         element,
-        hint="describe it under 'closures' in the YAML file",
+        hint=hint,
     )
     return True

@@ -10,6 +10,7 @@ from eurdf.diagnostics import did_you_mean, quoted
 from eurdf.format.urdf.data import Urdf, UrdfJoint, UrdfLink
 from eurdf.format.urdf.elements import UrdfReader, cycle_of
 from eurdf.format.urdf.mimics import check_mimics
+from eurdf.reading.other_formats import of_element
 
 _Named = TypeVar("_Named", UrdfLink, UrdfJoint)
 
@@ -145,11 +146,14 @@ def _has_one_root(reader: UrdfReader, roots: Sequence[UrdfLink]) -> bool:
     if len(roots) == 1:
         return True
     names = quoted([link.name for link in roots], 5)
+    tags = [str(child.tag) for child in reader.reporter.document.root]
+    tags = [tag for tag in tags if tag.endswith(("}joint", ":joint"))]
+    other = next(filter(None, map(of_element, tags)), None)  # the joints that are missed are of this dialect
     reader.report(
         "urdf-two-roots",
         f"{len(roots)} links have no parent: {names}; a robot has one root",
         roots[1].element,
         "name",
-        "connect them with a joint",
+        other.hint if other else "connect them with a joint",
     )
     return False

@@ -289,4 +289,4 @@ def _couplings(tree: UrdfTree, mechanism: Mechanism, names: UniqueNames, losses:
     return tuple(found)
 
 
-FORMAT = ImportFormat("drake", "URDF with the joints and constraints of Drake", read, LOSSES)
+FORMAT = ImportFormat("drake", read, LOSSES)

@@ -81,4 +81,4 @@ def _frames(tree: UrdfTree, losses: Losses) -> tuple[Frame, ...]:
     return tuple(found)
 
 
-FORMAT = ImportFormat("loop-joint", "URDF with the loop joints of Isaac Sim", read, LOSSES)
+FORMAT = ImportFormat("loop-joint", read, LOSSES)

@@ -107,4 +107,4 @@ def _robot(reading: MjcfReading) -> RobotRead:
     return RobotRead(mechanism, reading.losses.found, reading.copies.files, start)
 
 
-FORMAT = ImportFormat("mjcf", "MJCF, for MuJoCo", read, LOSSES)
+FORMAT = ImportFormat("mjcf", read, LOSSES)

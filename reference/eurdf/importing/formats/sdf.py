@@ -608,4 +608,4 @@ def _text(element: etree._Element, tag: str) -> str:
     return (element.findtext(tag) or "").strip()
 
 
-FORMAT = ImportFormat("sdf", "SDFormat, for Gazebo", read, LOSSES)
+FORMAT = ImportFormat("sdf", read, LOSSES)

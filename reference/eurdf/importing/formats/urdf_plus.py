@@ -113,4 +113,4 @@ def _joints_above(link: str, tree: UrdfTree) -> list[str]:
     return found
 
 
-FORMAT = ImportFormat("urdf-plus", "URDF+, of generalized_rbda", read, LOSSES)
+FORMAT = ImportFormat("urdf-plus", read, LOSSES)

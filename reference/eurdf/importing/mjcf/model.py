@@ -14,6 +14,7 @@ from typing import Any
 from eurdf.dataclass import dataclass
 from eurdf.exceptions import MissingExtra
 from eurdf.importing.exceptions import CannotImport
+from eurdf.importing.xml_files import included_by
 from eurdf.mesh_files.folders import Folders
 from eurdf.mesh_files.reader import BYTES_LIMIT
 from eurdf.program import command_of
@@ -114,7 +115,9 @@ def compile_mjcf(path: Path, folders: Folders) -> MjcfModel:
         raise CannotImport(path, "MuJoCo crashes on it; check the file with MuJoCo's own tools")
     answer = json.loads(done.stdout)
     if "error" in answer:
-        raise CannotImport(path, answer["error"])
+        scene = included_by(path)  # a fragment can lack what the file states that includes it
+        hint = "" if scene is None else f"; it is included by '{scene.name}': import that file instead"
+        raise CannotImport(path, answer["error"] + hint)
     return MjcfModel(
         answer["name"],
         answer["arrays"],
