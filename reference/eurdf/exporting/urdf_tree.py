@@ -12,7 +12,7 @@ from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.mesh_file import MeshFiles
 from eurdf.exporting.written import Exportable
 from eurdf.loss import COMMON, NAMED_FILE, Effect, Losses, LossKind
-from eurdf.mechanism.body import Body, Shape
+from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
@@ -230,11 +230,16 @@ class UrdfTree:
 
     def _link(self, body: Body) -> None:
         link = etree.SubElement(self.root, "link", name=self.links[body.name])
-        if body.inertia is not None:
-            add_inertial(link, body.inertia)
+        inertia = self.inertia(body)
+        if inertia is not None:
+            add_inertial(link, inertia)
         for tag, shapes in (("visual", body.visuals), ("collision", body.collisions)):
             for shape in shapes:
                 self._shape(link, tag, shape)
+
+    def inertia(self, body: Body) -> Inertia | None:
+        """The inertia that is written of a body."""
+        return body.inertia
 
     def _shape(self, link: etree._Element, use: str, shape: Shape) -> None:
         name = shape.filename
