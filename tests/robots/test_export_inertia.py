@@ -1,4 +1,4 @@
-"""Inertias of any kind and orientation: simulators keep what is written, and a change is a loss that states its size."""
+"""Inertias of any kind and orientation: simulators keep what is written, and changes are losses of that size."""
 
 from __future__ import annotations
 
