@@ -73,6 +73,7 @@ class Part:
             the angular velocity along the axes of the joint's frame at rest.
         orientation_first: Whether the orientation, and the angular velocity along the axes at rest, come before the
             position and the linear velocity.
+        circular: Indices of the coordinates, angles, in whose place q of the model has their cosine and sine.
     """
 
     names: tuple[str, ...]
@@ -84,11 +85,12 @@ class Part:
     mimics: bool = False
     rotation: Literal["quaternion", "xyz", "rpy"] = "quaternion"
     orientation_first: bool = False
+    circular: tuple[int, ...] = ()
 
     @property
     def nq(self) -> int:
         """Number of coordinates in the model."""
-        n = len(self.ratios) or len(COORDINATES[self.type].names)
+        n = (len(self.ratios) or len(COORDINATES[self.type].names)) + len(self.circular)
         return n if self.rotation == "quaternion" else n - 1
 
     @property
@@ -153,7 +155,7 @@ class Coordinates:
         for part, start in zip(self.parts, self._idx_q, strict=False):
             kind = COORDINATES[part.type]
             given = tuple(coordinates.get(part.joint, kind.neutral if not part.mimics else (0.0,)))
-            found[start : start + part.nq] = self._in_model(part, given)
+            found[start : start + part.nq] = _on_circles(self._in_model(part, given), part.circular)
         return found
 
     def to_q(self, q: Vector) -> Vector:
@@ -168,7 +170,7 @@ class Coordinates:
         for part, start in zip(self.parts, self._idx_q, strict=False):
             if part.mimics:
                 continue
-            own = self._from_model(part, given[start : start + part.nq].tolist())
+            own = self._from_model(part, _off_circles(given[start : start + part.nq].tolist(), part.circular))
             place = self.own.places[part.joint]
             if place.nq > len(own):
                 own[-1:] = math.cos(own[-1]), math.sin(own[-1])
@@ -315,6 +317,23 @@ class Coordinates:
         along_child = part.rotation == "quaternion" and not part.orientation_first
         block[3:, 3:] = turn if along_child else block[:3, :3]
         return np.roll(block, 3, axis=0) if part.orientation_first else block
+
+
+def _on_circles(values: Sequence[float], circular: Sequence[int]) -> list[float]:
+    """The values, with cosine and sine in the place of the angles at these indices."""
+    return [
+        each
+        for index, value in enumerate(values)
+        for each in ((math.cos(value), math.sin(value)) if index in circular else (value,))
+    ]
+
+
+def _off_circles(values: list[float], circular: Sequence[int]) -> list[float]:
+    """The angles of `_on_circles`, from -π to π."""
+    found = list(values)
+    for index in circular:
+        found[index : index + 2] = [math.atan2(found[index + 1], found[index])]
+    return found
 
 
 def _pose(quaternion: Sequence[float]) -> Pose:

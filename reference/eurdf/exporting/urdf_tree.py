@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
 from lxml import etree
 
@@ -12,7 +13,7 @@ from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.mesh_file import MeshFiles
 from eurdf.exporting.written import Exportable
 from eurdf.loss import COMMON, NAMED_FILE, Effect, Losses, LossKind
-from eurdf.mechanism.body import Body, Shape
+from eurdf.mechanism.body import Body, Inertia, Shape
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
 from eurdf.mechanism.mechanism import ROOT_JOINT
@@ -230,11 +231,16 @@ class UrdfTree:
 
     def _link(self, body: Body) -> None:
         link = etree.SubElement(self.root, "link", name=self.links[body.name])
-        if body.inertia is not None:
-            add_inertial(link, body.inertia)
+        inertia = self.inertia(body)
+        if inertia is not None:
+            add_inertial(link, inertia)
         for tag, shapes in (("visual", body.visuals), ("collision", body.collisions)):
             for shape in shapes:
                 self._shape(link, tag, shape)
+
+    def inertia(self, body: Body) -> Inertia | None:
+        """The inertia that is written of a body."""
+        return body.inertia
 
     def _shape(self, link: etree._Element, use: str, shape: Shape) -> None:
         name = shape.filename
@@ -377,10 +383,32 @@ class PlainTree(UrdfTree):
             elif len(set(values)) > 1:
                 self.losses.add(f"export-unequal-{word}", joint.name)
 
+    def part(self, joint: Joint, names: Sequence[str], steps: Sequence[Step]) -> Part:
+        """The joint in the vectors of Pinocchio's model: q has cosine and sine of the angle of a continuous joint."""
+        own = [step.type for step in steps if step.mimic is None]
+        circular = [index for index, kind in enumerate(own) if kind is JointType.CONTINUOUS]
+        if joint.type is JointType.PLANAR:
+            circular = [2]
+        return replace(super().part(joint, names, steps), circular=tuple(circular))
+
     @property
     def coordinates(self) -> Coordinates:
-        """From the vectors of the robot to those of Pinocchio's model of the file, with joints in its order."""
-        return Coordinates(tuple(self.parts), self._given.own, "xyzw", at_rest=False)
+        """From the vectors of the robot to those of Pinocchio's model of the file, with its mimic joints."""
+        rank = {name: number for number, name in enumerate(self._depth_first())}
+        parts = sorted(self.parts, key=lambda part: -1 if part.joint == ROOT_JOINT else rank[part.names[0]])
+        return Coordinates(tuple(parts), self._given.own, "xyzw", at_rest=False)
+
+    def _depth_first(self) -> Iterator[str]:
+        """Names of the joints in the order of Pinocchio: depth first, those of one link by their names."""
+        leaving: dict[str, list[tuple[str, str]]] = {}
+        for joint in self.root.findall("joint"):
+            name, parent, child = (str(joint.xpath(f"string({at})")) for at in ("@name", "parent/@link", "child/@link"))
+            leaving.setdefault(parent, []).append((name, child))
+        found = sorted(leaving.get(self.links[self.mechanism.bodies[0].name], ()), reverse=True)
+        while found:
+            name, child = found.pop()
+            yield name
+            found += sorted(leaving.get(child, ()), reverse=True)
 
 
 def plain_steps(joint: Joint) -> Sequence[Step]:
@@ -406,5 +434,6 @@ def plain_steps(joint: Joint) -> Sequence[Step]:
         case JointType.HELICAL:
             advance = Mimic(joint.name, joint.pitch / (2.0 * math.pi))
             slide = Step("_slide", JointType.PRISMATIC, joint.axes[0], mimic=advance)
-            return [Step("", turning(0), joint.axes[0], 0), slide]
+            # Not continuous: the slide counts full turns, and Pinocchio lets none mimic a joint of (cos, sin).
+            return [Step("", JointType.REVOLUTE, joint.axes[0], 0), slide]
     return [Step("", joint.type, joint.axes[0], 0)]

@@ -3,7 +3,8 @@
 Facts of Drake that the file relies on (documentation of its parser, and as run with Drake 1.51): a robot floats unless
 it is joined to the link ``world``; joints come depth first, in the order of the file; ``ball`` has roll, pitch and yaw,
 and its velocity is the angular velocity along the axes of the parent; ``planar``, ``screw`` and ``ball`` have no
-limits; an actuator acts on a joint with one freedom; constraints need the SAP solver, in discrete time.
+limits; an actuator acts on a joint with one freedom; constraints need the SAP solver, in discrete time. An inertia that
+no body has becomes that of a ball of water of its mass; one without mass, that of 1 kg of water.
 """
 
 from __future__ import annotations
@@ -15,9 +16,11 @@ from pathlib import PurePosixPath
 from lxml import etree
 
 from eurdf.exporting.coordinates import Coordinates, Part
+from eurdf.exporting.inertia import accepted_inertia
 from eurdf.exporting.urdf_tree import AXES, URDF_LOSSES, Step, UrdfTree, plain_steps
 from eurdf.exporting.written import Exportable, Format, Written
 from eurdf.loss import CONVERSION, Effect, Losses, LossKind
+from eurdf.mechanism.body import Body, Inertia
 from eurdf.mechanism.constraint import Closure, Coupling, DistanceClosure, FrameClosure, HingeClosure, PointClosure
 from eurdf.mechanism.joint import Joint
 from eurdf.mechanism.joint_type import JointType
@@ -38,6 +41,9 @@ WIDTH = 0.1
 #: Stiffness of a coupling, N/m or N·m/rad: Drake has no rigid ones of three joints, and softens what is stiffer than
 #: its time step allows.
 STIFFNESS = 1e12
+
+#: kg that a link with inertia and without mass gets: far below any of a robot.
+LEAST = 1e-13
 
 _ONE_FREEDOM = (
     JointType.REVOLUTE,
@@ -179,12 +185,22 @@ LOSSES = (
         "limit controls in the controller",
     ),
     LossKind(
+        "export-massless-link",
+        "link without mass",
+        Effect.APPROXIMATE,
+        f"has inertia without mass, which Drake replaces by 1 kg of water: gets {LEAST:g} kg",
+        "give the link its mass",
+        error=f"{LEAST:g} kg in the mass matrix",
+        only="links with inertia",
+    ),
+    LossKind(
         "export-inertia",
         "inertia",
-        Effect.DROPPED,
-        "is left out: Drake refuses inertia without a positive mass",
+        Effect.APPROXIMATE,
+        "is not that of a body with volume, which Drake replaces by a ball of water: principal moments are raised",
         "correct the inertia in the URDF; `eurdf check` reports those that no body has",
-        only="inertia without mass",
+        error="the message gives the change of a principal moment; none in mass and centre of mass",
+        only="what no body has",
     ),
     *CONVERSION,
     *URDF_LOSSES,
@@ -192,7 +208,11 @@ LOSSES = (
 
 
 def write(given: Exportable) -> Written:
-    """Write the URDF of a robot for Drake: ``robot.urdf``, and its meshes in ``meshes/``."""
+    """Write the URDF of a robot for Drake: ``robot.urdf``, and its meshes in ``meshes/``.
+
+    Raises:
+        CannotExport: A link has a negative mass.
+    """
     tree = _Tree(given, Losses(LOSSES))
     tree.write()
     files = {"robot.urdf": file_content(tree.root), **tree.meshes.files}
@@ -223,10 +243,6 @@ class _Tree(UrdfTree):
         elif base != _WORLD:
             etree.SubElement(self.root, "link", name=_WORLD)
             add_joint(self.root, self.names.new(f"{_WORLD}_{base}"), JointType.FIXED, _WORLD, base, IDENTITY, None)
-        for body in mechanism.bodies:
-            inertia = body.inertia
-            if inertia is not None and inertia.mass <= 0.0 and (inertia.mass or any(inertia.moments)):
-                self.losses.add("export-inertia", body.name)
         super().write()
         for frame in mechanism.frames:
             pose = {"xyz": numbers(frame.pose.xyz), "rpy": numbers(rpy_of(frame.pose))}
@@ -237,6 +253,11 @@ class _Tree(UrdfTree):
             self._closure(closure)
         for coupling in mechanism.couplings:
             self._coupling(coupling)
+
+    def inertia(self, body: Body) -> Inertia | None:
+        if body.inertia is None or not (body.inertia.mass or any(body.inertia.moments)):
+            return body.inertia
+        return accepted_inertia(body, self.losses, LEAST)
 
     # -- joints -----------------------------------------------------------------------------------------------------
 

@@ -2,7 +2,8 @@
 
 Facts of MuJoCo that the file relies on (documentation, XML reference): angles are in radians by ``compiler/angle``;
 quaternions are w x y z; joints of one body act in order; equalities of joints and tendons are relative to the reference
-configuration, which is all zeros here; a moving body needs mass and inertia above 1e-15.
+configuration, which is all zeros here; mass and principal moments of a moving body are at least 1e-15, and 1e-14 where
+MuJoCo computes these moments from a full matrix; no moment exceeds the sum of the others, to the last bit.
 """
 
 from __future__ import annotations
@@ -11,14 +12,13 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import PurePosixPath
 
-import numpy as np
 from lxml import etree
 
 from eurdf.dataclass import dataclass
 from eurdf.exporting.contacts import neighbours
 from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.exceptions import CannotExport
-from eurdf.exporting.inertia import about_centre, physical
+from eurdf.exporting.inertia import accepted_inertia, along_principal_axes
 from eurdf.exporting.mesh_file import MeshFiles
 from eurdf.exporting.servo import position_gain
 from eurdf.exporting.written import Exportable, Format, Written
@@ -40,8 +40,9 @@ from eurdf.mechanism.pose import IDENTITY, Pose, Vector3, direction
 from eurdf.writing.names import UniqueNames
 from eurdf.writing.xml_text import file_content, numbers, representable
 
-#: kg and kg·m² that a moving body without inertia gets: above MuJoCo's least, 1e-15, and far below any of a robot.
-LEAST = 1e-14
+#: kg and kg·m² that a moving body without inertia gets: ten times the larger of MuJoCo's bounds, and far below any of a
+#: robot.
+LEAST = 1e-13
 
 #: Time step, s. The equalities below are as stiff as it allows: MuJoCo keeps their time constant at two steps or more.
 TIMESTEP = 0.001
@@ -366,7 +367,8 @@ class _Writer:
         name = self.joints.new(ROOT_JOINT)
         etree.SubElement(element, "freejoint", name=name)
         self.parts.append(Part((name,), ROOT_JOINT, JointType.FLOATING))
-        self._content(body, element, IDENTITY, moving=True)
+        self._inertial(body, element, LEAST)
+        self._content(body, element, IDENTITY)
 
     def _body(self, joint: Joint, body: Body) -> None:
         host, pose = self.hosts[joint.parent]
@@ -388,7 +390,8 @@ class _Writer:
             attributes |= self._properties(joint, piece)
             etree.SubElement(element, "joint", attributes)
         self.parts.append(self._part(joint, pieces))
-        self._content(body, element, IDENTITY, moving=True)
+        self._inertial(body, element, LEAST)
+        self._content(body, element, IDENTITY)
 
     def _fixed(self, body: Body, host: etree._Element, pose: Pose) -> None:
         """A link that is fixed to its host: a body, or a site if it has no mass."""
@@ -398,41 +401,25 @@ class _Writer:
                 self._site(body.name, IDENTITY, body.name)
             return
         element = etree.SubElement(host, "body", {"name": self.bodies.new(body.name), **_placed(pose)})
+        self._inertial(body, element, 0.0)
         self._content(body, element, IDENTITY)
 
-    def _content(self, body: Body, element: etree._Element, pose: Pose, *, moving: bool = False) -> None:
-        """Inertia and shapes of a link, which is at a pose in the element."""
+    def _content(self, body: Body, element: etree._Element, pose: Pose) -> None:
+        """The shapes of a link, which is at a pose in the element."""
         self.hosts[body.name] = (element, pose)
-        if element is not self.world and (element.get("name") is not None) and pose is IDENTITY:
-            self._inertial(body, element, moving)
         for shape in body.visuals:
             self._geom(body, shape, element, pose, "visual")
         for shape in body.collisions:
             self._geom(body, shape, element, pose, "collision")
 
-    def _inertial(self, body: Body, element: etree._Element, moving: bool) -> None:
-        inertia = body.inertia
-        if inertia is not None and inertia.mass < 0.0:
-            raise CannotExport(f"link '{body.name}' has the mass {inertia.mass:g} kg; correct it in the URDF")
-        if inertia is None or inertia.mass < LEAST:
-            if not moving:
-                return
-            mass, moments = LEAST, np.zeros((3, 3)) if inertia is None else about_centre(inertia)
-            moments, _ = physical(moments, LEAST)
-            centre = (0.0, 0.0, 0.0) if inertia is None else inertia.pose.xyz
-            self.losses.add("export-massless-link", body.name)
-        else:
-            mass, centre = inertia.mass, inertia.pose.xyz
-            moments, change = physical(about_centre(inertia), LEAST)
-            if change > 0.0:
-                self.losses.add("export-inertia", body.name, f"a principal moment changes by {change:.1e} kg·m²")
-        etree.SubElement(
-            element,
-            "inertial",
-            pos=numbers(centre),
-            mass=numbers((mass,)),
-            fullinertia=numbers(moments[(0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2)].tolist()),
-        )
+    def _inertial(self, body: Body, element: etree._Element, least: float) -> None:
+        """The inertia of a link; mass and principal moments are at least ``least``."""
+        # From a full matrix, MuJoCo leaves out turns to the principal axes by less than 1e-6 rad.
+        inertia = along_principal_axes(accepted_inertia(body, self.losses, least, least))
+        xx, _, _, yy, _, zz = inertia.moments
+        attributes = {"pos": numbers(inertia.pose.xyz), **_placed(Pose(quaternion=inertia.pose.quaternion))}
+        attributes |= {"mass": numbers((inertia.mass,)), "diaginertia": numbers((xx, yy, zz))}
+        etree.SubElement(element, "inertial", attributes)
 
     def _pieces(self, joint: Joint) -> Iterator[_Piece]:
         def new(suffix: str, kind: str, axis: Vector3, velocity: int | None) -> _Piece:

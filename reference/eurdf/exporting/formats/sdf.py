@@ -9,17 +9,17 @@ joint is multiplier · (leader - reference) + offset.
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from operator import mul
 
-import numpy as np
 from lxml import etree
 
 from eurdf.dataclass import dataclass
 from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.exceptions import CannotExport
-from eurdf.exporting.inertia import Matrix, about_centre, physical
+from eurdf.exporting.inertia import accepted_inertia
 from eurdf.exporting.mesh_file import MeshFiles
 from eurdf.exporting.written import Exportable, Format, Written
 from eurdf.loss import BEYOND_LIMITS, COMMON, NAMED_FILE, Effect, Losses, LossKind
@@ -339,26 +339,10 @@ class _Writer:
 
     def _link(self, body: Body, link: etree._Element, parent: str, placed: Pose) -> None:
         _pose(link, placed, parent)
-        self._inertial(body, link)
+        _inertial(link, accepted_inertia(body, self.losses, LEAST))
         for use, shapes in (("visual", body.visuals), ("collision", body.collisions)):
             for number, shape in enumerate(shapes):
                 self._shape(link, use, f"{use}_{number}", shape)
-
-    def _inertial(self, body: Body, link: etree._Element) -> None:
-        inertia = body.inertia
-        if inertia is not None and inertia.mass < 0.0:
-            raise CannotExport(f"link '{body.name}' has the mass {inertia.mass:g} kg; correct it in the URDF")
-        if inertia is None or inertia.mass < LEAST:
-            self.losses.add("export-massless-link", body.name)
-            pose = IDENTITY if inertia is None else Pose(inertia.pose.xyz)
-            moments = np.zeros((3, 3)) if inertia is None else about_centre(inertia)
-            _inertial(link, _with_moments(LEAST, pose, physical(moments, LEAST)[0]))
-            return
-        moments, change = physical(about_centre(inertia), 0.0)
-        if change > 0.0:
-            self.losses.add("export-inertia", body.name, f"a principal moment changes by {change:.1e} kg·m²")
-            inertia = _with_moments(inertia.mass, Pose(inertia.pose.xyz), moments)
-        _inertial(link, inertia)
 
     def _shape(self, link: etree._Element, use: str, name: str, shape: Shape) -> None:
         uri = None
@@ -407,7 +391,7 @@ class _Writer:
                 self._link(body, link, parent, pose * joint.offset)
             else:
                 _pose(link, pose, parent)
-                _inertial(link, _with_moments(LEAST, IDENTITY, LEAST * np.eye(3)))
+                _inertial(link, Inertia(LEAST, IDENTITY, (LEAST, 0.0, 0.0, LEAST, 0.0, LEAST)))
             element = _add(self.model, "joint", name=name, type=step.type)
             if last:
                 _pose(element, joint.offset.inverse() if joint.offset is not IDENTITY else IDENTITY)
@@ -582,11 +566,6 @@ def _moved(kind: JointType, axis: Vector3, value: float) -> Pose:
     return joint_transform(Joint("", kind, "", "", axes=(axis,)), (value,))
 
 
-def _with_moments(mass: float, pose: Pose, moments: Matrix) -> Inertia:
-    xx, xy, xz, yy, yz, zz = moments[np.triu_indices(3)].tolist()
-    return Inertia(mass, pose, (xx, xy, xz, yy, yz, zz))
-
-
 def _inertial(link: etree._Element, inertia: Inertia) -> None:
     element = _add(link, "inertial")
     _add(element, "mass").text = _text((inertia.mass,))
@@ -608,8 +587,11 @@ def _add(parent: etree._Element, tag: str, **attributes: str) -> etree._Element:
 
 
 def _text(values: Sequence[float]) -> str:
-    """Numbers that are read back to the last bit; the schema asks for a point before an exponent."""
-    return " ".join(_number(value) for value in values)
+    """Numbers that are read back to the last bit; the schema asks for a point before an exponent.
+
+    A number below the normal ones, 2.2e-308, is written as 0: libsdformat refuses it.
+    """
+    return " ".join(_number(value if abs(value) >= sys.float_info.min else 0.0) for value in values)
 
 
 def _number(value: float) -> str:

@@ -22,7 +22,7 @@ from eurdf.exceptions import MissingExtra
 from eurdf.exporting.contacts import neighbours
 from eurdf.exporting.coordinates import Coordinates, Part
 from eurdf.exporting.exceptions import CannotExport
-from eurdf.exporting.inertia import about_centre, physical
+from eurdf.exporting.inertia import about_centre, accepted_inertia
 from eurdf.exporting.mesh_file import mesh_names, report_unread
 from eurdf.exporting.servo import position_gain
 from eurdf.exporting.written import Exportable, Format, Written
@@ -463,22 +463,13 @@ class _Writer:
     def _rigid_body(self, body: Body, pose: Pose) -> str:
         path = self.stage.body(self.bodies.new(body.name), pose, body.name)
         self.hosts[body.name], self.poses[body.name] = (path, IDENTITY), pose
-        inertia = body.inertia
-        if inertia is not None and inertia.mass < 0.0:
-            raise CannotExport(f"link '{body.name}' has the mass {inertia.mass:g} kg; correct it in the URDF")
-        if inertia is not None and inertia.mass >= LEAST:
-            moments, change = physical(about_centre(inertia), LEAST_MOMENT)
-            if change > 0.0:
-                self.losses.add("export-inertia", body.name, f"a principal moment changes by {change:.1e} kg·m²")
-            self.stage.mass(path, inertia.mass, inertia.pose.xyz, moments)
-        elif body is self.mechanism.bodies[0] and self.mechanism.root == "fixed":
+        mass = 0.0 if body.inertia is None else body.inertia.mass
+        if 0.0 <= mass < LEAST and body is self.mechanism.bodies[0] and self.mechanism.root == "fixed":
             self.losses.add("export-massless-base", body.name)
             self.stage.mass(path, 1.0, (0.0, 0.0, 0.0), np.eye(3))
         else:
-            if not body.virtual:
-                self.losses.add("export-massless-link", body.name)
-            centre = (0.0, 0.0, 0.0) if inertia is None else inertia.pose.xyz
-            self.stage.mass(path, LEAST, centre, LEAST * np.eye(3))
+            inertia = accepted_inertia(body, self.losses, LEAST, LEAST_MOMENT)
+            self.stage.mass(path, inertia.mass, inertia.pose.xyz, about_centre(inertia))
         return path
 
     def _fixed_frame(self, body: Body, parent: str, pose: Pose) -> None:

@@ -1,0 +1,85 @@
+"""Inertias of any kind and orientation: simulators keep what is written, and changes are losses of that size."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import eurdf
+from eurdf.exporting.inertia import about_centre
+from eurdf.mechanism.body import Body, Inertia
+from eurdf.mechanism.mechanism import Mechanism
+from eurdf.mechanism.pose import Pose
+from eurdf.pinocchio.robot import Robot, build_robot
+from support.exported import InMuJoCo
+from support.plain_urdf import inertial, link_element
+from support.plain_urdf import robot as robot_element
+
+#: Principal moments: of a body, a ball, a rod, a plate, a point, almost a plate; and of what no body is.
+SHAPES = ((2, 3, 4), (1, 1, 1), (0, 1, 1), (1, 2, 3), (0, 0, 0), (1, 2, 3 - 1e-9), (1, 1, 3), (-0.1, 1, 1), (0, 0, 1))
+TURNS = ((0, 0, 0, 1), (0, 0, 1, 0), (0, 0, 1, 1), (0, 0, 3e-7, 1), (1, 2, 3, 4))
+
+quaternions = st.one_of(
+    st.sampled_from(TURNS), st.tuples(*[st.floats(-1, 1)] * 4).filter(lambda given: np.linalg.norm(given) > 0.1)
+)
+
+
+def single(shape: tuple[float, ...], scale: float, turn: tuple[float, ...], mass: float) -> Robot:
+    """A body that floats, whose products of inertia are about the axes of the body."""
+    pose = Pose(quaternion=tuple(np.divide(turn, np.linalg.norm(turn)).tolist()))
+    a, b, c = (float(scale * each) for each in shape)
+    moments = about_centre(Inertia(mass, pose, (a, 0.0, 0.0, b, 0.0, c)))
+    inertia = Inertia(mass, Pose(), tuple(moments[np.triu_indices(3)].tolist()))
+    return build_robot(Mechanism("single", "2.1", "floating", (Body("body", inertia),), ()), geometry=False)
+
+
+def in_reader(robot: Robot, export: eurdf.Export) -> tuple[float, Any]:
+    """Mass, and rotational inertia (3, 3) about the centre of mass along the axes of the body."""
+    if export.format == "mjcf":
+        body = InMuJoCo(robot, export).model.body("body")
+        w, *xyz = body.iquat.tolist()
+        a, b, c = body.inertia.tolist()
+        return body.mass[0], about_centre(Inertia(0.0, Pose(quaternion=(*xyz, w)), (a, 0.0, 0.0, b, 0.0, c)))
+    from support.drake_witness import InDrake
+
+    there = InDrake(robot, export, "sdf" if export.format == "sdf" else "urdf")
+    found = there.plant.GetBodyByName("body").CalcSpatialInertiaInBodyFrame(there.context)
+    return found.get_mass(), found.CalcRotationalInertia().CopyToFullMatrix3()
+
+
+@pytest.mark.parametrize("to", ["mjcf", "drake", "sdf"])
+@given(
+    shape=st.sampled_from(SHAPES),
+    scale=st.sampled_from([1.0, 1e-3, 30.0, 1e-6, 1e-10, 1e-14, 1e-15]),
+    turn=quaternions,
+    mass=st.sampled_from([1.0, 1e-3, 0.0]),
+)
+@settings(max_examples=200)
+def test_reader_has_our_inertia_but_for_losses(
+    to: str, shape: tuple[float, ...], scale: float, turn: tuple[float, ...], mass: float
+) -> None:
+    robot = single(shape, scale, turn, mass)
+    export = eurdf.export(robot, to)
+    found_mass, found = in_reader(robot, export)
+    (given_body,) = robot.mechanism.bodies
+    assert given_body.inertia is not None
+    expected = about_centre(given_body.inertia)
+    losses = {loss.code: loss.message for loss in export.losses}
+    # What a link without mass gets is below that.
+    less = 1e-9 if "export-massless-link" in losses else 0.0
+    stated = float(losses["export-inertia"].split()[-2]) if "export-inertia" in losses else 0.0
+    # Changes of the three principal moments, each stated to two digits.
+    assert abs(found_mass - mass) <= less
+    change = np.linalg.eigvalsh(found - expected)
+    assert np.abs(change).max() <= 1.06 * max(stated, less) + 1e-11 * np.abs(expected).max()
+    assert losses or (min(shape) >= 0 and 2 * max(shape) <= 1.1 * sum(shape))
+
+
+@pytest.mark.parametrize("to", ["drake", "sdf"])
+def test_negative_mass_is_refused(to: str) -> None:
+    with pytest.raises(eurdf.CannotExport, match=r"link .body. has the mass -1\.5 kg"):
+        eurdf.export(robot_element(link_element("body", inertial(-1.5))), to, root="floating")
