@@ -38,7 +38,7 @@ def main() -> None:
     """Print two tables."""
     loaded = {folder.name: eurdf.load(folder, geometry=False) for folder in robots()}
     loaded["two digit_legs"] = two_legs()
-    closing = {name: robot for name, robot in loaded.items() if robot.constraint_models and assemble(robot).closes}
+    closing = {name: robot for name, robot in loaded.items() if robot.constraints and assemble(robot).closes}
     closing |= textbook_mechanisms()
     print(f"{'robot':32} {'neutral':>8} {'converged':>10} {'median':>7} {'99 %':>5} {'most':>5}   (evaluations)")
     for name, robot in closing.items():

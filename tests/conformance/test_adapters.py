@@ -387,11 +387,15 @@ def test_a_senseless_request_is_errored(configuration: Any, frames: Sequence[str
         assert isinstance(answer_of(session.evaluate([CONFIGURATION], ["tip"], ["poses"])), Evaluated)
 
 
-def test_evaluating_before_a_robot_is_accepted_is_errored() -> None:
+def test_evaluating_without_an_accepted_robot_is_errored(tmp_path: Path) -> None:
+    robot, missing = write_every_joint(tmp_path), tmp_path / "missing.yaml"
     with Session(REFERENCE) as session:
-        answer = answer_of(session.evaluate([{}], [], ["mass"]))
-        assert isinstance(answer, Errored)
-        assert "no robot was accepted" in answer.message
+        for load, outcome in ((None, Errored), (robot, Evaluated), ((missing, robot[1]), Errored), (robot, Evaluated)):
+            if load:
+                session.load(*load)
+            answer = answer_of(session.evaluate([CONFIGURATION], ["tip"], ["poses"]))
+            assert isinstance(answer, outcome)
+            assert outcome is Evaluated or "the last load did not accept a robot" in answer.message
 
 
 def test_a_massless_robot_has_no_center_of_mass(tmp_path: Path) -> None:

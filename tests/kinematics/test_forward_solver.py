@@ -16,6 +16,7 @@ from eurdf.kinematics import forward_solver
 from eurdf.kinematics.derived import borrowed
 from eurdf.kinematics.equation_of_motion import EquationOfMotion
 from eurdf.kinematics.independence import INDEPENDENT, Independence
+from eurdf.mechanism.constraint import HingeClosure
 from support.linkage import Y, Z, loop, weighted
 
 seeds = st.integers(0, 2**32 - 1)
@@ -74,6 +75,18 @@ def test_regular_robot_is_solved_without_elimination(name: str, eliminations: Co
         exact = EquationOfMotion(robot, q, v, robot.data).eliminate(tau, [(0.0, 0.0)] * len(robot.constraints))
         np.testing.assert_allclose(found.a, exact.a, atol=1e-8 * np.abs(a).max())
         np.testing.assert_allclose(np.concatenate(found.forces), exact.lambdas, atol=1e-7 * np.abs(lambdas).max())
+
+
+@pytest.mark.parametrize("name", ["doggo_leg", "screw_press"])
+def test_two_points_of_a_hinge_give_its_accelerations(name: str) -> None:
+    robot = eurdf.load(name, geometry=False)
+    assert any(isinstance(constraint, HingeClosure) for constraint in robot.constraints)
+    for seed in range(3):
+        q, v = state(robot, seed)
+        tau = np.random.default_rng(seed).normal(size=robot.model.nv)
+        found = eurdf.forward_dynamics(robot, q, v, tau=tau).a
+        a, _ = by_pinocchio(robot, q, v, tau + eurdf.spring_force(robot, q))
+        np.testing.assert_allclose(found, a, atol=1e-8 * np.abs(a).max())
 
 
 @pytest.mark.parametrize("name", ["five_bar", "four_bar", "sarrus", "planar_3rrr"])

@@ -6,12 +6,12 @@ import json
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 import pytest
 
 import eurdf
 from eurdf.commands.main import main
 from eurdf.mechanism.constraint import HingeClosure
-from eurdf.pinocchio.constraint import NoConstraintModel
 
 ROBOTS = Path(__file__).parents[2] / "robots"
 
@@ -38,10 +38,19 @@ def test_hinge_leaves_a_four_bar_its_mobility(tmp_path: Path) -> None:
     assert np.abs(eurdf.assemble(robot).residual).max() < 1e-9
 
 
-def test_hinge_has_no_constraint_model_of_pinocchio(tmp_path: Path) -> None:
+def test_gains_of_both_constraint_models_of_hinge_must_agree(tmp_path: Path) -> None:
     robot = eurdf.load(hinged(tmp_path, "four_bar", "3d"), geometry=False)
-    with pytest.raises(NoConstraintModel, match="hinge"):
-        _ = robot.constraint_models
+    q, v = eurdf.assemble(robot).q, np.zeros(3)
+    _, (origin, on_axis), *_ = robot
+    name = robot.constraints[0].name
+    assert (origin.name, on_axis.name) == (name, f"{name}/axis")
+    origin.m_baumgarte_parameters.Kp = 400.0
+    with pytest.raises(ValueError, match=rf"'{name}' have different gains .*400.*set the same gains"):
+        eurdf.forward_dynamics(robot, q, v)
+    on_axis.m_baumgarte_parameters.Kp = 400.0
+    moved = pin.integrate(robot.model, q, 1e-6 * np.arange(3))
+    found, expected = (eurdf.forward_dynamics(robot, moved, v, gains=gains).a for gains in (None, (400.0, 0.0)))
+    np.testing.assert_allclose(found, expected, atol=1e-12)
 
 
 def test_hinged_robot_has_no_error(tmp_path: Path) -> None:

@@ -37,6 +37,7 @@ class Reference:
 
         Errors of inertia and of closures are reported with the robot (EU-CNF-003).
         """
+        self._robot = None
         try:
             read = self.describe(description, urdf)
         except RobotNotFound as none:
@@ -57,9 +58,9 @@ class Reference:
         frames: Sequence[str],
         quantities: Sequence[Quantity],
     ) -> list[Values]:
-        """Evaluate the robot accepted last."""
+        """EU-PRO-005: evaluate the robot of the last `load`."""
         if self._robot is None:
-            raise ValueError("no robot was accepted")
+            raise ValueError("the last load did not accept a robot")
         return [self.values(self._robot, each, frames, quantities) for each in configurations]
 
     def describe(self, description: Path, urdf: Path) -> Unlinked | Linked:

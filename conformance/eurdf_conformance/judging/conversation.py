@@ -26,7 +26,7 @@ class Parser(Protocol):
         frames: Sequence[str],
         quantities: Sequence[Quantity],
     ) -> Outcome:
-        """Ask for values of the robot accepted last."""
+        """Ask for values of the robot of the last `load`, which was accepted."""
 
 
 class Conversation:

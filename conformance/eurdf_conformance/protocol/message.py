@@ -62,7 +62,7 @@ class Start(Request):
 
 
 class Load(Request):
-    """Read a robot. It replaces the one read before."""
+    """Read a robot. It replaces the one read before, whatever the answer is."""
 
     outcomes = ("accepted", "rejected")
 
@@ -75,7 +75,7 @@ Quantity = Literal["poses", "residuals", "jacobian", "mass_matrix", "mass", "cen
 
 
 class Evaluate(Request):
-    """Compute poses and other quantities of the robot accepted last."""
+    """Compute poses and other quantities of the robot of the last `load`, which was accepted."""
 
     outcomes = ("evaluated",)
 

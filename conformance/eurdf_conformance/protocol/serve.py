@@ -83,7 +83,7 @@ class Evaluator(Protocol):
     def evaluate(
         self, configurations: Sequence[Configuration], frames: Sequence[str], quantities: Sequence[Quantity]
     ) -> list[Values] | Unsupported | Skipped:
-        """The requested quantities of the robot accepted last, at each configuration."""
+        """The requested quantities of the robot of the last `load`, which was accepted, at each configuration."""
 
 
 def serve(parser: PythonParser, requests: Iterable[bytes], answers: IO[bytes]) -> None:

@@ -32,7 +32,7 @@ class InProcess:
         frames: Sequence[str],
         quantities: Sequence[Quantity],
     ) -> Outcome:
-        """Ask it to evaluate the robot accepted last."""
+        """Ask it to evaluate the robot of the last `load`, which was accepted."""
         begin = time.perf_counter()
         answer: AnyAnswer
         if isinstance(self._parser, Evaluator):

@@ -139,7 +139,7 @@ class Session:
         *,
         timeout: float | None = None,
     ) -> Outcome:
-        """Ask the parser to evaluate the robot accepted last.
+        """Ask the parser to evaluate the robot of the last `load`, which was accepted.
 
         Args:
             configurations: For each, by joint its coordinates as files have them.

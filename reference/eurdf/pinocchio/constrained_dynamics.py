@@ -6,13 +6,14 @@ Source: Carpentier, Budhiraja, Mansard, *Proximal and sparse resolution of const
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from itertools import islice
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 import pinocchio as pin
 
-from eurdf.pinocchio.constraint import has_constraint_models
+from eurdf.pinocchio.constraint import number_of_models
 from eurdf.pinocchio.tree import MOST_VELOCITIES_WITH_DATA
 
 if TYPE_CHECKING:
@@ -107,11 +108,13 @@ class ConstrainedDynamics:
 
 
 def build_constrained_dynamics(robot: Robot) -> ConstrainedDynamics | None:
-    """The solver for a robot; None if it is large, has mimic joints, or kinds of constraint that Pinocchio lacks."""
+    """The solver for a robot; None if it is large, has mimic joints, or a constraint that is not one model."""
     model = robot.tree.model
     if model.nv > MOST_VELOCITIES_WITH_DATA:
         return None
-    if not robot.constraints or len(model.mimicking_joints) or not has_constraint_models(robot.constraints):
+    if not robot.constraints or len(model.mimicking_joints):
+        return None
+    if any(number_of_models(constraint) != 1 for constraint in robot.constraints):  # other rows than the model
         return None
     return ConstrainedDynamics(model, robot.constraint_models)
 
@@ -121,12 +124,30 @@ class StatedGains:
 
     def __init__(self, robot: Robot) -> None:
         """Keep where they are, since they may change."""
-        self._none: list[Gains] | None = None
-        if not has_constraint_models(robot.constraints):
-            self._none = [(0.0, 0.0)] * len(robot.constraints)
-            return
-        self._stated = [constraint_model.m_baumgarte_parameters for constraint_model in robot.constraint_models]
+        self._stated: list[tuple[str, list[Any]]] | None = None
+        self._none = [(0.0, 0.0)] * len(robot.constraints)
+        if all(map(number_of_models, robot.constraints)):
+            models = iter(robot.constraint_models)
+            self._stated = [
+                (each.name, [model.m_baumgarte_parameters for model in islice(models, number_of_models(each))])
+                for each in robot.constraints
+            ]
 
     def now(self) -> list[Gains]:
-        """Those of each constraint now."""
-        return self._none or [(parameters.Kp, parameters.Kd) for parameters in self._stated]
+        """Those of each constraint now.
+
+        Raises:
+            ValueError: The two models of a hinge have different gains.
+        """
+        return self._none if self._stated is None else [_common(*each) for each in self._stated]
+
+
+def _common(constraint: str, stated: list[Any]) -> Gains:
+    """The gains that all models of a constraint have."""
+    first, *others = gains = [(parameters.Kp, parameters.Kd) for parameters in stated]
+    if any(other != first for other in others):
+        raise ValueError(
+            f"the constraint models of the hinge '{constraint}' have different gains (Kp, Kd): "
+            f"{', '.join(map(str, gains))}; set the same gains in both"
+        )
+    return first

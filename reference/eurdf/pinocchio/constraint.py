@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
+import numpy as np
 import pinocchio as pin
 
 from eurdf.exceptions import EurdfError
-from eurdf.mechanism.constraint import Constraint, FrameClosure, PointClosure
+from eurdf.mechanism.constraint import Constraint, FrameClosure, HingeClosure, PointClosure
+from eurdf.mechanism.pose import Vector3, direction
+from eurdf.pinocchio.frame_pairs import Site
 from eurdf.pinocchio.tree import PinocchioTree
 
-_CONTACT: dict[type[Constraint], pin.ContactType] = {
-    PointClosure: pin.ContactType.CONTACT_3D,
-    FrameClosure: pin.ContactType.CONTACT_6D,
-}
+#: Number of constraint models of each kind of constraint.
+_NUMBER: Mapping[type[Constraint], int] = {PointClosure: 1, FrameClosure: 1, HingeClosure: 2}
+
+#: Distance of the point on the axis of a hinge from its origin, m.
+_ON_AXIS = 0.1
 
 
 class NoConstraintModel(EurdfError, ValueError):  # noqa: N818 - part of the public interface
@@ -28,32 +32,47 @@ class NoConstraintModel(EurdfError, ValueError):  # noqa: N818 - part of the pub
         self.constraint = constraint
         self.type = type_
         super().__init__(
-            f"Pinocchio has no constraint model for constraint '{constraint}' of type '{type_}'; "
-            "use robot.constraints, and the functions of eurdf"
+            f"Pinocchio has no constraint model for constraint '{constraint}' of type '{type_}'; use "
+            "robot.model, robot.constraints and the other attributes one by one, and the functions of eurdf, such as "
+            "eurdf.forward_dynamics in place of pin.constraintDynamics"
         )
 
 
-def has_constraint_models(constraints: Iterable[Constraint]) -> bool:
-    """Whether Pinocchio has constraint models for these constraints."""
-    return all(type(constraint) in _CONTACT for constraint in constraints)
+def number_of_models(constraint: Constraint) -> int:
+    """Number of constraint models that Pinocchio needs for a constraint; 0 if it has none for its kind."""
+    return _NUMBER.get(type(constraint), 0)
 
 
 def build_constraint_models(constraints: Iterable[Constraint], tree: PinocchioTree) -> list[pin.RigidConstraintModel]:
-    """One constraint model a constraint, in their order and under their names.
+    """The constraint models of the constraints, in their order and under their names.
 
     Each joins the joints that move the bodies of its frames A and B; its placements are those of the frames in the
-    joints, and its residual and forces are expressed in frame A (``LOCAL``).
+    joints, and its residual and forces are expressed in frame A (``LOCAL``). A hinge is two 3d models: ``NAME`` of its
+    origin, and ``NAME/axis`` of the point on its axis that is 0.1 m from the origin.
 
     Raises:
         NoConstraintModel: A constraint is of a kind that Pinocchio does not have.
     """
     constraint_models = []
     for constraint in constraints:
-        contact = _CONTACT.get(type(constraint))
-        if contact is None:
+        if not number_of_models(constraint):
             raise NoConstraintModel(constraint.name, constraint.type)
-        ends = (end for anchor in constraint.anchors for end in tree.site(anchor))
-        constraint_model = pin.RigidConstraintModel(contact, tree.model, *ends, pin.ReferenceFrame.LOCAL)
-        constraint_model.name = constraint.name
-        constraint_models.append(constraint_model)
+        ends = [tree.site(anchor) for anchor in constraint.anchors]
+        contact = pin.ContactType.CONTACT_6D if isinstance(constraint, FrameClosure) else pin.ContactType.CONTACT_3D
+        constraint_models.append(_model(constraint.name, contact, tree, ends))
+        if isinstance(constraint, HingeClosure):
+            on_axis = [_along(end, axis) for end, axis in zip(ends, constraint.axes, strict=True)]
+            constraint_models.append(_model(f"{constraint.name}/axis", contact, tree, on_axis))
     return constraint_models
+
+
+def _along(frame: Site, axis: Vector3) -> Site:
+    """The frame, moved along an axis of its own."""
+    return Site(frame.joint, frame.placement * pin.SE3(np.eye(3), _ON_AXIS * np.array(direction(axis))))
+
+
+def _model(name: str, contact: pin.ContactType, tree: PinocchioTree, ends: Iterable[Site]) -> pin.RigidConstraintModel:
+    joints_and_placements = (each for end in ends for each in end)
+    constraint_model = pin.RigidConstraintModel(contact, tree.model, *joints_and_placements, pin.ReferenceFrame.LOCAL)
+    constraint_model.name = name
+    return constraint_model

@@ -35,7 +35,8 @@ class Geometry(NamedTuple):
 class Robot:
     """A robot with closed kinematic chains, in Pinocchio's terms.
 
-    It unpacks as ``model, constraint_models, actuation, visual_model, collision_model = robot``.
+    It unpacks as ``model, constraint_models, actuation, visual_model, collision_model = robot``, which raises
+    `NoConstraintModel` if the robot has distance closures or couplings.
 
     What the kinematics finds out about a robot once is kept with it, so do not change its model in place. Build
     another robot of a changed mechanism: ``build_robot(replace(robot.mechanism, closures=...), geometry=False)``, with
@@ -97,10 +98,15 @@ class Robot:
 
     @property
     def constraint_models(self) -> list[pin.RigidConstraintModel]:
-        """One constraint model per constraint, in file order: a new list of the robot's own, whose gains can be set.
+        """Pinocchio's constraint models, in file order: a new list of the robot's own models, whose gains can be set.
+
+        A 3d or 6d closure is one model of that type and name. A hinge is two 3d models: ``NAME`` of its origin, and
+        ``NAME/axis`` of a point on its axis. Set the same gains in both. Their 6 rows have the rank 5, so
+        ``pin.constraintDynamics`` needs `pin.ProximalSettings` with mu above 0.
 
         Raises:
-            NoConstraintModel: A constraint has a kind for which Pinocchio has no constraint model.
+            NoConstraintModel: A constraint is a distance closure or a coupling, for which Pinocchio has none. Use
+                the other attributes one by one, and the functions of eurdf, such as `eurdf.forward_dynamics`.
         """
         return list(self._constraint_models)
 

@@ -90,6 +90,21 @@ class GoneAfterRejecting(Reference):
         return answer
 
 
+@_violates("EU-PRO-005", Verdict.FAILED)
+class RepeatsRejecting(Reference):
+    """Gives the answer of a rejected `load` to the next one too."""
+
+    _rejected: Rejected | None = None
+
+    def load(self, description: Path, urdf: Path) -> Accepted | Rejected:
+        if self._rejected:
+            answer, self._rejected = self._rejected, None
+            return answer
+        answer = super().load(description, urdf)
+        self._rejected = answer if isinstance(answer, Rejected) else None
+        return answer
+
+
 def be(name: str) -> None:
     """Be one of the Python objects, over standard input and output."""
     serve.main(f"{__name__}:{name}")

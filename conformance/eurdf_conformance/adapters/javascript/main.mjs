@@ -14,19 +14,20 @@ const STARTED = {
   claims: { 1: LEVELS, 2: LEVELS, 2.1: LEVELS },
 };
 
-let robot; // the last accepted one
+let robot; // of the last `load`, if it was accepted
 
 const answers = {
   start: () => STARTED,
   load: ({ description, urdf }) => {
-    const read = readRobot(description, urdf);
-    robot = read;
-    return { outcome: "accepted", robot: canonical(read), issues: [] };
+    robot = undefined;
+    robot = readRobot(description, urdf);
+    return { outcome: "accepted", robot: canonical(robot), issues: [] };
   },
-  evaluate: (request) => ({
-    outcome: "evaluated",
-    values: request.configurations.map((each) => evaluate(robot, each, request.frames, request.quantities)),
-  }),
+  evaluate: (request) => {
+    if (!robot) throw new Error("the last load did not accept a robot");
+    const values = request.configurations.map((each) => evaluate(robot, each, request.frames, request.quantities));
+    return { outcome: "evaluated", values };
+  },
   stop: () => ({ outcome: "stopped" }),
 };
 
